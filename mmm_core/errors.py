@@ -1,0 +1,45 @@
+"""Errors of the motion model.
+
+MmmError
+├── MotionFileError(path, key, found, allowed)   a motion or caption file that cannot be used   (ValueError)
+├── CheckpointError(path, key, found, expected)  weights that do not fit this code              (ValueError)
+├── GenerationError(asked, allowed)              a request outside what the model can be asked   (ValueError)
+└── TrainingDataError(path, key, found, allowed) a training corpus that cannot be read           (ValueError)
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class MmmError(Exception):
+    """Anything that goes wrong between a text and a motion."""
+
+
+class _FileError(MmmError, ValueError):
+    """A file with a wrong value: keeps path, key, found and allowed, and says all four."""
+
+    def __init__(self, path: Path | str, key: str, found: str, allowed: str) -> None:
+        self.path, self.key, self.found, self.allowed = Path(path), key, found, allowed
+        where = f"{path}: key '{key}'" if key else f"{path}"
+        super().__init__(f"{where}: {found}; expected {allowed}")
+
+
+class MotionFileError(_FileError):
+    """A motion file that cannot be read as one."""
+
+
+class CheckpointError(_FileError):
+    """A checkpoint that is missing, corrupt or made for another model."""
+
+
+class TrainingDataError(_FileError):
+    """A training folder that is missing, empty or inconsistent."""
+
+
+class GenerationError(MmmError, ValueError):
+    """A seed, length or text that the model cannot be asked for."""
+
+    def __init__(self, asked: str, allowed: str) -> None:
+        self.asked, self.allowed = asked, allowed
+        super().__init__(f"{asked}; allowed: {allowed}")
