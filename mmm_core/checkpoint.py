@@ -1,0 +1,171 @@
+"""Weights on disk: one safetensors file with its configuration, and the text encoder beside it.
+
+A model file holds tensors under `tokenizer.`, `transformer.`, `length.` and `scope.`, and in its metadata the sizes,
+the names of the reference commands and where the weights come from. Nothing is ever unpickled.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save_file
+from tokenizers import Tokenizer as WordPieces
+from torch import Tensor, nn
+
+from mmm_core.errors import CheckpointError
+from mmm_core.length import LengthPredictor
+from mmm_core.scope import ScopeIndex
+from mmm_core.text import MiniLm, MiniLmConfig
+from mmm_core.tokenizer import PartConfig, Tokenizer, TokenizerConfig
+from mmm_core.transformer import MotionTransformer, TransformerConfig
+
+FORMAT = 1
+WEIGHTS_DIR = Path(__file__).parent / "weights"
+MODEL_FILE = WEIGHTS_DIR / "mmm_compact.safetensors"
+TEXT_FILE = WEIGHTS_DIR / "minilm.safetensors"
+WORD_PIECES_FILE = WEIGHTS_DIR / "minilm_word_pieces.json"
+
+
+@dataclass
+class Model:
+    """All that generation needs besides the text encoder."""
+
+    tokenizer: Tokenizer
+    transformer: MotionTransformer
+    length: LengthPredictor
+    scope: ScopeIndex
+    provenance: dict[str, Any]
+
+
+def save_model(path: Path, model: Model) -> None:
+    """Write `model` in half precision; an older file stays whole if writing fails."""
+    tensors = {
+        f"{part}.{name}": tensor
+        for part, module in (
+            ("tokenizer", model.tokenizer),
+            ("transformer", model.transformer),
+            ("length", model.length),
+        )
+        for name, tensor in module.state_dict().items()
+    }
+    tensors["scope.commands"] = model.scope.vectors
+    metadata = {
+        "format": str(FORMAT),
+        "kind": "mmmd-model",
+        "config": json.dumps({"tokenizer": asdict(model.tokenizer.config), "transformer": asdict(model.transformer.config)}),
+        "scope": json.dumps(model.scope.commands),
+        "provenance": json.dumps(model.provenance),
+    }  # fmt: skip
+    _save(path, {name: _compact(name, tensor) for name, tensor in tensors.items()}, metadata)
+
+
+def load_model(path: Path | None = None) -> Model:
+    """Read a model file, `MODEL_FILE` when None.
+
+    Raises:
+        CheckpointError: missing, not a safetensors file, another kind or format, or a tensor that does not fit.
+    """
+    path = path or MODEL_FILE
+    tensors, metadata = _load(path, "mmmd-model")
+    config = json.loads(metadata["config"])
+    parts = tuple(PartConfig(p["name"], tuple(p["channels"]), p["width"]) for p in config["tokenizer"].pop("parts"))
+    tokenizer = Tokenizer(TokenizerConfig(**config["tokenizer"], parts=parts))
+    transformer = MotionTransformer(TransformerConfig(**config["transformer"]))
+    length = LengthPredictor()
+    for name, module in (("tokenizer", tokenizer), ("transformer", transformer), ("length", length)):
+        _fill(module, _with_prefix(tensors, name + "."), path, name + ".")
+    scope = ScopeIndex(json.loads(metadata["scope"]), tensors["scope.commands"].float())
+    return Model(tokenizer, transformer, length, scope, json.loads(metadata["provenance"]))
+
+
+def save_text_encoder(path: Path, encoder: MiniLm, source: str) -> None:
+    """Write the text encoder: half precision, word embeddings as bytes with one scale for each row."""
+    tensors = {name: tensor.half() for name, tensor in encoder.state_dict().items()}
+    embedding = encoder.word_embedding.weight.detach()
+    scale = embedding.abs().amax(1, keepdim=True).clamp_min(1e-8) / 127
+    del tensors["word_embedding.weight"]
+    tensors["word_embedding.bytes"] = (embedding / scale).round().to(torch.int8)
+    tensors["word_embedding.scale"] = scale
+    metadata = {"format": str(FORMAT), "kind": "mmmd-text", "config": json.dumps(asdict(encoder.config)), "source": source}
+    _save(path, tensors, metadata)
+
+
+def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None) -> MiniLm:
+    """Read the text encoder, the packed one when None.
+
+    Raises:
+        CheckpointError: as `load_model`.
+    """
+    path, word_pieces = path or TEXT_FILE, word_pieces or WORD_PIECES_FILE
+    tensors, metadata = _load(path, "mmmd-text")
+    if not word_pieces.is_file():
+        raise CheckpointError(word_pieces, "", "no such file", "the word pieces that belong to the text encoder")
+    encoder = MiniLm(MiniLmConfig(**json.loads(metadata["config"])), WordPieces.from_file(str(word_pieces)))
+    quantised = tensors.pop("word_embedding.bytes").float() * tensors.pop("word_embedding.scale").float()
+    tensors["word_embedding.weight"] = quantised
+    _fill(encoder, tensors, path, "")
+    return encoder
+
+
+def file_hash(path: Path) -> str:
+    """SHA-256 of a file, hex."""
+    with path.open("rb") as f:
+        return hashlib.file_digest(f, "sha256").hexdigest()
+
+
+def _compact(name: str, tensor: Tensor) -> Tensor:
+    """Half precision for weights; statistics, code vectors and counters stay exact."""
+    exact = not tensor.is_floating_point() or any(key in name for key in (".mean", ".std", "codebook", "uses", "sums"))
+    return (tensor if exact else tensor.half()).detach().clone().contiguous()
+
+
+def _with_prefix(tensors: Mapping[str, Tensor], prefix: str) -> dict[str, Tensor]:
+    return {name.removeprefix(prefix): t for name, t in tensors.items() if name.startswith(prefix)}
+
+
+def _save(path: Path, tensors: dict[str, Tensor], metadata: dict[str, str]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(path.name + ".part")
+    try:
+        save_file(tensors, str(partial), metadata=metadata)
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _load(path: Path, kind: str) -> tuple[dict[str, Tensor], dict[str, str]]:
+    if not path.is_file():
+        raise CheckpointError(path, "", "no such file", f"a {kind} file; the shipped one comes with the package")
+    try:
+        with safe_open(str(path), framework="pt") as f:  # type: ignore[no-untyped-call]
+            metadata: dict[str, str] = f.metadata() or {}
+            tensors = {name: f.get_tensor(name) for name in f.keys()}  # noqa: SIM118 - safe_open is no mapping
+    except (SafetensorError, OSError) as error:
+        raise CheckpointError(path, "", f"not a readable safetensors file ({error})", f"a {kind} file") from error
+    if metadata.get("kind") != kind:
+        raise CheckpointError(path, "kind", repr(metadata.get("kind")), repr(kind))
+    if metadata.get("format") != str(FORMAT):
+        raise CheckpointError(path, "format", repr(metadata.get("format")), f"{FORMAT}; another mmmd version wrote it")
+    return tensors, metadata
+
+
+def _fill(module: nn.Module, tensors: dict[str, Tensor], path: Path, prefix: str) -> None:
+    """Load `tensors` into `module` and make it ready for inference; every key and shape must agree."""
+    wanted = module.state_dict()
+    for name, tensor in wanted.items():
+        if name not in tensors:
+            raise CheckpointError(path, prefix + name, "missing", f"a tensor {tuple(tensor.shape)}")
+        if tensors[name].shape != tensor.shape:
+            raise CheckpointError(path, prefix + name, f"shape {tuple(tensors[name].shape)}", f"{tuple(tensor.shape)}")
+    for name in tensors.keys() - wanted.keys():
+        raise CheckpointError(path, prefix + name, "a tensor this model does not have", "only tensors of its configuration")
+    module.load_state_dict({name: t.to(wanted[name].dtype) for name, t in tensors.items()})
+    module.eval().requires_grad_(False)

@@ -1,0 +1,80 @@
+"""Vector quantisation with a codebook kept by moving averages.
+
+MMM (arXiv 2312.03596) eq. 1; EMA update of VQ-VAE (arXiv 1711.00937) appendix A.1; "factorised" means that the code
+dimension is small (16 or 32), so that few codes stay unused.
+"""
+
+from __future__ import annotations
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+DECAY = 0.99
+DEAD_BELOW = 0.3
+"""A code whose moving average of uses falls below this is moved to a random latent of the batch."""
+RESET_EVERY = 20
+
+
+class Quantizer(nn.Module):
+    """(N, D) latents to the nearest of K codes.
+
+    Buffers: `codebook` (K, D), `uses` (K,) and `sums` (K, D), the moving averages that define it.
+    """
+
+    codebook: Tensor
+    uses: Tensor
+    sums: Tensor
+    n_updates: Tensor
+
+    def __init__(self, n_codes: int, code_dim: int) -> None:
+        super().__init__()
+        self.register_buffer("codebook", torch.randn(n_codes, code_dim))
+        self.register_buffer("uses", torch.zeros(n_codes))
+        self.register_buffer("sums", torch.zeros(n_codes, code_dim))
+        self.register_buffer("n_updates", torch.zeros((), dtype=torch.int64))
+
+    def encode(self, latents: Tensor) -> Tensor:
+        """Nearest code of each latent: (..., D) -> (...) int64."""
+        flat = latents.reshape(-1, latents.shape[-1])
+        distance = self.codebook.square().sum(1) - 2 * flat @ self.codebook.T  # |c|^2 - 2 x.c; |x|^2 is the same for all
+        return distance.argmin(1).reshape(latents.shape[:-1])
+
+    def forward(self, latents: Tensor) -> tuple[Tensor, Tensor]:
+        """Quantised latents with straight-through gradient, and the commitment loss.
+
+        In training mode the codebook is updated from this batch first.
+        """
+        flat = latents.detach().reshape(-1, latents.shape[-1])
+        if self.training:
+            self._update(flat)
+        quantised = F.embedding(self.encode(latents.detach()), self.codebook)
+        commitment = F.mse_loss(latents, quantised)
+        return latents + (quantised - latents).detach(), commitment
+
+    @torch.no_grad()
+    def _update(self, flat: Tensor) -> None:
+        """One EMA step; the first call takes codes from the batch; dead codes are reset."""
+        n_codes = len(self.codebook)
+        if int(self.n_updates) == 0:
+            self.codebook.copy_(_pick(flat, n_codes))
+            self.sums.copy_(self.codebook)
+            self.uses.fill_(1.0)
+        ids = self.encode(flat)
+        uses = torch.bincount(ids, minlength=n_codes).to(flat.dtype)
+        sums = torch.zeros_like(self.sums).index_add_(0, ids, flat)
+        self.uses.mul_(DECAY).add_(uses, alpha=1 - DECAY)
+        self.sums.mul_(DECAY).add_(sums, alpha=1 - DECAY)
+        self.n_updates += 1
+        if int(self.n_updates) % RESET_EVERY == 0:
+            dead = self.uses < DEAD_BELOW
+            replacement = _pick(flat, int(dead.sum()))
+            self.uses[dead] = 1.0
+            self.sums[dead] = replacement
+        self.codebook.copy_(self.sums / self.uses.clamp_min(1e-6)[:, None])
+
+
+def _pick(flat: Tensor, n: int) -> Tensor:
+    """N random rows of `flat`, repeated with a little noise when there are too few."""
+    index = torch.randint(len(flat), (n,))
+    return flat[index] + 1e-3 * torch.randn(n, flat.shape[1])

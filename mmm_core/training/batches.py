@@ -1,0 +1,120 @@
+"""Training corpus in memory: features or ids of each clip, its captions, and the captions' text states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from rich.progress import track
+from torch import Tensor
+
+from mmm_core.text import MiniLm, TextStates
+from mmm_core.tokenizer import Tokenizer
+from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+
+ENCODE_BATCH = 64
+
+
+@dataclass(frozen=True)
+class Clip:
+    """One training motion: (T, 263) features, its sentences, and whether a person made it."""
+
+    features: NDArray[np.float32]
+    captions: list[str]
+    is_real: bool
+
+
+def cut_to_tokens(clip: Clip, generator: np.random.Generator) -> Clip:
+    """A clip of whole tokens, at most the longest length, cut at a random place."""
+    T = min(len(clip.features) // FRAMES_PER_TOKEN, MAX_TOKENS) * FRAMES_PER_TOKEN
+    start = int(generator.integers(0, len(clip.features) - T + 1))
+    return Clip(clip.features[start : start + T], clip.captions, clip.is_real)
+
+
+class CaptionStates:
+    """Text states of many captions, encoded once and kept in half precision."""
+
+    def __init__(self, captions: Sequence[str], encoder: MiniLm) -> None:
+        order = sorted(range(len(captions)), key=lambda i: len(captions[i]))
+        self.n_words = np.zeros(len(captions), np.int64)
+        self.sentences = torch.zeros(len(captions), encoder.config.width, dtype=torch.float16)
+        words: list[Tensor | None] = [None] * len(captions)
+        for start in track(range(0, len(order), ENCODE_BATCH), description="captions"):
+            rows = order[start : start + ENCODE_BATCH]
+            states = encoder.encode([captions[i] for i in rows])
+            for row, i in enumerate(rows):
+                n = int(states.word_mask[row].sum())
+                words[i] = states.words[row, :n].half()
+                self.n_words[i] = n
+                self.sentences[i] = states.sentence[row].half()
+        self.words = torch.cat([w for w in words if w is not None])
+        self.offsets = np.concatenate([[0], np.cumsum(self.n_words)])
+
+    def gather(self, indices: Sequence[int]) -> TextStates:
+        """States of the captions at `indices`, padded to a multiple of eight word pieces."""
+        width = int(-(-self.n_words[list(indices)].max() // 8) * 8)
+        words = torch.zeros(len(indices), width, self.words.shape[1])
+        mask = torch.zeros(len(indices), width, dtype=torch.bool)
+        for row, i in enumerate(indices):
+            n = int(self.n_words[i])
+            words[row, :n] = self.words[self.offsets[i] : self.offsets[i] + n].float()
+            mask[row, :n] = True
+        return TextStates(words, mask, self.sentences[list(indices)].float())
+
+
+@dataclass(frozen=True)
+class TokenCorpus:
+    """What the transformer trains on.
+
+    Attributes:
+        ids: for each clip (L, C) int64.
+        caption_rows: for each clip the rows of its captions in `captions`.
+        captions: the encoded captions.
+        is_real: for each clip.
+    """
+
+    ids: list[Tensor]
+    caption_rows: list[list[int]]
+    captions: CaptionStates
+    is_real: NDArray[np.bool_]
+
+
+def encode_clips(clips: Sequence[Clip], tokenizer: Tokenizer) -> list[Tensor]:
+    """Ids (L, C) of each clip."""
+    with torch.inference_mode():
+        return [
+            tokenizer.encode(torch.from_numpy(clip.features)[None])[0].clone()
+            for clip in track(clips, description="tokens")
+        ]
+
+
+def length_buckets(ids: Sequence[Tensor], width: int = 6) -> dict[int, NDArray[np.int64]]:
+    """Clip indices by length, rounded up to a multiple of `width` tokens: few shapes, little padding."""
+    buckets: dict[int, list[int]] = {}
+    for i, row in enumerate(ids):
+        buckets.setdefault(min(-(-len(row) // width) * width, MAX_TOKENS), []).append(i)
+    return {length: np.array(rows) for length, rows in sorted(buckets.items())}
+
+
+def save_clips(path: Path, clips: Sequence[Clip]) -> None:
+    """Keep a made corpus on disk, so that a resumed run trains on the same clips."""
+    lengths = np.array([len(c.features) for c in clips])
+    captions = np.array(["\n".join(c.captions) for c in clips])
+    features = np.concatenate([c.features for c in clips])
+    np.savez(path, features=features, lengths=lengths, captions=captions, is_real=np.array([c.is_real for c in clips]))
+
+
+def load_clips(path: Path) -> list[Clip]:
+    """Read what `save_clips` wrote."""
+    with np.load(path, allow_pickle=False) as data:
+        features, captions, is_real = data["features"], data["captions"], data["is_real"]
+        ends = np.cumsum(data["lengths"])
+    starts = np.concatenate([[0], ends[:-1]])
+    return [
+        Clip(features[a:b], str(text).split("\n"), bool(real))
+        for a, b, text, real in zip(starts, ends, captions, is_real, strict=True)
+    ]

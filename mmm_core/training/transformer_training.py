@@ -1,0 +1,145 @@
+"""Training of the masked transformer and of the length predictor.
+
+MMM (arXiv 2312.03596) sec. 3.2, eq. 2: visible ids are corrupted, a share of the positions is masked, and the loss is
+the cross-entropy at every motion position. Text dropout (ours) makes guidance possible.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from torch import Tensor
+
+from mmm_core.length import LengthPredictor
+from mmm_core.text import TextStates
+from mmm_core.tokenizer import Tokenizer
+from mmm_core.training.batches import TokenCorpus, length_buckets
+from mmm_core.training.run import Schedule, train
+from mmm_core.transformer import MotionTransformer, TransformerConfig
+
+TOKENS_PER_BATCH = 1100
+"""Rows per batch follow from the length, so that every step costs about the same."""
+LENGTH_BATCH = 256
+
+
+@dataclass(frozen=True)
+class Corruption:
+    """How much of a training motion is hidden.
+
+    Attributes:
+        masked_share: the least share of positions masked; drawn from U(masked_share, 1).
+        kept_share: the least probability that a visible id is kept and not replaced; U(kept_share, 1) for each motion.
+        no_text_share: share of motions trained without their text.
+        real_share: share of motions made by a person.
+    """
+
+    masked_share: float = 0.4
+    kept_share: float = 0.5
+    no_text_share: float = 0.1
+    real_share: float = 0.12
+
+
+def corrupt(ids: Tensor, n_tokens: Tensor, n_codes: int, how: Corruption, generator: torch.Generator) -> Tensor:
+    """Replace some visible ids by random ones, then mask positions; (B, L, C) -> (B, L, C), [END] and [PAD] untouched."""
+    B, L, _ = ids.shape
+    motion = torch.arange(L)[None] < n_tokens[:, None]  # (B, L)
+    keep = how.kept_share + (1 - how.kept_share) * torch.rand(B, 1, generator=generator)
+    replaced = motion & (torch.rand(B, L, generator=generator) > keep)
+    random_ids = torch.randint(n_codes, ids.shape, generator=generator)
+    ids = torch.where(replaced[..., None], random_ids, ids)
+    share = how.masked_share + (1 - how.masked_share) * torch.rand(B, generator=generator)
+    n_masked = (share * n_tokens).round().clamp_min(1)
+    order = torch.rand(B, L, generator=generator).masked_fill(~motion, 2.0).argsort(1).argsort(1)
+    masked = order < n_masked[:, None]
+    return torch.where(masked[..., None], torch.full_like(ids, n_codes + 2), ids)
+
+
+def train_transformer(
+    corpus: TokenCorpus,
+    tokenizer: Tokenizer,
+    config: TransformerConfig,
+    schedule: Schedule,
+    run_dir: Path,
+    how: Corruption | None = None,
+) -> MotionTransformer:
+    """A transformer trained on `corpus`."""
+    how = how or Corruption()
+    model = MotionTransformer(config)
+    model.set_codebooks([q.codebook for q in tokenizer._books()])  # noqa: SLF001 - the codes are shared by design
+    buckets = length_buckets(corpus.ids)
+    weight = np.array([_drawing_weight(rows, corpus.is_real, how.real_share) for rows in buckets.values()])
+    lengths, K = list(buckets), config.n_codes
+
+    def batch(generator: torch.Generator) -> tuple[Tensor, Tensor, TextStates]:
+        rng = np.random.default_rng(int(torch.randint(2**62, (1,), generator=generator)))
+        length = lengths[rng.choice(len(lengths), p=weight / weight.sum())]
+        rows, B = buckets[length], max(8, TOKENS_PER_BATCH // length)
+        p = np.where(corpus.is_real[rows], *_shares(corpus.is_real[rows], how.real_share))
+        picked = rng.choice(rows, B, p=p / p.sum())
+        ids = torch.full((B, length + 1, config.n_codebooks), K + 1)
+        n_tokens = torch.tensor([len(corpus.ids[i]) for i in picked])
+        for row, i in enumerate(picked):
+            n = len(corpus.ids[i])
+            ids[row, :n] = corpus.ids[i]
+            ids[row, n] = K
+        captions = [int(rng.choice(corpus.caption_rows[i])) for i in picked]
+        return ids, n_tokens, corpus.captions.gather(captions)
+
+    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
+        ids, n_tokens, text = batch(generator)
+        B, L = ids.shape[:2]
+        dropped = torch.rand(B, generator=generator) < how.no_text_share
+        logits = model(corrupt(ids, n_tokens, K, how, generator), model.read_text(_drop(text, dropped, model)))
+        motion = torch.arange(L)[None] < n_tokens[:, None]
+        target = ids[motion]  # (N, C)
+        entropy = F.cross_entropy(logits[motion].reshape(-1, K), target.reshape(-1), reduction="none")
+        share = (1.0 / n_tokens)[:, None].expand(B, L)[motion]
+        loss = (entropy.reshape(target.shape).mean(1) * share).sum() / B
+        right = (logits[motion].argmax(-1) == target).float().mean()
+        return {"loss": loss, "right": right}
+
+    train(model, loss_fn, schedule, run_dir, "transformer")
+    return model
+
+
+def train_length(corpus: TokenCorpus, seconds: list[float], schedule: Schedule, run_dir: Path) -> LengthPredictor:
+    """A length predictor trained by maximum likelihood on each caption and its clip's length."""
+    predictor = LengthPredictor()
+    pairs = [(row, seconds[i]) for i, rows in enumerate(corpus.caption_rows) if not corpus.is_real[i] for row in rows]
+
+    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
+        picked = [pairs[i] for i in torch.randint(len(pairs), (LENGTH_BATCH,), generator=generator).tolist()]
+        mean, log_std = predictor(corpus.captions.gather([row for row, _ in picked]))
+        error = (torch.tensor([s for _, s in picked]).log() - mean) / log_std.exp()
+        loss = (0.5 * error.square() + log_std).mean()
+        return {"loss": loss, "spread": log_std.exp().mean()}
+
+    train(predictor, loss_fn, schedule, run_dir, "length")
+    return predictor
+
+
+def _shares(is_real: np.ndarray, real_share: float) -> tuple[float, float]:
+    """Drawing weight of a real and of a synthesised clip."""
+    n_real = max(1, int(is_real.sum()))
+    n_synth = max(1, len(is_real) - int(is_real.sum()))
+    return real_share / n_real, (1 - real_share) / n_synth
+
+
+def _drawing_weight(rows: np.ndarray, is_real: np.ndarray, real_share: float) -> float:
+    """How often a bucket is drawn: its share of all clips, real ones lifted to `real_share`."""
+    real, synth = _shares(is_real, real_share)
+    return float(np.where(is_real[rows], real, synth).sum())
+
+
+def _drop(text: TextStates, dropped: Tensor, model: MotionTransformer) -> TextStates:
+    """Replace the text of the rows in `dropped` by "no text"."""
+    empty = model.no_text(len(dropped))
+    words = torch.where(dropped[:, None, None], empty.words, text.words)
+    only_first = torch.zeros_like(text.word_mask)
+    only_first[:, 0] = True
+    mask = torch.where(dropped[:, None], only_first, text.word_mask)
+    return TextStates(words, mask, torch.where(dropped[:, None], empty.sentence, text.sentence))
