@@ -63,7 +63,7 @@ def decode(tokens: Tensor, logits_fn: LogitsFn, mask_id: int, settings: DecodeSe
     rows = torch.arange(len(tokens))[:, None]
     for step in range(max((len(c) for c in counts), default=0)):
         wanted = torch.tensor([c[step] if step < len(c) else 0 for c in counts])
-        rank = uncertainty.argsort(1, descending=True, stable=True).argsort(1)
+        rank = uncertainty.argsort(dim=1, descending=True, stable=True).argsort(dim=1)
         masked = rank < wanted[:, None]  # (B, L): the `wanted` most uncertain of each row
         tokens[masked] = mask_id
         logits = logits_fn(tokens).float()  # (B, L, C, K)

@@ -38,21 +38,36 @@ def cut_to_tokens(clip: Clip, generator: np.random.Generator) -> Clip:
 class CaptionStates:
     """Text states of many captions, encoded once and kept in half precision."""
 
-    def __init__(self, captions: Sequence[str], encoder: MiniLm) -> None:
+    def __init__(self, words: Tensor, n_words: NDArray[np.int64], sentences: Tensor) -> None:
+        """Word states of all captions one after another (N, D), pieces in each caption, sentence vectors (n, D)."""
+        self.words, self.n_words, self.sentences = words, n_words, sentences
+        self.offsets = np.concatenate([[0], np.cumsum(n_words)])
+
+    @classmethod
+    def encode(cls, captions: Sequence[str], encoder: MiniLm) -> CaptionStates:
+        """Encode `captions`, of like length together."""
         order = sorted(range(len(captions)), key=lambda i: len(captions[i]))
-        self.n_words = np.zeros(len(captions), np.int64)
-        self.sentences = torch.zeros(len(captions), encoder.config.width, dtype=torch.float16)
-        words: list[Tensor | None] = [None] * len(captions)
+        n_words = np.zeros(len(captions), np.int64)
+        sentences = torch.zeros(len(captions), encoder.config.width, dtype=torch.float16)
+        words: list[Tensor] = [sentences] * len(captions)
         for start in track(range(0, len(order), ENCODE_BATCH), description="captions"):
             rows = order[start : start + ENCODE_BATCH]
             states = encoder.encode([captions[i] for i in rows])
             for row, i in enumerate(rows):
-                n = int(states.word_mask[row].sum())
-                words[i] = states.words[row, :n].half()
-                self.n_words[i] = n
-                self.sentences[i] = states.sentence[row].half()
-        self.words = torch.cat([w for w in words if w is not None])
-        self.offsets = np.concatenate([[0], np.cumsum(self.n_words)])
+                n_words[i] = int(states.word_mask[row].sum())
+                words[i] = states.words[row, : n_words[i]].half()
+                sentences[i] = states.sentence[row].half()
+        return cls(torch.cat(words), n_words, sentences)
+
+    def save(self, path: Path) -> None:
+        """Keep the states on disk."""
+        torch.save({"words": self.words, "n_words": torch.from_numpy(self.n_words), "sentences": self.sentences}, path)
+
+    @classmethod
+    def load(cls, path: Path) -> CaptionStates:
+        """Read what `save` wrote."""
+        state = torch.load(path, weights_only=True)
+        return cls(state["words"], state["n_words"].numpy(), state["sentences"])
 
     def gather(self, indices: Sequence[int]) -> TextStates:
         """States of the captions at `indices`, padded to a multiple of eight word pieces."""

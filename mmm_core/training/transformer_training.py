@@ -53,7 +53,7 @@ def corrupt(ids: Tensor, n_tokens: Tensor, n_codes: int, how: Corruption, genera
     ids = torch.where(replaced[..., None], random_ids, ids)
     share = how.masked_share + (1 - how.masked_share) * torch.rand(B, generator=generator)
     n_masked = (share * n_tokens).round().clamp_min(1)
-    order = torch.rand(B, L, generator=generator).masked_fill(~motion, 2.0).argsort(1).argsort(1)
+    order = torch.rand(B, L, generator=generator).masked_fill(~motion, 2.0).argsort(dim=1).argsort(dim=1)
     masked = order < n_masked[:, None]
     return torch.where(masked[..., None], torch.full_like(ids, n_codes + 2), ids)
 

@@ -1,0 +1,50 @@
+# Everything a newcomer needs: `make demo` shows the main job, `make test` proves it. Both set up first.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+PIP_FLAGS ?=
+export OMP_NUM_THREADS ?= 1
+export OMP_WAIT_POLICY ?= passive
+
+.PHONY: help setup demo test check format soak clean
+
+help:
+	@echo "make demo    set up, start the simulated robot and the daemon, send three commands, show what happened"
+	@echo "make test    set up and pass the tests"
+	@echo "make check   formatting, lint, types, import rules"
+	@echo "make format  let ruff format the code"
+	@echo "make soak    hours of simulated faults (not part of make test)"
+	@echo "make clean   remove the virtual environment and what runs wrote"
+
+setup: $(VENV)/.ready
+
+# The pin of torch comes first and alone: with it in place nothing else can pull in another build.
+$(VENV)/.ready: pyproject.toml constraints.txt
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "mmmd needs Python 3.11 or newer, found " + sys.version)'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install $(PIP_FLAGS) --quiet --disable-pip-version-check -c constraints.txt torch
+	$(BIN)/python -m pip install $(PIP_FLAGS) --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@touch $@
+
+demo: setup
+	$(BIN)/mmmd demo --out out/demo
+
+test: setup
+	$(BIN)/python -m pytest
+
+check: setup
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+
+format: setup
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+soak: setup
+	$(BIN)/python -m pytest -m soak --timeout 0
+
+clean:
+	rm -rf $(VENV) out .pytest_cache .ruff_cache .hypothesis

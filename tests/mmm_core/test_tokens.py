@@ -1,0 +1,29 @@
+"""Token arithmetic."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from mmm_core.errors import GenerationError
+from mmm_core.tokens import frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
+
+
+@given(arrays(np.int64, st.tuples(st.integers(1, 49), st.integers(1, 3)), elements=st.integers(0, 511)))
+def test_packed_ids_unpack_to_themselves(ids: np.ndarray) -> None:
+    assert np.array_equal(unpack_ids(pack_ids(ids, 512), 512, ids.shape[1]), ids)
+
+
+@given(st.integers(1, 196))
+def test_tokens_cover_the_frames_without_a_spare_one(n_frames: int) -> None:
+    n = tokens_for_frames(n_frames)
+    assert 4 * (n - 1) < n_frames <= 4 * n
+
+
+@pytest.mark.parametrize("seconds", [0, -1, 9.9, float("nan"), float("inf")])
+def test_a_length_outside_the_model_is_refused_with_the_range(seconds: float) -> None:
+    with pytest.raises(GenerationError, match=r"at most 9\.8 s"):
+        frames_for_seconds(seconds, 20.0)
