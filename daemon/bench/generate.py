@@ -1,0 +1,71 @@
+"""Speed of generation: a whole 196-frame motion on one thread, beside one forward pass of the official size."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from typing import Any
+
+from daemon.bench.report import context
+
+LONGEST_S = 9.8
+TEXT = "wave with your right hand five times, then clap twice"
+REPEATS = 11
+
+
+def bench_generate(seed: int = 0) -> dict[str, Any]:
+    """`motion_ms`, `reference_forward_ms`, their `ratio`, `precision` and `steps`.
+
+    Both are timed alternately, so that a busy machine slows both. The reference is the official MMM's shape (width
+    1024, 16 + 2 blocks, 8192 codes, 51 rows, 77 words) in this code with random weights: speed does not depend on them.
+    """
+    import torch
+
+    from mmm_core.engine import Engine
+    from mmm_core.text import TextStates
+    from mmm_core.transformer import MotionTransformer, TransformerConfig
+
+    torch.set_num_threads(1)
+    engine = Engine.load(threads=1)
+    official = TransformerConfig(
+        n_codes=8192, n_codebooks=1, code_dim=32, width=1024, n_heads=16, n_cross=2, n_self=16, text_dim=512
+    )
+    reference = MotionTransformer(official).eval()
+    words = torch.randn(1, 77, 512)
+    text = TextStates(words, torch.ones(1, 77, dtype=torch.bool), words.mean(1))
+    ids = torch.full((1, 50, 1), reference.ids.mask)
+
+    def forward() -> None:
+        with torch.inference_mode():
+            reference(ids, reference.read_text(text))
+
+    def motion() -> None:
+        engine.generate(TEXT, seed=seed, seconds=LONGEST_S)
+
+    for _ in range(3):
+        forward()
+        motion()
+    forward_s, motion_s = alternate(forward, motion)
+    n_tokens = 49
+    return {
+        "motion_ms": round(1e3 * motion_s, 1),
+        "reference_forward_ms": round(1e3 * forward_s, 1),
+        "ratio": round(motion_s / forward_s, 3),
+        "precision": "fp32",
+        "steps": engine.settings.n_steps(n_tokens),
+        "guidance": engine.settings.guidance,
+        "n": REPEATS,
+        **context(seed, f"median of {REPEATS} alternating runs, one thread, text encoding and decoding included"),
+    }
+
+
+def alternate(first: Callable[[], None], second: Callable[[], None]) -> tuple[float, float]:
+    """Median seconds of two functions run in turn."""
+    times: tuple[list[float], list[float]] = ([], [])
+    for _ in range(REPEATS):
+        for function, kept in zip((first, second), times, strict=True):
+            start = time.perf_counter()
+            function()
+            kept.append(time.perf_counter() - start)
+    return statistics.median(times[0]), statistics.median(times[1])
