@@ -1,0 +1,125 @@
+"""HumanML3D's 263 features a frame <-> joints, head and forearm rotations. NumPy only.
+
+Layout (Guo et al., CVPR 2022): [0] half yaw step, [1:3] root step x, z in the root's frame, [3] root height, [4:67]
+joints 1..21 in the root's frame, [67:193] their 6-D rotations, [193:259] velocities of all 22 joints in the root's frame,
+[259:263] foot contacts (left ankle, left foot, right ankle, right foot). Steps lead to the next frame: yaw and place are
+sums shifted by one frame. Row T - 1 has no next frame and repeats the step before it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.skeleton import (
+    MIRROR,
+    Array,
+    facing_yaw_rad,
+    forward_kinematics,
+    from_six_d,
+    local_rotations,
+    quat_wxyz,
+    rotation_y,
+    six_d,
+    twist_about_bone_rad,
+)
+
+CONTACT_SPEED_M = 0.045
+"""A foot joint that moves less than this in a frame, per axis sum of squares 0.002 as in HumanML3D, stands."""
+_FEET = (7, 10, 8, 11)
+
+
+@dataclass(frozen=True)
+class RecoveredMotion:
+    """What features say.
+
+    Attributes:
+        joints_m: (T, 22, 3) joints on the common body.
+        head_quat_wxyz: (T, 4) world orientation of the head.
+        forearm_twist_rad: (T, 2) twist of the left and right forearm.
+    """
+
+    joints_m: Array
+    head_quat_wxyz: Array
+    forearm_twist_rad: Array
+
+
+def features_from_joints(
+    joints_m: Array,
+    head_R_world: Array | None = None,
+    forearm_twist_rad: Array | None = None,
+) -> NDArray[np.float32]:
+    """(T, 263) features of joints (T, 22, 3); the start is moved to the origin, facing +z.
+
+    Without `head_R_world` (T, 3, 3) and `forearm_twist_rad` (T, 2) the head and forearms show no twist.
+    """
+    T = len(joints_m)
+    yaw = facing_yaw_rad(joints_m)
+    rotations = local_rotations(joints_m, yaw, head_R_world, forearm_twist_rad)
+    to_root = np.swapaxes(rotation_y(yaw), -1, -2)  # (T, 3, 3) world -> root frame
+    place = joints_m[:, 0] * np.array([1.0, 0.0, 1.0])
+    local = np.einsum("tij,tkj->tki", to_root, joints_m - place[:, None])
+    step = np.diff(joints_m, axis=0, append=joints_m[-1:] * 2 - joints_m[-2:-1] if T > 1 else joints_m)
+    following = np.minimum(np.arange(T) + 1, T - 1)
+    features = np.empty((T, 263), np.float32)
+    features[:, 0] = -0.5 * np.diff(yaw, append=yaw[-1:])
+    root_step = np.einsum("tij,tj->ti", to_root[following], step[:, 0])
+    features[:, 1:3] = root_step[:, [0, 2]]
+    features[:, 3] = joints_m[:, 0, 1]
+    features[:, 4:67] = local[:, 1:].reshape(T, 63)
+    features[:, 67:193] = six_d(rotations[:, 1:]).reshape(T, 126)
+    features[:, 193:259] = np.einsum("tij,tkj->tki", to_root, step).reshape(T, 66)
+    features[:, 259:263] = np.square(step[:, _FEET]).sum(-1) < CONTACT_SPEED_M**2
+    return features
+
+
+def root_path(features: Array) -> tuple[Array, Array]:
+    """Yaw (T,) and root position (T, 3) by summing the steps; the start is the origin, facing +z."""
+    yaw = np.concatenate([[0.0], np.cumsum(-2.0 * features[:-1, 0])])
+    root = np.zeros((len(features), 3))
+    root[1:, [0, 2]] = features[:-1, 1:3]
+    root = np.cumsum(np.einsum("tij,tj->ti", rotation_y(yaw), root), 0)
+    root[:, 1] = features[:, 3]
+    return yaw, root
+
+
+def recover(features: Array) -> RecoveredMotion:
+    """Joints, head and forearms from (T, 263) features, through the rotation channels: bones keep their length."""
+    features = np.asarray(features, np.float64)
+    yaw, root = root_path(features)
+    local = np.empty((len(features), 22, 3, 3))
+    local[:, 0] = rotation_y(yaw)
+    local[:, 1:] = from_six_d(features[:, 67:193].reshape(-1, 21, 6))
+    joints, world = forward_kinematics(local, root)
+    twist = np.stack([twist_about_bone_rad(local[:, j], j) for j in (20, 21)], -1)
+    return RecoveredMotion(joints, quat_wxyz(world[:, 15]), twist)
+
+
+def joints_from_positions(features: Array) -> Array:
+    """(T, 22, 3) joints from the position channels, as the reference recovers them."""
+    features = np.asarray(features, np.float64)
+    yaw, root = root_path(features)
+    local = features[:, 4:67].reshape(-1, 21, 3)
+    world = np.einsum("tij,tkj->tki", rotation_y(yaw), local)
+    world[..., [0, 2]] += root[:, None, [0, 2]]
+    return np.concatenate([root[:, None], world], 1)
+
+
+def mirror(features: Array) -> NDArray[np.float32]:
+    """Features of the motion seen in a mirror: left and right change places."""
+    out = np.array(features, np.float32)
+    out[:, 0] *= -1
+    out[:, 1] *= -1
+    order = np.array(MIRROR)
+    flip = np.array([-1, 1, 1], np.float32)
+    joints = features[:, 4:67].reshape(-1, 21, 3)[:, order[1:] - 1] * flip
+    out[:, 4:67] = joints.reshape(-1, 63)
+    # M R M with M = diag(-1, 1, 1) flips the signs of row 0 and of column 0
+    six = features[:, 67:193].reshape(-1, 21, 6)[:, order[1:] - 1] * np.array([1, -1, -1, -1, 1, 1], np.float32)
+    out[:, 67:193] = six.reshape(-1, 126)
+    velocity = features[:, 193:259].reshape(-1, 22, 3)[:, order] * flip
+    out[:, 193:259] = velocity.reshape(-1, 66)
+    out[:, 259:263] = features[:, [261, 262, 259, 260]]
+    return out

@@ -1,0 +1,187 @@
+"""The 22 joints, the common body they are drawn with, and rotations about them. NumPy only.
+
+Frame: metres, y up, z forward, x to the person's left. A rotation `R_a_b` maps b's coordinates to a's.
+The rotation of joint j is that of the bone which ends in j: `R_world_j @ rest_direction[j]` points from parent to j
+(HumanML3D's convention). Rest directions are ours: each has its antipode where that bone never points, so that the
+smallest rotation to a bone's direction never jumps.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating]
+
+JOINT_NAMES = (
+    "pelvis", "left_hip", "right_hip", "spine1", "left_knee", "right_knee", "spine2", "left_ankle", "right_ankle",
+    "spine3", "left_foot", "right_foot", "neck", "left_collar", "right_collar", "head", "left_shoulder",
+    "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist",
+)  # fmt: skip
+PARENTS = (-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19)
+MIRROR = (0, 2, 1, 3, 5, 4, 6, 8, 7, 9, 11, 10, 12, 14, 13, 15, 17, 16, 19, 18, 21, 20)
+"""Joint that takes each joint's place in a mirror."""
+
+BONE_LENGTHS_M = np.array([
+    0, 0.105, 0.105, 0.115, 0.385, 0.385, 0.138, 0.405, 0.405, 0.056, 0.14, 0.14, 0.21, 0.135, 0.135, 0.09, 0.125,
+    0.125, 0.262, 0.262, 0.252, 0.252,
+])  # fmt: skip
+"""Length of the bone that ends in each joint: the common body of docs/DATA.md."""
+
+_LEFT_REST = {
+    "hip": (0.97, -0.2, 0.0), "knee": (0, -1, 0.15), "ankle": (0, -1, -0.15), "foot": (0.1, -0.4, 0.9),
+    "collar": (0.5, 0.86, 0), "shoulder": (1, 0, 0), "elbow": (0.5, -0.75, 0.35), "wrist": (0.2, -0.3, 0.93),
+}  # fmt: skip
+_MIDDLE_REST = {"spine1": (0, 1, 0.1), "spine2": (0, 1, 0.1), "spine3": (0, 1, 0), "neck": (0, 1, 0.05), "head": (0, 0.94, 0.33)}  # fmt: skip
+
+
+def _rest_directions() -> Array:
+    rows = np.zeros((22, 3))
+    for j, name in enumerate(JOINT_NAMES[1:], 1):
+        side, _, part = name.partition("_")
+        rows[j] = _LEFT_REST[part] if part else _MIDDLE_REST[name]
+        if side == "right":
+            rows[j, 0] *= -1
+    return rows / np.maximum(np.linalg.norm(rows, axis=1, keepdims=True), 1e-9)
+
+
+REST_DIRECTIONS = _rest_directions()
+
+
+def normalise(v: Array) -> Array:
+    """Unit vectors along the last axis; a zero vector stays zero."""
+    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)
+
+
+def rotation_y(angle_rad: Array) -> Array:
+    """(..., 3, 3) rotations about the vertical by `angle_rad` (...); positive turns z towards x, the person's left."""
+    c, s, o = np.cos(angle_rad), np.sin(angle_rad), np.zeros_like(angle_rad)
+    return np.stack([np.stack([c, o, s], -1), np.stack([o, o + 1, o], -1), np.stack([-s, o, c], -1)], -2)
+
+
+def rotation_about(axis: Array, angle_rad: Array) -> Array:
+    """(..., 3, 3) rotations about unit `axis` (..., 3) by `angle_rad` (...), Rodrigues' formula."""
+    x, y, z = np.moveaxis(np.broadcast_to(axis, (*np.shape(angle_rad), 3)), -1, 0)
+    c, s = np.cos(angle_rad), np.sin(angle_rad)
+    d = 1 - c
+    return np.stack([
+        np.stack([c + x * x * d, x * y * d - z * s, x * z * d + y * s], -1),
+        np.stack([y * x * d + z * s, c + y * y * d, y * z * d - x * s], -1),
+        np.stack([z * x * d - y * s, z * y * d + x * s, c + z * z * d], -1),
+    ], -2)  # fmt: skip
+
+
+def smallest_rotation(a: Array, b: Array) -> Array:
+    """(..., 3, 3) smallest rotations that turn unit vectors `a` (..., 3) into `b` (..., 3).
+
+    Undefined for opposite vectors, where the result is finite and near a half turn.
+    """
+    a, b = np.broadcast_arrays(a, b)
+    x, y, z = np.moveaxis(np.cross(a, b), -1, 0)
+    c = (a * b).sum(-1)
+    k = 1.0 / np.maximum(1.0 + c, 1e-6)
+    return np.stack([
+        np.stack([c + x * x * k, x * y * k - z, x * z * k + y], -1),
+        np.stack([y * x * k + z, c + y * y * k, y * z * k - x], -1),
+        np.stack([z * x * k - y, z * y * k + x, c + z * z * k], -1),
+    ], -2)  # fmt: skip
+
+
+def six_d(R: Array) -> Array:
+    """(..., 3, 3) -> (..., 6): the first two columns (Zhou et al., CVPR 2019)."""
+    return np.concatenate([R[..., :, 0], R[..., :, 1]], -1)
+
+
+def from_six_d(x: Array) -> Array:
+    """(..., 6) -> (..., 3, 3): Gram-Schmidt on two columns."""
+    a = normalise(x[..., :3])
+    b = normalise(x[..., 3:] - (a * x[..., 3:]).sum(-1, keepdims=True) * a)
+    return np.stack([a, b, np.cross(a, b)], -1)
+
+
+def quat_wxyz(R: Array) -> Array:
+    """(..., 3, 3) -> (..., 4) unit quaternions with w >= 0."""
+    diagonal = np.stack([R[..., 0, 0], R[..., 1, 1], R[..., 2, 2]], -1)
+    trace = diagonal.sum(-1)
+    w = np.sqrt(np.maximum(1 + trace, 0))
+    xyz = np.sqrt(np.maximum(1 + 2 * diagonal - trace[..., None], 0))
+    signs = np.stack([R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]], -1)
+    q = np.concatenate([w[..., None], np.copysign(xyz, signs)], -1) / 2
+    half_turn = w < 1e-3  # signs vanish there: take them from the largest component's row instead
+    if half_turn.any():
+        q[half_turn] = _half_turn_quat(R[half_turn])
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+
+
+def _half_turn_quat(R: Array) -> Array:
+    """Quaternions of half turns: the axis is a column of R + I."""
+    columns = R + np.eye(3)
+    best = np.argmax(np.einsum("nii->ni", columns), -1)
+    axis = normalise(columns[np.arange(len(R)), :, best])
+    return np.concatenate([np.zeros((len(R), 1)), axis], -1)
+
+
+def matrix_from_quat(q_wxyz: Array) -> Array:
+    """(..., 4) unit quaternions -> (..., 3, 3)."""
+    w, x, y, z = np.moveaxis(q_wxyz, -1, 0)
+    return np.stack([
+        np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], -1),
+        np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], -1),
+        np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], -1),
+    ], -2)  # fmt: skip
+
+
+def facing_yaw_rad(joints_m: Array) -> Array:
+    """(T,) angle about the vertical from +z to where hips and shoulders face, unwrapped."""
+    across = normalise(joints_m[:, 1] - joints_m[:, 2]) + normalise(joints_m[:, 16] - joints_m[:, 17])
+    forward = np.cross(across, np.array([0.0, 1.0, 0.0]))
+    return np.unwrap(np.arctan2(forward[:, 0], forward[:, 2]))
+
+
+def local_rotations(
+    joints_m: Array,
+    yaw_rad: Array,
+    head_R_world: Array | None = None,
+    forearm_twist_rad: Array | None = None,
+) -> Array:
+    """(T, 22, 3, 3) rotation of each joint's bone in its parent's frame; row 0 is the root's yaw in the world.
+
+    Bones are turned by the smallest rotation from their rest direction, which shows no twist; the head takes its true
+    orientation `head_R_world` (T, 3, 3) where that is known and the forearms a twist (T, 2), left and right.
+    """
+    T = len(joints_m)
+    local = np.empty((T, 22, 3, 3))
+    world = np.empty((T, 22, 3, 3))
+    local[:, 0] = world[:, 0] = rotation_y(yaw_rad)
+    for j, p in enumerate(PARENTS[1:], 1):
+        if j == 15 and head_R_world is not None:
+            local[:, j] = np.swapaxes(world[:, p], -1, -2) @ head_R_world
+        else:
+            bone = normalise(joints_m[:, j] - joints_m[:, p])
+            in_parent = np.einsum("tij,ti->tj", world[:, p], bone)
+            local[:, j] = smallest_rotation(REST_DIRECTIONS[j], in_parent)
+            if j in (20, 21) and forearm_twist_rad is not None:
+                local[:, j] = local[:, j] @ rotation_about(REST_DIRECTIONS[j], forearm_twist_rad[:, j - 20])
+        world[:, j] = world[:, p] @ local[:, j]
+    return local
+
+
+def forward_kinematics(local: Array, root_m: Array) -> tuple[Array, Array]:
+    """Joint positions (T, 22, 3) and world rotations (T, 22, 3, 3) of `local_rotations` on the common body."""
+    world = np.empty_like(local)
+    joints = np.empty((len(local), 22, 3))
+    world[:, 0], joints[:, 0] = local[:, 0], root_m
+    for j, p in enumerate(PARENTS[1:], 1):
+        world[:, j] = world[:, p] @ local[:, j]
+        joints[:, j] = joints[:, p] + BONE_LENGTHS_M[j] * (world[:, j] @ REST_DIRECTIONS[j])
+    return joints, world
+
+
+def twist_about_bone_rad(local: Array, joint: int) -> Array:
+    """(T,) twist of `local` (T, 3, 3) about the rest direction of `joint`."""
+    rest = REST_DIRECTIONS[joint]
+    swing = smallest_rotation(rest, local @ rest)
+    twist = np.swapaxes(swing, -1, -2) @ local
+    side = normalise(np.cross(rest, np.array([0.0, 1.0, 0.0])))
+    turned = twist @ side
+    return np.arctan2((turned * np.cross(rest, side)).sum(-1), (turned * side).sum(-1))
