@@ -1,0 +1,98 @@
+"""Real motion: the `clips.jsonl` + `motions_common_skeleton.npz` layout, CMU recordings only (docs/DATA.md)."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.errors import TrainingDataError
+from mmm_core.features import features_from_joints, mirror
+from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+
+LONGEST_FRAMES = MAX_TOKENS * FRAMES_PER_TOKEN
+SHORTEST_FRAMES = 24
+_SWAPS = {
+    "left": "right", "right": "left", "clockwise": "counterclockwise", "counterclockwise": "clockwise",
+    "anticlockwise": "clockwise", "counter-clockwise": "clockwise", "leftward": "rightward", "rightward": "leftward",
+    "leftwards": "rightwards", "rightwards": "leftwards",
+}  # fmt: skip
+_NOT_A_SIDE = re.compile(r"\b(right (?:away|now|after|before|then|back|there|here)|(?:is|has|have|had|was) left\b(?! hand| arm| leg| foot)|left the\b|all right|alright)", re.IGNORECASE)  # fmt: skip
+
+
+def mirror_words(sentence: str) -> str:
+    """The sentence for the mirrored motion: sides and turns swapped, other meanings of left and right kept.
+
+    "waves the left hand right away" -> "waves the right hand right away".
+    """
+    kept: list[str] = []
+
+    def put_aside(match: re.Match[str]) -> str:
+        kept.append(match[0])
+        return f"\x00{len(kept) - 1}\x00"
+
+    def swap(match: re.Match[str]) -> str:
+        word = _SWAPS[match[0].lower()]
+        return word.capitalize() if match[0][0].isupper() else word
+
+    words = "|".join(sorted(_SWAPS, key=len, reverse=True))
+    swapped = re.sub(rf"\b(?:{words})\b", swap, _NOT_A_SIDE.sub(put_aside, sentence), flags=re.IGNORECASE)
+    return re.sub("\x00(\\d+)\x00", lambda m: kept[int(m[1])], swapped)
+
+
+def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.float32], list[str]]]:
+    """Features and sentences of the usable clips of `split`, each followed by its mirror image.
+
+    Used: recordings under CMU's own terms, sentences that are not KIT-ML's, upright frames outside `bad_frames`.
+
+    Raises:
+        TrainingDataError: a file is missing or a clip lies outside its recording.
+    """
+    trials = {t["trial"]: t for t in _json_lines(folder / "trials.jsonl")}
+    path = folder / "motions_common_skeleton.npz"
+    if not path.is_file():
+        raise TrainingDataError(path, "", "no such file", "the motions that clips.jsonl cuts")
+    with np.load(path) as motions:
+        for clip in _json_lines(folder / "clips.jsonl"):
+            trial = trials.get(clip["trial"])
+            if trial is None or clip["trial"] not in motions.files:
+                raise TrainingDataError(folder, clip["clip"], f"trial {clip['trial']!r} is unknown", "a trial of trials.jsonl")
+            if clip["split"] != split or trial["terms"] != "CMU":
+                continue
+            captions = [c for c, s in zip(clip["captions"], clip["caption_source"], strict=True) if s != "KIT-ML"]
+            joints = motions[clip["trial"]]
+            if not 0 <= clip["start"] < clip["end"] <= len(joints) + 1:
+                found = f"frames {clip['start']} to {clip['end']}"
+                raise TrainingDataError(folder, clip["clip"], found, f"within the recording's {len(joints)} frames")
+            joints = joints[clip["start"] : clip["end"]].astype(np.float64)
+            if not captions or _touches(clip, trial["bad_frames"]) or not _upright(joints):
+                continue
+            for start in range(0, len(joints) - SHORTEST_FRAMES, LONGEST_FRAMES):
+                features = features_from_joints(joints[start : start + LONGEST_FRAMES])
+                yield features, captions
+                yield mirror(features), [mirror_words(c) for c in captions]
+
+
+def _upright(joints_m: NDArray[np.float64]) -> bool:
+    """Standing or walking: pelvis high, trunk not far from vertical."""
+    spine = joints_m[:, 12] - joints_m[:, 0]
+    vertical = spine[:, 1] / np.maximum(np.linalg.norm(spine, axis=-1), 1e-6)
+    return bool(joints_m[:, 0, 1].min() > 0.6 and vertical.min() > 0.5)
+
+
+def _touches(clip: dict[str, Any], spans: list[list[int]]) -> bool:
+    return any(clip["start"] < end and start < clip["end"] for start, end in spans)
+
+
+def _json_lines(path: Path) -> list[dict[str, Any]]:
+    try:
+        return [json.loads(line) for line in path.read_text("utf-8").splitlines() if line.strip()]
+    except FileNotFoundError:
+        raise TrainingDataError(path, "", "no such file", "one JSON object in each line") from None
+    except json.JSONDecodeError as error:
+        raise TrainingDataError(path, f"line {error.lineno}", error.msg, "one JSON object in each line") from error
