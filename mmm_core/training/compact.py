@@ -28,7 +28,7 @@ from mmm_core.training.batches import (
     save_clips,
 )
 from mmm_core.training.run import Schedule
-from mmm_core.training.tokenizer_training import train_tokenizer
+from mmm_core.training.tokenizer_training import train_tokenizer, tune_decoder
 from mmm_core.training.transformer_training import train_length, train_transformer
 from mmm_core.transformer import TransformerConfig
 
@@ -44,6 +44,7 @@ class Recipe:
     Attributes:
         n_synthesised: clips the gesture corpus makes.
         tokenizer: its schedule; 0.22 s a step on one core.
+        decoder: schedule of the tokenizer's decoder alone, afterwards; 0.15 s a step.
         transformer: its schedule; 0.5 s a step on one core.
         length: its schedule; 0.03 s a step.
         seed: of the corpus and of every stage.
@@ -51,6 +52,7 @@ class Recipe:
 
     n_synthesised: int = 14_000
     tokenizer: Schedule = field(default_factory=lambda: Schedule(steps=2600, learning_rate=1e-3))
+    decoder: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3))
     transformer: Schedule = field(default_factory=lambda: Schedule(steps=7500, learning_rate=1e-3))
     length: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3, save_every=500))
     seed: int = 0
@@ -109,6 +111,7 @@ def make_model(recipe: Recipe, data_dir: Path | None, run_dir: Path, out: Path) 
     corpus = tokenize(clips, tokenizer, run_dir)
     length = train_length(corpus, [len(c.features) / FPS for c in clips], recipe.length, run_dir)
     transformer = train_transformer(corpus, tokenizer, TransformerConfig(), recipe.transformer, run_dir)
+    tune_decoder(tokenizer, clips, recipe.decoder, run_dir)
     provenance = {
         "recipe": json.loads(json.dumps(asdict(recipe))),
         "clips": len(clips),

@@ -1,0 +1,40 @@
+"""Errors of retargeting.
+
+RetargetError
+├── UnknownRobotError(name, known)                 no robot of that name                    (LookupError)
+├── RobotFileError(path, key, found, allowed)      a robot file or description that cannot be used  (ValueError)
+└── MotionError(key, found, allowed)               a human motion that cannot be retargeted (ValueError)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+
+class RetargetError(Exception):
+    """Anything that goes wrong between a human motion and servo ticks."""
+
+
+class UnknownRobotError(RetargetError, LookupError):
+    """No robot of that name is packaged, and it is no path to a robot.toml."""
+
+    def __init__(self, name: str, known: Sequence[str]) -> None:
+        self.name, self.known = name, tuple(known)
+        super().__init__(f"unknown robot '{name}'; known: {', '.join(known)}; or give the path of a robot.toml")
+
+
+class RobotFileError(RetargetError, ValueError):
+    """A robot file with a wrong key, unit or value."""
+
+    def __init__(self, path: Path | str, key: str, found: str, allowed: str) -> None:
+        self.path, self.key, self.found, self.allowed = Path(path), key, found, allowed
+        super().__init__(f"{path}: {key}: {found}; allowed: {allowed}")
+
+
+class MotionError(RetargetError, ValueError):
+    """A human motion that cannot be retargeted."""
+
+    def __init__(self, key: str, found: str, allowed: str) -> None:
+        self.key, self.found, self.allowed = key, found, allowed
+        super().__init__(f"motion: {key}: {found}; allowed: {allowed}")
