@@ -1,0 +1,49 @@
+"""One owner of a port: an advisory lock that also holds against root, and who has it."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+
+class PortLock:
+    """Holds a lock file for a device; the file names the owner."""
+
+    def __init__(self, device: str) -> None:
+        name = str(Path(device).resolve()).strip("/").replace("/", "-")
+        self.path = Path(tempfile.gettempdir()) / f"mmmd-{name}.lock"
+        self._fd = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+        try:
+            fcntl.flock(self._fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            owner = os.read(self._fd, 500).decode("utf-8", "replace").strip()
+            os.close(self._fd)
+            raise BlockingIOError(owner or "another process") from None
+        os.ftruncate(self._fd, 0)
+        os.write(self._fd, f"process {os.getpid()} ({' '.join(sys.argv)[:300]})".encode())
+
+    def release(self) -> None:
+        """Give the lock up; may be called twice."""
+        if self._fd >= 0:
+            os.ftruncate(self._fd, 0)
+            os.close(self._fd)
+            self._fd = -1
+
+
+def process_holding(device: str) -> str:
+    """Who has the device open, as far as this user may see; "another process" when nobody is seen."""
+    target = os.path.realpath(device)
+    for fd_dir in Path("/proc").glob("[0-9]*/fd"):
+        pid = fd_dir.parent.name
+        if int(pid) == os.getpid():
+            continue
+        try:
+            if any(os.path.realpath(fd) == target for fd in fd_dir.iterdir()):
+                command = (fd_dir.parent / "cmdline").read_bytes().replace(b"\0", b" ").decode("utf-8", "replace")
+                return f"process {pid} ({command.strip()[:300]})"
+        except OSError:
+            continue
+    return "another process"

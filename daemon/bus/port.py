@@ -1,0 +1,34 @@
+"""What the bus needs of a port: bytes out, bytes in, never blocking for ever."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+
+class Port(Protocol):
+    """A half-duplex byte stream to servos.
+
+    A lost device raises `LinkLostError` from `write` or `read`.
+    """
+
+    @property
+    def name(self) -> str:
+        """The URL it was opened with, for messages."""
+        ...
+
+    @property
+    def baud(self) -> int:
+        """Bits per second on the wire."""
+        ...
+
+    def write(self, data: bytes) -> None:
+        """Send all of `data`."""
+        ...
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """At least one and at most `max_bytes` bytes; empty when none came within `timeout_s`."""
+        ...
+
+    def close(self) -> None:
+        """Release the device; may be called twice."""
+        ...

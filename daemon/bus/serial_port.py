@@ -1,0 +1,93 @@
+"""The port to real servos, or to simulated ones behind a tty: pyserial, opened exclusively."""
+
+from __future__ import annotations
+
+import errno
+import getpass
+import os
+import select
+from urllib.parse import SplitResult, parse_qs
+
+import serial
+
+from daemon.bus.lock import PortLock, process_holding
+from daemon.bus.open import PortContext
+from daemon.errors import CommandError, LinkLostError, PortBusyError, PortError, PortMissingError, PortPermissionError
+
+
+class SerialPort:
+    """A `Port` on a serial device. One process at a time, also against root."""
+
+    def __init__(self, device: str, baud: int, url: str | None = None) -> None:
+        self.name, self.baud = url or device, baud
+        if not os.path.exists(device):
+            raise PortMissingError(self.name, f"no device '{device}'", "plug the adapter in, or list them: ls /dev/serial/by-id/")
+        try:
+            self._lock = PortLock(device)
+        except BlockingIOError as error:
+            raise PortBusyError(self.name, f"in use by {error}", "stop it, or ask it: mmmd status") from None
+        try:
+            self._serial = _open(device, baud, self.name)
+        except BaseException:
+            self._lock.release()
+            raise
+        self._fd = self._serial.fileno()
+        self._poll = select.poll()
+        self._poll.register(self._fd, select.POLLIN)
+
+    def write(self, data: bytes) -> None:
+        """Send all of `data`; raises LinkLostError when the device is gone."""
+        try:
+            while data:
+                data = data[os.write(self._fd, data) :]
+        except BlockingIOError as error:
+            raise LinkLostError(f"{self.name}: takes no more bytes; its other end is stuck") from error
+        except OSError as error:
+            raise LinkLostError(f"{self.name}: lost ({error.strerror}); plug it in again") from error
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Bytes that arrive within `timeout_s`, sleeping in poll meanwhile."""
+        if not self._poll.poll(max(0.0, timeout_s) * 1e3):
+            return b""
+        try:
+            data = os.read(self._fd, max_bytes)
+        except BlockingIOError:
+            return b""
+        except OSError as error:
+            raise LinkLostError(f"{self.name}: lost ({error.strerror}); plug it in again") from error
+        if not data:
+            raise LinkLostError(f"{self.name}: lost (end of file); plug it in again")
+        return data
+
+    def close(self) -> None:
+        """Release device and lock."""
+        self._serial.close()
+        self._lock.release()
+
+
+def _open(device: str, baud: int, url: str) -> serial.Serial:
+    try:
+        return serial.Serial(device, baud, timeout=0, write_timeout=1.0, exclusive=True)
+    except serial.SerialException as error:
+        if error.errno == errno.EACCES:
+            user = getpass.getuser()
+            remedy = f"run: sudo usermod -a -G dialout {user}   and log in again"
+            raise PortPermissionError(url, f"user '{user}' may not open '{device}'", remedy) from error
+        if error.errno in (errno.EBUSY, errno.EAGAIN) or "exclusively lock" in str(error):
+            raise PortBusyError(url, f"in use by {process_holding(device)}", "stop that process") from error
+        raise PortError(url, str(error), "check cable and path: ls -l /dev/serial/by-id/") from error
+    except ValueError as error:
+        raise PortError(url, f"baud {baud} is not possible ({error})", "57600, 115200, 1000000, 2000000, 3000000 or 4000000") from error
+
+
+def open_dxl(url: SplitResult, context: PortContext) -> SerialPort:
+    """`dxl:///dev/ttyUSB0?baud=1000000` or `dxl://./servos`; the robot file's baud when none is given."""
+    device = url.netloc + url.path
+    query = parse_qs(url.query, strict_parsing=bool(url.query))
+    unknown = query.keys() - {"baud"}
+    if unknown or not device:
+        raise CommandError(f"bus '{url.geturl()}': {', '.join(unknown) or 'no device'}; allowed: dxl://PATH?baud=NUMBER")
+    text = query.get("baud", [str(context.robot.bus.baud)])[0]
+    if not text.isdigit():
+        raise CommandError(f"bus '{url.geturl()}': baud '{text}' is not a number; example: baud=1000000")
+    return SerialPort(device, int(text), url.geturl())

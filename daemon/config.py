@@ -1,0 +1,121 @@
+"""Settings of the daemon: frozen, checked on creation."""
+
+from __future__ import annotations
+
+import ipaddress
+from dataclasses import dataclass, field
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from daemon.errors import ConfigError
+
+CMD_PORT, CTL_PORT, PUB_PORT = 5871, 5872, 5873
+
+
+def config_error(key: str, found: str, allowed: str, do: str) -> ConfigError:
+    """The error of a setting with a value that is not allowed."""
+    return ConfigError(f"{key}: found {found}; allowed: {allowed}; {do}")
+
+
+def check_local(key: str, endpoint: str) -> None:
+    """Refuse an endpoint that other machines could reach.
+
+    Raises:
+        ConfigError: the endpoint is neither ipc:// nor tcp:// on a loopback address.
+    """
+    allowed = "ipc://PATH, or tcp:// on a loopback address such as tcp://127.0.0.1:5871"
+    if endpoint.startswith("ipc://") and len(endpoint) > len("ipc://"):
+        return
+    if not endpoint.startswith("tcp://"):
+        raise config_error(key, repr(endpoint), allowed, "name a ZeroMQ endpoint")
+    try:
+        parts = urlsplit(endpoint)
+        host, port = parts.hostname or "", parts.port
+    except ValueError as error:
+        raise config_error(key, f"{endpoint!r} ({error})", allowed, "name a host and a port") from None
+    if port is None and not endpoint.endswith(":*"):
+        raise config_error(key, f"{endpoint!r} without a port", allowed, "name a host and a port")
+    if host != "localhost" and not _is_loopback(host):
+        do = "reach it through an ssh tunnel; sockets with CURVE keys are not built yet"
+        raise config_error(key, f"{endpoint!r}, which other machines can reach without a key", allowed, do)
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+@dataclass(frozen=True)
+class Endpoints:
+    """Where the daemon's sockets are.
+
+    Attributes:
+        cmd: requests and their events.
+        ctl: stop, estop, reset, arm, park, status.
+        pub: state and events for all.
+    """
+
+    cmd: str = f"tcp://127.0.0.1:{CMD_PORT}"
+    ctl: str = f"tcp://127.0.0.1:{CTL_PORT}"
+    pub: str = f"tcp://127.0.0.1:{PUB_PORT}"
+
+    def __post_init__(self) -> None:
+        """Refuse what other machines could reach, and two sockets at one place.
+
+        Raises:
+            ConfigError: see `check_local`.
+        """
+        for key in ("cmd", "ctl", "pub"):
+            check_local(key, getattr(self, key))
+        if len({self.cmd, self.ctl, self.pub}) != 3 and not self.cmd.endswith(":*"):
+            found = f"cmd {self.cmd}, ctl {self.ctl}, pub {self.pub}"
+            raise config_error("endpoints", found, "three different endpoints", "give each its own port")
+
+
+@dataclass(frozen=True)
+class DaemonConfig:
+    """Settings of one daemon.
+
+    Attributes:
+        robot: name of a packaged robot, or path of a robot.toml.
+        bus: URL of the servo bus.
+        endpoints: sockets.
+        log: MCAP file to record into, None for none.
+        generator: endpoint of a generator that runs already; None starts one.
+        model: checkpoint of the generator; None takes the shipped one.
+        auto_arm: whether the first text may arm the robot.
+        queue_s: setpoints kept ready in the bus process.
+        state_rate_hz: how often `v1/state` is published.
+        generate_timeout_s: longest wait for the generator.
+        park_timeout_s: longest wait for the robot to park at the end.
+    """
+
+    robot: str
+    bus: str
+    endpoints: Endpoints = field(default_factory=Endpoints)
+    log: Path | None = None
+    generator: str | None = None
+    model: Path | None = None
+    auto_arm: bool = True
+    queue_s: float = 0.1
+    state_rate_hz: float = 20.0
+    generate_timeout_s: float = 10.0
+    park_timeout_s: float = 20.0
+
+    def __post_init__(self) -> None:
+        """Check ranges and the generator's endpoint.
+
+        Raises:
+            ConfigError: a value is outside its range.
+        """
+        for key, low, high in (
+            ("queue_s", 0.02, 0.3), ("state_rate_hz", 1.0, 200.0),
+            ("generate_timeout_s", 0.1, 600.0), ("park_timeout_s", 1.0, 120.0),
+        ):  # fmt: skip
+            value = getattr(self, key)
+            if not low <= value <= high:
+                raise config_error(key, f"{value}", f"{low} to {high}", "choose a value in this range")
+        if self.generator is not None:
+            check_local("generator", self.generator)

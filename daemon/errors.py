@@ -1,0 +1,106 @@
+"""Errors of the daemon and its bus.
+
+DaemonError
+├── PortError(url)                 the port cannot be opened                         (OSError)
+│   ├── PortMissingError           no such device
+│   ├── PortBusyError(owner)       somebody else holds it
+│   └── PortPermissionError        the user may not open it
+├── CommandError                   ours: refused before any byte was sent            (ValueError)
+├── ServoFaultError(servo_id)      it answered, and said no
+├── BusMismatchError(rows)         other servos than the robot file says
+├── LinkError                      bytes lost or bad
+│   ├── LinkTimeoutError           no answer in time                                 (TimeoutError)
+│   └── LinkLostError              the device is gone
+├── LogError(path)                 a log that cannot be read                         (ValueError)
+├── ConfigError(key)               a setting outside what is allowed                 (ValueError)
+└── RequestError(code)             a message that cannot be carried out              (ValueError)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+class DaemonError(Exception):
+    """Anything that goes wrong between a command and the servos."""
+
+
+class PortError(DaemonError, OSError):
+    """The port cannot be opened."""
+
+    def __init__(self, url: str, problem: str, remedy: str) -> None:
+        self.url, self.problem, self.remedy = url, problem, remedy
+        super().__init__(f"{url}: {problem}; {remedy}")
+
+
+class PortMissingError(PortError):
+    """No such device."""
+
+
+class PortBusyError(PortError):
+    """Somebody else holds the port."""
+
+
+class PortPermissionError(PortError):
+    """The user may not open the port."""
+
+
+class CommandError(DaemonError, ValueError):
+    """A command refused before any byte was sent."""
+
+
+class ServoFaultError(DaemonError):
+    """A servo answered with an error."""
+
+    def __init__(self, servo_id: int, asked: str, found: str) -> None:
+        self.servo_id = servo_id
+        super().__init__(f"servo {servo_id}: {asked}: answered '{found}'")
+
+
+@dataclass(frozen=True)
+class MismatchRow:
+    """One servo: what the robot file says and what answered."""
+
+    servo_id: int
+    joint_name: str
+    expected: str
+    found: str
+
+
+class BusMismatchError(DaemonError):
+    """The bus holds other servos than the robot file says."""
+
+    def __init__(self, rows: Sequence[MismatchRow], hint: str) -> None:
+        self.rows = tuple(rows)
+        lines = [f"  {r.servo_id:>3}  {r.joint_name:<24} {r.expected:<14} {r.found}" for r in rows]
+        head = f"  {'id':>3}  {'joint':<24} {'expected':<14} found"
+        super().__init__("\n".join(["the servos on the bus are not those of the robot file:", head, *lines, hint]))
+
+
+class LinkError(DaemonError):
+    """Bytes lost or bad on the bus."""
+
+
+class LinkTimeoutError(LinkError, TimeoutError):
+    """No answer in time."""
+
+
+class LinkLostError(LinkError):
+    """The device is gone: unplugged, or its other end closed."""
+
+
+class LogError(DaemonError, ValueError):
+    """A log that cannot be read."""
+
+
+class ConfigError(DaemonError, ValueError):
+    """A setting outside what is allowed."""
+
+
+class RequestError(DaemonError, ValueError):
+    """A message that cannot be carried out; `code` is for programs, the text for people."""
+
+    def __init__(self, code: str, message: str) -> None:
+        self.code = code
+        super().__init__(message)

@@ -1,0 +1,125 @@
+"""The process that holds torch: `python -m daemon.generator --bind ENDPOINT`.
+
+One thread, lower priority. It ends when the process that started it does, so that a killed daemon leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+import zmq
+
+from daemon.config import check_local, config_error
+from daemon.errors import ConfigError
+from daemon.generation import (
+    FailureMessage,
+    FromGenerator,
+    Generated,
+    PingMessage,
+    PongMessage,
+    ToGenerator,
+    decode_request,
+    encode,
+    generated_message,
+)
+
+log = logging.getLogger(__name__)
+
+NICENESS = 5
+POLL_MS = 200
+Generate = Callable[[str, int, float | None], Generated]
+
+
+def answer(request: ToGenerator, generate: Generate, checkpoint_hash: str) -> FromGenerator:
+    """The reply to one request; an error of the model becomes a `failure`, never the end of the process."""
+    if isinstance(request, PingMessage):
+        return PongMessage(id=request.id, checkpoint_hash=checkpoint_hash)
+    try:
+        return generated_message(request.id, generate(request.text, request.seed, request.seconds))
+    except Exception as error:  # whatever the model raises, the next text must still be answered
+        log.exception("generating %r failed", request.text)
+        return FailureMessage(id=request.id, code="generator_error", found=str(error), allowed="a motion")
+
+
+def serve(socket: zmq.Socket[bytes], generate: Generate, checkpoint_hash: str, alive: Callable[[], bool]) -> None:
+    """Answer requests on a ROUTER socket, one after the other, while `alive()`."""
+    while alive():
+        if not socket.poll(POLL_MS):
+            continue
+        *route, frame = socket.recv_multipart()
+        try:
+            request = decode_request(frame)
+        except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+            log.warning("dropped a frame that is no request: %s", error)
+            continue
+        socket.send_multipart([*route, encode(answer(request, generate, checkpoint_hash))])
+
+
+def load(model: Path | None, threads: int) -> tuple[Generate, str]:
+    """The model's function and the hash of its checkpoint, warmed up."""
+    from mmm_core.engine import Engine
+
+    engine = Engine.load(model, threads=threads)
+
+    def generate(text: str, seed: int, seconds: float | None) -> Generated:
+        made = engine.generate(text, seed=seed, seconds=seconds)
+        return Generated(made.motion, made.understood, made.reason, made.timings_ms, engine.checkpoint_hash)
+
+    for seconds in (None, 9.8):  # the first calls allocate
+        generate("wave with your right hand", 0, seconds)
+    return generate, engine.checkpoint_hash
+
+
+def run(bind: str, model: Path | None = None, threads: int = 1, parent_pid: int | None = None) -> None:
+    """Load the model, bind and answer until the parent process is gone.
+
+    Raises:
+        ConfigError: the endpoint could be reached from other machines, or cannot be bound.
+    """
+    check_local("bind", bind)
+    os.nice(NICENESS)
+    generate, checkpoint_hash = load(model, threads)
+    context = zmq.Context()
+    socket = context.socket(zmq.ROUTER)
+    socket.setsockopt(zmq.LINGER, 0)
+    try:
+        try:
+            socket.bind(bind)
+        except zmq.ZMQError as error:
+            raise config_error("bind", f"{bind!r}: {error}", "a free endpoint", "choose another") from error
+        log.info("generator ready on %s with checkpoint %s", bind, checkpoint_hash[:12])
+        serve(socket, generate, checkpoint_hash, lambda: parent_pid is None or os.getppid() == parent_pid)
+    finally:
+        socket.close(0)
+        context.term()
+
+
+def main() -> int:
+    """Entry point of the process."""
+    parser = argparse.ArgumentParser(description="The process that turns text into motion.")
+    parser.add_argument("--bind", required=True)
+    parser.add_argument("--model", type=Path)
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--parent-pid", type=int)
+    options = parser.parse_args()
+    logging.basicConfig(level=logging.INFO, format="generator: %(message)s")
+    from mmm_core.errors import MmmError
+
+    try:
+        run(options.bind, options.model, options.threads, options.parent_pid)
+    except (ConfigError, MmmError) as error:
+        sys.stderr.write(f"generator: {error}\n")
+        return 1
+    except KeyboardInterrupt:
+        pass
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

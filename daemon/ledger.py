@@ -1,0 +1,123 @@
+"""What became of every command: who asked, which events it had, that it ends exactly once. Sans-I/O."""
+
+from __future__ import annotations
+
+import itertools
+import time
+import uuid
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from daemon.wire import Event, Say, WireError
+
+KEPT = 1024
+"""Commands that are remembered, so that the same id is the same command."""
+
+
+@dataclass(frozen=True)
+class Route:
+    """Where a reply goes.
+
+    Attributes:
+        frames: the ROUTER's address frames, with the empty delimiter of a REQ peer.
+        once: a REQ peer, which takes exactly one reply for each request.
+    """
+
+    frames: tuple[bytes, ...]
+    once: bool
+
+
+def split_route(frames: list[bytes]) -> tuple[Route, list[bytes]]:
+    """The sender and what it sent, from the frames of a ROUTER socket."""
+    if len(frames) >= 3 and frames[1] == b"":
+        return Route(tuple(frames[:2]), once=True), frames[2:]
+    return Route(tuple(frames[:1]), once=False), frames[1:]
+
+
+@dataclass
+class Entry:
+    """One `say`.
+
+    Attributes:
+        id: id of the command.
+        request: what was asked.
+        routes: who hears of it.
+        events: what has happened so far.
+        ended: whether its last event is out.
+        t_received_ns: when the text arrived, monotonic.
+    """
+
+    id: str
+    request: Say
+    t_received_ns: int
+    routes: list[Route] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+    ended: bool = False
+
+
+class Ledger:
+    """All commands the daemon knows.
+
+    Args:
+        send: called with each route and event that is due.
+        publish: called once with each event.
+    """
+
+    def __init__(self, send: Callable[[Route, Event], None], publish: Callable[[Event], None]) -> None:
+        self._send, self._publish = send, publish
+        self._entries: OrderedDict[str, Entry] = OrderedDict()
+        self._seq = itertools.count(1)
+
+    def stamp(self, event: Event) -> Event:
+        """Give an event its number and time."""
+        event.seq, event.t_mono = next(self._seq), time.monotonic()
+        return event
+
+    def open(self, request: Say, route: Route, t_received_ns: int) -> Entry | None:
+        """A new command; None when the id is known, in which case the sender hears what happened so far and what comes.
+
+        Raises:
+            WireError: the id stands for another text.
+        """
+        known = self._entries.get(request.id) if request.id else None
+        if known is not None:
+            asked = (known.request.text, known.request.seed, known.request.seconds)
+            if asked != (request.text, request.seed, request.seconds):
+                found = f"id {request.id!r}, which stands for {known.request.text!r}"
+                raise WireError("id_in_use", "say", found, "the same text, or a new id", "choose a new id", request.id)
+            self._catch_up(known, route)
+            return None
+        entry = Entry(request.id or uuid.uuid4().hex, request, t_received_ns, [route])
+        self._entries[entry.id] = entry
+        while len(self._entries) > KEPT and next(iter(self._entries.values())).ended:
+            self._entries.popitem(last=False)
+        return entry
+
+    def emit(self, entry: Entry, event: Event) -> None:
+        """Send an event of a command to all who hear of it; nothing follows the event that ends it."""
+        if entry.ended:
+            return
+        event.id = entry.id
+        self.stamp(event)
+        entry.events.append(event)
+        entry.ended = event.terminal
+        for route in list(entry.routes):
+            self._send(route, event)
+            if route.once:
+                entry.routes.remove(route)
+        self._publish(event)
+
+    def reply(self, route: Route, event: Event) -> None:
+        """Send an event that belongs to no command."""
+        self._send(route, self.stamp(event))
+
+    def _catch_up(self, entry: Entry, route: Route) -> None:
+        if not route.once:
+            for event in entry.events:
+                self._send(route, event)
+            entry.routes.append(route)
+        elif entry.events:
+            self._send(route, entry.events[-1])
+        else:
+            entry.routes.append(route)

@@ -1,0 +1,163 @@
+"""The robot's states as one transition table. Sans-I/O.
+
+The bus process is the truth: its reports move the state. A command is allowed where the table has an entry for it and
+is refused elsewhere; the entry is the state it leads to once the bus process has carried it out.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from daemon.errors import DaemonError
+
+
+class RobotState(Enum):
+    """What people are told about the robot."""
+
+    LIMP = "limp"  # torque off
+    ARMING = "arming"  # torque on over a pinned goal, slow move to the rest pose
+    IDLE = "idle"  # armed, nothing to play
+    MOVING = "moving"
+    HOLDING = "holding"  # stopped by a person: decelerating, or still with torque on
+    PARKING = "parking"  # slow move to the park pose, then torque off
+    FAULT = "fault"  # latched: servo, bus or process failed
+    ESTOP = "estop"  # latched: torque cut by a person
+
+
+class Trigger(Enum):
+    """Commands of people and reports of the bus process (its `BusState` by name)."""
+
+    SAY = "say"
+    ARM = "arm"
+    PARK = "park"
+    STOP = "stop"
+    ESTOP = "estop"
+    RESET = "reset"
+    BUS_LIMP = "bus limp"
+    BUS_ARMING = "bus arming"
+    BUS_HOLDING = "bus holding"
+    BUS_PLAYING = "bus playing"
+    BUS_STOPPING = "bus stopping"
+    BUS_PARKING = "bus parking"
+    BUS_FAULT = "bus fault"
+    BUS_ESTOP = "bus estop"
+    BUS_LOST = "bus lost"  # the bus process died or is frozen
+
+
+COMMANDS = (Trigger.SAY, Trigger.ARM, Trigger.PARK, Trigger.STOP, Trigger.ESTOP, Trigger.RESET)
+REPORTS = tuple(t for t in Trigger if t not in COMMANDS)
+
+_S, _T = RobotState, Trigger
+_ARMED_REPORTS = {
+    _T.BUS_LIMP: _S.LIMP, _T.BUS_PLAYING: _S.MOVING, _T.BUS_STOPPING: _S.HOLDING, _T.BUS_PARKING: _S.PARKING,
+}  # fmt: skip
+_ALWAYS = {
+    _T.ESTOP: _S.ESTOP, _T.BUS_FAULT: _S.FAULT, _T.BUS_ESTOP: _S.ESTOP, _T.BUS_LOST: _S.FAULT,
+}  # fmt: skip
+
+TRANSITIONS: dict[RobotState, dict[Trigger, RobotState]] = {
+    # Arming may be over between two looks at the bus process; motion and parking from limp may not.
+    _S.LIMP: {
+        **_ALWAYS, _T.SAY: _S.ARMING, _T.ARM: _S.ARMING, _T.PARK: _S.LIMP, _T.STOP: _S.LIMP, _T.RESET: _S.LIMP,
+        _T.BUS_LIMP: _S.LIMP, _T.BUS_ARMING: _S.ARMING, _T.BUS_HOLDING: _S.IDLE,
+    },
+    _S.ARMING: {
+        **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.ARMING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
+        _T.RESET: _S.ARMING, _T.BUS_ARMING: _S.ARMING, _T.BUS_HOLDING: _S.IDLE,
+    },
+    _S.IDLE: {
+        **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.IDLE, _T.PARK: _S.PARKING, _T.STOP: _S.IDLE,
+        _T.RESET: _S.IDLE, _T.BUS_HOLDING: _S.IDLE,
+    },
+    _S.MOVING: {
+        **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.MOVING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
+        _T.RESET: _S.MOVING, _T.BUS_HOLDING: _S.IDLE,
+    },
+    _S.HOLDING: {
+        **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.HOLDING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
+        _T.RESET: _S.HOLDING, _T.BUS_HOLDING: _S.HOLDING,
+    },
+    _S.PARKING: {
+        **_ALWAYS, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
+        _T.BUS_LIMP: _S.LIMP, _T.BUS_PARKING: _S.PARKING, _T.BUS_STOPPING: _S.HOLDING, _T.BUS_HOLDING: _S.HOLDING,
+        _T.BUS_ARMING: _S.ARMING,
+    },
+    # Both latch: only a reset leads out, and only to limp.
+    _S.FAULT: {**_ALWAYS, _T.RESET: _S.LIMP, _T.STOP: _S.FAULT, _T.BUS_LIMP: _S.LIMP},
+    _S.ESTOP: {
+        _T.ESTOP: _S.ESTOP, _T.RESET: _S.LIMP, _T.STOP: _S.ESTOP,
+        _T.BUS_ESTOP: _S.ESTOP, _T.BUS_LIMP: _S.LIMP, _T.BUS_FAULT: _S.FAULT, _T.BUS_LOST: _S.FAULT,
+    },
+}  # fmt: skip
+
+_ADVICE = {
+    _S.FAULT: "find the cause, then `mmmd reset` and `mmmd arm`",
+    _S.ESTOP: "`mmmd reset`, then `mmmd arm`",
+    _S.PARKING: "wait until the robot is limp, or `mmmd stop`",
+}
+_NEEDS_ARM = "`mmmd arm`: after an e-stop or fault the robot moves only once a person has armed it"
+
+
+class CommandRefusedError(DaemonError):
+    """A command that the robot's state does not allow."""
+
+    def __init__(self, state: RobotState, command: Trigger, allowed: tuple[str, ...], do: str) -> None:
+        self.state, self.command, self.allowed, self.do = state, command, allowed, do
+        super().__init__(f"{command.value}: the robot is in {state.value}; allowed now: {', '.join(allowed)}; {do}")
+
+
+class ImpossibleTransitionError(DaemonError):
+    """The bus process reported a state that cannot follow the one before."""
+
+    def __init__(self, state: RobotState, report: Trigger) -> None:
+        self.state, self.report = state, report
+        super().__init__(f"'{report.value}' cannot follow the robot's state '{state.value}'")
+
+
+class StateMachine:
+    """The robot's state, moved by reports; says which commands are allowed.
+
+    Attributes:
+        state: the state.
+        must_arm: whether an e-stop or fault happened since the last explicit `arm`; then `say` does not arm.
+    """
+
+    def __init__(self, *, auto_arm: bool = True) -> None:
+        self.state = RobotState.LIMP
+        self.must_arm = not auto_arm
+
+    def check(self, command: Trigger) -> RobotState:
+        """The state `command` leads to from here.
+
+        Raises:
+            CommandRefusedError: it is not allowed here.
+        """
+        allowed = tuple(t.value for t in COMMANDS if self._allows(t))
+        if not self._allows(command):
+            do = _NEEDS_ARM if self.state is RobotState.LIMP else _ADVICE.get(self.state, "`mmmd status` tells more")
+            raise CommandRefusedError(self.state, command, allowed, do)
+        return TRANSITIONS[self.state][command]
+
+    def armed_by_person(self) -> None:
+        """An explicit `arm` was given."""
+        self.must_arm = False
+
+    def report(self, report: Trigger) -> bool:
+        """Follow a report of the bus process; true when the state changed.
+
+        Raises:
+            ImpossibleTransitionError: it cannot follow this state; the state stays.
+        """
+        following = TRANSITIONS[self.state].get(report)
+        if following is None or report not in REPORTS:
+            raise ImpossibleTransitionError(self.state, report)
+        changed = following is not self.state
+        self.state = following
+        if following in (RobotState.FAULT, RobotState.ESTOP):
+            self.must_arm = True
+        return changed
+
+    def _allows(self, command: Trigger) -> bool:
+        if command is Trigger.SAY and self.state is RobotState.LIMP and self.must_arm:
+            return False
+        return command in TRANSITIONS[self.state]
