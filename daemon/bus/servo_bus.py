@@ -165,6 +165,11 @@ class ServoBus:
         for servo_id in self.ids:
             self.write_item(servo_id, name, value)
 
+    def send_all(self, name: str, value: int) -> None:
+        """Set one item of every servo with one packet that nobody answers; the item must be at the same address in all."""
+        item = self._item(self.ids[0], name)
+        self.port.write(packet.sync_write(item.address, item.size, [(i, item.encode(value)) for i in self.ids]))
+
     def send_torque_off(self) -> None:
         """Cut the torque of every servo with one packet that nobody has to answer."""
         self.port.write(packet.sync_write(64, 1, [(i, b"\0") for i in self.ids]))

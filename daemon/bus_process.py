@@ -1,0 +1,69 @@
+"""Entry of the bus process: rights, port, loop. `python -m daemon.bus_process --robot R --bus URL --link NAME`."""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import logging
+import os
+import signal
+import sys
+
+from daemon.bus.open import PortContext, open_port
+from daemon.bus.servo_bus import ServoBus
+from daemon.clock import RealClock
+from daemon.shared import BusLink
+from daemon.streamer import start
+from retarget.robot import load_robot
+
+log = logging.getLogger(__name__)
+
+FIFO_PRIORITY = 40
+_MCL_CURRENT_AND_FUTURE = 3
+
+
+def main() -> int:
+    """Run until asked to shut down; 0 after that, 1 when the bus could not be opened."""
+    parser = argparse.ArgumentParser(description="the bus process of mmmd; started by `mmmd run`")
+    for name in ("--robot", "--bus", "--link"):
+        parser.add_argument(name, required=True)
+    arguments = parser.parse_args()
+    logging.basicConfig(level=logging.INFO, format="bus: %(levelname)s %(message)s")
+    robot = load_robot(arguments.robot)
+    link = BusLink.attach(arguments.link, robot)
+    clock = RealClock()
+    streamer = start(robot, lambda: ServoBus(open_port(arguments.bus, PortContext(robot, clock)), robot.servos, clock), link, clock)
+    if streamer is None:
+        return 1
+    link.set_realtime(*_take_rights())
+
+    def stop(_number: int, _frame: object) -> None:
+        streamer.stopping = True
+
+    # The front parks the robot and then asks for shutdown; Ctrl-C reaches the whole group and is the front's to handle.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, stop)
+    try:
+        streamer.run()
+    finally:
+        streamer.close()
+    return 0
+
+
+def _take_rights() -> tuple[bool, bool]:
+    """FIFO priority and locked memory, as far as this user may; what was granted."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY))
+        fifo = True
+    except (OSError, AttributeError):
+        fifo = False
+    try:
+        locked = ctypes.CDLL(None).mlockall(_MCL_CURRENT_AND_FUTURE) == 0
+    except (OSError, AttributeError):
+        locked = False
+    log.info("FIFO priority %s, locked memory %s", "granted" if fifo else "not granted", "granted" if locked else "not granted")
+    return fifo, locked
+
+
+if __name__ == "__main__":
+    sys.exit(main())

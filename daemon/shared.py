@@ -1,0 +1,323 @@
+"""Memory shared between front and bus process: setpoints down, requests down, cycles up. No locks.
+
+One file in memory, mapped by both. Each ring has one writer; indices are 64-bit words that only their owner moves, so a
+reader never waits and a stuck peer never blocks the bus. Requests are counters, one for each kind: an e-stop never
+queues behind anything.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from dataclasses import dataclass
+from enum import IntEnum
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from retarget.robot import RobotModel
+from retarget.ticks import JointServoMap
+
+Array = NDArray[np.float64]
+
+N_SETPOINTS = 256
+N_CYCLES = 4096
+_TEXT_BYTES = 4096
+_MAGIC = 0x6D6D6D6401
+
+
+class BusState(IntEnum):
+    """What the bus process is doing."""
+
+    LIMP = 0
+    ARMING = 1
+    HOLDING = 2
+    PLAYING = 3
+    STOPPING = 4
+    PARKING = 5
+    FAULT = 6
+    ESTOP = 7
+
+
+class BusRequest(IntEnum):
+    """What the front may ask of the bus process; the value is the request's word."""
+
+    ARM = 8
+    PARK = 9
+    STOP = 10
+    ESTOP = 11
+    RESET = 12
+    SHUTDOWN = 13
+
+
+class _Word(IntEnum):
+    MAGIC = 0
+    PUSHED = 1
+    POPPED = 2
+    HEARTBEAT_NS = 4
+    CYCLES = 5
+    READY = 6
+    TEXT_LENGTH = 7
+    REALTIME = 24
+    MEMORY_LOCKED = 25
+
+
+class Readiness(IntEnum):
+    """Whether the bus process has its port."""
+
+    STARTING = 0
+    READY = 1
+    FAILED = 2
+
+
+def setpoint_dtype(n_joints: int) -> np.dtype[np.void]:
+    """One setpoint: which plan and frame, whether it ends the plan, and (J,) radians."""
+    return np.dtype([("plan_id", "u8"), ("frame", "u4"), ("last", "u1"), ("_", "V3"), ("q_rad", "f8", n_joints)])
+
+
+def cycle_dtype(n_joints: int, n_servos: int) -> np.dtype[np.void]:
+    """One bus cycle: what was wanted, what the gate let through, what was written and what was measured."""
+    return np.dtype([
+        ("cycle", "u8"), ("t_mono_ns", "i8"), ("plan_id", "u8"), ("frame_index", "u4"), ("bus_state", "u1"), ("last", "u1"),
+        ("underrun", "u1"), ("torque", "u1"), ("late_cycles", "u4"),
+        ("setpoint_rad", "f8", n_joints), ("goal_rad", "f8", n_joints), ("velocity_rad_s", "f8", n_joints),
+        ("goal_tick", "i4", n_servos), ("present_tick", "i4", n_servos), ("present_velocity_raw", "i4", n_servos),
+        ("present_current_raw", "i4", n_servos), ("error", "u1", n_servos), ("valid", "u1", n_servos), ("clipped", "u1", n_joints),
+    ])  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Setpoint:
+    """A setpoint taken from the ring."""
+
+    plan_id: int
+    frame: int
+    last: bool
+    q_rad: Array
+
+
+@dataclass(frozen=True)
+class BusSnapshot:
+    """What the bus process last said.
+
+    Attributes:
+        bus_state: what it is doing.
+        goal_rad, velocity_rad_s: (J,) the last goal and its velocity.
+        present_rad: (J,) where the joints were measured.
+        torque: whether torque is on.
+        t_mono_ns: when.
+        message: why it is in fault or failed to start, else empty.
+        counters: cycles, late cycles, missing servos, rights it got.
+    """
+
+    bus_state: BusState
+    goal_rad: Array
+    velocity_rad_s: Array
+    present_rad: Array
+    torque: bool
+    t_mono_ns: int
+    message: str
+    counters: dict[str, Any]
+
+
+class BusLink:
+    """Both ends of the shared memory; `create` in the front, `attach` in the bus process and in readers."""
+
+    def __init__(self, path: Path, robot: RobotModel, *, owner: bool) -> None:
+        n_joints = robot.n_joints
+        self.path, self.n_joints, self._owner = path, n_joints, owner
+        self._ticks = JointServoMap(robot)
+        setpoints, cycles = setpoint_dtype(n_joints), cycle_dtype(n_joints, n_joints)
+        sizes = [64 * 8, N_SETPOINTS * setpoints.itemsize, N_CYCLES * cycles.itemsize, _TEXT_BYTES]
+        starts = np.concatenate([[0], np.cumsum(sizes)])
+        if owner:
+            with path.open("wb") as f:
+                f.truncate(int(starts[-1]))
+        memory = np.memmap(path, np.uint8, "r+")
+        if len(memory) != starts[-1]:
+            raise ValueError(f"{path}: {len(memory)} bytes; expected {starts[-1]} for {n_joints} joints")
+        parts = [memory[a:b] for a, b in zip(starts[:-1], starts[1:], strict=True)]
+        self._words = parts[0].view(np.uint64)
+        self._setpoints, self._cycles, self._text = parts[1].view(setpoints), parts[2].view(cycles), parts[3]
+        self._seen = {request: int(self._words[request]) for request in BusRequest}
+        if owner:
+            self._words[_Word.MAGIC] = _MAGIC
+            self.heartbeat()
+        elif self._words[_Word.MAGIC] != _MAGIC:
+            raise ValueError(f"{path}: is no shared memory of this mmmd version")
+
+    @classmethod
+    def create(cls, robot: RobotModel, name: str | None = None) -> BusLink:
+        """New shared memory, in /dev/shm where there is one; `name` (a path) is chosen when None."""
+        if name is None:
+            folder = "/dev/shm" if os.access("/dev/shm", os.W_OK) else tempfile.gettempdir()
+            fd, name = tempfile.mkstemp(prefix="mmmd-link-", dir=folder)
+            os.close(fd)
+        return cls(Path(name), robot, owner=True)
+
+    @classmethod
+    def attach(cls, name: str, robot: RobotModel) -> BusLink:
+        """The memory that another process created."""
+        return cls(Path(name), robot, owner=False)
+
+    @property
+    def name(self) -> str:
+        """What another process attaches to."""
+        return str(self.path)
+
+    def close(self) -> None:
+        """Remove the memory's file; mappings end with their processes."""
+        if self._owner:
+            self.path.unlink(missing_ok=True)
+
+    # Front's side.
+
+    @property
+    def queued_frames(self) -> int:
+        """Setpoints pushed and not taken yet."""
+        return int(self._words[_Word.PUSHED]) - int(self._words[_Word.POPPED])
+
+    @property
+    def free_frames(self) -> int:
+        """Setpoints that may be pushed now."""
+        return N_SETPOINTS - self.queued_frames
+
+    def push(self, q_rad: Array, plan_id: int, last: bool, first_frame: int = 0) -> int:
+        """Append setpoints (N, J) as far as there is room; returns how many. `last`: they end the plan."""
+        head = int(self._words[_Word.PUSHED])
+        n = min(len(q_rad), self.free_frames)
+        for i in range(n):
+            slot = self._setpoints[(head + i) % N_SETPOINTS]
+            slot["plan_id"], slot["frame"] = plan_id, first_frame + i
+            slot["last"] = last and i == len(q_rad) - 1
+            slot["q_rad"] = q_rad[i]
+        self._words[_Word.PUSHED] = head + n
+        return n
+
+    def request(self, kind: BusRequest) -> None:
+        """Ask the bus process for something. A stop of any kind voids every setpoint that is queued when it is seen."""
+        self._words[kind] += np.uint64(1)
+
+    def heartbeat(self) -> None:
+        """Say that the front is alive."""
+        self._words[_Word.HEARTBEAT_NS] = time.monotonic_ns()
+
+    @property
+    def readiness(self) -> Readiness:
+        """Whether the bus process has its port."""
+        return Readiness(int(self._words[_Word.READY]))
+
+    @property
+    def text(self) -> str:
+        """Why it failed or is in fault."""
+        return bytes(self._text[: int(self._words[_Word.TEXT_LENGTH])]).decode("utf-8", "replace")
+
+    # Bus process's side.
+
+    def pop(self) -> Setpoint | None:
+        """The next setpoint; None when there is none."""
+        tail = int(self._words[_Word.POPPED])
+        if tail >= int(self._words[_Word.PUSHED]):
+            return None
+        slot = self._setpoints[tail % N_SETPOINTS]
+        found = Setpoint(int(slot["plan_id"]), int(slot["frame"]), bool(slot["last"]), np.array(slot["q_rad"]))
+        self._words[_Word.POPPED] = tail + 1
+        return found
+
+    def drop_queued(self) -> None:
+        """Throw away every setpoint pushed so far."""
+        self._words[_Word.POPPED] = self._words[_Word.PUSHED]
+
+    def take_requests(self) -> list[BusRequest]:
+        """Requests since the last call, e-stop first."""
+        fresh: list[BusRequest] = []
+        for request in (BusRequest.ESTOP, BusRequest.STOP, BusRequest.RESET, BusRequest.PARK, BusRequest.ARM, BusRequest.SHUTDOWN):
+            count = int(self._words[request])
+            if count != self._seen[request]:
+                self._seen[request] = count
+                fresh.append(request)
+        return fresh
+
+    @property
+    def heartbeat_age_s(self) -> float:
+        """Seconds since the front's last heartbeat."""
+        return (time.monotonic_ns() - int(self._words[_Word.HEARTBEAT_NS])) * 1e-9
+
+    def set_ready(self, readiness: Readiness, text: str = "") -> None:
+        """Tell the front how the start went."""
+        self.set_text(text)
+        self._words[_Word.READY] = readiness
+
+    def set_text(self, text: str) -> None:
+        """What went wrong, for `text`."""
+        data = np.frombuffer(text.encode("utf-8")[:_TEXT_BYTES], np.uint8)
+        self._text[: len(data)] = data
+        self._words[_Word.TEXT_LENGTH] = len(data)
+
+    def set_realtime(self, fifo: bool, locked: bool) -> None:
+        """Tell the front which rights the bus process got."""
+        self._words[_Word.REALTIME], self._words[_Word.MEMORY_LOCKED] = int(fifo), int(locked)
+
+    def next_record(self) -> np.void:
+        """The slot of the next cycle; fill it, then `publish`."""
+        return self._cycles[int(self._words[_Word.CYCLES]) % N_CYCLES]
+
+    def publish(self) -> None:
+        """Make the slot visible."""
+        self._words[_Word.CYCLES] += np.uint64(1)
+
+    # Readers.
+
+    @property
+    def n_cycles(self) -> int:
+        """Cycles published so far."""
+        return int(self._words[_Word.CYCLES])
+
+    def snapshot(self) -> BusSnapshot:
+        """What the bus process last said."""
+        n = self.n_cycles
+        fifo, locked = bool(self._words[_Word.REALTIME]), bool(self._words[_Word.MEMORY_LOCKED])
+        counters: dict[str, Any] = {"cycles": n, "fifo_priority": fifo, "locked_memory": locked}
+        if not n:
+            zero = np.zeros(self.n_joints)
+            return BusSnapshot(BusState.LIMP, zero, zero, zero, False, 0, self.text, counters)
+        row = self._cycles[(n - 1) % N_CYCLES].copy()
+        counters |= {
+            "late_cycles": int(row["late_cycles"]),
+            "missing_servos": int((row["valid"] == 0).sum()),
+            "underrun": bool(row["underrun"]),
+        }
+        return BusSnapshot(
+            BusState(int(row["bus_state"])),
+            row["goal_rad"],
+            row["velocity_rad_s"],
+            self._ticks.tick_to_rad(row["present_tick"]),
+            bool(row["torque"]),
+            int(row["t_mono_ns"]),
+            self.text,
+            counters,
+        )
+
+    def cycles_since(self, index: int) -> tuple[NDArray[np.void], int, int]:
+        """Copies of the cycles from `index` on, the index to go on from, and how many were lost to slow reading."""
+        n = self.n_cycles
+        first = max(index, n - (N_CYCLES - 64))
+        rows = np.arange(first, n) % N_CYCLES
+        return self._cycles[rows], n, first - index
+
+
+class LogReader:
+    """Reads the cycles of a link, each once."""
+
+    def __init__(self, link: BusLink) -> None:
+        self._link, self._next = link, link.n_cycles
+        self.dropped = 0
+
+    def read_new(self) -> tuple[NDArray[np.void], int]:
+        """Cycles since the last call, and how many were overwritten before they could be read."""
+        records, self._next, dropped = self._link.cycles_since(self._next)
+        self.dropped += dropped
+        return records, dropped

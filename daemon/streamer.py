@@ -1,0 +1,327 @@
+"""The bus process (hot path): setpoints -> gate -> bytes, at the robot's rate; the only owner of port and torque.
+
+One `cycle()` is one bus period: take requests, find the next goal, pass it through the gate, exchange it for a
+measurement, judge what came back, publish a record. `run()` calls it at absolute deadlines; a late cycle skips, never
+bursts. Tests and replay call `cycle()` themselves in virtual time.
+"""
+
+from __future__ import annotations
+
+import gc
+import logging
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.approach import Approach
+from daemon.bus.packet import ALERT_BIT
+from daemon.bus.registers import hardware_error_text
+from daemon.bus.servo_bus import BusReading, ServoBus
+from daemon.clock import Clock
+from daemon.errors import DaemonError, LinkError, ServoFaultError
+from daemon.gate import Gate
+from daemon.shared import BusLink, BusRequest, BusState, Readiness
+from retarget.robot import RobotModel
+from retarget.ticks import JointServoMap
+
+log = logging.getLogger(__name__)
+
+HEARTBEAT_LOST_S = 0.5
+PARK_AFTER_S = 5.0
+"""A silent front: after the first time decelerate and hold, after the second park and go limp."""
+WATCHDOG_UNITS = 10
+"""Servo bus watchdog, 20 ms each: 200 ms without any packet on the bus and the servos stop by themselves."""
+MISSING_CYCLES = 20
+"""Half of the servos silent for so many cycles is a fault (loose plug, power)."""
+TORQUE_CHECK_CYCLES = 5
+PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
+"""Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all."""
+_ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
+
+
+class Streamer:
+    """State and loop of the bus process."""
+
+    def __init__(self, robot: RobotModel, bus: ServoBus, link: BusLink, clock: Clock, *, watch_front: bool = True) -> None:
+        self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
+        self._ticks = JointServoMap(robot)
+        self._gate = Gate(robot)
+        self._period_s = robot.bus.period_s
+        self._watch_front = watch_front
+        self.state = BusState.LIMP
+        self.stopping = False
+        self._torque = False
+        self._approach: Approach | None = None
+        self._approach_started_s = 0.0
+        self._goal_tick: NDArray[np.int32] | None = None
+        self._setpoint_rad = robot.park_rad.copy()
+        self._plan_id, self._frame, self._last = 0, 0, True
+        self._underrun = False
+        self._cycle, self._late_cycles, self._missing_cycles = 0, 0, 0
+        self._pwm: int | None = None
+        self._front_lost_s: float | None = None
+
+    def run(self) -> None:
+        """Cycle at the robot's rate until a shutdown request or `stopping`, torque off at the end."""
+        gc.collect()
+        gc.freeze()
+        due_s = self._clock.now_s()
+        while not self.stopping:
+            self.cycle()
+            due_s += self._period_s
+            now_s = self._clock.now_s()
+            if now_s > due_s + self._period_s:  # skip what was missed; never burst
+                missed = int((now_s - due_s) / self._period_s)
+                self._late_cycles += missed
+                due_s += missed * self._period_s
+            self._clock.sleep_until(due_s)
+        self._cut_torque()
+
+    def close(self) -> None:
+        """Release the port."""
+        self._bus.port.close()
+
+    def cycle(self) -> None:
+        """One bus period."""
+        try:
+            for request in self._link.take_requests():
+                self._serve(request)
+            self._watch_heartbeat()
+            goal_rad = self._next_goal()
+            if goal_rad is not None and self._goal_tick is not None:
+                self._goal_tick = np.rint(self._ticks.to_ticks(goal_rad)).astype(np.int32)
+            reading = self._bus.exchange(self._goal_tick if self._torque else None)
+            self._judge(reading)
+        except (LinkError, ServoFaultError) as error:
+            self._fault(str(error))
+        self._publish(self._bus.reading)
+        self._cycle += 1
+
+    # Requests.
+
+    def _serve(self, request: BusRequest) -> None:
+        log.info("request %s in %s", request.name, self.state.name)
+        if request is BusRequest.ESTOP:
+            self._link.drop_queued()
+            self._bus.send_torque_off()
+            self._torque, self._goal_tick = False, None
+            self._enter(BusState.ESTOP)
+        elif request is BusRequest.STOP:
+            self._link.drop_queued()
+            if self.state in _ARMED:
+                self._approach = None
+                self._enter(BusState.STOPPING)
+        elif request is BusRequest.RESET:
+            if self.state in (BusState.ESTOP, BusState.FAULT):
+                self._cut_torque()
+                self._link.set_text("")
+                self._link.drop_queued()
+                self._enter(BusState.LIMP)
+        elif request is BusRequest.PARK:
+            self._link.drop_queued()
+            if self.state in _ARMED:
+                self._approach = None
+                self._enter(BusState.PARKING)
+        elif request is BusRequest.ARM:
+            if self.state is BusState.LIMP:
+                self._arm()
+        else:
+            self.stopping = True
+
+    def _arm(self) -> None:
+        """Torque on over goals pinned to fresh positions, then a slow way to rest. Any doubt is a fault, torque off."""
+        self._link.drop_queued()
+        self._link.set_text("")
+        try:
+            self._bus.verify()
+            reading = self._bus.exchange(None)
+            if not reading.valid.all():
+                silent = ", ".join(str(i) for i, ok in zip(self._bus.ids, reading.valid, strict=True) if not ok)
+                self._fault(f"cannot arm: no fresh position of servo {silent}; check cable and power")
+                return
+            present = reading.position_tick.copy()
+            self._refuse_hardware_errors(reading)
+            self._bus.write_all("bus_watchdog", 0)
+            for servo_id, tick in zip(self._bus.ids, present, strict=True):
+                self._bus.write_item(servo_id, "goal_position", int(tick))
+                pinned = self._bus.read_item(servo_id, "goal_position")
+                if pinned != tick:
+                    raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
+                self._bus.write_item(servo_id, "goal_pwm", PWM_START)
+            self._bus.write_all("torque_enable", 1)
+            self._bus.write_all("bus_watchdog", WATCHDOG_UNITS)
+        except DaemonError as error:
+            self._cut_torque()
+            self._fault(f"cannot arm: {error}")
+            return
+        self._torque, self._goal_tick, self._pwm = True, present, PWM_START
+        self._gate.reset(self._ticks.tick_to_rad(present))
+        self._approach_to(self.robot.rest_rad)
+        self._enter(BusState.ARMING)
+
+    def _refuse_hardware_errors(self, reading: BusReading) -> None:
+        for row in np.flatnonzero(reading.error & ALERT_BIT):
+            servo_id = self._bus.ids[int(row)]
+            text = hardware_error_text(self._bus.read_item(servo_id, "hardware_error_status"))
+            raise ServoFaultError(servo_id, "hardware error status", f"{text}; reboot the servo")
+
+    # Goals.
+
+    def _next_goal(self) -> NDArray[np.float64] | None:
+        """(J,) goal of this cycle through the gate; None while torque is off."""
+        self._underrun = False
+        self._frame_or_none()
+        if not self._torque:
+            return None
+        self._ramp_torque()
+        if self.state in (BusState.ARMING, BusState.PARKING):
+            return self._follow_approach()
+        if self.state is BusState.STOPPING:
+            goal = self._gate.brake()
+            if self._gate.at_rest:
+                self._enter(BusState.HOLDING)
+            return goal
+        if self.state in (BusState.HOLDING, BusState.PLAYING):
+            return self._play()
+        return self._gate.brake()  # fault with torque still on: hold
+
+    def _frame_or_none(self) -> None:
+        """Between plans a record belongs to no plan."""
+        if self.state is not BusState.PLAYING:
+            self._plan_id, self._frame, self._last = 0, 0, True
+
+    def _play(self) -> NDArray[np.float64]:
+        setpoint = self._link.pop()
+        if setpoint is not None:
+            self._plan_id, self._frame, self._last = setpoint.plan_id, setpoint.frame, setpoint.last
+            self._setpoint_rad = setpoint.q_rad
+            self._enter(BusState.PLAYING)
+            return self._gate.step(setpoint.q_rad)
+        if self.state is BusState.PLAYING and not self._last:
+            self._underrun = True  # the front is late: slow down, go on when it is back
+            return self._gate.brake()
+        goal = self._gate.brake()
+        if self._gate.at_rest:
+            self._enter(BusState.HOLDING)
+        return goal
+
+    def _follow_approach(self) -> NDArray[np.float64]:
+        """The slow move of arming and parking; parking first comes to rest."""
+        if self._approach is None:
+            goal = self._gate.brake()
+            if self._gate.at_rest:
+                self._approach_to(self.robot.park_rad if self.state is BusState.PARKING else self.robot.rest_rad)
+            return goal
+        t_s = (self._cycle - self._approach_started_s) * self._period_s
+        self._setpoint_rad = self._approach.at(t_s)
+        goal = self._gate.step(self._setpoint_rad)
+        if t_s > self._approach.duration_s and self._gate.at_rest:
+            self._approach = None
+            if self.state is BusState.PARKING:
+                self._cut_torque()
+                self._enter(BusState.LIMP)
+            else:
+                self._enter(BusState.HOLDING)
+        return goal
+
+    def _approach_to(self, goal_rad: NDArray[np.float64]) -> None:
+        self._approach = Approach(self._gate.position_rad, goal_rad, self._gate.limits)
+        self._approach_started_s = self._cycle
+
+    def _ramp_torque(self) -> None:
+        if self._pwm is not None and self._cycle % 5 == 0:
+            self._pwm = min(PWM_FULL, self._pwm + round((PWM_FULL - PWM_START) * 5 * self._period_s / PWM_RAMP_S))
+            self._bus.send_all("goal_pwm", self._pwm)
+            if self._pwm == PWM_FULL:
+                self._pwm = None
+
+    # Judgement.
+
+    def _watch_heartbeat(self) -> None:
+        if not self._watch_front or not self._torque or self.state in (BusState.PARKING, BusState.FAULT, BusState.ESTOP):
+            self._front_lost_s = None
+            return
+        age_s = self._link.heartbeat_age_s
+        if age_s < HEARTBEAT_LOST_S:
+            self._front_lost_s = None
+        elif age_s > PARK_AFTER_S:
+            log.warning("front silent for %.1f s: parking", age_s)
+            self._serve(BusRequest.PARK)
+        elif self._front_lost_s is None:
+            self._front_lost_s = age_s
+            log.warning("front silent for %.1f s: holding", age_s)
+            self._serve(BusRequest.STOP)
+
+    def _judge(self, reading: BusReading) -> None:
+        """A tripped servo, lost torque or half of the robot silent is a fault."""
+        if self.state in (BusState.FAULT, BusState.ESTOP):
+            return
+        silent = int((~reading.valid).sum())
+        self._missing_cycles = self._missing_cycles + 1 if silent * 2 >= len(reading.valid) else 0
+        if self._missing_cycles >= MISSING_CYCLES and self._torque:
+            self._fault(f"{silent} of {len(reading.valid)} servos are silent; check cable and power")
+            return
+        if not self._torque:
+            return
+        self._refuse_hardware_errors(reading)
+        if self._cycle % TORQUE_CHECK_CYCLES == 0:
+            row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)
+            if reading.valid[row] and self._bus.read_item(self._bus.ids[row], "torque_enable") == 0:
+                self._fault(f"servo {self._bus.ids[row]} ({self.robot.joint_names[row]}) lost its torque; it may have rebooted")
+
+    def _fault(self, text: str) -> None:
+        """Latch a fault: what still has torque comes to rest and holds; nothing re-arms by itself."""
+        if self.state is not BusState.FAULT:
+            log.error("fault: %s", text)
+            self._link.set_text(text)
+        self._link.drop_queued()
+        self._approach = None
+        self._enter(BusState.FAULT)
+
+    def _cut_torque(self) -> None:
+        try:
+            self._bus.send_torque_off()
+        except LinkError as error:
+            log.error("torque off not sent: %s", error)
+        self._torque, self._goal_tick = False, None
+
+    def _enter(self, state: BusState) -> None:
+        if state is not self.state:
+            log.info("%s -> %s", self.state.name, state.name)
+            self.state = state
+
+    def _publish(self, reading: BusReading) -> None:
+        record = self._link.next_record()
+        record["cycle"], record["t_mono_ns"] = self._cycle, int(self._clock.now_s() * 1e9)
+        record["plan_id"], record["frame_index"], record["last"] = self._plan_id, self._frame, self._last
+        record["bus_state"], record["underrun"], record["torque"] = self.state, self._underrun, self._torque
+        record["late_cycles"] = self._late_cycles
+        record["setpoint_rad"], record["goal_rad"] = self._setpoint_rad, self._gate.position_rad
+        record["velocity_rad_s"], record["clipped"] = self._gate.velocity_rad_s, self._gate.clipped
+        record["goal_tick"] = reading.position_tick if self._goal_tick is None else self._goal_tick
+        record["present_tick"], record["valid"] = reading.position_tick, reading.valid
+        record["present_velocity_raw"], record["present_current_raw"] = reading.velocity_raw, reading.current_raw
+        record["error"] = reading.error
+        self._link.publish()
+
+
+Opener = Callable[[], ServoBus]
+
+
+def start(robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock) -> Streamer | None:
+    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link."""
+    try:
+        bus = open_bus()
+    except DaemonError as error:
+        link.set_ready(Readiness.FAILED, str(error))
+        return None
+    try:
+        bus.verify()
+        bus.exchange(None)
+    except DaemonError as error:
+        bus.port.close()
+        link.set_ready(Readiness.FAILED, str(error))
+        return None
+    link.set_ready(Readiness.READY)
+    return Streamer(robot, bus, link, clock)
