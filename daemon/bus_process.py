@@ -8,6 +8,7 @@ import logging
 import os
 import signal
 import sys
+from pathlib import Path
 
 from daemon.bus.open import PortContext, open_port
 from daemon.bus.servo_bus import ServoBus
@@ -30,7 +31,7 @@ def main() -> int:
     arguments = parser.parse_args()
     logging.basicConfig(level=logging.INFO, format="bus: %(levelname)s %(message)s")
     robot = load_robot(arguments.robot)
-    link = BusLink.attach(arguments.link, robot)
+    link = BusLink.attach(Path(arguments.link), robot.n_joints)
     clock = RealClock()
     streamer = start(robot, lambda: ServoBus(open_port(arguments.bus, PortContext(robot, clock)), robot.servos, clock), link, clock)
     if streamer is None:

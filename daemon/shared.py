@@ -13,13 +13,9 @@ import time
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from retarget.robot import RobotModel
-from retarget.ticks import JointServoMap
 
 Array = NDArray[np.float64]
 
@@ -57,6 +53,7 @@ class _Word(IntEnum):
     MAGIC = 0
     PUSHED = 1
     POPPED = 2
+    EPOCH = 3
     HEARTBEAT_NS = 4
     CYCLES = 5
     READY = 6
@@ -75,13 +72,13 @@ class Readiness(IntEnum):
 
 def setpoint_dtype(n_joints: int) -> np.dtype[np.void]:
     """One setpoint: which plan and frame, whether it ends the plan, and (J,) radians."""
-    return np.dtype([("plan_id", "u8"), ("frame", "u4"), ("last", "u1"), ("_", "V3"), ("q_rad", "f8", n_joints)])
+    return np.dtype([("epoch", "u8"), ("plan_id", "u8"), ("frame", "u4"), ("last", "u1"), ("_", "V3"), ("q_rad", "f8", n_joints)])
 
 
 def cycle_dtype(n_joints: int, n_servos: int) -> np.dtype[np.void]:
     """One bus cycle: what was wanted, what the gate let through, what was written and what was measured."""
     return np.dtype([
-        ("cycle", "u8"), ("t_mono_ns", "i8"), ("plan_id", "u8"), ("frame_index", "u4"), ("bus_state", "u1"), ("last", "u1"),
+        ("cycle", "u8"), ("t_mono_ns", "i8"), ("plan_id", "u8"), ("frame", "u4"), ("state", "u1"), ("last", "u1"),
         ("underrun", "u1"), ("torque", "u1"), ("late_cycles", "u4"),
         ("setpoint_rad", "f8", n_joints), ("goal_rad", "f8", n_joints), ("velocity_rad_s", "f8", n_joints),
         ("goal_tick", "i4", n_servos), ("present_tick", "i4", n_servos), ("present_velocity_raw", "i4", n_servos),
@@ -99,37 +96,11 @@ class Setpoint:
     q_rad: Array
 
 
-@dataclass(frozen=True)
-class BusSnapshot:
-    """What the bus process last said.
-
-    Attributes:
-        bus_state: what it is doing.
-        goal_rad, velocity_rad_s: (J,) the last goal and its velocity.
-        present_rad: (J,) where the joints were measured.
-        torque: whether torque is on.
-        t_mono_ns: when.
-        message: why it is in fault or failed to start, else empty.
-        counters: cycles, late cycles, missing servos, rights it got.
-    """
-
-    bus_state: BusState
-    goal_rad: Array
-    velocity_rad_s: Array
-    present_rad: Array
-    torque: bool
-    t_mono_ns: int
-    message: str
-    counters: dict[str, Any]
-
-
 class BusLink:
     """Both ends of the shared memory; `create` in the front, `attach` in the bus process and in readers."""
 
-    def __init__(self, path: Path, robot: RobotModel, *, owner: bool) -> None:
-        n_joints = robot.n_joints
+    def __init__(self, path: Path, n_joints: int, *, owner: bool) -> None:
         self.path, self.n_joints, self._owner = path, n_joints, owner
-        self._ticks = JointServoMap(robot)
         setpoints, cycles = setpoint_dtype(n_joints), cycle_dtype(n_joints, n_joints)
         sizes = [64 * 8, N_SETPOINTS * setpoints.itemsize, N_CYCLES * cycles.itemsize, _TEXT_BYTES]
         starts = np.concatenate([[0], np.cumsum(sizes)])
@@ -150,23 +121,17 @@ class BusLink:
             raise ValueError(f"{path}: is no shared memory of this mmmd version")
 
     @classmethod
-    def create(cls, robot: RobotModel, name: str | None = None) -> BusLink:
-        """New shared memory, in /dev/shm where there is one; `name` (a path) is chosen when None."""
-        if name is None:
-            folder = "/dev/shm" if os.access("/dev/shm", os.W_OK) else tempfile.gettempdir()
-            fd, name = tempfile.mkstemp(prefix="mmmd-link-", dir=folder)
-            os.close(fd)
-        return cls(Path(name), robot, owner=True)
+    def create(cls, n_joints: int) -> BusLink:
+        """New shared memory, in /dev/shm where there is one."""
+        folder = "/dev/shm" if os.access("/dev/shm", os.W_OK) else tempfile.gettempdir()
+        fd, name = tempfile.mkstemp(prefix="mmmd-link-", dir=folder)
+        os.close(fd)
+        return cls(Path(name), n_joints, owner=True)
 
     @classmethod
-    def attach(cls, name: str, robot: RobotModel) -> BusLink:
+    def attach(cls, path: Path, n_joints: int) -> BusLink:
         """The memory that another process created."""
-        return cls(Path(name), robot, owner=False)
-
-    @property
-    def name(self) -> str:
-        """What another process attaches to."""
-        return str(self.path)
+        return cls(path, n_joints, owner=False)
 
     def close(self) -> None:
         """Remove the memory's file; mappings end with their processes."""
@@ -176,29 +141,31 @@ class BusLink:
     # Front's side.
 
     @property
+    def epoch(self) -> int:
+        """Grows with each stop: setpoints of an older epoch are thrown away."""
+        return int(self._words[_Word.EPOCH])
+
+    @property
     def queued_frames(self) -> int:
         """Setpoints pushed and not taken yet."""
         return int(self._words[_Word.PUSHED]) - int(self._words[_Word.POPPED])
 
-    @property
-    def free_frames(self) -> int:
-        """Setpoints that may be pushed now."""
-        return N_SETPOINTS - self.queued_frames
-
-    def push(self, q_rad: Array, plan_id: int, last: bool, first_frame: int = 0) -> int:
-        """Append setpoints (N, J) as far as there is room; returns how many. `last`: they end the plan."""
+    def push(self, q_rad: Array, plan_id: int, first_frame: int, epoch: int, *, last: bool) -> int:
+        """Append setpoints (N, J) as far as there is room; returns how many. `last` marks the final one of the plan."""
         head = int(self._words[_Word.PUSHED])
-        n = min(len(q_rad), self.free_frames)
+        n = min(len(q_rad), N_SETPOINTS - self.queued_frames)
         for i in range(n):
             slot = self._setpoints[(head + i) % N_SETPOINTS]
-            slot["plan_id"], slot["frame"] = plan_id, first_frame + i
+            slot["epoch"], slot["plan_id"], slot["frame"] = epoch, plan_id, first_frame + i
             slot["last"] = last and i == len(q_rad) - 1
             slot["q_rad"] = q_rad[i]
         self._words[_Word.PUSHED] = head + n
         return n
 
     def request(self, kind: BusRequest) -> None:
-        """Ask the bus process for something. A stop of any kind voids every setpoint that is queued when it is seen."""
+        """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before."""
+        if kind in (BusRequest.STOP, BusRequest.ESTOP, BusRequest.PARK):
+            self._words[_Word.EPOCH] += np.uint64(1)
         self._words[kind] += np.uint64(1)
 
     def heartbeat(self) -> None:
@@ -215,16 +182,23 @@ class BusLink:
         """Why it failed or is in fault."""
         return bytes(self._text[: int(self._words[_Word.TEXT_LENGTH])]).decode("utf-8", "replace")
 
+    @property
+    def has_realtime(self) -> tuple[bool, bool]:
+        """Whether the bus process got FIFO priority and locked memory."""
+        return bool(self._words[_Word.REALTIME]), bool(self._words[_Word.MEMORY_LOCKED])
+
     # Bus process's side.
 
-    def pop(self) -> Setpoint | None:
-        """The next setpoint; None when there is none."""
-        tail = int(self._words[_Word.POPPED])
-        if tail >= int(self._words[_Word.PUSHED]):
-            return None
-        slot = self._setpoints[tail % N_SETPOINTS]
-        found = Setpoint(int(slot["plan_id"]), int(slot["frame"]), bool(slot["last"]), np.array(slot["q_rad"]))
-        self._words[_Word.POPPED] = tail + 1
+    def take_setpoint(self) -> Setpoint | None:
+        """The next setpoint of the current epoch; None when there is none."""
+        tail, head, epoch = int(self._words[_Word.POPPED]), int(self._words[_Word.PUSHED]), self.epoch
+        found: Setpoint | None = None
+        while tail < head and found is None:
+            slot = self._setpoints[tail % N_SETPOINTS]
+            if int(slot["epoch"]) == epoch:
+                found = Setpoint(int(slot["plan_id"]), int(slot["frame"]), bool(slot["last"]), np.array(slot["q_rad"]))
+            tail += 1
+        self._words[_Word.POPPED] = tail
         return found
 
     def drop_queued(self) -> None:
@@ -276,31 +250,6 @@ class BusLink:
         """Cycles published so far."""
         return int(self._words[_Word.CYCLES])
 
-    def snapshot(self) -> BusSnapshot:
-        """What the bus process last said."""
-        n = self.n_cycles
-        fifo, locked = bool(self._words[_Word.REALTIME]), bool(self._words[_Word.MEMORY_LOCKED])
-        counters: dict[str, Any] = {"cycles": n, "fifo_priority": fifo, "locked_memory": locked}
-        if not n:
-            zero = np.zeros(self.n_joints)
-            return BusSnapshot(BusState.LIMP, zero, zero, zero, False, 0, self.text, counters)
-        row = self._cycles[(n - 1) % N_CYCLES].copy()
-        counters |= {
-            "late_cycles": int(row["late_cycles"]),
-            "missing_servos": int((row["valid"] == 0).sum()),
-            "underrun": bool(row["underrun"]),
-        }
-        return BusSnapshot(
-            BusState(int(row["bus_state"])),
-            row["goal_rad"],
-            row["velocity_rad_s"],
-            self._ticks.tick_to_rad(row["present_tick"]),
-            bool(row["torque"]),
-            int(row["t_mono_ns"]),
-            self.text,
-            counters,
-        )
-
     def cycles_since(self, index: int) -> tuple[NDArray[np.void], int, int]:
         """Copies of the cycles from `index` on, the index to go on from, and how many were lost to slow reading."""
         n = self.n_cycles
@@ -308,16 +257,3 @@ class BusLink:
         rows = np.arange(first, n) % N_CYCLES
         return self._cycles[rows], n, first - index
 
-
-class LogReader:
-    """Reads the cycles of a link, each once."""
-
-    def __init__(self, link: BusLink) -> None:
-        self._link, self._next = link, link.n_cycles
-        self.dropped = 0
-
-    def read_new(self) -> tuple[NDArray[np.void], int]:
-        """Cycles since the last call, and how many were overwritten before they could be read."""
-        records, self._next, dropped = self._link.cycles_since(self._next)
-        self.dropped += dropped
-        return records, dropped

@@ -192,7 +192,7 @@ class Streamer:
             self._plan_id, self._frame, self._last = 0, 0, True
 
     def _play(self) -> NDArray[np.float64]:
-        setpoint = self._link.pop()
+        setpoint = self._link.take_setpoint()
         if setpoint is not None:
             self._plan_id, self._frame, self._last = setpoint.plan_id, setpoint.frame, setpoint.last
             self._setpoint_rad = setpoint.q_rad
@@ -294,8 +294,8 @@ class Streamer:
     def _publish(self, reading: BusReading) -> None:
         record = self._link.next_record()
         record["cycle"], record["t_mono_ns"] = self._cycle, int(self._clock.now_s() * 1e9)
-        record["plan_id"], record["frame_index"], record["last"] = self._plan_id, self._frame, self._last
-        record["bus_state"], record["underrun"], record["torque"] = self.state, self._underrun, self._torque
+        record["plan_id"], record["frame"], record["last"] = self._plan_id, self._frame, self._last
+        record["state"], record["underrun"], record["torque"] = self.state, self._underrun, self._torque
         record["late_cycles"] = self._late_cycles
         record["setpoint_rad"], record["goal_rad"] = self._setpoint_rad, self._gate.position_rad
         record["velocity_rad_s"], record["clipped"] = self._gate.velocity_rad_s, self._gate.clipped
