@@ -33,7 +33,9 @@ def main() -> int:
     robot = load_robot(arguments.robot)
     link = BusLink.attach(Path(arguments.link), robot.n_joints)
     clock = RealClock()
-    streamer = start(robot, lambda: ServoBus(open_port(arguments.bus, PortContext(robot, clock)), robot.servos, clock), link, clock)
+    streamer = start(
+        robot, lambda: ServoBus(open_port(arguments.bus, PortContext(robot, clock)), robot.servos, clock), link, clock
+    )
     if streamer is None:
         return 1
     link.set_realtime(*_take_rights())
@@ -62,7 +64,11 @@ def _take_rights() -> tuple[bool, bool]:
         locked = ctypes.CDLL(None).mlockall(_MCL_CURRENT_AND_FUTURE) == 0
     except (OSError, AttributeError):
         locked = False
-    log.info("FIFO priority %s, locked memory %s", "granted" if fifo else "not granted", "granted" if locked else "not granted")
+    log.info(
+        "FIFO priority %s, locked memory %s",
+        "granted" if fifo else "not granted",
+        "granted" if locked else "not granted",
+    )
     return fifo, locked
 
 

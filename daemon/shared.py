@@ -72,7 +72,9 @@ class Readiness(IntEnum):
 
 def setpoint_dtype(n_joints: int) -> np.dtype[np.void]:
     """One setpoint: which plan and frame, whether it ends the plan, and (J,) radians."""
-    return np.dtype([("epoch", "u8"), ("plan_id", "u8"), ("frame", "u4"), ("last", "u1"), ("_", "V3"), ("q_rad", "f8", n_joints)])
+    return np.dtype(
+        [("epoch", "u8"), ("plan_id", "u8"), ("frame", "u4"), ("last", "u1"), ("_", "V3"), ("q_rad", "f8", n_joints)]
+    )
 
 
 def cycle_dtype(n_joints: int, n_servos: int) -> np.dtype[np.void]:
@@ -208,7 +210,14 @@ class BusLink:
     def take_requests(self) -> list[BusRequest]:
         """Requests since the last call, e-stop first."""
         fresh: list[BusRequest] = []
-        for request in (BusRequest.ESTOP, BusRequest.STOP, BusRequest.RESET, BusRequest.PARK, BusRequest.ARM, BusRequest.SHUTDOWN):
+        for request in (
+            BusRequest.ESTOP,
+            BusRequest.STOP,
+            BusRequest.RESET,
+            BusRequest.PARK,
+            BusRequest.ARM,
+            BusRequest.SHUTDOWN,
+        ):
             count = int(self._words[request])
             if count != self._seen[request]:
                 self._seen[request] = count
@@ -256,4 +265,3 @@ class BusLink:
         first = max(index, n - (N_CYCLES - 64))
         rows = np.arange(first, n) % N_CYCLES
         return self._cycles[rows], n, first - index
-

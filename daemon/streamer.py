@@ -43,7 +43,9 @@ _ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING
 class Streamer:
     """State and loop of the bus process."""
 
-    def __init__(self, robot: RobotModel, bus: ServoBus, link: BusLink, clock: Clock, *, watch_front: bool = True) -> None:
+    def __init__(
+        self, robot: RobotModel, bus: ServoBus, link: BusLink, clock: Clock, *, watch_front: bool = True
+    ) -> None:
         self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
         self._ticks = JointServoMap(robot)
         self._gate = Gate(robot)
@@ -51,6 +53,8 @@ class Streamer:
         self._watch_front = watch_front
         self.state = BusState.LIMP
         self.stopping = False
+        self.rest_rad = robot.rest_rad
+        """Where arming leads to; replay sets a log's first goal."""
         self._torque = False
         self._approach: Approach | None = None
         self._approach_started_s = 0.0
@@ -157,7 +161,7 @@ class Streamer:
             return
         self._torque, self._goal_tick, self._pwm = True, present, PWM_START
         self._gate.reset(self._ticks.tick_to_rad(present))
-        self._approach_to(self.robot.rest_rad)
+        self._approach_to(self.rest_rad)
         self._enter(BusState.ARMING)
 
     def _refuse_hardware_errors(self, reading: BusReading) -> None:
@@ -211,7 +215,7 @@ class Streamer:
         if self._approach is None:
             goal = self._gate.brake()
             if self._gate.at_rest:
-                self._approach_to(self.robot.park_rad if self.state is BusState.PARKING else self.robot.rest_rad)
+                self._approach_to(self.robot.park_rad if self.state is BusState.PARKING else self.rest_rad)
             return goal
         t_s = (self._cycle - self._approach_started_s) * self._period_s
         self._setpoint_rad = self._approach.at(t_s)
@@ -239,7 +243,11 @@ class Streamer:
     # Judgement.
 
     def _watch_heartbeat(self) -> None:
-        if not self._watch_front or not self._torque or self.state in (BusState.PARKING, BusState.FAULT, BusState.ESTOP):
+        if (
+            not self._watch_front
+            or not self._torque
+            or self.state in (BusState.PARKING, BusState.FAULT, BusState.ESTOP)
+        ):
             self._front_lost_s = None
             return
         age_s = self._link.heartbeat_age_s
@@ -268,7 +276,9 @@ class Streamer:
         if self._cycle % TORQUE_CHECK_CYCLES == 0:
             row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)
             if reading.valid[row] and self._bus.read_item(self._bus.ids[row], "torque_enable") == 0:
-                self._fault(f"servo {self._bus.ids[row]} ({self.robot.joint_names[row]}) lost its torque; it may have rebooted")
+                self._fault(
+                    f"servo {self._bus.ids[row]} ({self.robot.joint_names[row]}) lost its torque; it may have rebooted"
+                )
 
     def _fault(self, text: str) -> None:
         """Latch a fault: what still has torque comes to rest and holds; nothing re-arms by itself."""

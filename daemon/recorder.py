@@ -1,0 +1,75 @@
+"""The recorder: its own process, so that a slow disk never reaches the bus.
+
+Reads cycles from shared memory and events from a bounded queue; what it cannot keep up with is dropped and counted.
+`python -m daemon.recorder --robot R --link NAME --events ENDPOINT --out F.mcap`
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import signal
+import sys
+from pathlib import Path
+
+import zmq
+
+from daemon.mcap_log import LogWriter
+from daemon.shared import BusLink
+from retarget.robot import load_robot
+
+log = logging.getLogger(__name__)
+
+POLL_S = 0.1
+EVENT_QUEUE = 2000
+
+
+def main() -> int:
+    """Record until SIGTERM; 0 when the log was finished, 1 when the disk gave up (the robot goes on)."""
+    parser = argparse.ArgumentParser(description="the recorder of mmmd; started by `mmmd run --log`")
+    for name in ("--robot", "--link", "--events", "--out"):
+        parser.add_argument(name, required=True)
+    arguments = parser.parse_args()
+    logging.basicConfig(level=logging.INFO, format="recorder: %(levelname)s %(message)s")
+    robot = load_robot(arguments.robot)
+    link = BusLink.attach(Path(arguments.link), robot.n_joints)
+    stopping: list[int] = []
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, lambda number, _frame: stopping.append(number))
+    context = zmq.Context()
+    events = context.socket(zmq.PULL)
+    events.setsockopt(zmq.RCVHWM, EVENT_QUEUE)
+    events.bind(arguments.events)
+    index, dropped = link.n_cycles, 0
+    try:
+        with Path(arguments.out).open("wb") as f:
+            writer = LogWriter(f, robot)
+            while True:
+                last_round = bool(stopping)
+                events.poll(0 if last_round else round(POLL_S * 1e3))
+                records, index, lost = link.cycles_since(index)
+                if lost:
+                    dropped += lost
+                    log.warning("%d cycles dropped: the disk is too slow", dropped)
+                for record in records:
+                    writer.cycle(record)
+                for _ in range(EVENT_QUEUE):
+                    if not events.poll(0):
+                        break
+                    topic, payload = events.recv_multipart()
+                    writer.event(topic.decode(), payload)
+                f.flush()
+                if last_round:
+                    break
+            writer.finish()
+    except OSError as error:
+        log.error("recording stopped (%s); the robot goes on without a log", error)
+        return 1
+    finally:
+        events.close(0)
+        context.term()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
