@@ -10,6 +10,7 @@ from typing import Protocol
 import zmq
 
 from daemon.ledger import split_route
+from daemon.performer import refusal
 from daemon.state import CommandRefusedError
 from daemon.wire import (
     Ack,
@@ -38,11 +39,11 @@ MAX_RECEIVE_BYTES = 1 << 20
 class Controls(Protocol):
     """What the thread acts on; every call returns at once and may come from this thread."""
 
-    def stop(self, command_id: str) -> str:
+    def stop(self) -> str:
         """Brake within the limits and hold; returns the state before."""
         ...
 
-    def estop(self, command_id: str) -> str:
+    def estop(self) -> str:
         """Cut torque; returns the state before."""
         ...
 
@@ -54,7 +55,7 @@ class Controls(Protocol):
         """Torque on; returns the state before."""
         ...
 
-    def park(self, command_id: str) -> str:
+    def park(self) -> str:
         """Park; returns the state before."""
         ...
 
@@ -62,21 +63,9 @@ class Controls(Protocol):
         """The state event."""
         ...
 
-    def stamp(self, event: Event) -> Event:
-        """Number an event."""
+    def sent(self, event: Event) -> Event:
+        """Number an event that is being sent, and tell the subscribers of it."""
         ...
-
-
-def refusal(request_id: str, error: CommandRefusedError) -> Rejected:
-    """The event of a command that the robot's state does not allow."""
-    return Rejected(
-        id=request_id,
-        code="wrong_state",
-        asked=error.command.value,
-        found=f"the robot is in {error.state.value}",
-        allowed=", ".join(error.allowed),
-        do=error.do,
-    )
 
 
 class ControlThread:
@@ -111,7 +100,7 @@ class ControlThread:
             except Exception as error:  # the thread that can stop the robot must outlive every bug
                 log.exception("a ctl request failed")
                 event = Rejected(code="internal", asked="ctl", found=str(error), allowed="", do="see the daemon's log")
-            reply = encode(self._controls.stamp(event))
+            reply = encode(self._controls.sent(event))
             try:
                 self._socket.send_multipart([*route.frames, reply], zmq.DONTWAIT)
             except zmq.ZMQError as error:
@@ -132,16 +121,16 @@ class ControlThread:
             return refusal(request.id, error)
 
     def _carry_out(self, request: CtlRequest) -> Event:
-        do: dict[type, Callable[[], str]] = {
-            Stop: lambda: self._controls.stop(request.id),
-            Estop: lambda: self._controls.estop(request.id),
+        verbs: dict[type, Callable[[], str]] = {
+            Stop: self._controls.stop,
+            Estop: self._controls.estop,
             Reset: self._controls.reset,
             Arm: self._controls.arm,
-            Park: lambda: self._controls.park(request.id),
+            Park: self._controls.park,
         }
         if isinstance(request, Status):
             event = self._controls.status()
             event.id = request.id
             return event
-        state = do[type(request)]()
+        state = verbs[type(request)]()
         return Ack(id=request.id, verb=str(type(request).__struct_config__.tag), state=state)

@@ -10,6 +10,7 @@ import asyncio
 import contextlib
 import itertools
 import logging
+import time
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +26,8 @@ from mmm_core.motion import N_FEATURES, N_JOINTS, Motion
 log = logging.getLogger(__name__)
 
 GENERATION_VERSION = 1
+START_TIMEOUT_S = 10.0
+"""Longest wait of a text for a generator that is being started."""
 MIN_FRAMES = 2
 """A motion of fewer frames is no motion."""
 
@@ -118,7 +121,7 @@ class Generated:
 
 
 def encode(message: ToGenerator | FromGenerator) -> bytes:
-    """msgpack of a message."""
+    """The bytes of a message."""
     return _ENCODER.encode(message)
 
 
@@ -183,7 +186,9 @@ def generated_from(message: GeneratedMessage) -> Generated:
 
 def _bad_motion(text: str, found: str) -> GeneratorError:
     allowed = f"at least {MIN_FRAMES} frames, all finite"
-    return GeneratorError("bad_motion", f"a motion for {text!r}", found, allowed, "say it in other words or with another seed")
+    return GeneratorError(
+        "bad_motion", f"a motion for {text!r}", found, allowed, "say it in other words or with another seed"
+    )
 
 
 def _array(data: bytes, dtype: str, shape: tuple[int, ...]) -> NDArray[Any]:
@@ -191,7 +196,12 @@ def _array(data: bytes, dtype: str, shape: tuple[int, ...]) -> NDArray[Any]:
 
 
 class GeneratorClient:
-    """Asks the generator without blocking the event loop; several requests may be open."""
+    """Asks the generator without blocking the event loop; several requests may be open.
+
+    Attributes:
+        state: what people are told about the generator; `mark_ready` and `mark_down` set it.
+        timeouts: requests that were not answered in time.
+    """
 
     def __init__(self, context: zmq.asyncio.Context, endpoint: str) -> None:
         self._socket = context.socket(zmq.DEALER)
@@ -202,6 +212,25 @@ class GeneratorClient:
         self._ids = itertools.count(1)
         self._open: dict[int, asyncio.Future[FromGenerator]] = {}
         self._reader: asyncio.Task[None] | None = None
+        self._ready = asyncio.Event()
+        self._down_reason = ""
+        self.state = "starting"
+        self.timeouts = 0
+
+    def mark_ready(self, checkpoint_hash: str) -> None:
+        """The generator answers."""
+        self.state, self._down_reason = f"ready (checkpoint {checkpoint_hash[:12]})", ""
+        self._ready.set()
+
+    def mark_starting(self) -> None:
+        """The generator is being started; requests wait for it."""
+        self.state, self._down_reason = "starting", ""
+        self._ready.clear()
+
+    def mark_down(self, reason: str) -> None:
+        """The generator is gone; requests fail at once."""
+        self.state, self._down_reason = f"down: {reason}", reason
+        self._ready.clear()
 
     @property
     def busy(self) -> bool:
@@ -214,6 +243,7 @@ class GeneratorClient:
         Raises:
             GeneratorError: it failed, gave no usable motion, or not in time (`code` tells which).
         """
+        await self._until_ready(f"a motion for {text!r}")
         request = GenerateMessage(id=next(self._ids), text=text, seed=seed, seconds=seconds)
         reply = await self._ask(request, timeout_s, f"a motion for {text!r}")
         if isinstance(reply, FailureMessage):
@@ -232,6 +262,15 @@ class GeneratorClient:
         reply = await self._ask(PingMessage(id=next(self._ids)), timeout_s, "a sign of life")
         return reply.checkpoint_hash if isinstance(reply, PongMessage) else ""
 
+    async def _until_ready(self, asked: str) -> None:
+        began_s = time.monotonic()
+        while not self._ready.is_set():
+            if self._down_reason or time.monotonic() - began_s > START_TIMEOUT_S:
+                found = f"the generator is {self.state}"
+                raise GeneratorError("generator_down", asked, found, "a generator that runs", "see the daemon's output")
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._ready.wait(), 0.1)
+
     async def _ask(self, request: ToGenerator, timeout_s: float, asked: str) -> FromGenerator:
         if self._reader is None:
             self._reader = asyncio.create_task(self._read())
@@ -242,9 +281,14 @@ class GeneratorClient:
                 await self._socket.send(encode(request))
                 return await answer
         except TimeoutError:
+            self.timeouts += 1
             do = "it is started again; say it once more"
             raise GeneratorError(
-                "generator_timeout", asked, f"no answer from the generator in {timeout_s:g} s", "an answer in that time", do
+                "generator_timeout",
+                asked,
+                f"no answer from the generator in {timeout_s:g} s",
+                "an answer in that time",
+                do,
             ) from None
         finally:
             self._open.pop(request.id, None)

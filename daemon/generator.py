@@ -1,6 +1,6 @@
 """The process that holds torch: `python -m daemon.generator --bind ENDPOINT`.
 
-One thread, lower priority. It ends when the process that started it does, so that a killed daemon leaves nothing behind.
+One thread, lower priority. It ends when the process that started it does, so nothing stays behind.
 """
 
 from __future__ import annotations

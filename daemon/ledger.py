@@ -51,8 +51,8 @@ class Entry:
     id: str
     request: Say
     t_received_ns: int
-    routes: list[Route] = field(default_factory=list)
-    events: list[Event] = field(default_factory=list)
+    routes: list[Route]
+    events: list[Event] = field(default_factory=list[Event])
     ended: bool = False
 
 

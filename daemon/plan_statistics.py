@@ -67,7 +67,7 @@ class PlanStatistics:
                 self.first_motion_ns = int(times[moved[0]])
         shares = np.abs(records["velocity_rad_s"]).max(0) / self._robot.velocity_limit_rad_s
         self._peak_share = np.maximum(self._peak_share, shares)
-        self.last_frame = max(self.last_frame, int(records["frame_index"].max()))
+        self.last_frame = max(self.last_frame, int(records["frame"].max()))
         self.cycles += len(records)
         self.gate_clipped += int(records["clipped"].any(1).sum())
         self.underruns += int((records["underrun"] != 0).sum())

@@ -6,27 +6,20 @@ joints go over without a jump. Without a running plan it starts at rest from the
 
 from __future__ import annotations
 
-import logging
 import math
-import threading
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bus_view import BusView
 from daemon.plan_statistics import PlanStatistics
+from daemon.shared import N_SETPOINTS, BusLink
 from mmm_core.motion import Motion
 from retarget.paths import JointPath, JointState
 from retarget.pipeline import Retargeter
 from retarget.robot import RobotModel
-
-if TYPE_CHECKING:
-    from daemon.shared import BusLink, LogReader
-
-log = logging.getLogger(__name__)
 
 FIRST_RETARGET_S = 0.06
 """Assumed time of the first retargeting; later ones are measured."""
@@ -43,7 +36,7 @@ class Plan:
         command_id: the command that it carries out.
         path: the joint path.
         q_rad: (N, J) setpoints at bus rate.
-        epoch: count of halts when its text arrived; a plan of an older epoch is never pushed.
+        epoch: the link's epoch when its text arrived; setpoints of an older epoch are thrown away.
         statistics: what it did at the bus.
         end: frames that may be pushed: N, or fewer once another plan takes over.
         pushed: frames pushed so far.
@@ -75,38 +68,23 @@ class Plan:
 
 
 class Planner:
-    """Keeps about `queue_s` of setpoints in the bus process.
+    """Keeps about `queue_s` of setpoints in the bus process. For one thread."""
 
-    Methods are called from one thread, but `halt`, which any thread may call.
-    """
-
-    def __init__(self, robot: RobotModel, link: BusLink, log_reader: LogReader, queue_s: float) -> None:
+    def __init__(self, robot: RobotModel, link: BusLink, view: BusView, queue_s: float) -> None:
         self.robot = robot
-        self._link = link
-        self._log_reader = log_reader
+        self._link, self._view = link, view
         self._retargeter = Retargeter(robot)
         self._rate_hz = robot.bus.rate_hz
         self._queue_frames = max(2, math.ceil(queue_s * self._rate_hz))
         self._retarget_s = FIRST_RETARGET_S
-        self._push_lock = threading.Lock()
         self._last_goal_tick: NDArray[np.int32] | None = None
         self._plans: list[Plan] = []
         self._last_id = 0
-        self.epoch = 0
 
-    def halt(self, tell_bus: Callable[[], object]) -> None:
-        """Tell the bus process to stop; from here on no setpoint of what was planned before reaches it.
-
-        A push that is under way in another thread may land after the first telling: then it is told again.
-        """
-        self.epoch += 1
-        tell_bus()
-        free = self._push_lock.acquire(blocking=False)
-        if not free:
-            free = self._push_lock.acquire(timeout=0.1)
-            tell_bus()
-        if free:
-            self._push_lock.release()
+    @property
+    def epoch(self) -> int:
+        """Grows with each stop, e-stop and park; a plan of a text that came before is never played."""
+        return self._link.epoch
 
     def hand_over(self) -> JointState:
         """The state from which a new path must start; `commit` or `give_up` must follow.
@@ -116,8 +94,7 @@ class Planner:
         plan = self.current
         if plan is None or not self.running or self._ran_dry(plan):
             self.drop()
-            snapshot = self._link.snapshot()
-            return JointState(np.array(snapshot.goal_rad, np.float64), np.zeros(self.robot.n_joints))
+            return JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
         lead = math.ceil(RETARGET_MARGIN * self._retarget_s * self._rate_hz) - self._link.queued_frames
         lead -= sum(p.end - p.pushed for p in self._plans[:-1])
         frame = max(0, min(plan.pushed + max(0, lead), len(plan.q_rad)) - 1)
@@ -178,27 +155,27 @@ class Planner:
     def pump(self) -> None:
         """Push setpoints until enough are in hand."""
         for plan in self._plans:
-            room = min(self._queue_frames - self._link.queued_frames, plan.end - plan.pushed, self._link.free_frames)
+            queued = self._link.queued_frames
+            room = min(self._queue_frames - queued, plan.end - plan.pushed, N_SETPOINTS - queued)
             if room > 0:
                 self._push(plan, room)
             if plan.pushed < plan.end:
                 return
 
-    def read_log(self) -> NDArray[Any]:
-        """Take the bus process's new records into the plan's statistics; returns them."""
-        records, dropped = self._log_reader.read_new()
+    def read_cycles(self) -> None:
+        """Take the bus process's new cycles into the view and the plan's statistics."""
+        records, lost = self._view.update()
         if self.current is not None:
-            self.current.statistics.feed(records, dropped)
+            self.current.statistics.feed(records, lost)
         if len(records):
-            self._last_goal_tick = records["goal_tick"][-1].copy()
-        return records
+            self._last_goal_tick = np.array(records["goal_tick"][-1])
 
     def _push(self, plan: Plan, count: int) -> None:
+        if plan.epoch != self._link.epoch:
+            return
         frames = plan.q_rad[plan.pushed : plan.pushed + count]
-        last = plan.pushed + count >= len(plan.q_rad)
-        with self._push_lock:
-            if plan.epoch == self.epoch:
-                plan.pushed += self._link.push(frames, plan.plan_id, last)
+        last = plan.pushed + len(frames) >= len(plan.q_rad)
+        plan.pushed += self._link.push(frames, plan.plan_id, plan.pushed, plan.epoch, last=last)
 
     def _ran_dry(self, plan: Plan) -> bool:
         """Whether the bus process has none of the plan's frames in hand though more were to come."""

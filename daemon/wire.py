@@ -8,7 +8,7 @@ and what to do, so that it becomes exactly one `error` event. An accepted comman
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, cast
 
 import msgspec
 from msgspec import Meta
@@ -36,7 +36,7 @@ class WireError(DaemonError, ValueError):
         super().__init__(f"{asked}: found {found}; allowed: {allowed}; {do}")
 
 
-class Request(msgspec.Struct, tag_field="type", forbid_unknown_fields=True, kw_only=True, frozen=True):
+class Request(msgspec.Struct, tag_field="type", forbid_unknown_fields=True, kw_only=True):
     """What every request may carry.
 
     Attributes:
@@ -167,7 +167,7 @@ class Done(Event, tag="done"):
 
     Attributes:
         plan_id: number of the plan in the log.
-        first_motion_ms: from the arrival of the text to the first cycle in which a servo's goal changed; None when none did.
+        first_motion_ms: from the text's arrival to the first cycle in which a servo's goal changed; None when none did.
         duration_s: from the first to the last frame at the bus.
         frames: frames played.
         peak_speed_share: largest joint speed as a share of that joint's limit.
@@ -392,34 +392,35 @@ def _decode_json(text: str, types: tuple[type[Request], ...], union: Any, socket
     if not isinstance(raw, dict):
         do = 'send {"type": "say", "text": "..."} or plain text'
         raise WireError("bad_json", "read a JSON request", f"a JSON {type(raw).__name__}", "one JSON object", do)
-    request_id = raw.get("id", "")
+    asked = cast("dict[str, Any]", raw)  # JSON objects have no other keys
+    request_id = asked.get("id", "")
     request_id = request_id if isinstance(request_id, str) and len(request_id) <= MAX_ID_CHARS else ""
-    _check_version(raw, request_id)
-    kind = _check_type(raw, types, socket, request_id)
-    if kind is Say and isinstance(raw.get("text"), str):
-        _check_say(raw["text"], request_id)
+    _check_version(asked, request_id)
+    kind = _check_type(asked, types, socket, request_id)
+    if kind is Say and isinstance(asked.get("text"), str):
+        _check_say(asked["text"], request_id)
     try:
-        return msgspec.convert(raw, union)
+        return msgspec.convert(asked, union)
     except msgspec.ValidationError as error:
-        fields = [f.name for f in msgspec.structs.fields(kind)]
-        unknown = [str(key) for key in raw if key not in (*fields, "type")]
-        code = "unknown_field" if unknown else "bad_value"
-        name = str(raw["type"])
-        allowed = "fields " + ", ".join(("type", *fields)) if unknown else "docs/wire/" + name + ".schema.json"
-        found = f"unknown field {', '.join(map(repr, unknown))}" if unknown else str(error)
-        do = "remove it; see docs/wire" if unknown else "correct the value"
-        raise WireError(code, f"'{name}' request", found, allowed, do, request_id) from None
+        name, known = str(asked["type"]), ["type", *(f.name for f in msgspec.structs.fields(kind))]
+        unknown = [key for key in asked if key not in known]
+        if unknown:
+            found = f"unknown field {', '.join(map(repr, unknown))}"
+            allowed, do = f"fields {', '.join(known)}", "remove it; see docs/wire"
+            raise WireError("unknown_field", f"'{name}' request", found, allowed, do, request_id) from None
+        allowed = f"what docs/wire/{name}.schema.json says"
+        raise WireError("bad_value", f"'{name}' request", str(error), allowed, "correct it", request_id) from None
 
 
-def _check_version(raw: dict[Any, Any], request_id: str) -> None:
+def _check_version(raw: dict[str, Any], request_id: str) -> None:
     version = raw.get("v", PROTOCOL_VERSION)
-    if version != PROTOCOL_VERSION or isinstance(version, bool):
+    if type(version) is not int or version != PROTOCOL_VERSION:
         found, allowed = f"version {version!r} of the protocol", f"version {PROTOCOL_VERSION}, which this daemon speaks"
         raise WireError("version", "read a request", found, allowed, "use a client of the same version", request_id)
 
 
-def _check_type(raw: dict[Any, Any], types: tuple[type[Request], ...], socket: str, request_id: str) -> type[Request]:
-    by_name: dict[Any, type[Request]] = {str(t.__struct_config__.tag): t for t in types}
+def _check_type(raw: dict[str, Any], types: tuple[type[Request], ...], socket: str, request_id: str) -> type[Request]:
+    by_name: dict[object, type[Request]] = {str(t.__struct_config__.tag): t for t in types}
     name = raw.get("type")
     if isinstance(name, str) and name in by_name:
         return by_name[name]
@@ -434,7 +435,12 @@ def _check_type(raw: dict[Any, Any], types: tuple[type[Request], ...], socket: s
 def _check_say(text: str, request_id: str) -> None:
     if not text.strip():
         raise WireError(
-            "empty_text", "say", "an empty text", f"1 to {MAX_TEXT_CHARS} characters", "say what to do, in words", request_id
+            "empty_text",
+            "say",
+            "an empty text",
+            f"1 to {MAX_TEXT_CHARS} characters",
+            "say what to do, in words",
+            request_id,
         )
     if len(text) > MAX_TEXT_CHARS:
         found, do = f"{len(text)} characters", "say it in fewer words"

@@ -1,0 +1,93 @@
+"""Processes of the daemon: started apart from the terminal's signals, watched, ended."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import os
+import sys
+from collections import deque
+from collections.abc import Sequence
+
+log = logging.getLogger(__name__)
+
+
+class Child:
+    """A Python module as a process of its own.
+
+    Ctrl-C in a terminal goes to a whole process group; children have their own, so that the front alone decides.
+
+    Attributes:
+        name: for the log.
+        said: the last lines of its stderr.
+    """
+
+    def __init__(self, name: str, module: str, arguments: Sequence[str]) -> None:
+        self.name = name
+        self._module, self._arguments = module, list(arguments)
+        self._process: asyncio.subprocess.Process | None = None
+        self._forward: asyncio.Task[None] | None = None
+        self.said: deque[str] = deque(maxlen=5)
+
+    @property
+    def running(self) -> bool:
+        """Whether it was started and has not ended."""
+        return self._process is not None and self._process.returncode is None
+
+    @property
+    def pid(self) -> int:
+        """Its process id."""
+        assert self._process is not None, "not started"
+        return self._process.pid
+
+    @property
+    def status(self) -> int | None:
+        """Its exit status; None while it runs."""
+        return None if self._process is None else self._process.returncode
+
+    async def start(self) -> None:
+        """Start it (again)."""
+        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
+        self.said.clear()
+        self._process = await asyncio.create_subprocess_exec(
+            sys.executable, "-m", self._module, *self._arguments,
+            stdin=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE, env=environment, start_new_session=True,
+        )  # fmt: skip
+        self._forward = asyncio.create_task(self._forward_stderr(self._process))
+
+    async def ended(self) -> int:
+        """Wait for its end; its exit status, negative for a signal."""
+        assert self._process is not None, "not started"
+        status = await self._process.wait()
+        if self._forward is not None:
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(asyncio.shield(self._forward), 1.0)
+        return status
+
+    def kill(self) -> None:
+        """End it at once."""
+        if self.running and self._process is not None:
+            with contextlib.suppress(ProcessLookupError):
+                self._process.kill()
+
+    async def end(self, grace_s: float, *, terminate: bool = True) -> None:
+        """Let it end by itself (asked by SIGTERM, with `terminate`), kill it after `grace_s`."""
+        if not self.running or self._process is None:
+            return
+        if terminate:
+            with contextlib.suppress(ProcessLookupError):
+                self._process.terminate()
+        try:
+            await asyncio.wait_for(self.ended(), grace_s)
+        except TimeoutError:
+            log.warning("%s did not end in %g s and is killed", self.name, grace_s)
+            self.kill()
+            await self.ended()
+
+    async def _forward_stderr(self, process: asyncio.subprocess.Process) -> None:
+        assert process.stderr is not None, "stderr is a pipe"
+        while line := await process.stderr.readline():
+            text = line.decode("utf-8", "replace")
+            self.said.append(text.rstrip())
+            sys.stderr.write(text)

@@ -1,0 +1,138 @@
+"""`mmmd`: the commands, each loaded only when it is asked for.
+
+Exit status: 0 good, 1 failed, 2 bad use, 3 robot fault. An error is one message on stderr; MMMD_DEBUG=1 adds the
+traceback.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+import os
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class CommandEntry:
+    """A command: `module:function`, what it does in a line, and how to show it in the list."""
+
+    target: str
+    summary: str
+
+
+COMMANDS: dict[str, CommandEntry] = {
+    "demo": CommandEntry("daemon.commands.demo:demo", "simulated robot, daemon, three texts, pictures: see it work"),
+    "run": CommandEntry("daemon.commands.run:run", "the daemon: text over ZeroMQ in, servo motion out"),
+    "say": CommandEntry("daemon.commands.say:say", "tell the robot what to do"),
+    "status": CommandEntry("daemon.commands.status:status", "what the robot and the daemon are doing"),
+    "watch": CommandEntry("daemon.commands.watch:watch", "follow events and state as they happen"),
+    "stop": CommandEntry("daemon.commands.control:stop", "brake within the limits and hold"),
+    "estop": CommandEntry("daemon.commands.control:estop", "cut torque at once; latched until reset"),
+    "reset": CommandEntry("daemon.commands.control:reset", "leave e-stop or fault; the robot stays limp"),
+    "arm": CommandEntry("daemon.commands.control:arm", "torque on, slow move to the rest pose"),
+    "park": CommandEntry("daemon.commands.control:park", "slow move to the park pose, torque off"),
+    "sim": CommandEntry("daemon.commands.sim:sim", "simulated servos behind a real tty"),
+    "robot": CommandEntry("daemon.commands.robot:robot", "list, check and show robots"),
+    "generate": CommandEntry("daemon.commands.generate:generate", "text to human motion: .npz and .bvh"),
+    "retarget": CommandEntry("daemon.commands.retarget:retarget", "human motion to joint angles and servo ticks"),
+    "replay": CommandEntry("daemon.commands.replay:replay", "a recorded run again, through the same gate"),
+    "render": CommandEntry("daemon.commands.render:render", "pictures of a motion or a run"),
+    "generator": CommandEntry("daemon.commands.generator:generator", "the motion model alone, for daemons to share"),
+    "train": CommandEntry("daemon.commands.train:train", "train the motion model"),
+    "eval": CommandEntry("daemon.commands.eval:eval", "how good the model is"),
+    "bench": CommandEntry("daemon.commands.bench:bench", "how fast and how safe it all is"),
+}
+GOOD, FAILED, BAD_USE, ROBOT_FAULT = 0, 1, 2, 3
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns its exit status."""
+    name, *arguments = (sys.argv[1:] if argv is None else list(argv)) or [""]
+    if name in COMMANDS:
+        return _guarded(name, arguments)
+    if name in ("", "-h", "--help", "help"):
+        _out(_overview())
+        return GOOD if name else BAD_USE
+    if name in ("-V", "--version"):
+        _out(f"mmmd {importlib.metadata.version('mmmd')}")
+        return GOOD
+    return _failed(f"unknown command '{name}'; known: {', '.join(COMMANDS)}; `mmmd --help` describes them", BAD_USE)
+
+
+def _guarded(name: str, arguments: list[str]) -> int:
+    """Run a command; whatever it raises becomes one message and an exit status."""
+    try:
+        return _run(name, _load(name), arguments)
+    except SystemExit as stop:  # argument parsing: 0 after --help, 2 after bad use
+        return stop.code if isinstance(stop.code, int) else BAD_USE
+    except KeyboardInterrupt:
+        return _failed("interrupted", FAILED)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nobody reads: no complaint at exit either
+        return FAILED
+    except Exception as error:  # the border to people
+        return _explain(error)
+
+
+def _load(name: str) -> Callable[..., int | None]:
+    module_name, _, function_name = COMMANDS[name].target.partition(":")
+    try:
+        return getattr(importlib.import_module(module_name), function_name)
+    except ModuleNotFoundError as error:
+        if error.name == module_name:
+            raise NotImplementedError(f"`mmmd {name}` is not part of this version") from None
+        raise
+
+
+def _run(name: str, command: Callable[..., int | None], arguments: list[str]) -> int:
+    import tyro
+
+    status = tyro.cli(command, prog=f"mmmd {name}", args=arguments)
+    return GOOD if status is None else int(status)
+
+
+def _explain(error: Exception) -> int:
+    """Say what went wrong in one message; the exit status."""
+    if os.environ.get("MMMD_DEBUG"):
+        traceback.print_exception(error)
+    from daemon.errors import CommandError, ConfigError, DaemonError
+    from mmm_core.errors import MmmError
+    from retarget.errors import RetargetError, RobotFileError, UnknownRobotError
+
+    if isinstance(error, (CommandError, ConfigError, RobotFileError, UnknownRobotError)):
+        return _failed(str(error), BAD_USE)
+    if isinstance(error, (DaemonError, MmmError, RetargetError, NotImplementedError)):
+        return _failed(str(error), int(getattr(error, "exit_status", FAILED)))
+    if isinstance(error, OSError):
+        return _failed(str(error), FAILED)
+    return _failed(f"internal error ({type(error).__name__}: {error}); MMMD_DEBUG=1 shows where", FAILED)
+
+
+def _overview() -> str:
+    width = max(map(len, COMMANDS))
+    lines = [f"  {name:<{width}}  {entry.summary}" for name, entry in COMMANDS.items()]
+    return "\n".join([
+        "usage: mmmd COMMAND [OPTIONS]; `mmmd COMMAND --help` tells more",
+        "",
+        *lines,
+        "",
+        "example:",
+        "  mmmd run --robot reference --bus sim://     in one terminal",
+        '  mmmd say "wave with your right hand"        in another',
+    ])  # fmt: skip
+
+
+def _out(text: str) -> None:
+    sys.stdout.write(text + "\n")
+
+
+def _failed(message: str, status: int) -> int:
+    sys.stderr.write(f"mmmd: {message}\n")
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

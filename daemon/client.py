@@ -1,0 +1,360 @@
+"""A small client: `with Client() as robot: robot.say("wave with your right hand")`. Every call has a time-out."""
+
+from __future__ import annotations
+
+import socket as socket_module
+import time
+import uuid
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Self
+from urllib.parse import urlsplit
+
+import zmq
+
+from daemon.config import Endpoints
+from daemon.errors import DaemonError
+from daemon.wire import (
+    Ack,
+    AnyEvent,
+    Arm,
+    Cancel,
+    Done,
+    Estop,
+    Event,
+    Park,
+    Refusal,
+    Request,
+    Reset,
+    Say,
+    StateEvent,
+    Status,
+    Stop,
+    decode_event,
+    encode,
+)
+
+PROBE_TIMEOUT_S = 1.0
+REPLY_TIMEOUT_S = 5.0
+"""For a reply that no motion has to be waited for."""
+FIRST_REPLY_TIMEOUT_S = 15.0
+"""For the first word about a text: longer than the daemon waits for its generator."""
+MOTION_TIMEOUT_S = 60.0
+"""For a motion to end: the longest is 10 s, before which the robot may have to be armed."""
+
+
+class NoAnswerError(DaemonError, TimeoutError):
+    """The daemon did not answer."""
+
+    def __init__(self, endpoint: str, asked: str, timeout_s: float) -> None:
+        self.endpoint, self.asked, self.timeout_s = endpoint, asked, timeout_s
+        do = "is `mmmd run` running there? Start it, or name its port with --cmd, --ctl, --pub"
+        super().__init__(f"{asked}: no answer from {endpoint} in {timeout_s:g} s; {do}")
+
+
+class RefusedError(DaemonError):
+    """The daemon rejected a request, or could not carry it out; `event` tells why."""
+
+    def __init__(self, event: Refusal) -> None:
+        self.event = event
+        self.code = event.code
+        self.exit_status = 3 if event.code == "fault" else 1
+        super().__init__(event.message)
+
+
+class CancelledByError(DaemonError):
+    """The command ended before its motion did."""
+
+    def __init__(self, by: str) -> None:
+        self.by = by
+        super().__init__(f"the command was cancelled by {by}")
+
+
+@dataclass(frozen=True)
+class Said:
+    """A command and what has been heard of it.
+
+    Attributes:
+        id: id of the command.
+        events: its events so far; the last is terminal once it has ended.
+    """
+
+    id: str
+    events: tuple[AnyEvent, ...]
+
+    @property
+    def done(self) -> Done | None:
+        """The figures of the motion, when it was played to its end."""
+        last = self.events[-1] if self.events else None
+        return last if isinstance(last, Done) else None
+
+
+class Client:
+    """Talks to one daemon. Not for several threads at once.
+
+    Args:
+        endpoints: where the daemon is.
+        timeout_s: longest wait for a reply.
+    """
+
+    def __init__(self, endpoints: Endpoints | None = None, timeout_s: float = REPLY_TIMEOUT_S) -> None:
+        self.endpoints = endpoints or Endpoints()
+        self._timeout_s = timeout_s
+        self._context = zmq.Context()
+        self._cmd: zmq.Socket[bytes] | None = None
+        self._ctl: zmq.Socket[bytes] | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the sockets; what was not sent yet has 200 ms."""
+        self._context.destroy(linger=200)
+
+    def say(
+        self,
+        text: str,
+        *,
+        seed: int = 0,
+        seconds: float | None = None,
+        wait: bool = True,
+        timeout_s: float = MOTION_TIMEOUT_S,
+        command_id: str = "",
+    ) -> Said:
+        """Move as the text says.
+
+        Args:
+            text: what to do, in English.
+            seed: the same text, seed and seconds give the same motion.
+            seconds: length of the motion; None lets the model choose.
+            wait: return when the motion has ended; else once it is accepted.
+            timeout_s: longest wait for the end.
+            command_id: the same id twice is one command; empty chooses one.
+
+        Raises:
+            RefusedError: rejected, failed, or no valid request.
+            CancelledByError: ended by another command, with `wait`.
+            NoAnswerError: not in time.
+        """
+        command_id = command_id or uuid.uuid4().hex
+        heard: list[AnyEvent] = []
+        request = Say(id=command_id, text=text, seed=seed, seconds=seconds)
+        for event in self.events_of(request, timeout_s):
+            heard.append(event)
+            if isinstance(event, Refusal):
+                raise RefusedError(event)
+            if not wait:
+                break
+        last = heard[-1]
+        if wait and not isinstance(last, Done):
+            raise CancelledByError(str(getattr(last, "by", "the daemon")))
+        return Said(command_id, tuple(heard))
+
+    def events_of(self, request: Say, timeout_s: float = MOTION_TIMEOUT_S) -> Iterator[AnyEvent]:
+        """Send a text and yield its events as they come, the last one terminal.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        socket = self._cmd_socket()
+        self._send(socket, request, self.endpoints.cmd)
+        began_s, asked = time.monotonic(), f"say {request.text[:60]!r}"
+        limit_s = min(timeout_s, FIRST_REPLY_TIMEOUT_S)
+        while True:
+            event = self._receive(socket, began_s, limit_s, self.endpoints.cmd, asked)
+            if event.id not in (request.id, ""):
+                continue
+            limit_s = timeout_s
+            yield event
+            if event.terminal:
+                return
+
+    def cancel(self, command_id: str = "") -> Ack:
+        """End a command, any when the id is empty; the robot brakes and holds.
+
+        Raises:
+            RefusedError: no such command runs.
+            NoAnswerError: not in time.
+        """
+        return self._acknowledged(
+            Cancel(id=uuid.uuid4().hex, command=command_id), self._cmd_socket(), self.endpoints.cmd
+        )
+
+    def stop(self) -> Ack:
+        """Brake within the limits and hold.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        return self._control(Stop(id=uuid.uuid4().hex))
+
+    def estop(self) -> Ack:
+        """Cut torque at once; latched.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        return self._control(Estop(id=uuid.uuid4().hex))
+
+    def reset(self, *, wait: bool = True) -> Ack:
+        """Leave e-stop or fault; the robot is limp and must be armed.
+
+        Raises:
+            RefusedError: the state does not allow it, or (with `wait`) the robot did not get limp.
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Reset(id=uuid.uuid4().hex))
+        if wait and ack.state in ("fault", "estop"):
+            self.wait_for("limp", "fault", timeout_s=self._timeout_s)
+        return ack
+
+    def arm(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
+        """Torque on over a pinned goal, slow move to the rest pose.
+
+        Raises:
+            RefusedError: the state does not allow it.
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Arm(id=uuid.uuid4().hex))
+        if wait:
+            self.wait_for("idle", "moving", "holding", "fault", "estop", timeout_s=timeout_s)
+        return ack
+
+    def park(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
+        """Slow move to the park pose, then torque off.
+
+        Raises:
+            RefusedError: the state does not allow it.
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Park(id=uuid.uuid4().hex))
+        if wait:
+            self.wait_for("limp", "fault", "estop", timeout_s=timeout_s)
+        return ack
+
+    def status(self) -> StateEvent:
+        """The robot and the daemon now, by way of `ctl`.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        request = Status(id=uuid.uuid4().hex)
+        event = self._ask(request, self._ctl_socket(), self.endpoints.ctl)
+        if not isinstance(event, StateEvent):
+            raise _unexpected(event, "status")
+        return event
+
+    def wait_for(self, *states: str, timeout_s: float) -> StateEvent:
+        """Poll until the robot is in one of `states`.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        end_s = time.monotonic() + timeout_s
+        while True:
+            status = self.status()
+            if status.state in states:
+                return status
+            if time.monotonic() > end_s:
+                asked = f"wait for {' or '.join(states)} (the robot is in {status.state})"
+                raise NoAnswerError(self.endpoints.ctl, asked, timeout_s)
+            time.sleep(0.05)
+
+    def watch(self, *topics: str, timeout_s: float = REPLY_TIMEOUT_S) -> Iterator[tuple[str, AnyEvent]]:
+        """Yield (topic, event) of `v1/state` and `v1/event` (all when none is named), without end.
+
+        Raises:
+            NoAnswerError: nothing was published for `timeout_s`.
+        """
+        socket = self._context.socket(zmq.SUB)
+        try:
+            for topic in topics or ("v1/",):
+                socket.setsockopt(zmq.SUBSCRIBE, topic.encode())
+            socket.connect(self.endpoints.pub)
+            while True:
+                if not socket.poll(int(1000 * timeout_s)):
+                    raise NoAnswerError(self.endpoints.pub, f"watch {' '.join(topics) or 'v1/'}", timeout_s)
+                topic, payload = socket.recv_multipart()
+                yield topic.decode(), decode_event(payload)
+        finally:
+            socket.close(0)
+
+    def _control(self, request: Request) -> Ack:
+        return self._acknowledged(request, self._ctl_socket(), self.endpoints.ctl)
+
+    def _acknowledged(self, request: Request, socket: zmq.Socket[bytes], endpoint: str) -> Ack:
+        event = self._ask(request, socket, endpoint)
+        if not isinstance(event, Ack):
+            raise _unexpected(event, str(type(request).__struct_config__.tag))
+        return event
+
+    def _ask(self, request: Request, socket: zmq.Socket[bytes], endpoint: str) -> AnyEvent:
+        asked = str(type(request).__struct_config__.tag)
+        self._send(socket, request, endpoint)
+        began_s = time.monotonic()
+        while True:
+            event = self._receive(socket, began_s, self._timeout_s, endpoint, asked)
+            if event.id == request.id:
+                return event
+            if isinstance(event, Refusal) and not event.id:
+                raise RefusedError(event)
+
+    def _send(self, socket: zmq.Socket[bytes], request: Request, endpoint: str) -> None:
+        request.t_mono = time.monotonic()
+        try:
+            socket.send(encode(request), zmq.DONTWAIT)
+        except zmq.Again:
+            raise NoAnswerError(endpoint, str(type(request).__struct_config__.tag), 0.0) from None
+
+    def _receive(
+        self, socket: zmq.Socket[bytes], began_s: float, timeout_s: float, endpoint: str, asked: str
+    ) -> AnyEvent:
+        left_s = max(0.0, began_s + timeout_s - time.monotonic())
+        if not socket.poll(int(1000 * left_s)):
+            raise NoAnswerError(endpoint, asked, timeout_s)
+        return decode_event(socket.recv())
+
+    def _cmd_socket(self) -> zmq.Socket[bytes]:
+        if self._cmd is None:
+            self._cmd = self._connect(self.endpoints.cmd)
+        return self._cmd
+
+    def _ctl_socket(self) -> zmq.Socket[bytes]:
+        if self._ctl is None:
+            self._ctl = self._connect(self.endpoints.ctl)
+        return self._ctl
+
+    def _connect(self, endpoint: str) -> zmq.Socket[bytes]:
+        if not _listening(endpoint):
+            raise NoAnswerError(endpoint, "connect", PROBE_TIMEOUT_S)
+        socket = self._context.socket(zmq.DEALER)
+        socket.setsockopt(zmq.LINGER, 200)
+        socket.connect(endpoint)
+        return socket
+
+
+def _listening(endpoint: str) -> bool:
+    """Whether anything listens: ZeroMQ itself would wait for it in silence."""
+    try:
+        if endpoint.startswith("ipc://"):
+            with socket_module.socket(socket_module.AF_UNIX) as probe:
+                probe.settimeout(PROBE_TIMEOUT_S)
+                probe.connect(endpoint.removeprefix("ipc://"))
+        else:
+            parts = urlsplit(endpoint)
+            socket_module.create_connection((parts.hostname, parts.port or 0), PROBE_TIMEOUT_S).close()
+    except OSError:
+        return False
+    return True
+
+
+def _unexpected(event: Event, asked: str) -> DaemonError:
+    if isinstance(event, Refusal):
+        return RefusedError(event)
+    return DaemonError(f"{asked}: the daemon answered '{type(event).__struct_config__.tag}'; is it of another version?")

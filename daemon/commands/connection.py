@@ -1,0 +1,40 @@
+"""Options and printing that the commands which talk to a daemon share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from daemon.config import Endpoints
+
+if TYPE_CHECKING:
+    from daemon.client import Client
+
+_DEFAULT = Endpoints()
+
+
+@dataclass(frozen=True)
+class Connection:
+    """Where the daemon is.
+
+    Attributes:
+        cmd: endpoint of requests.
+        ctl: endpoint of stop, estop, reset, arm, park, status.
+        pub: endpoint of state and events.
+        timeout_s: longest wait for a reply.
+    """
+
+    cmd: str = _DEFAULT.cmd
+    ctl: str = _DEFAULT.ctl
+    pub: str = _DEFAULT.pub
+    timeout_s: float = 5.0
+
+    def client(self) -> Client:
+        """A client for it.
+
+        Raises:
+            ConfigError: an endpoint is not a local one.
+        """
+        from daemon.client import Client
+
+        return Client(Endpoints(self.cmd, self.ctl, self.pub), self.timeout_s)

@@ -1,0 +1,92 @@
+"""`mmmd stop|estop|reset|arm|park`: the verbs of the `ctl` socket."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from tyro.conf import OmitArgPrefixes
+
+from daemon.commands.connection import Connection
+
+if TYPE_CHECKING:
+    from daemon.client import Client
+    from daemon.wire import Ack
+
+
+def stop(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
+    """Brake within the limits, hold, and forget what was planned.
+
+    Example: mmmd stop
+
+    Args:
+        at: where the daemon is.
+        json: print one JSON object.
+    """
+    with at.client() as robot:
+        return _tell(robot, robot.stop(), json)
+
+
+def estop(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
+    """Cut torque at once. Latched: `mmmd reset`, then `mmmd arm`, lead out of it.
+
+    Example: mmmd estop
+
+    Args:
+        at: where the daemon is.
+        json: print one JSON object.
+    """
+    with at.client() as robot:
+        return _tell(robot, robot.estop(), json)
+
+
+def reset(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
+    """Leave e-stop or fault. The robot is limp afterwards and moves only after `mmmd arm`.
+
+    Example: mmmd reset
+
+    Args:
+        at: where the daemon is.
+        json: print one JSON object.
+    """
+    with at.client() as robot:
+        return _tell(robot, robot.reset(), json)
+
+
+def arm(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
+    """Torque on over a goal pinned to the measured pose, then a slow move to the rest pose.
+
+    Example: mmmd arm
+
+    Args:
+        at: where the daemon is.
+        json: print one JSON object.
+    """
+    with at.client() as robot:
+        return _tell(robot, robot.arm(), json)
+
+
+def park(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
+    """Move slowly to the park pose, then torque off.
+
+    Example: mmmd park
+
+    Args:
+        at: where the daemon is.
+        json: print one JSON object.
+    """
+    with at.client() as robot:
+        return _tell(robot, robot.park(), json)
+
+
+def _tell(robot: Client, ack: Ack, json: bool) -> int:
+    """Print what the verb led to; 3 when the robot is in fault."""
+    after = robot.status()
+    if json:
+        from daemon.wire import encode
+
+        sys.stdout.write(encode(after).decode() + "\n")
+    else:
+        reason = f": {after.reason}" if after.reason else ""
+        sys.stdout.write(f"{ack.verb}: {ack.state} -> {after.state}{reason}\n")
+    return 3 if after.state == "fault" else 0

@@ -1,0 +1,50 @@
+"""`mmmd status`: what the robot and the daemon are doing."""
+
+from __future__ import annotations
+
+import sys
+
+from tyro.conf import OmitArgPrefixes
+
+from daemon.commands.connection import Connection
+
+
+def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
+    """Show what the robot and the daemon are doing. Exit status 3 when the robot is in fault.
+
+    Example: mmmd status --json
+
+    Args:
+        at: where the daemon is.
+        json: print one JSON object.
+    """
+    from daemon.wire import encode
+
+    with at.client() as robot:
+        now = robot.status()
+    if json:
+        sys.stdout.write(encode(now).decode() + "\n")
+        return 3 if now.state == "fault" else 0
+    from rich.console import Console
+    from rich.table import Table
+
+    playing = (
+        f"{now.command.text!r}, {now.command.frames_pushed} of {now.command.frames} frames" if now.command else "-"
+    )
+    rows = {
+        "robot": f"{now.robot} on {now.bus}",
+        "state": now.state
+        + (" (needs `mmmd arm`)" if now.must_arm else "")
+        + (f": {now.reason}" if now.reason else ""),
+        "playing": playing,
+        "in hand": f"{now.queued_ms:.0f} ms of setpoints",
+        "generator": now.generator,
+        "recording": now.recording or "-",
+        "bus": ", ".join(f"{k} {v}" for k, v in now.bus_info.items()),
+        "up": f"{now.uptime_s:.0f} s",
+    }
+    table = Table(show_header=False, box=None)
+    for key, value in rows.items():
+        table.add_row(f"[bold]{key}[/bold]", value)
+    Console().print(table)
+    return 3 if now.state == "fault" else 0

@@ -1,0 +1,47 @@
+"""`mmmd watch`: events and state as they happen."""
+
+from __future__ import annotations
+
+import sys
+
+from tyro.conf import OmitArgPrefixes
+
+from daemon.commands.connection import Connection
+
+
+def watch(
+    at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
+    json: bool = False,
+    n: int | None = None,
+) -> int:
+    """Follow events and changes of state until interrupted.
+
+    Example: mmmd watch --json
+
+    Args:
+        at: where the daemon is.
+        json: print every message as one JSON object a line, all states included.
+        n: end after so many lines.
+    """
+    from daemon.wire import StateEvent, encode
+
+    shown, last_state = 0, ""
+    with at.client() as robot:
+        for topic, event in robot.watch("v1/", timeout_s=at.timeout_s):
+            if json:
+                line = encode(event).decode()
+            elif isinstance(event, StateEvent):
+                if event.state == last_state:
+                    continue
+                last_state = event.state
+                line = f"{event.t_mono:.3f} state {event.state}" + (f": {event.reason}" if event.reason else "")
+            else:
+                from daemon.commands.say import describe
+
+                line = f"{event.t_mono:.3f} {topic} {event.id[:8]} {describe(event)}"
+            sys.stdout.write(line + "\n")
+            sys.stdout.flush()
+            shown += 1
+            if n is not None and shown >= n:
+                break
+    return 0

@@ -1,0 +1,269 @@
+"""Starts the daemon's processes, watches them, parks the robot at the end.
+
+Bus process and front are needed; a generator that dies or freezes is started again while the robot holds; a recorder
+that dies is reported and the robot goes on.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import signal
+import tempfile
+import time
+from pathlib import Path
+
+import zmq
+import zmq.asyncio
+
+from daemon.children import Child
+from daemon.config import DaemonConfig
+from daemon.errors import DaemonError
+from daemon.front import Front
+from daemon.generation import GeneratorClient, GeneratorError
+from daemon.shared import BusLink, BusRequest, Readiness
+from daemon.state import RobotState
+from retarget.robot import RobotModel, load_robot
+
+log = logging.getLogger(__name__)
+
+BUS_START_TIMEOUT_S = 20.0
+BUS_END_TIMEOUT_S = 5.0
+PING_EVERY_S, PING_TIMEOUT_S = 2.0, 5.0
+GENERATOR_START_TIMEOUT_S = 120.0
+"""Loading torch and the model from a slow card."""
+FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
+RECORDER_QUEUE = 2000
+GOOD, ROBOT_FAULT = 0, 3
+
+
+class RecorderFeed:
+    """Hands requests and events to the recorder's bounded queue; what does not fit is dropped and counted."""
+
+    def __init__(self, endpoint: str) -> None:
+        self.endpoint, self.dropped, self._open = endpoint, 0, True
+        self._context = zmq.Context()
+        self._socket = self._context.socket(zmq.PUSH)
+        self._socket.setsockopt(zmq.SNDHWM, RECORDER_QUEUE)
+        self._socket.connect(endpoint)
+
+    def __call__(self, topic: str, payload: bytes) -> None:
+        """Hand over one message."""
+        if not self._open:
+            return
+        try:
+            self._socket.send_multipart([topic.encode(), payload], zmq.DONTWAIT)
+        except zmq.Again:
+            self.dropped += 1
+
+    def close(self) -> None:
+        """Hand over no more."""
+        if self._open:
+            self._open = False
+            self._context.destroy(linger=500)
+
+
+class BusStartError(DaemonError):
+    """The bus process could not open the bus or found other servos; the message is its own."""
+
+
+class Supervisor:
+    """One daemon, from start to park."""
+
+    def __init__(self, config: DaemonConfig) -> None:
+        self._config = config
+        self._robot: RobotModel = load_robot(config.robot)
+        self._link = BusLink.create(self._robot.n_joints)
+        self._folder = tempfile.TemporaryDirectory(prefix="mmmd-")
+        self._context = zmq.asyncio.Context()
+        self._children: list[Child] = []
+        self._tasks: list[asyncio.Task[None]] = []
+        self._asked_to_end = asyncio.Event()
+
+    async def run(self) -> int:
+        """Serve until SIGTERM or SIGINT; 0 after a park, 3 when the robot was left in a latched fault or e-stop.
+
+        Raises:
+            DaemonError: a port is taken, the bus cannot be opened, other servos were found.
+        """
+        try:
+            endpoint = self._config.generator or f"ipc://{self._folder.name}/generator"
+            generator = GeneratorClient(self._context, endpoint)
+            recorder = RecorderFeed(f"ipc://{self._folder.name}/events") if self._config.log else None
+            front = Front(self._config, self._robot, self._link, self._context, generator, recorder)
+            if recorder is not None:
+                self._watch(self._watch_recorder(recorder))
+            return await self._serve(front, generator, endpoint)
+        finally:
+            for task in self._tasks:
+                task.cancel()
+            await asyncio.gather(*self._tasks, return_exceptions=True)
+            for child in reversed(self._children):
+                await child.end(BUS_END_TIMEOUT_S)
+            self._context.destroy(linger=200)
+            self._link.close()
+            self._folder.cleanup()
+
+    async def _serve(self, front: Front, generator: GeneratorClient, endpoint: str) -> int:
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGTERM, signal.SIGINT):
+            loop.add_signal_handler(number, self._end_asked)
+        try:
+            bus = await self._start_bus()
+            front.start()
+            self._watch(self._watch_bus(front, bus))
+            if self._config.generator is None:
+                self._watch(self._keep_generator(generator, endpoint))
+            else:
+                self._watch(self._follow_generator(generator))
+            ends = self._config.endpoints
+            log.info("ready: robot %s on %s", self._robot.name, self._config.bus)
+            log.info("cmd %s, ctl %s, pub %s", ends.cmd, ends.ctl, ends.pub)
+            failure = asyncio.create_task(front.failure())
+            asked = asyncio.create_task(self._asked_to_end.wait())
+            await asyncio.wait((failure, asked), return_when=asyncio.FIRST_COMPLETED)
+            asked.cancel()
+            if failure.done():
+                log.error("the front failed", exc_info=failure.exception())
+            state = await front.park()
+            self._link.request(BusRequest.SHUTDOWN)
+            await bus.end(BUS_END_TIMEOUT_S, terminate=False)
+            failure.cancel()
+            log.info("ended with the robot in %s", state.value)
+            return GOOD if state is RobotState.LIMP else ROBOT_FAULT
+        finally:
+            await front.close()
+
+    def _end_asked(self) -> None:
+        if self._asked_to_end.is_set():
+            log.warning("asked to end a second time: torque off at once")
+            self._link.request(BusRequest.ESTOP)
+        self._asked_to_end.set()
+
+    def _watch(self, work: object) -> None:
+        self._tasks.append(asyncio.ensure_future(work))  # type: ignore[arg-type]
+
+    async def _start_bus(self) -> Child:
+        arguments = ["--robot", self._config.robot, "--bus", self._config.bus, "--link", str(self._link.path)]
+        bus = Child("bus process", "daemon.bus_process", arguments)
+        await bus.start()
+        self._children.append(bus)
+        end_s = time.monotonic() + BUS_START_TIMEOUT_S
+        while self._link.readiness is Readiness.STARTING and bus.running and time.monotonic() < end_s:
+            if self._asked_to_end.is_set():
+                raise BusStartError("ended while the bus was being opened")
+            self._link.heartbeat()
+            await asyncio.sleep(0.01)
+        if self._link.readiness is Readiness.READY:
+            return bus
+        if self._link.readiness is Readiness.FAILED:
+            raise BusStartError(self._link.text)
+        if not bus.running:
+            status = await bus.ended()
+            raise BusStartError(f"the bus process ended with status {status}: {' / '.join(bus.said) or 'no message'}")
+        raise BusStartError(f"the bus process did not open {self._config.bus} in {BUS_START_TIMEOUT_S:g} s")
+
+    async def _watch_bus(self, front: Front, bus: Child) -> None:
+        status = await bus.ended()
+        front.performer.bus_alive = False
+        log.error("the bus process ended with status %d; servos that have a bus watchdog stop by it", status)
+
+    async def _keep_generator(self, client: GeneratorClient, endpoint: str) -> None:
+        """Start the generator, and again whenever it ends or freezes."""
+        arguments = ["--bind", endpoint, "--parent-pid", str(os.getpid())]
+        if self._config.model is not None:
+            arguments += ["--model", str(self._config.model)]
+        child = Child("generator", "daemon.generator", arguments)
+        self._children.append(child)
+        back_off_s = FIRST_BACK_OFF_S
+        while True:
+            client.mark_starting()
+            await child.start()
+            answered = await self._attend(child, client)
+            child.kill()
+            status = await child.ended()
+            why = child.said[-1] if child.said else "no message"
+            back_off_s = FIRST_BACK_OFF_S if answered else min(2 * back_off_s, LONGEST_BACK_OFF_S)
+            client.mark_down(f"ended with status {status} ({why}); starts again in {back_off_s:g} s")
+            log.error("generator %s", client.state)
+            await asyncio.sleep(back_off_s)
+
+    async def _attend(self, child: Child, client: GeneratorClient) -> bool:
+        """Return when the generator has ended or does not answer; whether it ever did."""
+        answered, timeouts = False, client.timeouts
+        began_s = time.monotonic()
+        ended = asyncio.create_task(child.ended())
+        while not ended.done():
+            if not client.busy:
+                try:
+                    checkpoint = await client.ping(PING_TIMEOUT_S if answered else 0.25)
+                except GeneratorError:
+                    if answered or time.monotonic() - began_s > GENERATOR_START_TIMEOUT_S:
+                        log.error("the generator does not answer and is started again")
+                        return answered
+                    timeouts = client.timeouts
+                    continue
+                if not answered:
+                    client.mark_ready(checkpoint)
+                    log.info("generator %s after %.1f s", client.state, time.monotonic() - began_s)
+                answered = True
+            if client.timeouts != timeouts:
+                log.error("the generator left a text unanswered and is started again")
+                return answered
+            await asyncio.wait({ended}, timeout=PING_EVERY_S if answered else 0.1)
+        return answered
+
+    async def _follow_generator(self, client: GeneratorClient) -> None:
+        """Notice whether a generator that somebody else runs answers."""
+        ready = False
+        while True:
+            if not client.busy:
+                try:
+                    checkpoint = await client.ping(1.0 if ready else 0.25)
+                    if not ready:
+                        client.mark_ready(checkpoint)
+                        log.info("generator %s", client.state)
+                    ready = True
+                except GeneratorError:
+                    if ready or client.state == "starting":
+                        client.mark_down(f"no answer from {self._config.generator}")
+                        log.error("generator %s", client.state)
+                    ready = False
+            await asyncio.sleep(PING_EVERY_S / 2 if ready else 0.1)
+
+    async def _watch_recorder(self, feed: RecorderFeed) -> None:
+        """Record until the end; a recorder that fails leaves the robot without a log, which is said."""
+        arguments = ["--robot", self._config.robot, "--link", str(self._link.path)]
+        arguments += ["--events", feed.endpoint, "--out", str(self._config.log)]
+        child = Child("recorder", "daemon.recorder", arguments)
+        self._children.append(child)
+        await child.start()
+        try:
+            status = await child.ended()
+            log.error("recording ended with status %d: %s; the robot goes on", status, " / ".join(child.said))
+        finally:
+            feed.close()
+
+
+def run(config: DaemonConfig) -> int:
+    """Run a daemon in this process until it is asked to end; its exit status.
+
+    Raises:
+        DaemonError: see `Supervisor.run`.
+        RetargetError: the robot is unknown or its file is wrong.
+    """
+
+    async def start() -> int:
+        return await Supervisor(config).run()
+
+    return asyncio.run(start())
+
+
+def log_path_error(path: Path) -> str | None:
+    """Why a log cannot be written there; None when it can."""
+    if path.exists():
+        return f"--log {path}: the file exists; choose another name, logs are not overwritten"
+    if not path.parent.is_dir():
+        return f"--log {path}: no folder {path.parent}; make it, or choose another"
+    return None
