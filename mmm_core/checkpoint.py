@@ -61,7 +61,7 @@ def save_model(path: Path, model: Model) -> None:
         "format": str(FORMAT),
         "kind": "mmmd-model",
         "config": json.dumps({"tokenizer": asdict(model.tokenizer.config), "transformer": asdict(model.transformer.config)}),
-        "scope": json.dumps(model.scope.commands),
+        "scope": json.dumps({"commands": model.scope.commands, "n_known": model.scope.n_known}),
         "provenance": json.dumps(model.provenance),
     }  # fmt: skip
     _save(path, {name: _compact(name, tensor) for name, tensor in tensors.items()}, metadata)
@@ -82,7 +82,8 @@ def load_model(path: Path | None = None) -> Model:
     length = LengthPredictor()
     for name, module in (("tokenizer", tokenizer), ("transformer", transformer), ("length", length)):
         _fill(module, _with_prefix(tensors, name + "."), path, name + ".")
-    scope = ScopeIndex(json.loads(metadata["scope"]), tensors["scope.commands"].float())
+    names = json.loads(metadata["scope"])
+    scope = ScopeIndex(names["commands"], tensors["scope.commands"].float(), names["n_known"])
     return Model(tokenizer, transformer, length, scope, json.loads(metadata["provenance"]))
 
 

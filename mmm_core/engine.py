@@ -115,7 +115,7 @@ class Engine:
             return _rejected(text, seed, ScopeVerdict("rejected", 0.0, "", "the text is empty"), clock)
         with torch.inference_mode():
             states = self.encoder.encode([text])
-            verdict = self.model.scope.judge(states.sentence[0])
+            verdict = self.model.scope.judge(text, states.sentence[0])
             clock.lap("text")
             if verdict.status == "rejected":
                 return _rejected(text, seed, verdict, clock)

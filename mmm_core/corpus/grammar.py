@@ -45,6 +45,23 @@ def base_phrase(g: Gesture, rng: np.random.Generator) -> str:
     return _fill(_pick(options, rng), g, rng)
 
 
+def known_commands() -> set[str]:
+    """Every phrase in its plainest form: each side and direction, without counts or with three."""
+    found: set[str] = set()
+    tables = [(family, "", table) for family, table in PHRASES.items()]
+    tables += [(family, d, table) for family, by_d in DIRECTED.items() for d, table in by_d.items()]
+    for _, direction, table in tables:
+        for row, phrases in table.items():
+            for phrase in phrases:
+                for side in ("left", "right") if row == "one" or "{S}" in phrase else ("",):
+                    for where in ("left", "right") if "{D}" in phrase else (direction,):
+                        for times, number in (("", "three"), ("three times", "3")):
+                            text = phrase.replace("{S}", side).replace("{D}", where)
+                            text = text.replace("{n}", times).replace("{N}", number)
+                            found.add(re.sub(r"\s+", " ", text).strip())
+    return found
+
+
 def usual_counts(family: str) -> tuple[int, ...]:
     """Counts that a family has when none is said."""
     return _USUAL_COUNTS.get(family, (1,))

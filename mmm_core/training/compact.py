@@ -13,6 +13,8 @@ import numpy as np
 import torch
 
 from mmm_core.checkpoint import Model, load_text_encoder, save_model
+from mmm_core.corpus.grammar import known_commands
+from mmm_core.corpus.outside import OUTSIDE
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.errors import TrainingDataError
 from mmm_core.motion import FPS
@@ -33,8 +35,6 @@ from mmm_core.training.transformer_training import train_length, train_transform
 from mmm_core.transformer import TransformerConfig
 
 log = logging.getLogger(__name__)
-
-N_SCOPE_COMMANDS = 1500
 
 
 @dataclass(frozen=True)
@@ -92,14 +92,13 @@ def tokenize(clips: Sequence[Clip], tokenizer: Tokenizer, run_dir: Path) -> Toke
     return TokenCorpus(encode_clips(clips, tokenizer), rows, states, np.array([c.is_real for c in clips]))
 
 
-def scope_index(clips: Sequence[Clip], seed: int) -> ScopeIndex:
-    """A spread of known commands, from the synthesised clips: what the model was really taught to follow."""
-    captions = sorted({c for clip in clips if not clip.is_real for c in clip.captions if len(c) < 90})
-    picked = np.random.default_rng(seed).permutation(len(captions))[:N_SCOPE_COMMANDS]
-    commands = [captions[i] for i in sorted(picked)]
+def scope_index() -> ScopeIndex:
+    """What the model was taught to follow, in plain words, and what it cannot do."""
+    commands = sorted(known_commands())
+    texts = [*commands, *OUTSIDE]
     encoder = load_text_encoder()
-    vectors = [encoder.encode(commands[i : i + 64]).sentence for i in range(0, len(commands), 64)]
-    return ScopeIndex(commands, torch.cat(vectors))
+    vectors = [encoder.encode(texts[i : i + 64]).sentence for i in range(0, len(texts), 64)]
+    return ScopeIndex(texts, torch.cat(vectors), len(commands))
 
 
 def make_model(recipe: Recipe, data_dir: Path | None, run_dir: Path, out: Path) -> None:
@@ -120,7 +119,7 @@ def make_model(recipe: Recipe, data_dir: Path | None, run_dir: Path, out: Path) 
         "data": "synthesised gestures; CMU Graphics Lab Motion Capture Database (see docs/DATA.md)",
         "revision": _revision(),
     }
-    save_model(out, Model(tokenizer, transformer, length, scope_index(clips, recipe.seed), provenance))
+    save_model(out, Model(tokenizer, transformer, length, scope_index(), provenance))
 
 
 def _revision() -> str:
