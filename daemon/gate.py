@@ -13,6 +13,9 @@ from retarget.robot import RobotModel
 
 Array = NDArray[np.float64]
 
+FARTHEST_RAD = 1000.0
+"""Targets beyond are all equally far; without this bound the limiter's squares overflow at 1e300 and its goal is NaN."""
+
 
 class Gate:
     """Holds what the joints were told last, and lets nothing through that they cannot follow.
@@ -46,7 +49,8 @@ class Gate:
             goal = self.brake()
             self.clipped = np.ones(len(goal), bool)
             return goal
-        goal = limit_step(target_rad, self.position_rad, self.velocity_rad_s, self.limits, self.period_s)
+        near_rad = np.clip(target_rad, -FARTHEST_RAD, FARTHEST_RAD)
+        goal = limit_step(near_rad, self.position_rad, self.velocity_rad_s, self.limits, self.period_s)
         self.clipped = goal != target_rad
         return self._advance(goal)
 

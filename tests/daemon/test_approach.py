@@ -1,0 +1,62 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from daemon.approach import ACCELERATION_RAD_S2, SPEED_RAD_S, Approach
+from daemon.gate import Gate
+from retarget.limits import JointLimits
+from retarget.robot import list_robots, load_robot
+
+ROBOT = load_robot("reference")
+LIMITS = JointLimits.of(ROBOT)
+PERIOD_S = ROBOT.bus.period_s
+
+
+def path(way: Approach) -> np.ndarray:
+    return np.array([way.at(k * PERIOD_S) for k in range(int(way.duration_s / PERIOD_S) + 3)])
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_it_is_slow_and_passes_the_gate_unchanged(seed):
+    random = np.random.default_rng(seed)
+    start, goal = random.uniform(LIMITS.position_min_rad, LIMITS.position_max_rad, (2, ROBOT.n_joints))
+    q = path(Approach(start, goal, LIMITS))
+    assert (np.abs(np.diff(q, axis=0)) <= SPEED_RAD_S * PERIOD_S * (1 + 1e-6)).all()
+    assert (np.abs(np.diff(q, 2, axis=0)) <= ACCELERATION_RAD_S2 * PERIOD_S**2 * (1 + 1e-6) + 1e-9).all()
+    gate = Gate(ROBOT)
+    gate.reset(start)
+    for target in q:
+        goal_rad = gate.step(target)
+        assert np.abs(goal_rad - target).max() < 1e-9
+
+
+def test_it_begins_and_ends_where_it_should():
+    way = Approach(ROBOT.park_rad, ROBOT.rest_rad, LIMITS)
+    assert way.at(0.0) == pytest.approx(ROBOT.park_rad, abs=1e-12)
+    assert way.at(way.duration_s) == pytest.approx(ROBOT.rest_rad, abs=1e-9)
+    assert way.at(way.duration_s + 100) == pytest.approx(ROBOT.rest_rad, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", list_robots())
+def test_the_longest_way_ends_in_bounded_time(name):
+    """The bound within which every robot is armed or parked, wherever it stands."""
+    robot = load_robot(name)
+    limits = JointLimits.of(robot)
+    way = Approach(limits.position_min_rad, limits.position_max_rad, limits)
+    widest = (limits.position_max_rad - limits.position_min_rad).max()
+    assert way.duration_s < widest / min(SPEED_RAD_S, 0.5 * limits.velocity_rad_s.min()) + 2.0
+
+
+def test_a_way_of_no_length_is_over_at_once():
+    way = Approach(ROBOT.rest_rad, ROBOT.rest_rad, LIMITS)
+    assert way.duration_s < PERIOD_S
+    assert way.at(0.0) == pytest.approx(ROBOT.rest_rad)
+
+
+def test_from_outside_its_range_a_joint_only_comes_back():
+    start = ROBOT.rest_rad.copy()
+    start[2] = LIMITS.position_max_rad[2] + 0.3
+    q = path(Approach(start, ROBOT.rest_rad, LIMITS))[:, 2]
+    assert (np.diff(q) <= 1e-9).all()
