@@ -14,7 +14,7 @@ from retarget.robot import RobotModel
 Array = NDArray[np.float64]
 
 FARTHEST_RAD = 1000.0
-"""Targets beyond are all equally far; without this bound the limiter's squares overflow at 1e300 and its goal is NaN."""
+"""Targets beyond are all equally far; without this bound the limiter overflows at 1e300 and its goal is NaN."""
 
 
 class Gate:
