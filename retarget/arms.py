@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.errors import RobotFileError
-from retarget.kinematics import Kinematics, rotate
+from retarget.kinematics import Kinematics, cross, rotate, skew
 
 Array = NDArray[np.float64]
 UPPER_WEIGHT, FORE_WEIGHT = 1.0, 1.0
@@ -40,7 +40,8 @@ class Arm:
         elbow = robot.joint_with_role(f"{side}_elbow")
         points = {p.name: p for p in kinematics.key_points}
         if elbow is None or f"{side}_wrist" not in points:
-            raise RobotFileError(robot.path, f"{side} arm", "no elbow joint or no site for the wrist", f"a joint with role {side}_elbow and a site {side}_wrist")  # fmt: skip
+            allowed = f"a joint with role {side}_elbow and a site {side}_wrist"
+            raise RobotFileError(robot.path, f"{side} arm", "no elbow joint or no site for the wrist", allowed)
         roles = {f"{side}_{part}" for part in ("shoulder_pitch", "shoulder_roll", "shoulder_yaw", "elbow")}
         self.joints = tuple(j for j in kinematics.chains[elbow] if robot.joints[j].role in roles)
         self.side = side
@@ -53,19 +54,22 @@ class Arm:
         self.fore0 = _unit(wrist - elbow_m)
         self.has_yaw = len(self.joints) == 4
         if len(self.joints) not in (3, 4) or abs(self.axes[0] @ self.axes[1]) > 0.05:
-            raise RobotFileError(robot.path, f"{side} arm", f"{len(self.joints)} joints to the elbow", "two orthogonal shoulder axes, an optional axis along the upper arm, an elbow")  # fmt: skip
+            allowed = "two orthogonal shoulder axes, an optional axis along the upper arm, an elbow"
+            raise RobotFileError(robot.path, f"{side} arm", f"{len(self.joints)} joints to the elbow", allowed)
         if self.has_yaw:  # the upper arm is taken along its own axis, so that the yaw does not move it
             self.upper0 = self.axes[2] * np.sign(self.axes[2] @ self.upper0)
 
     def solve(self, upper: Array, fore: Array, previous_rad: Array | None) -> ArmSolution:
-        """Angles for unit directions `upper` and `fore` (T, 3) in chest coordinates, near `previous_rad` (n,) at first."""
+        """Angles for unit directions `upper` and `fore` (T, 3) in the chest frame, first near `previous_rad` (n,)."""
         shoulder = [subproblem_2(self.axes[0], self.axes[1], self.upper0, upper, s) for s in (1.0, -1.0)]
         candidates: list[Array] = []
         if self.has_yaw:
             for q1, q2 in shoulder:
                 local = rotate(self.axes[1], -q2, rotate(self.axes[0], -q1, fore))
                 for s in (1.0, -1.0):
-                    candidates.append(np.stack([q1, q2, *subproblem_2(self.axes[2], self.axes[3], self.fore0, local, s)], -1))
+                    candidates.append(
+                        np.stack([q1, q2, *subproblem_2(self.axes[2], self.axes[3], self.fore0, local, s)], -1)
+                    )
         else:
             between = _unit(upper + fore)
             starts = shoulder + [subproblem_2(self.axes[0], self.axes[1], self.upper0, between, s) for s in (1.0, -1.0)]
@@ -97,8 +101,8 @@ class Arm:
             axis3 = rotate(self.axes[0], q[:, 0], rotate(self.axes[1], q[:, 1], np.broadcast_to(self.axes[2], u.shape)))
             wu, wf = UPPER_WEIGHT**0.5, FORE_WEIGHT**0.5
             J = np.concatenate([
-                wu * np.stack([np.cross(axis1, u), np.cross(axis2, u), np.zeros_like(u)], -1),
-                wf * np.stack([np.cross(axis1, f), np.cross(axis2, f), np.cross(axis3, f)], -1),
+                wu * np.stack([cross(axis1, u), cross(axis2, u), np.zeros_like(u)], -1),
+                wf * np.stack([cross(axis1, f), cross(axis2, f), cross(axis3, f)], -1),
             ], 1)  # (T, 6, 3)  # fmt: skip
             error = np.concatenate([wu * (upper - u), wf * (fore - f)], 1)
             normal = J.transpose(0, 2, 1) @ J + 1e-3 * np.eye(3)
@@ -116,7 +120,9 @@ class Arm:
         T, C, _ = ways.shape
         inside = np.clip(ways, self.low, self.high)
         u, f = self.directions(inside)
-        error = np.arccos(np.clip((u * upper[:, None]).sum(-1), -1, 1)) + np.arccos(np.clip((f * fore[:, None]).sum(-1), -1, 1))
+        error = np.arccos(np.clip((u * upper[:, None]).sum(-1), -1, 1)) + np.arccos(
+            np.clip((f * fore[:, None]).sum(-1), -1, 1)
+        )
         own = _LIMIT_COST * np.abs(ways - inside).sum(-1) + _ERROR_COST * error  # (T, C)
         total = own[0].copy()
         if previous_rad is not None:
@@ -134,14 +140,14 @@ class Arm:
         return inside[np.arange(T), way]
 
     def _seen(self, q: Array) -> Array:
-        """How much each joint's turning shows: the first not when the arm lies along its axis, the yaw not when straight."""
+        """How much each joint's turning shows: the first not with the arm along its axis, the yaw not when straight."""
         upper, fore = self.directions(q)
         seen = np.ones_like(q)
-        across_upper = np.linalg.norm(np.cross(self.axes[0], upper), axis=-1)
-        across_fore = np.linalg.norm(np.cross(self.axes[0], fore), axis=-1)
+        across_upper = np.linalg.norm(upper @ skew(self.axes[0]), axis=-1)
+        across_fore = np.linalg.norm(fore @ skew(self.axes[0]), axis=-1)
         seen[:, 0] = np.maximum(across_upper, across_fore) ** 2
         if self.has_yaw:
-            seen[:, 2] = np.linalg.norm(np.cross(upper, fore), axis=-1) ** 2
+            seen[:, 2] = np.linalg.norm(cross(upper, fore), axis=-1) ** 2
         return seen
 
 
@@ -154,7 +160,7 @@ def subproblem_2(axis1: Array, axis2: Array, p: Array, q: Array, sign: float) ->
     rest = 1 - along2**2 - along1**2
     along1 = np.where(rest < 0, np.clip(along1, -np.sqrt(1 - along2**2), np.sqrt(1 - along2**2)), along1)
     third = sign * np.sqrt(np.maximum(rest, 0.0))
-    middle = along2 * axis2 + along1[..., None] * axis1 + third[..., None] * np.cross(axis1, axis2)
+    middle = along2 * axis2 + along1[..., None] * axis1 + third[..., None] * cross(axis1, axis2)
     return angle_about(axis1, middle, q), angle_about(axis2, p, middle)
 
 
@@ -162,10 +168,9 @@ def angle_about(axis: Array, a: Array, b: Array) -> Array:
     """(T,) angle about unit `axis` that turns `a` nearest to `b`; 0 where either lies along the axis."""
     a = a - (a @ axis)[..., None] * axis
     b = b - (b @ axis)[..., None] * axis
-    sine, cosine = np.cross(a, b) @ axis, (a * b).sum(-1)
+    sine, cosine = (a * (b @ skew(axis))).sum(-1), (a * b).sum(-1)
     return np.where(np.abs(sine) + np.abs(cosine) > 1e-9, np.arctan2(sine, cosine), 0.0)
 
 
 def _unit(v: Array) -> Array:
     return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)
-

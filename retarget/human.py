@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from mmm_core.motion import Motion
 from mmm_core.skeleton import matrix_from_quat
 from retarget.errors import MotionError
+from retarget.kinematics import cross
 
 Array = NDArray[np.float64]
 _TO_ROBOT = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])
@@ -29,7 +30,7 @@ class HumanPose:
         upper, fore: per side, (T, 3) unit directions in the chest frame.
         forearm_twist_rad: per side, (T,).
         trunk_yaw_rad, trunk_pitch_rad: (T,) chest against pelvis: to the left, forward.
-        head_R: (T, 3, 3) head against the pelvis's facing.
+        head_rotation: (T, 3, 3) head against the pelvis's facing.
     """
 
     upper: dict[str, Array]
@@ -37,7 +38,7 @@ class HumanPose:
     forearm_twist_rad: dict[str, Array]
     trunk_yaw_rad: Array
     trunk_pitch_rad: Array
-    head_R: Array
+    head_rotation: Array
 
 
 def read_human(motion: Motion) -> HumanPose:
@@ -53,7 +54,9 @@ def read_human(motion: Motion) -> HumanPose:
         for a, b in ((shoulder, elbow), (elbow, wrist)):
             shortest = float(np.linalg.norm(joints[:, b] - joints[:, a], axis=-1).min())
             if shortest < _SHORTEST_BONE_M:
-                raise MotionError(f"{side} arm", f"a bone of {shortest:.4f} m", f"bones of at least {_SHORTEST_BONE_M} m")
+                raise MotionError(
+                    f"{side} arm", f"a bone of {shortest:.4f} m", f"bones of at least {_SHORTEST_BONE_M} m"
+                )
     pelvis = _frame(joints[:, _L_HIP] - joints[:, _R_HIP], np.broadcast_to([0.0, 1, 0], joints[:, 0].shape))
     across = joints[:, 13] - joints[:, 14] + 0.5 * (joints[:, 16] - joints[:, 17])
     chest = _frame(across, joints[:, _NECK] - joints[:, _SPINE1])
@@ -82,7 +85,7 @@ def read_human(motion: Motion) -> HumanPose:
 
 def _frame(left: Array, up: Array) -> Array:
     """(T, 3, 3) rotations whose columns are left, up, forward; `up` is made square to `left`."""
-    x = left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9)
-    z = np.cross(x, up)
+    x: Array = left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9)
+    z: Array = cross(x, up)
     z = z / np.maximum(np.linalg.norm(z, axis=-1, keepdims=True), 1e-9)
-    return np.stack([x, np.cross(z, x), z], -1)
+    return np.stack([x, cross(z, x), z], -1)

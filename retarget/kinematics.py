@@ -7,23 +7,39 @@ the nearest first.
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import dataclass
 from typing import Any
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from retarget.errors import RobotFileError
 from retarget.robot import RobotModel
 
+mujoco: Any = importlib.import_module("mujoco")  # it has no types: declared here, once, instead of at each use
 Array = NDArray[np.float64]
+
+
+def skew(axis: Array) -> Array:
+    """(3, 3) matrix X with X v = axis x v; rows of vectors are crossed by `v @ X.T`, much faster than by np.cross."""
+    x, y, z = (float(value) for value in axis)
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def cross(a: Array, b: Array) -> Array:
+    """(..., 3) cross products."""
+    a, b = np.broadcast_arrays(a, b)
+    product = np.empty(a.shape)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        product[..., i] = a[..., j] * b[..., k] - a[..., k] * b[..., j]
+    return product
 
 
 def rotate(axis: Array, angle_rad: Array, v: Array) -> Array:
     """Turn vectors `v` (..., 3) about unit `axis` (3,) by `angle_rad` (...), Rodrigues' formula."""
     c, s = np.cos(angle_rad)[..., None], np.sin(angle_rad)[..., None]
-    return v * c + np.cross(axis, v) * s + axis * (v @ axis)[..., None] * (1 - c)
+    return v * c + (v @ skew(axis).T) * s + (v @ np.outer(axis, axis)) * (1 - c)
 
 
 @dataclass(frozen=True)
@@ -96,17 +112,38 @@ class Kinematics:
         return np.stack([self.place(point, q_rad) for point in self.key_points], 1)
 
 
+def description_spec(robot: RobotModel) -> Any:
+    """The robot's description as an editable MuJoCo specification in which every body has a name.
+
+    Raises:
+        RobotFileError: MuJoCo cannot read it.
+    """
+    try:
+        spec = mujoco.MjSpec.from_file(str(robot.description_path))
+    except ValueError as error:
+        message = str(error).splitlines()[0]
+        raise RobotFileError(
+            robot.description_path, "description", message, "MJCF or URDF that MuJoCo reads"
+        ) from error
+    for i, body in enumerate(spec.bodies):
+        body.name = body.name or f"body_{i}"
+    return spec
+
+
 def load_description(robot: RobotModel) -> Any:
     """The robot's description as a MuJoCo model.
 
     Raises:
         RobotFileError: MuJoCo cannot read it.
     """
+    spec = description_spec(robot)
     try:
-        return mujoco.MjModel.from_xml_path(str(robot.description_path))
+        return spec.compile()
     except ValueError as error:
         message = str(error).splitlines()[0]
-        raise RobotFileError(robot.description_path, "description", message, "MJCF or URDF that MuJoCo reads") from error
+        raise RobotFileError(
+            robot.description_path, "description", message, "MJCF or URDF that MuJoCo reads"
+        ) from error
 
 
 def _joint_id(robot: RobotModel, model: Any, name: str) -> int:

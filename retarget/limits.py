@@ -14,12 +14,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from retarget.lookahead import track
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
 
 Array = NDArray[np.float64]
+_WINDOW_FRAMES, _AHEAD_FRAMES = 96, 16
+"""A long reference is solved in windows, each with so many frames after it in view."""
 SLACK = 1e-9
 """Relative slack within which a step counts as inside its bounds: rounding of sums, far below a tick."""
+_ROUNDING_RAD = 1e-12
+"""A step that ends so near outside a position limit was meant to end on it."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +45,7 @@ class JointLimits:
 
 
 def stopping_velocity_rad_s(gap_rad: Array, acceleration_rad_s2: Array, period_s: float) -> Array:
-    """Largest velocity of the next step from which a joint can still stop within `gap_rad`; see the module's formula."""
+    """Largest velocity of the next step from which a joint can stop within `gap_rad`; see the module's formula."""
     gap = np.maximum(gap_rad, 0.0)
     step = acceleration_rad_s2 * period_s  # velocity lost in one period of braking
     n = np.floor((np.sqrt(1.0 + 8.0 * gap / (step * period_s)) - 1.0) / 2.0)
@@ -57,8 +62,9 @@ def limit_step(
 ) -> Array:
     """(J,) next position: `target_rad` where it can be reached in this step, else the nearest the limits allow.
 
-    A target inside every bound is returned bit for bit. One further away is approached as fast as allowed, slow enough
-    to stop there (or to meet it at `target_velocity_rad_s`). A joint outside its range moves back at full braking.
+    A target inside every bound is returned bit for bit; one outside the range counts as the end of the range. One
+    further away is approached as fast as allowed, slow enough to stop there (or to meet it at `target_velocity_rad_s`).
+    A joint outside its range moves back at full braking.
 
     Args:
         target_rad: where to be after this step.
@@ -69,6 +75,8 @@ def limit_step(
         target_velocity_rad_s: velocity of the target after this step; None for a target at rest.
     """
     a, v_max = limits.acceleration_rad_s2, limits.velocity_rad_s
+    ends = limits.position_min_rad, limits.position_max_rad
+    target_rad = np.clip(target_rad, *ends)
     gap = target_rad - position_rad
     follow = None if target_velocity_rad_s is None else np.clip(target_velocity_rad_s, -v_max, v_max)
     error = gap if follow is None else gap - follow * period_s
@@ -86,23 +94,35 @@ def limit_step(
     if follow is not None:
         wanted += follow
         reached &= np.abs(direct - follow) <= a * period_s
-    velocity = np.clip(wanted, low, high)
-    inside = (target_rad >= limits.position_min_rad) & (target_rad <= limits.position_max_rad)
-    return np.where(reached & inside, target_rad, position_rad + velocity * period_s)
+    following = position_rad + np.clip(wanted, low, high) * period_s
+    end = np.clip(following, *ends)
+    following = np.where(np.abs(following - end) < _ROUNDING_RAD, end, following)
+    return np.where(reached, target_rad, following)
 
 
-def limit_path(reference_rad: Array, position_rad: Array, velocity_rad_s: Array, limits: JointLimits, period_s: float) -> Array:
+def limit_path(
+    reference_rad: Array, position_rad: Array, velocity_rad_s: Array, limits: JointLimits, period_s: float
+) -> Array:
     """(T, J) path near `reference_rad` (T, J) that keeps every limit, from the given position and velocity.
 
-    The reference is followed once forwards and once backwards in time; the mean of two paths inside the bounds is inside
-    the bounds and starts to move before a fast change instead of lagging behind it. A last forward pass joins it on to
-    the start state.
+    The reference is first followed with all of it in view (`lookahead.track`), window by window; exact causal steps
+    along that make the path keep every bound.
     """
-    inside = np.clip(reference_rad, limits.position_min_rad, limits.position_max_rad)
-    zero = np.zeros_like(position_rad)
-    forward = _follow(inside, inside[0], zero, limits, period_s)
-    backward = _follow(inside[::-1], inside[-1], zero, limits, period_s)[::-1]
-    return _follow((forward + backward) / 2, position_rad, velocity_rad_s, limits, period_s)
+    T = len(reference_rad)
+    path = np.empty_like(reference_rad)
+    ends = limits.position_min_rad, limits.position_max_rad
+    inside = np.clip(reference_rad, *ends)
+    position, velocity = position_rad, velocity_rad_s
+    for k in range(0, T, _WINDOW_FRAMES):
+        window = inside[k : k + _WINDOW_FRAMES + _AHEAD_FRAMES]
+        nearest = track(
+            window, position, velocity, *ends, limits.velocity_rad_s, limits.acceleration_rad_s2, period_s
+        )[: min(_WINDOW_FRAMES, T - k)]  # fmt: skip
+        part = path[k : k + len(nearest)]
+        part[:] = _follow(np.clip(nearest, *ends), position, velocity, limits, period_s)
+        before = path[k + len(part) - 2] if k + len(part) > 1 else position
+        position, velocity = part[-1], (part[-1] - before) / period_s
+    return path
 
 
 def brake(position_rad: Array, velocity_rad_s: Array, limits: JointLimits, period_s: float) -> Array:
@@ -115,6 +135,10 @@ def brake(position_rad: Array, velocity_rad_s: Array, limits: JointLimits, perio
 def _follow(reference: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> Array:
     """Causal following of `reference`, each step knowing the velocity of the reference after it."""
     ahead = np.diff(reference, axis=0, append=reference[-1:]) / period_s
+    before = np.concatenate([position[None], reference[:-1]])
+    came = np.concatenate([velocity[None], np.diff(before, axis=0) / period_s])
+    if np.array_equal(limit_step(reference, before, came, limits, period_s, ahead), reference):
+        return reference  # all steps at once: nothing to change
     path = np.empty_like(reference)
     for k in range(len(reference)):
         following = limit_step(reference[k], position, velocity, limits, period_s, ahead[k])

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from retarget.report import RetargetReport
 
 Array = NDArray[np.float64]
+_ROUNDING_RAD = 1e-10
 
 
 @dataclass(frozen=True)
@@ -45,12 +46,14 @@ class JointPath:
         joint_names: J names.
         rate_hz: control points per second.
         report: what retargeting changed.
+        ends_rad: (J,) position limits, beyond which nothing goes by rounding; a start outside them may lie beyond.
     """
 
     control_rad: Array
     joint_names: tuple[str, ...]
     rate_hz: float
     report: RetargetReport
+    ends_rad: tuple[Array, Array] | None = None
 
     @property
     def duration_s(self) -> float:
@@ -63,15 +66,25 @@ class JointPath:
         return (self.control_rad[1:-1] + self.control_rad[2:]) / 2
 
     def at_rate(self, rate_hz: float) -> Array:
-        """(T, J) positions at `rate_hz`; the first is one period after the start, the last at or just after the end."""
-        n = int(np.ceil(self.duration_s * rate_hz - 1e-9))
+        """(T, J) positions at `rate_hz`; the first is one period after the start.
+
+        The last is just after the end when the path ends at rest, else just before it.
+        """
+        rests = np.array_equal(self.control_rad[-1], self.control_rad[-2])
+        n = int(np.ceil(self.duration_s * rate_hz - 1e-9) if rests else np.floor(self.duration_s * rate_hz + 1e-9))
         return self.at(np.minimum(np.arange(1, n + 1) / rate_hz, self.duration_s))
 
     def at(self, times_s: Array) -> Array:
         """(T, J) positions at `times_s` (T,) since the start."""
         k, u = self._segment(times_s)
         c0, c1, c2 = self.control_rad[k], self.control_rad[k + 1], self.control_rad[k + 2]
-        return (c0 + c1) / 2 + (c1 - c0) * u + (c2 - 2 * c1 + c0) * (u * u / 2)
+        place = (c0 + c1) / 2 + (c1 - c0) * u + (c2 - 2 * c1 + c0) * (u * u / 2)
+        # Rounding must not carry a path that runs along a position limit beyond it.
+        place = np.clip(place, np.minimum(np.minimum(c0, c1), c2), np.maximum(np.maximum(c0, c1), c2))
+        if self.ends_rad is None:
+            return place
+        end = np.clip(place, *self.ends_rad)
+        return np.where(np.abs(place - end) < _ROUNDING_RAD, end, place)
 
     def velocity_at(self, times_s: Array) -> Array:
         """(T, J) velocities at `times_s`."""

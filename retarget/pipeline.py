@@ -13,7 +13,7 @@ from retarget.arms import Arm
 from retarget.collision import SelfContact
 from retarget.human import HumanPose, read_human
 from retarget.kinematics import Kinematics
-from retarget.limits import JointLimits, brake, limit_path
+from retarget.limits import JointLimits, brake, limit_path, limit_step, stopping_velocity_rad_s
 from retarget.paths import JointPath, JointState
 from retarget.report import RetargetReport
 from retarget.robot import RobotModel
@@ -21,10 +21,14 @@ from retarget.trunk import solve_neck, solve_waist
 
 Array = NDArray[np.float64]
 _REST_PULL = 0.02
-"""Weight of smoothness against a fully seen joint's target: below a degree for any human motion, all for an unseen one."""
-_YIELDS = (0.15, 0.3, 0.5, 0.75, 1.0)
-"""Shares by which a clip is drawn towards the rest pose, one after another, until it touches nothing."""
-_MAX_SETTLE_FRAMES = 80
+"""Weight of smoothness against a fully seen joint's target: below a degree for human motion, all for an unseen one."""
+_AIM_M = 0.010
+"""Distance that a pose led round a contact keeps; the path is then checked against the smaller `collision.MARGIN_M`."""
+_YIELDS = ((0.025, 0.0), (0.04, 0.25), (0.04, 0.6), (0.04, 1.0))
+"""When the path still touches: distance to keep around the place and share drawn towards the rest pose, one by one."""
+_SETTLE_FRAMES = 16
+"""Time given to reach the last pose; what then still moves, brakes."""
+_STILL_RAD = 1e-5
 
 
 class Retargeter:
@@ -36,6 +40,8 @@ class Retargeter:
         self.limits = JointLimits.of(robot)
         self.arms = tuple(Arm(self.kinematics, side) for side in ("left", "right"))
         self.contact = SelfContact(robot)
+        arm = [j.role.startswith(("left_", "right_")) for j in robot.joints]
+        self._mobility = np.array(arm, np.float64)  # arms give way, the head keeps looking where it looks
 
     def retarget(self, motion: Motion, start: JointState | None = None, *, settle: bool = True) -> JointPath:
         """The robot's path for a motion.
@@ -51,21 +57,71 @@ class Retargeter:
         human = read_human(motion)
         wanted = self.solve(human, start)
         period = 1.0 / motion.fps
-        path = self._limited(wanted, start, period, settle)
-        interventions = 0
-        for share in _YIELDS:
-            hit = self._hits(path)
+        begin = self._begin(wanted, start)
+        eased, interventions = self._lead_round(wanted, begin.position_rad)
+        path = self._limited(eased, begin, period, settle)
+        for aim_m, share in _YIELDS:
+            hit = self.contact.along(path)
             if not hit.any():
                 break
-            interventions += 1
-            weight = _spread(hit[1:-1][: len(wanted)], len(wanted)) * share
-            eased = wanted + weight[:, None] * (self.robot.rest_rad - wanted)
-            path = self._limited(eased, start, period, settle)
+            interventions += _stretches(hit)
+            eased = self._yield(eased, path, hit, aim_m, share)
+            path = self._limited(eased, begin, period, settle)
         else:
-            if self._hits(path).any():  # even the way to rest touches: stay where the joints are
-                state = start or JointState(self.robot.rest_rad, np.zeros(self.robot.n_joints))
-                path = self._limited(state.position_rad[None], state, period, settle)
-        return JointPath(path, self.robot.joint_names, motion.fps, self._report(human, wanted, path, motion.fps, interventions))
+            path = self._stop_before_contact(path, period)
+        report = self._report(human, wanted, path, motion.fps, interventions)
+        ends = self.limits.position_min_rad, self.limits.position_max_rad
+        return JointPath(path, self.robot.joint_names, motion.fps, report, ends)
+
+    def _begin(self, wanted: Array, start: JointState | None) -> JointState:
+        """The given start, or at rest in the first frame's pose, led round contacts."""
+        if start is not None:
+            return start
+        first = np.clip(wanted[:1], self.limits.position_min_rad, self.limits.position_max_rad)
+        return JointState(self._lead_round(first, self.robot.rest_rad)[0][0], np.zeros(self.robot.n_joints))
+
+    def _lead_round(self, wanted: Array, before: Array) -> tuple[Array, int]:
+        """Poses (T, J) clear of the robot, each near the wanted one and the one before; how many stretches changed."""
+        low, high = self.limits.position_min_rad, self.limits.position_max_rad
+        clear = np.clip(wanted, low, high)
+        touching = self.contact.clearance_m(clear) < _AIM_M
+        for t in np.flatnonzero(touching):
+            from_pose = clear[t - 1] if t else before
+            clear[t] = self.contact.lead_round(clear[t], from_pose, _AIM_M, self._mobility, low, high)
+        return clear, _stretches(touching)
+
+    def _yield(self, eased: Array, path: Array, hit: NDArray[np.bool_], aim_m: float, share: float) -> Array:
+        """Poses (T, J) changed where the path made of them touches: more distance, and a share towards rest."""
+        low, high = self.limits.position_min_rad, self.limits.position_max_rad
+        T = len(eased)
+        near = _spread(hit, T)
+        changed = eased + (share * near)[:, None] * (self.robot.rest_rad - eased)
+        for t in np.flatnonzero(near >= 1.0):
+            changed[t] = self.contact.lead_round(
+                changed[t], changed[t - 1] if t else path[1], aim_m, self._mobility, low, high
+            )
+        return changed
+
+    def _stop_before_contact(self, path: Array, period: float) -> Array:
+        """The path up to where it can brake before it first touches, then held; the last resort."""
+        hit = self.contact.along(path)
+        if not hit.any():
+            return path
+        first = int(hit.argmax())
+        back = 1
+        while True:
+            kept = max(2, first + 2 - back)
+            stopped = self._held(path[:kept], period, len(path))
+            if kept == 2 or not self.contact.along(stopped).any():
+                return stopped
+            back *= 2
+
+    def _held(self, control: Array, period: float, n: int) -> Array:
+        """At least `n` control points: `control`, brake, and hold."""
+        points = list(control)
+        while len(points) < n or not np.array_equal(points[-1], points[-2]):
+            points.append(brake(points[-1], (points[-1] - points[-2]) / period, self.limits, period))
+        return np.array(points)
 
     def solve(self, human: HumanPose, start: JointState | None) -> Array:
         """(T, J) joint angles for each frame, before limits in time."""
@@ -85,34 +141,47 @@ class Retargeter:
                 q[:, twist] = np.sign(along) * human.forearm_twist_rad[arm.side]
         return q
 
-    def _limited(self, wanted: Array, start: JointState | None, period: float, settle: bool) -> Array:
-        """Control points of a path that keeps every limit."""
-        if start is None:
-            first = np.clip(wanted[0], self.limits.position_min_rad, self.limits.position_max_rad)
-            start = JointState(first, np.zeros_like(first))
+    def _limited(self, wanted: Array, start: JointState, period: float, settle: bool) -> Array:
+        """Control points of a path that keeps every limit; when settling, the last pose is held until reached."""
         half = start.velocity_rad_s * (period / 2)
         before, position = start.position_rad - half, start.position_rad + half
-        followed = limit_path(wanted, position, start.velocity_rad_s, self.limits, period)
-        points = [before, position, *followed]
         if settle:
-            for _ in range(_MAX_SETTLE_FRAMES):
-                if np.array_equal(points[-1], points[-2]):
-                    break
-                points.append(brake(points[-1], (points[-1] - points[-2]) / period, self.limits, period))
-            points.append(points[-1])
-        return np.array(points)
+            wanted = np.concatenate([wanted, np.repeat(wanted[-1:], _SETTLE_FRAMES, 0)])
+        points = np.concatenate([[before], self._joined(wanted, before, position, period)])
+        if not settle:
+            return points
+        n = len(points)
+        moving = np.flatnonzero((np.abs(np.diff(points, axis=0)) > _STILL_RAD).any(1))
+        last = max(n - _SETTLE_FRAMES, int(moving[-1]) + 2 if len(moving) else 0)
+        return self._held(points[:last], period, last + 1)
 
-    def _hits(self, control: Array) -> NDArray[np.bool_]:
-        """(N,) control points whose neighbourhood on the path touches: checked at, and half way between, frames."""
-        at = (control[:-1] + control[1:]) / 2  # path at frame borders
-        middle = (control[:-2] + 6 * control[1:-1] + control[2:]) / 8  # and in the middle of each
-        hit = np.zeros(len(control), bool)
-        border, inner = self.contact.frames(at[1:]), self.contact.frames(middle)
-        hit[1:-1] |= inner | border
-        hit[2:] |= border
-        return hit
+    def _joined(self, wanted: Array, before: Array, position: Array, period: float) -> Array:
+        """(T + 1, J) control points from the second, `position`, on.
 
-    def _report(self, human: HumanPose, wanted: Array, path: Array, rate_hz: float, interventions: int) -> RetargetReport:
+        A joint that the start leaves just enough room to brake has its next control points at or beyond the position
+        limit, though its path is not: until there is room for whole steps it brakes as hard as the path needs.
+        """
+        limits = self.limits
+        points = [before, position]
+        for k in range(len(wanted)):
+            velocity = (points[-1] - points[-2]) / period
+            end = np.where(velocity > 0, limits.position_max_rad, limits.position_min_rad)
+            toward = np.sign(velocity)
+            room = stopping_velocity_rad_s(toward * (end - points[-1]), limits.acceleration_rad_s2, period)
+            short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
+            short |= toward * (points[-1] - end) > 0
+            if not short.any():
+                rest = limit_path(wanted[k:], points[-1], velocity, limits, period)
+                return np.concatenate([points[1:], rest])
+            gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
+            braking = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)
+            inward = points[-1] + velocity * period - toward * braking * period**2
+            points.append(np.where(short, inward, limit_step(wanted[k], points[-1], velocity, limits, period)))
+        return np.array(points[1:])
+
+    def _report(
+        self, human: HumanPose, wanted: Array, path: Array, rate_hz: float, interventions: int
+    ) -> RetargetReport:
         """Compare the path with the human, frame by frame."""
         q = path[2 : 2 + len(wanted)]
         angles: dict[str, Array] = {}
@@ -165,13 +234,14 @@ def _let_rest(q: Array, seen: Array, before: Array) -> Array:
 
 
 def _spread(hit: NDArray[np.bool_], n: int) -> Array:
-    """(n,) 1 at frames that touch, falling to 0 over half a second around them."""
-    full = np.zeros(n, bool)
-    full[: len(hit)] = hit
-    if not full.any():  # only the settling frames touch: ease the end
-        full[-1] = True
-    distance = np.abs(np.arange(n)[:, None] - np.flatnonzero(full)[None]).min(1)
+    """(n,) 1 at frames that touch and two around them, falling to 0 over half a second."""
+    distance = np.abs(np.arange(n)[:, None] - np.minimum(np.flatnonzero(hit), n - 1)[None]).min(1)
     return np.clip(1 - (distance - 2) / 10, 0.0, 1.0)
+
+
+def _stretches(of: NDArray[np.bool_]) -> int:
+    """Number of separate runs of true."""
+    return int(of[0]) + int((of[1:] & ~of[:-1]).sum())
 
 
 def _angle_deg(a: Array, b: Array) -> Array:

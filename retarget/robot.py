@@ -11,7 +11,7 @@ import tomllib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import msgspec
 import numpy as np
@@ -279,13 +279,13 @@ def _refuse_doubles(path: Path, key: str, values: list[str]) -> None:
 def _refuse_radians(path: Path, value: Any, where: str) -> None:
     """A key in radians is a unit mistake worth its own message."""
     if isinstance(value, dict):
-        for key, inner in value.items():
-            if "_rad" in str(key):
-                right = str(key).replace("_rad", "_deg")
+        for key, inner in cast(dict[str, Any], value).items():
+            if "_rad" in key:
+                right = key.replace("_rad", "_deg")
                 raise RobotFileError(path, f"{where}{key}", "radians", f"degrees in this file: '{right}'")
             _refuse_radians(path, inner, f"{where}{key}.")
     elif isinstance(value, list):
-        for i, inner in enumerate(value):
+        for i, inner in enumerate(cast(list[Any], value)):
             _refuse_radians(path, inner, f"{where.rstrip('.')}[{i}].")
 
 

@@ -27,7 +27,7 @@ def solve_neck(kinematics: Kinematics, human: HumanPose, q_rad: Array) -> None:
     robot = kinematics.robot
     waist = tuple(j for r in ("waist_yaw", "waist_pitch") if (j := robot.joint_with_role(r)) is not None)
     chain = tuple(sorted(waist, key=lambda j: len(kinematics.chains[j])))
-    forward = human.head_R[..., 0]
+    forward = human.head_rotation[..., 0]
     for j in chain:  # into the frame of the robot's chest
         forward = rotate(kinematics.axes[j], -q_rad[:, j], forward)
     _write(kinematics, "head_yaw", _UP, np.arctan2(forward[:, 1], forward[:, 0]), q_rad)
