@@ -116,7 +116,8 @@ class Ledger:
         if not route.once:
             for event in entry.events:
                 self._send(route, event)
-            entry.routes.append(route)
+            if route not in entry.routes:
+                entry.routes.append(route)
         elif entry.events:
             self._send(route, entry.events[-1])
         else:

@@ -80,6 +80,7 @@ class Supervisor:
         self._children: list[Child] = []
         self._tasks: list[asyncio.Task[None]] = []
         self._asked_to_end = asyncio.Event()
+        self._ending = False
 
     async def run(self) -> int:
         """Serve until SIGTERM or SIGINT; 0 after a park, 3 when the robot was left in a latched fault or e-stop.
@@ -127,6 +128,7 @@ class Supervisor:
             if failure.done():
                 log.error("the front failed", exc_info=failure.exception())
             state = await front.park()
+            self._ending = True
             self._link.request(BusRequest.SHUTDOWN)
             await bus.end(BUS_END_TIMEOUT_S, terminate=False)
             failure.cancel()
@@ -167,6 +169,8 @@ class Supervisor:
     async def _watch_bus(self, front: Front, bus: Child) -> None:
         status = await bus.ended()
         front.performer.bus_alive = False
+        if self._ending:
+            return
         log.error("the bus process ended with status %d; servos that have a bus watchdog stop by it", status)
 
     async def _keep_generator(self, client: GeneratorClient, endpoint: str) -> None:

@@ -1,0 +1,86 @@
+"""Motions built from kinematics, and a peer that serves them over the generator's protocol: for tests of the front.
+
+The peer speaks for a model whose answer is known; the daemon under test is the real one.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+import numpy as np
+import zmq
+
+from daemon.generation import Generated
+from daemon.generator import serve
+from mmm_core.motion import Motion
+from mmm_core.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
+
+FPS = 20.0
+DOWN = {"hip": (1, -0.3, 0), "knee": (0, -1, 0), "ankle": (0, -1, 0), "foot": (0, -0.2, 1), "collar": (0.6, 0.8, 0),
+        "shoulder": (1, 0, 0), "elbow": (0.1, -1, 0), "wrist": (0, -1, 0.1)}  # fmt: skip
+
+
+def raised_arm(text: str = "raise your right arm", seconds: float = 1.0, angle_rad: float = 1.2, side: str = "right") -> Motion:
+    """A person who stands and lifts one straight arm sideways and lowers it, on a minimum-jerk path."""
+    T = max(2, round(seconds * FPS))
+    phase = np.linspace(0, 1, T)
+    up = 1 - np.abs(2 * phase - 1)
+    lift = angle_rad * (10 * up**3 - 15 * up**4 + 6 * up**5)
+    joints = np.zeros((T, 22, 3))
+    joints[:, 0, 1] = 0.95
+    for j, p in enumerate(PARENTS[1:], 1):
+        name_side, _, part = JOINT_NAMES[j].partition("_")
+        direction = np.tile(np.array(DOWN[part] if part else (0, 1, 0.05), float), (T, 1))
+        if part in ("elbow", "wrist") and name_side == side:
+            direction = np.stack([np.sin(0.1 + lift), -np.cos(0.1 + lift), 0.1 * np.ones(T)], -1)
+        if name_side == "right":
+            direction[:, 0] *= -1
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        joints[:, j] = joints[:, p] + BONE_LENGTHS_M[j] * direction
+    return motion_of(joints, text)
+
+
+def motion_of(joints: np.ndarray, text: str, status: str = "accepted", score: float = 0.9) -> Motion:
+    T = len(joints)
+    return Motion(
+        joints_m=joints.astype(np.float32), fps=FPS, head_quat_wxyz=np.tile(np.array([1, 0, 0, 0], np.float32), (T, 1)),
+        forearm_twist_rad=np.zeros((T, 2), np.float32), features=np.zeros((T, 263), np.float32),
+        tokens=np.zeros(max(1, T // 4), np.int32), text=text, seed=0, status=status, scope_score=score,
+    )  # fmt: skip
+
+
+def generate(text: str, seed: int, seconds: float | None) -> Generated:
+    """Raises an arm for any text but a few that misbehave on purpose."""
+    if "somersault" in text:
+        return Generated(motion_of(np.zeros((0, 22, 3)), text, "rejected", 0.1), "", "needs the legs", {"text": 1.0}, "k")
+    if "broken" in text:
+        raise ValueError("the model broke")
+    if "slow" in text:
+        time.sleep(0.3)
+    if "short" in text:
+        return Generated(motion_of(np.zeros((1, 22, 3)), text), "", "", {}, "k")
+    side = "left" if "left" in text else "right"
+    motion = raised_arm(text, seconds or 0.8, 0.8, side)
+    return Generated(motion, f"raise the {side} arm (0.90)", "", {"decode": 2.0}, "kinematic")
+
+
+class KinematicGenerator:
+    """Serves `generate` at an endpoint, in a thread."""
+
+    def __init__(self, endpoint: str, answer: Callable[[str, int, float | None], Generated] = generate) -> None:
+        self.endpoint = endpoint
+        self._context = zmq.Context()
+        socket = self._context.socket(zmq.ROUTER)
+        socket.bind(endpoint)
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(
+            target=serve, args=(socket, answer, "kinematic", lambda: not self._stopping.is_set()), daemon=True
+        )
+        self._thread.start()
+
+    def close(self) -> None:
+        self._stopping.set()
+        self._thread.join(5)
+        self._context.destroy(linger=0)

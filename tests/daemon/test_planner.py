@@ -1,0 +1,196 @@
+"""Plans at the bus, in virtual time: taking over at any instant keeps every limit and never jumps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from daemon.bus.servo_bus import ServoBus
+from daemon.bus_view import BusView
+from daemon.planner import Planner
+from daemon.shared import BusLink, BusRequest, BusState
+from daemon.streamer import Streamer
+from retarget.limits import JointLimits
+from retarget.robot import load_robot
+from sim.bus import SimBus
+from sim.clock import VirtualClock
+from sim.port import SimPort
+from tests.daemon.kinematic import raised_arm
+
+ROBOT = load_robot("reference")
+RIGHT = raised_arm("right", 1.0, 1.0, "right")
+LEFT = raised_arm("left", 0.8, 0.9, "left")
+PERIOD_S = ROBOT.bus.period_s
+
+
+class Bench:
+    """Front half and bus half of the daemon on one virtual clock."""
+
+    def __init__(self, queue_s: float = 0.1) -> None:
+        self.clock = VirtualClock()
+        self.sim = SimBus(ROBOT)
+        port = SimPort(self.sim, self.clock)
+        self.link = BusLink.create(ROBOT.n_joints)
+        self.streamer = Streamer(ROBOT, ServoBus(port, ROBOT.servos, self.clock), self.link, self.clock, watch_front=False)
+        self.view = BusView(self.link, ROBOT)
+        self.planner = Planner(ROBOT, self.link, self.view, queue_s)
+        self.records: list[np.ndarray] = []
+
+    def cycle(self, n: int = 1, pump: bool = True) -> None:
+        for _ in range(n):
+            due_s = self.clock.now_s() + PERIOD_S
+            self.streamer.cycle()
+            self.clock.sleep_until(due_s)
+            before = self.view.index
+            self.planner.read_cycles()
+            self.records += list(self.link.cycles_since(before)[0])
+            if pump:
+                self.planner.pump()
+
+    def arm(self) -> None:
+        self.link.request(BusRequest.ARM)
+        for _ in range(2000):
+            self.cycle()
+            if self.view.state is BusState.HOLDING:
+                return
+        raise AssertionError(f"not armed: {self.view.state}, {self.link.text}")
+
+    def play(self, motion, plan_name: str = "c", retarget_cycles: int = 2):
+        """Take over as the performer does; retargeting takes some bus cycles meanwhile."""
+        start = self.planner.hand_over()
+        path = self.planner.retarget(motion, start)
+        self.cycle(retarget_cycles)
+        assert not self.planner.hand_over_missed
+        return self.planner.commit(path, self.planner.new_plan_id(), plan_name, self.planner.epoch, 0)
+
+    def finish(self) -> None:
+        for _ in range(1500):
+            self.cycle()
+            if self.view.state is BusState.HOLDING:
+                return
+        raise AssertionError(f"still {self.view.state}")
+
+    def goals(self) -> np.ndarray:
+        return np.array([r["goal_rad"] for r in self.records])
+
+    def close(self) -> None:
+        self.link.close()
+
+
+@pytest.fixture
+def bench():
+    made = Bench()
+    yield made
+    made.close()
+
+
+def assert_within_limits(bench: Bench) -> None:
+    limits = JointLimits.of(ROBOT)
+    goals = bench.goals()[-1500:]
+    speed = np.abs(np.diff(goals, axis=0)) / PERIOD_S
+    acceleration = np.abs(np.diff(goals, n=2, axis=0)) / PERIOD_S**2
+    assert (speed <= limits.velocity_rad_s * (1 + 1e-6)).all()
+    assert (acceleration <= limits.acceleration_rad_s2 * (1 + 1e-6)).all()
+    report = bench.sim.audit.report()
+    assert report["violations"] == 0, report
+
+
+def test_a_motion_is_played_to_its_end_unchanged_by_the_gate(bench):
+    bench.arm()
+    plan = bench.play(RIGHT)
+    bench.finish()
+    assert plan.played and plan.all_pushed
+    done = plan.statistics.done(plan.path.report, len(plan.q_rad))
+    assert done.frames == len(plan.q_rad)
+    assert done.gate_clipped_frames == 0 and done.underruns == 0 and done.log_dropped == 0
+    assert done.duration_s == pytest.approx(len(plan.q_rad) * PERIOD_S, abs=2 * PERIOD_S)
+    assert 0 < done.peak_speed_share <= 1.0 + 1e-9
+    assert done.first_motion_ms is not None
+    assert_within_limits(bench)
+
+
+def test_about_the_asked_time_of_setpoints_is_in_hand(bench):
+    bench.arm()
+    bench.play(RIGHT)
+    bench.cycle(20)
+    assert 8 <= bench.link.queued_frames <= 10
+
+
+@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.lists(st.tuples(st.integers(1, 90), st.integers(0, 3)), min_size=1, max_size=4))
+def test_taking_over_at_any_instant_keeps_limits_and_the_gate_changes_nothing(instants):
+    bench = Bench()
+    try:
+        bench.arm()
+        bench.play(RIGHT)
+        for k, (wait, retarget_cycles) in enumerate(instants):
+            bench.cycle(wait)
+            bench.play((LEFT, RIGHT)[k % 2], retarget_cycles=retarget_cycles)
+        bench.finish()
+        played = [r for r in bench.records if r["plan_id"] > 0]
+        assert not any(r["underrun"] for r in played)
+        assert not any(r["clipped"].any() for r in played)
+        assert_within_limits(bench)
+    finally:
+        bench.close()
+
+
+def test_velocity_goes_over_without_a_step(bench):
+    """The first frame of the new plan moves as fast as the last of the old one, but for what one period may change."""
+    bench.arm()
+    bench.play(RIGHT)
+    bench.cycle(25)
+    plan = bench.play(LEFT)
+    bench.cycle(60)
+    first = next(i for i, r in enumerate(bench.records) if r["plan_id"] == plan.plan_id)
+    before, after = bench.records[first - 1]["velocity_rad_s"], bench.records[first]["velocity_rad_s"]
+    assert np.abs(before).max() > 0.3  # it does move
+    assert (np.abs(after - before) <= JointLimits.of(ROBOT).acceleration_rad_s2 * PERIOD_S * (1 + 1e-6)).all()
+
+
+def test_after_a_stop_nothing_of_the_old_plan_is_played(bench):
+    bench.arm()
+    plan = bench.play(RIGHT)
+    bench.cycle(30)
+    bench.link.request(BusRequest.STOP)
+    bench.cycle(1)
+    bench.finish()
+    held = bench.goals()[-1]
+    bench.cycle(50)  # the pump goes on; nothing of the stopped plan comes
+    assert np.array_equal(bench.goals()[-1], held)
+    assert not plan.played and not bench.planner.running
+    bench.play(LEFT)  # starts from where it was stopped
+    bench.finish()
+    assert_within_limits(bench)
+
+
+def test_a_late_front_brakes_and_the_next_motion_starts_from_there(bench):
+    bench.arm()
+    bench.play(RIGHT)
+    bench.cycle(20)
+    start = bench.planner.hand_over()
+    path = bench.planner.retarget(LEFT, start)
+    bench.cycle(60, pump=True)  # retargeting takes far longer than foreseen
+    assert bench.planner.hand_over_missed
+    for _ in range(300):
+        bench.cycle()
+        if not bench.records[-1]["velocity_rad_s"].any():
+            break
+    start = bench.planner.hand_over()
+    assert np.array_equal(start.position_rad, bench.view.goal_rad) and not start.velocity_rad_s.any()
+    path = bench.planner.retarget(LEFT, start)
+    bench.planner.commit(path, bench.planner.new_plan_id(), "c", bench.planner.epoch, 0)
+    bench.finish()
+    assert_within_limits(bench)
+
+
+def test_giving_up_lets_the_running_plan_end(bench):
+    bench.arm()
+    plan = bench.play(RIGHT)
+    bench.cycle(20)
+    bench.planner.hand_over()
+    bench.planner.give_up()
+    bench.finish()
+    assert plan.played

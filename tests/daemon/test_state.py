@@ -1,0 +1,100 @@
+"""The robot's states: every pair of state and trigger, the latches, and that what is not in the table does not happen."""
+
+from __future__ import annotations
+
+import pytest
+
+from daemon.shared import BusState
+from daemon.state import (
+    COMMANDS,
+    REPORTS,
+    TRANSITIONS,
+    CommandRefusedError,
+    ImpossibleTransitionError,
+    RobotState,
+    StateMachine,
+    Trigger,
+)
+
+S, T = RobotState, Trigger
+
+
+def machine_in(state: RobotState) -> StateMachine:
+    machine = StateMachine()
+    machine.state = state
+    return machine
+
+
+@pytest.mark.parametrize("trigger", REPORTS)
+@pytest.mark.parametrize("state", S)
+def test_reports_move_as_the_table_says_or_are_impossible(state, trigger):
+    machine = machine_in(state)
+    if trigger in TRANSITIONS[state]:
+        assert machine.report(trigger) == (TRANSITIONS[state][trigger] is not state)
+        assert machine.state is TRANSITIONS[state][trigger]
+    else:
+        with pytest.raises(ImpossibleTransitionError):
+            machine.report(trigger)
+        assert machine.state is state
+
+
+@pytest.mark.parametrize("trigger", COMMANDS)
+@pytest.mark.parametrize("state", S)
+def test_commands_never_move_the_state_themselves(state, trigger):
+    machine = machine_in(state)
+    if trigger in TRANSITIONS[state]:
+        assert machine.check(trigger) is TRANSITIONS[state][trigger]
+    else:
+        with pytest.raises(CommandRefusedError) as caught:
+            machine.check(trigger)
+        assert caught.value.do and trigger.value in str(caught.value)
+    assert machine.state is state
+
+
+@pytest.mark.parametrize("state", S)
+def test_stop_and_estop_are_allowed_everywhere(state):
+    machine_in(state).check(T.STOP)
+    machine_in(state).check(T.ESTOP)
+
+
+def test_torque_comes_only_by_arming():
+    """From limp, fault and e-stop no report leads to a state with torque but arming (or its end, when it was short)."""
+    armed = {S.IDLE, S.MOVING, S.HOLDING, S.PARKING}
+    for state in (S.FAULT, S.ESTOP):
+        assert not armed & {TRANSITIONS[state][t] for t in REPORTS if t in TRANSITIONS[state]}
+    assert {t for t in REPORTS if TRANSITIONS[S.LIMP].get(t) in armed} == {T.BUS_HOLDING}
+
+
+def test_latches_open_only_by_reset():
+    for state in (S.FAULT, S.ESTOP):
+        leaving = {t for t in REPORTS if TRANSITIONS[state].get(t, state) not in (S.FAULT, S.ESTOP)}
+        assert leaving == {T.BUS_LIMP}  # what the bus process reports after a reset
+        assert machine_in(state).check(T.RESET) is S.LIMP
+        for command in (T.SAY, T.ARM, T.PARK):
+            with pytest.raises(CommandRefusedError, match="mmmd reset"):
+                machine_in(state).check(command)
+
+
+def test_every_bus_state_has_a_report():
+    assert {T[f"BUS_{state.name}"] for state in BusState} | {T.BUS_LOST} == set(REPORTS)
+
+
+def test_every_state_is_reached():
+    assert {following for row in TRANSITIONS.values() for following in row.values()} == set(S)
+
+
+def test_after_an_estop_a_text_does_not_arm():
+    machine = StateMachine()
+    machine.check(T.SAY)
+    machine.report(T.BUS_ESTOP)
+    machine.report(T.BUS_LIMP)
+    with pytest.raises(CommandRefusedError, match="mmmd arm"):
+        machine.check(T.SAY)
+    machine.armed_by_person()
+    machine.check(T.SAY)
+
+
+def test_without_auto_arm_the_first_text_waits_for_arm():
+    machine = StateMachine(auto_arm=False)
+    with pytest.raises(CommandRefusedError, match="mmmd arm"):
+        machine.check(T.SAY)

@@ -1,0 +1,129 @@
+"""Frames to requests and back; every bad frame gives one error that says what was asked, found, allowed and to do."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from daemon import wire
+from daemon.wire_schemas import schemas, text_of
+
+DOCS = Path(__file__).parents[2] / "docs" / "wire"
+
+GOOD_CMD = [
+    ("plain text", b"wave with your right hand", wire.Say(text="wave with your right hand")),
+    ("plain text, spaces around", b"  nod twice \n", wire.Say(text="nod twice")),
+    ("plain text, not ASCII", "grüße".encode(), wire.Say(text="grüße")),
+    ("plain text that is JSON, but no object", b"42", wire.Say(text="42")),
+    ("least JSON", b'{"type": "say", "text": "bow"}', wire.Say(text="bow")),
+    (
+        "all fields",
+        b'{"v": 1, "id": "a", "seq": 3, "t_mono": 1.5, "type": "say", "text": "bow", "seed": 7, "seconds": 2}',
+        wire.Say(v=1, id="a", seq=3, t_mono=1.5, text="bow", seed=7, seconds=2.0),
+    ),
+    ("status", b'{"type":"status","id":"s"}', wire.Status(id="s")),
+    ("cancel", b'{"type":"cancel","command":"a"}', wire.Cancel(command="a")),
+]
+
+BAD_CMD = [
+    ("empty frame", b"", "empty_text", ["1 to 2000"]),
+    ("only spaces", b" \n\t", "empty_text", ["1 to 2000"]),
+    ("10,000 characters", b"a" * 10_000, "text_too_long", ["10000", "2000"]),
+    ("too many bytes", b"a" * 70_000, "too_large", ["70000", "65536"]),
+    ("not UTF-8", b"wave \xff\xfe", "not_utf8", ["0xff", "position 5"]),
+    ("cut off JSON", b'{"type": "say", "text": "wa', "bad_json", ["JSON"]),
+    ("a JSON list", b'["say", "wave"]', "bad_json", ["list"]),
+    ("deep nesting", b"[" * 60_000, "bad_json", ["nested"]),
+    ("no type", b'{"text": "wave"}', "unknown_type", ["no 'type'", "say"]),
+    ("unknown type", b'{"type": "dance", "id": "x"}', "unknown_type", ["'dance'", "say, cancel, status"]),
+    ("type of another kind", b'{"type": 5}', "unknown_type", ["5"]),
+    ("a ctl verb on cmd", b'{"type": "stop"}', "unknown_type", ["ctl socket"]),
+    ("unknown field", b'{"type": "say", "text": "wave", "speed": 3}', "unknown_field", ["'speed'", "seconds"]),
+    ("empty text", b'{"type": "say", "text": ""}', "empty_text", ["1 to 2000"]),
+    ("long text", b'{"type": "say", "text": "' + b"a" * 10_000 + b'"}', "text_too_long", ["10000"]),
+    ("no text", b'{"type": "say"}', "bad_value", ["text"]),
+    ("text of another kind", b'{"type": "say", "text": 5}', "bad_value", ["str", "int"]),
+    ("seed below 0", b'{"type": "say", "text": "wave", "seed": -1}', "bad_value", ["seed"]),
+    ("seconds too many", b'{"type": "say", "text": "wave", "seconds": 100}', "bad_value", ["seconds", "9.8"]),
+    ("seconds NaN", b'{"type": "say", "text": "wave", "seconds": NaN}', "bad_json", ["JSON"]),
+    ("another version", b'{"v": 2, "type": "say", "text": "wave", "id": "x"}', "version", ["version 2", "version 1"]),
+    ("a version that is text", b'{"v": "1.0", "type": "say", "text": "wave"}', "version", ["'1.0'", "version 1"]),
+    ("a version that is true", b'{"v": true, "type": "say", "text": "wave"}', "version", ["True"]),
+    ("an id too long", b'{"type": "status", "id": "' + b"i" * 200 + b'"}', "bad_value", ["128"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("frame", "request_"), [row[1:] for row in GOOD_CMD], ids=[row[0] for row in GOOD_CMD])
+def test_good_frames(frame, request_):
+    assert wire.decode_cmd(frame) == request_
+    assert wire.decode_cmd(wire.encode(request_)) == request_
+
+
+@pytest.mark.parametrize(("frame", "code", "says"), [row[1:] for row in BAD_CMD], ids=[row[0] for row in BAD_CMD])
+def test_bad_frames_give_one_error_that_helps(frame, code, says):
+    with pytest.raises(wire.WireError) as caught:
+        wire.decode_cmd(frame)
+    error = caught.value
+    assert error.code == code
+    assert all(part in str(error) for part in says), str(error)
+    event = wire.error_event(error)
+    assert event.asked and event.found and event.allowed and event.do
+    assert wire.decode_event(wire.encode(event)) == event
+
+
+def test_an_error_carries_the_id_of_its_request():
+    with pytest.raises(wire.WireError) as caught:
+        wire.decode_cmd(b'{"v": 2, "type": "say", "text": "wave", "id": "mine"}')
+    assert wire.error_event(caught.value).id == "mine"
+
+
+@pytest.mark.parametrize("kind", wire.CTL_TYPES)
+def test_ctl_takes_json_and_bare_verbs(kind):
+    verb = kind.__struct_config__.tag
+    assert wire.decode_ctl(verb.encode()) == kind()
+    assert wire.decode_ctl(json.dumps({"type": verb, "id": "i"}).encode()) == kind(id="i")
+
+
+@pytest.mark.parametrize("frame", [b"", b"wave", b'{"type": "say", "text": "wave"}', b'{"type": "stop", "now": true}'])
+def test_ctl_refuses_everything_else(frame):
+    with pytest.raises(wire.WireError):
+        wire.decode_ctl(frame)
+
+
+@given(st.binary(max_size=300))
+def test_any_bytes_either_decode_or_raise_wire_error(frame):
+    for decode in (wire.decode_cmd, wire.decode_ctl, wire.decode_event):
+        try:
+            decode(frame)
+        except wire.WireError as error:
+            assert error.do
+
+
+FIELDS = st.sampled_from(["type", "v", "id", "text", "seed", "seconds", "x"])
+VALUES = st.sampled_from(["say", "status", "cancel", "", "a", " ", None, True, 0, 1, 2, -1, 0.5, 1e300, 2**70, [], {}])
+
+
+@given(st.dictionaries(FIELDS, VALUES))
+def test_any_object_either_decodes_or_raises_wire_error(fields):
+    try:
+        request = wire.decode_cmd(json.dumps(fields).encode())
+    except wire.WireError:
+        return
+    assert request.v == wire.PROTOCOL_VERSION
+
+
+def test_an_event_of_a_later_minor_version_is_still_read():
+    event = wire.Cancelled(plan_id=3, by="stop", id="a")
+    frame = wire.encode(event)[:-1] + b', "more": [1, 2]}'
+    assert wire.decode_event(frame) == event
+
+
+def test_published_schemas_are_those_of_the_code():
+    """`python -m daemon.wire_schemas docs/wire` writes them."""
+    expected = {name: text_of(schema) for name, schema in schemas().items()}
+    found = {path.name: path.read_text("utf-8") for path in DOCS.glob("*.schema.json")}
+    assert found == expected
