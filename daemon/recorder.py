@@ -10,6 +10,7 @@ import argparse
 import logging
 import signal
 import sys
+import time
 from pathlib import Path
 
 import zmq
@@ -21,6 +22,8 @@ from retarget.robot import load_robot
 log = logging.getLogger(__name__)
 
 POLL_S = 0.1
+FLUSH_S = 1.0
+"""How much of a run a kill may cost."""
 EVENT_QUEUE = 2000
 
 
@@ -40,7 +43,7 @@ def main() -> int:
     events = context.socket(zmq.PULL)
     events.setsockopt(zmq.RCVHWM, EVENT_QUEUE)
     events.bind(arguments.events)
-    index, dropped = link.n_cycles, 0
+    index, dropped, flushed_s = link.n_cycles, 0, time.monotonic()
     try:
         with Path(arguments.out).open("wb") as f:
             writer = LogWriter(f, robot)
@@ -58,7 +61,9 @@ def main() -> int:
                         break
                     topic, payload = events.recv_multipart()
                     writer.event(topic.decode(), payload)
-                f.flush()
+                if time.monotonic() - flushed_s >= FLUSH_S:
+                    flushed_s = time.monotonic()
+                    writer.flush()
                 if last_round:
                     break
             writer.finish()

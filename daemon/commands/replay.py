@@ -76,7 +76,7 @@ def replay(
         verdict = "the servos received the same goals" if result.identical else "the servos received OTHER goals"
         console.print(f"{log}: {result.same} of {result.goals} goal sets identical: {verdict}")
         if found.is_cut:
-            console.print("the log is cut off; everything up to its last whole chunk was played")
+            console.print(f"{found.problem} and played")
         if result.first_difference:
             console.print(f"first difference: {result.first_difference}")
         if audit is not None:
