@@ -36,7 +36,8 @@ class SimPort:
         t_s = self._present()
         until = t_s + max(0.0, timeout_s)
         if not self._arriving or self._arriving[0][0] > until:
-            self._clock.sleep_until(until + self._start_s)
+            if timeout_s > 0:
+                self._clock.sleep_until(until + self._start_s)
             return b""
         # Wait for everything that comes in time: fewer wake-ups, and the caller asks for whole groups anyway.
         wanted, last_s = 0, t_s

@@ -23,7 +23,7 @@ _BITS_PER_BYTE = 10  # 8 data bits, start, stop
 _MARGIN_S = 0.004
 """On top of wire time: scheduling on a shared machine and one USB frame."""
 _GOAL_POSITION_ADDRESS, _GOAL_POSITION_BYTES = 116, 4
-_PING_TRIES = 3
+_TRIES = 3
 
 
 @dataclass
@@ -75,7 +75,7 @@ class ServoBus:
             LinkLostError: the device is gone.
         """
         request = self._read_request if goal_ticks is None else self._goal_packet(goal_ticks) + self._read_request
-        self._decoder.clear()
+        self._drop_late_answers()
         self.port.write(request)
         deadline = self._clock.now_s() + self._wire_s(len(request) + self._fast.n_bytes) + _MARGIN_S
         raw = b""
@@ -107,13 +107,12 @@ class ServoBus:
         """Model number and firmware of each servo that answers."""
         found: dict[int, tuple[int, int]] = {}
         for servo_id in self.ids:
-            for _ in range(_PING_TRIES):
-                try:
-                    answer = self._ask(packet.ping(servo_id), servo_id, 3)
-                except LinkTimeoutError:
-                    continue
+            try:
+                answer = self._ask(packet.ping(servo_id), servo_id, 3)
+            except LinkTimeoutError:
+                pass
+            else:
                 found[servo_id] = (int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2])
-                break
             if servo_id == self.ids[3 % len(self.ids)] and not found:
                 break  # the first four are silent: wrong baud or no power; do not wait for the rest
         return found
@@ -188,20 +187,37 @@ class ServoBus:
         reading.position_tick[rows] = np.ascontiguousarray(data[:, 6:10]).view("<i4")[:, 0]
 
     def _ask(self, request: bytes, servo_id: int, answer_bytes: int) -> Packet:
-        """Send one instruction and return the servo's answer."""
-        self._decoder.clear()
+        """Send one instruction and return the servo's answer; asked again when it stays silent.
+
+        Only instructions that may be repeated are sent this way.
+        """
+        for _ in range(_TRIES):
+            answer = self._ask_once(request, servo_id, answer_bytes)
+            if answer is not None:
+                return answer
+        raise LinkTimeoutError(f"servo {servo_id} did not answer instruction {request[7]:#04x} on {self.port.name}")
+
+    def _ask_once(self, request: bytes, servo_id: int, answer_bytes: int) -> Packet | None:
+        self._drop_late_answers()
         self.port.write(request)
         deadline = self._clock.now_s() + self._wire_s(len(request) + 11 + answer_bytes) + 2 * _MARGIN_S
         while (left := deadline - self._clock.now_s()) > 0:
             for p in self._decoder.feed(self.port.read(256, left)):
-                if p.servo_id == servo_id and p.instruction == Instruction.STATUS:
-                    code = p.error & ~packet.ALERT_BIT
-                    if code:
-                        name = ErrorCode(code).name.lower().replace("_", " ") if code in ErrorCode else f"error {code}"
-                        raise ServoFaultError(servo_id, f"instruction {request[7]:#04x}", name)
-                    if len(p.parameters) >= answer_bytes:
-                        return p
-        raise LinkTimeoutError(f"servo {servo_id} did not answer instruction {request[7]:#04x} on {self.port.name}")
+                if p.servo_id != servo_id or p.instruction != Instruction.STATUS:
+                    continue
+                code = p.error & ~packet.ALERT_BIT
+                if code:
+                    name = ErrorCode(code).name.lower().replace("_", " ") if code in ErrorCode else f"error {code}"
+                    raise ServoFaultError(servo_id, f"instruction {request[7]:#04x}", name)
+                if len(p.parameters) == answer_bytes:  # an answer to something else has another length
+                    return p
+        return None
+
+    def _drop_late_answers(self) -> None:
+        """Throw away what arrived after its deadline, or this cycle would read the last one's answers for ever."""
+        while self.port.read(4096, 0.0):
+            pass
+        self._decoder.clear()
 
     def _item(self, servo_id: int, name: str) -> Item:
         table = CONTROL_TABLES[self.servos[self._row[servo_id]].model.model_number]

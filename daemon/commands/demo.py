@@ -1,0 +1,92 @@
+"""`mmmd demo`: see it work, without hardware."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+TEXTS = ("wave with your right hand", "raise both arms", "nod twice")
+
+
+def demo(
+    *texts: Annotated[str, tyro.conf.arg(metavar="TEXT")], robot: str = "reference", out: Path = Path("out/demo")
+) -> int:
+    """Start simulated servos on a tty and the daemon on them, send three texts, draw and replay what happened.
+
+    The third text is sent while the robot still moves for the second. Writes run.mcap, contact_sheet.png, joints.png,
+    audit.json and the logs of both processes. Takes under a minute.
+
+    Example: mmmd demo "clap three times" "cross your arms" "look to the left" --robot op3
+
+    Args:
+        texts: three commands of your own.
+        robot: name of a packaged robot, or the path of a robot.toml.
+        out: folder for what it writes.
+    """
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn
+
+    from daemon.client import Client
+    from daemon.demo import Shown, audited_plans, child, describe, draw, end, free_endpoints, perform, read_run, replayed
+    from daemon.demo import wait_until_ready
+    from daemon.errors import CommandError
+    from retarget.robot import load_robot
+
+    if texts and len(texts) != len(TEXTS):
+        raise CommandError(f"{len(texts)} texts; the demo takes {len(TEXTS)}, or none for its own")
+    console = Console(highlight=False)
+    model = load_robot(robot)
+    out.mkdir(parents=True, exist_ok=True)
+    link, log_file, audit_file = out / "servos", out / "run.mcap", out / "audit.json"
+    log_file.unlink(missing_ok=True)  # of an earlier demo
+    shown = [Shown(text, seed) for seed, text in enumerate(texts or TEXTS)]
+    endpoints = free_endpoints()
+    with Progress(SpinnerColumn(), TextColumn("{task.description}"), console=console, transient=True) as bar:
+        task = bar.add_task("starting the simulated robot and the daemon")
+        with child(["sim", "--robot", robot, "--link", str(link), "--audit", str(audit_file)], out / "sim.log") as servos:
+            _wait_for(link)
+            bus = f"dxl://{link}?baud={model.bus.baud}"
+            ends = ["--cmd", endpoints.cmd, "--ctl", endpoints.ctl, "--pub", endpoints.pub]
+            command = ["run", "--robot", robot, "--bus", bus, "--log", str(log_file), *ends]
+            with child(command, out / "daemon.log") as daemon, Client(endpoints) as client:
+                wait_until_ready(client, daemon, out / "daemon.log")
+                bar.update(task, description="arming: torque on over the measured pose, then a slow way to rest")
+                client.arm()
+                bar.update(task, description="three texts, the third while the robot still moves")
+                perform(endpoints, shown)
+                bar.update(task, description="parking")
+                daemon_status = end(daemon)
+            end(servos)
+        bar.update(task, description="drawing and replaying")
+        log = read_run(log_file)
+        audited = audited_plans(log, model)
+        pictures = draw(shown, log, model, out)
+        replay = replayed(log_file)
+    for one in shown:
+        for line in describe(one, audited):
+            console.print(line)
+    audit = json.loads(audit_file.read_text("utf-8"))
+    same = "the servos received the same goals" if replay["identical"] else f"DIFFERENT: {replay['first_difference']}"
+    console.print(f"parked, daemon ended with status {daemon_status}")
+    console.print(
+        f"whole run: {audit['violations']} limit violations and {audit['self_contacts']} self-contacts in {audit['goals']} goals"
+    )
+    console.print(f"replay: {replay['same']} of {replay['goals']} goal sets: {same}")
+    console.print("written: " + ", ".join(str(p) for p in (log_file, *pictures, audit_file)))
+    good = daemon_status == 0 and replay["identical"] and not audit["violations"] and not audit["self_contacts"]
+    return 0 if good and all(one.accepted is not None for one in shown) else 1
+
+
+def _wait_for(link: Path) -> None:
+    import time
+
+    from daemon.errors import DaemonError
+
+    deadline = time.monotonic() + 20
+    while not link.exists():
+        if time.monotonic() > deadline:
+            raise DaemonError(f"the simulated robot did not come up; see {link.parent / 'sim.log'}")
+        time.sleep(0.05)

@@ -1,0 +1,218 @@
+"""The main job, shown: simulated servos on a tty, the daemon on them, three texts, pictures, the log replayed."""
+
+from __future__ import annotations
+
+import json
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from daemon.client import Client
+from daemon.config import Endpoints
+from daemon.errors import DaemonError
+from daemon.mcap_log import Log, read_log
+from daemon.wire import Accepted, AnyEvent, Cancelled, Done, Progress, Refusal, Say
+from retarget.robot import RobotModel
+from sim.audit import Audit
+
+START_TIMEOUT_S = 60.0
+STOP_TIMEOUT_S = 40.0
+INTERRUPT_AFTER_S = 1.3
+
+
+@dataclass
+class Shown:
+    """What happened to one text."""
+
+    text: str
+    seed: int
+    events: list[AnyEvent] = field(default_factory=list)
+
+    @property
+    def accepted(self) -> Accepted | None:
+        """The event that took it, None when it was refused."""
+        return next((e for e in self.events if isinstance(e, Accepted)), None)
+
+    @property
+    def end(self) -> AnyEvent | None:
+        """The event that ended it."""
+        return self.events[-1] if self.events else None
+
+
+def free_endpoints() -> Endpoints:
+    """Three loopback ports that nobody uses."""
+    ports: list[int] = []
+    held: list[socket.socket] = []
+    for _ in range(3):
+        s = socket.socket()
+        s.bind(("127.0.0.1", 0))
+        held.append(s)
+        ports.append(s.getsockname()[1])
+    for s in held:
+        s.close()
+    return Endpoints(*(f"tcp://127.0.0.1:{port}" for port in ports))
+
+
+@contextmanager
+def child(arguments: list[str], log: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """A subcommand of mmmd in its own process; ended at the latest when the block ends."""
+    with log.open("wb") as f:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "daemon.cli", *arguments], stdout=f, stderr=subprocess.STDOUT, start_new_session=True
+        )
+        try:
+            yield process
+        finally:
+            end(process)
+
+
+def end(process: subprocess.Popen[bytes]) -> int:
+    """Ask a child to end (it parks), wait, and kill it only when it does not; its exit status."""
+    if process.poll() is None:
+        process.send_signal(signal.SIGTERM)
+        try:
+            process.wait(STOP_TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait(5)
+    return process.returncode
+
+
+def wait_until_ready(client: Client, process: subprocess.Popen[bytes], log: Path) -> None:
+    """Wait for the daemon and its generator.
+
+    Raises:
+        DaemonError: it ended, or is not ready in time.
+    """
+    deadline = time.monotonic() + START_TIMEOUT_S
+    while time.monotonic() < deadline:
+        if process.poll() is not None:
+            raise DaemonError(f"the daemon ended: {log.read_text('utf-8', 'replace')[-2000:]}")
+        try:
+            if client.status().generator.startswith("ready"):
+                return
+        except DaemonError:
+            pass
+        time.sleep(0.1)
+    raise DaemonError(f"the daemon was not ready within {START_TIMEOUT_S:.0f} s; its log: {log}")
+
+
+def perform(client_endpoints: Endpoints, shown: list[Shown]) -> None:
+    """Send the texts: the second waits for the first, the third comes while the second still moves."""
+    threads: list[threading.Thread] = []
+    for i, one in enumerate(shown):
+        thread = threading.Thread(target=_say, args=(client_endpoints, one))
+        thread.start()
+        threads.append(thread)
+        if i == 1:
+            _wait_for_motion(one)
+            time.sleep(INTERRUPT_AFTER_S)
+        else:
+            thread.join(60)
+    for thread in threads:
+        thread.join(60)
+
+
+def _wait_for_motion(one: Shown) -> None:
+    deadline = time.monotonic() + 20
+    while time.monotonic() < deadline and not any(isinstance(e, Progress | Refusal) for e in one.events):
+        time.sleep(0.02)
+
+
+def _say(endpoints: Endpoints, one: Shown) -> None:
+    with Client(endpoints) as client:
+        for event in client.events_of(Say(id=f"demo-{one.seed}-{one.text}", text=one.text, seed=one.seed)):
+            one.events.append(event)
+
+
+def audited_plans(log: Log, robot: RobotModel) -> dict[int, tuple[int, int]]:
+    """Goals and violations of each plan in a log, by the simulator's audit."""
+    audit = Audit(robot)
+    counts: dict[int, tuple[int, int]] = {}
+    torque = False
+    for cycle in log.cycles:
+        before = (audit.goals, sum(audit.violations.values()))
+        for servo, tick, present in zip(robot.servos, cycle.goal_tick, cycle.present_tick, strict=True):
+            if cycle.torque != torque:
+                audit.torque(0.0, servo.servo_id, cycle.torque, tick, present)
+            if cycle.torque:
+                audit.goal(0.0, servo.servo_id, tick, True)
+        torque = cycle.torque
+        goals, violations = counts.get(cycle.plan_id, (0, 0))
+        after = (audit.goals, sum(audit.violations.values()))
+        counts[cycle.plan_id] = (goals + after[0] - before[0], violations + after[1] - before[1])
+    return counts
+
+
+def describe(one: Shown, audited: dict[int, tuple[int, int]]) -> list[str]:
+    """Lines for people about one text."""
+    accepted, last = one.accepted, one.end
+    lines = [f'"{one.text}"']
+    if accepted is None:
+        return [*lines, f"  refused: {last.message if isinstance(last, Refusal) else 'no answer'}"]
+    lines.append(f"  {accepted.status}: understood as {accepted.understood}; generated in {accepted.generate_ms:.0f} ms")
+    if isinstance(last, Done):
+        first = "-" if last.first_motion_ms is None else f"{last.first_motion_ms:.0f} ms"
+        lines.append(f"  first moving servo frame {first} after the text; duration {last.duration_s:.2f} s")
+        lines.append(
+            f"  peak speed {last.peak_speed_rad_s:.2f} rad/s of {last.peak_speed_limit_rad_s:.2f} allowed"
+            f" ({last.peak_speed_joint}); clipped frames {last.clipped_frames}; direction error {last.direction_error_deg} deg"
+        )
+    elif isinstance(last, Cancelled):
+        lines.append("  cancelled: the next text took over while the robot moved")
+    goals, violations = audited.get(accepted.plan_id, (0, 0))
+    lines.append(f"  audit: {violations} violations in {goals} goals")
+    return lines
+
+
+def draw(shown: list[Shown], log: Log, robot: RobotModel, out: Path) -> list[Path]:
+    """The contact sheet and the joint plot of a run; motions are generated again from text and seed."""
+    from daemon.render import Shown as Row
+    from daemon.render import contact_sheet, joint_plot
+    from mmm_core.engine import Engine
+    from retarget.ticks import JointServoMap
+
+    engine = Engine.load(threads=1)
+    rows: list[Row] = []
+    for one in shown:
+        if one.accepted is None:
+            continue
+        plan_id = one.accepted.plan_id
+        goals = [c.goal_rad for c in log.cycles if c.plan_id == plan_id]
+        if goals:
+            motion = engine.generate(one.text, seed=one.seed).motion
+            n = max(1, round(len(goals) / robot.bus.rate_hz * motion.fps))
+            rows.append(Row(one.text, motion.joints_m[:n].astype(float), np.array(goals)))
+    if not rows:
+        return []
+    sheet, plot = out / "contact_sheet.png", out / "joints.png"
+    contact_sheet(rows, robot, sheet)
+    armed = [c for c in log.cycles if c.torque]
+    times = np.array([c.t_mono_ns for c in armed]) * 1e-9
+    present = JointServoMap(robot).tick_to_rad(np.array([c.present_tick for c in armed]))
+    joint_plot(times - times[0], np.array([c.goal_rad for c in armed]), present, robot, plot)
+    return [sheet, plot]
+
+
+def replayed(log_file: Path) -> dict[str, Any]:
+    """What `mmmd replay` says about a log."""
+    command = [sys.executable, "-m", "daemon.cli", "replay", str(log_file), "--bus", "sim://", "--json"]
+    done = subprocess.run(command, capture_output=True, timeout=120, check=False)
+    if done.returncode not in (0, 1) or not done.stdout.strip():
+        raise DaemonError(f"replay failed: {done.stderr.decode('utf-8', 'replace')[-1000:]}")
+    return json.loads(done.stdout)
+
+
+def read_run(log_file: Path) -> Log:
+    """The log of the run."""
+    return read_log(log_file)
