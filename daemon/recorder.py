@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import logging
+import os
 import signal
 import sys
 import time
@@ -16,7 +17,7 @@ from pathlib import Path
 import zmq
 
 from daemon.mcap_log import LogWriter
-from daemon.shared import BusLink
+from daemon.shared import N_CYCLES, BusLink
 from retarget.robot import load_robot
 
 log = logging.getLogger(__name__)
@@ -28,7 +29,7 @@ EVENT_QUEUE = 2000
 
 
 def main() -> int:
-    """Record until SIGTERM; 0 when the log was finished, 1 when the disk gave up (the robot goes on)."""
+    """Record until SIGTERM or the daemon's death; 0: the log is finished, 1: the disk gave up (the robot goes on)."""
     parser = argparse.ArgumentParser(description="the recorder of mmmd; started by `mmmd run --log`")
     for name in ("--robot", "--link", "--events", "--out"):
         parser.add_argument(name, required=True)
@@ -43,12 +44,13 @@ def main() -> int:
     events = context.socket(zmq.PULL)
     events.setsockopt(zmq.RCVHWM, EVENT_QUEUE)
     events.bind(arguments.events)
-    index, dropped, flushed_s = link.n_cycles, 0, time.monotonic()
+    index, dropped, flushed_s = max(0, link.n_cycles - N_CYCLES // 2), 0, time.monotonic()  # what is still there
+    parent = os.getppid()
     try:
         with Path(arguments.out).open("wb") as f:
             writer = LogWriter(f, robot)
             while True:
-                last_round = bool(stopping)
+                last_round = bool(stopping) or os.getppid() != parent
                 events.poll(0 if last_round else round(POLL_S * 1e3))
                 records, index, lost = link.cycles_since(index)
                 if lost:

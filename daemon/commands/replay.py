@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import json as json_module
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
+
+if TYPE_CHECKING:
+    from daemon.bus.port import Port
+    from daemon.clock import Clock
+    from daemon.mcap_log import Log
+    from retarget.robot import RobotModel
 
 
 def replay(
@@ -18,48 +25,37 @@ def replay(
     """Play a log's goals again and say whether the servos received the same ones.
 
     With sim:// in virtual time, as fast as the machine can; on a real bus at the robot's rate, after a slow way to the
-    log's first goal. Exit status 0 when every goal was the same, 1 when not.
+    log's first goal. Exit status 0 when every goal was the same, bit for bit, 1 when not, 3 after a fault.
 
     Example: mmmd replay run.mcap --bus sim://
 
     Args:
-        log: an .mcap written by `mmmd run --log`.
+        log: an .mcap written by `mmmd run --log`; one that is cut off is played as far as it can be read.
         bus: where to play it: sim:// or dxl:///dev/ttyUSB0?baud=1000000.
         robot: name or robot.toml; the log's robot when not given.
         json: print one JSON object.
     """
-    import numpy as np
     from rich.console import Console
     from rich.progress import Progress
 
-    from daemon.bus.open import PortContext, open_port
     from daemon.bus.servo_bus import ServoBus
-    from daemon.clock import RealClock
     from daemon.mcap_log import read_log
+    from daemon.replay import check_robot, robot_changed
     from daemon.replay import replay as play
     from daemon.shared import BusLink
     from retarget.robot import load_robot
-    from retarget.ticks import JointServoMap
-    from sim.bus import SimBus
-    from sim.clock import VirtualClock
-    from sim.port import SimPort
 
-    console = Console()
+    notes = Console(stderr=True)
     found = read_log(log)
     model = load_robot(robot or found.metadata["robot"])
-    audit = None
-    if bus == "sim://":
-        clock = VirtualClock()
-        armed = next((c for c in found.cycles if c.torque), found.cycles[0])
-        start_rad = JointServoMap(model).tick_to_rad(np.array(armed.goal_tick))
-        simulated = SimBus(model, start_rad=start_rad.tolist())
-        port, audit = SimPort(simulated, clock), simulated.audit
-    else:
-        clock = RealClock()
-        port = open_port(bus, PortContext(model, clock))
+    check_robot(found, model)
+    for warning in (found.problem, robot_changed(found, model)):
+        if warning:
+            notes.print(f"warning: {warning}", style="yellow", highlight=False, soft_wrap=True)
+    port, clock = _open(bus, model, found)
     link = BusLink.create(model.n_joints)
     try:
-        with Progress(console=console, disable=json, transient=True) as bar:
+        with Progress(console=notes, disable=json, transient=True) as bar:
             task = bar.add_task("replay", total=sum(c.torque for c in found.cycles))
             servo_bus = ServoBus(port, model.servos, clock)
             result = play(found, model, servo_bus, link, clock, lambda n: bar.update(task, completed=n))
@@ -67,18 +63,49 @@ def replay(
         port.close()
         link.close()
     figures = {
-        "log": str(log), "robot": model.name, "goals": result.goals, "same": result.same, "identical": result.identical,
-        "first_difference": result.first_difference, "log_is_cut": found.is_cut, "audit": audit.report() if audit else None,
+        "log": str(log), "robot": model.name, "bus": bus, "goals": result.goals, "same": result.same,
+        "identical": result.identical, "first_difference": result.first_difference, "stretches": result.stretches,
+        "missing_cycles": result.missing_cycles, "log_is_cut": found.is_cut, "log_problem": found.problem,
+        "audit": _audit(port),
     }  # fmt: skip
-    if json:
-        console.out(json_module.dumps(figures))
-    else:
-        verdict = "the servos received the same goals" if result.identical else "the servos received OTHER goals"
-        console.print(f"{log}: {result.same} of {result.goals} goal sets identical: {verdict}")
-        if found.is_cut:
-            console.print(f"{found.problem} and played")
-        if result.first_difference:
-            console.print(f"first difference: {result.first_difference}")
-        if audit is not None:
-            console.print(f"audit: {audit.report()['violations']} violations in {audit.report()['goals']} goals")
+    sys.stdout.write((json_module.dumps(figures) if json else _told(figures)) + "\n")
     return 0 if result.identical else 1
+
+
+def _open(bus: str, robot: RobotModel, log: Log) -> tuple[Port, Clock]:
+    """The port, and the clock that goes with it; plain simulated servos stand where those of the log stood."""
+    import numpy as np
+
+    from daemon.bus.open import PortContext, open_port
+    from daemon.clock import RealClock
+    from retarget.ticks import JointServoMap
+    from sim.bus import SimBus
+    from sim.clock import VirtualClock
+    from sim.port import SimPort
+
+    clock = VirtualClock() if bus.startswith("sim:") else RealClock()
+    if bus != "sim://":
+        return open_port(bus, PortContext(robot, clock)), clock
+    first = next((c for c in log.cycles if c.torque), log.cycles[0])
+    start_rad = JointServoMap(robot).tick_to_rad(np.array(first.goal_tick))
+    return SimPort(SimBus(robot, start_rad=start_rad.tolist()), clock), clock
+
+
+def _audit(port: Port) -> dict[str, Any] | None:
+    """What the simulator says about the goals it got; None on a real bus."""
+    from sim.port import SimPort
+
+    return port.bus.audit.report() if isinstance(port, SimPort) else None
+
+
+def _told(figures: dict[str, Any]) -> str:
+    """The figures for people."""
+    verdict = "the servos received the same goals" if figures["identical"] else "the servos received OTHER goals"
+    lines = [f"{figures['log']}: {figures['same']} of {figures['goals']} goal sets identical: {verdict}"]
+    if figures["first_difference"]:
+        lines.append(f"first difference: {figures['first_difference']}")
+    if figures["missing_cycles"]:
+        lines.append(f"{figures['missing_cycles']} cycles are missing in the log: a new start behind each gap")
+    if figures["audit"] is not None:
+        lines.append(f"audit: {figures['audit']['violations']} violations in {figures['audit']['goals']} goals")
+    return "\n".join(lines)

@@ -1,0 +1,65 @@
+"""A port that passes everything on and remembers the goals written through it, decoded from the bytes themselves."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.packet import Instruction, PacketDecoder
+from daemon.bus.port import Port
+
+_GOAL_POSITION_ADDRESS, _GOAL_POSITION_BYTES = 116, 4
+
+
+class Wiretap:
+    """A `Port` around another one.
+
+    Attributes:
+        goal_tick: (S,) the last goals sent to the servos, in the order of `servo_ids`.
+        writes: whole sets of goals sent so far.
+    """
+
+    def __init__(self, port: Port, servo_ids: Sequence[int]) -> None:
+        self._port = port
+        self._row = {servo_id: i for i, servo_id in enumerate(servo_ids)}
+        self._decoder = PacketDecoder()
+        self.goal_tick: NDArray[np.int32] = np.zeros(len(servo_ids), np.int32)
+        self.writes = 0
+
+    @property
+    def name(self) -> str:
+        """The URL of the port behind."""
+        return self._port.name
+
+    @property
+    def baud(self) -> int:
+        """Bits per second on the wire."""
+        return self._port.baud
+
+    def write(self, data: bytes) -> None:
+        """Send all of `data`, after looking for goals in it."""
+        for p in self._decoder.feed(data):
+            if p.instruction == Instruction.SYNC_WRITE:
+                self._look(p.parameters)
+        self._port.write(data)
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """What the port behind reads."""
+        return self._port.read(max_bytes, timeout_s)
+
+    def close(self) -> None:
+        """Close the port behind."""
+        self._port.close()
+
+    def _look(self, parameters: bytes) -> None:
+        address, size = struct.unpack_from("<HH", parameters)
+        if (address, size) != (_GOAL_POSITION_ADDRESS, _GOAL_POSITION_BYTES):
+            return
+        rows = struct.iter_unpack("<Bi", parameters[4:])
+        for servo_id, tick in rows:
+            if servo_id in self._row:
+                self.goal_tick[self._row[servo_id]] = tick
+        self.writes += 1
