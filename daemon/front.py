@@ -318,15 +318,17 @@ class FrontControls:
         return event
 
     def _halt(self, command: Trigger) -> str:
-        front, state = self._front, self._front.machine.state
+        front, performer, state = self._front, self._front.performer, self._front.machine.state
         front.machine.check(command)
+        performer.halted_s, performer.halted_by = time.monotonic(), command.value
+        performer.stopped = command is Trigger.STOP
         front.link.request(BusRequest[command.name])
         ended = threading.Event()
 
         async def end_commands() -> None:
             front.drain_cmd()
             await asyncio.sleep(0)  # a request that was already received is taken now
-            front.performer.end_all(command.value)
+            performer.end_halted()
             ended.set()
 
         try:

@@ -28,6 +28,8 @@ ARM_ANSWER_S = 2.0
 """How long the bus process may take to begin arming."""
 STALL_S = 0.5
 """A plan whose frames are all pushed and whose bus holds so long without playing them was dropped by the bus."""
+OVERTAKEN_S = 5.0
+"""How much later than a stop a text may arrive that says it was sent before: it is not played."""
 BUS_SILENT_S = 1.0
 """A bus process that publishes no cycle for so long is frozen."""
 REPORTS = {state: Trigger[f"BUS_{state.name}"] for state in BusState}
@@ -50,6 +52,8 @@ class Performer:
     Attributes:
         bus_alive: whether the bus process runs.
         fault_reason: why the robot is in fault, else empty.
+        halted_s: when a person last stopped, parked or cut torque, monotonic; `halted_by` tells which.
+        stopped: whether a person stopped the robot since the last motion began.
     """
 
     def __init__(
@@ -66,6 +70,8 @@ class Performer:
         self.planner, self.machine, self._ledger = planner, machine, ledger
         self.bus_alive = True
         self.fault_reason = ""
+        self.stopped = False
+        self.halted_s, self.halted_by = float("-inf"), ""
         self._pending: Pending | None = None
         self._playing: Entry | None = None
         self._moving_told = False
@@ -80,6 +86,10 @@ class Performer:
         except CommandRefusedError as error:
             self._ledger.emit(entry, refusal(entry.id, error))
             return
+        sent_s = entry.request.t_mono
+        if sent_s is not None and self.halted_s - OVERTAKEN_S < sent_s < self.halted_s:
+            self._ledger.emit(entry, Cancelled(plan_id=0, by=self.halted_by))  # the stop came later but arrived first
+            return
         if self._pending is not None and not self._pending.committing:
             self._drop_pending(f"say {entry.id}")
         self._pending = Pending(entry)
@@ -92,10 +102,18 @@ class Performer:
     def cancel(self, command_id: str) -> None:
         """End one command (any, when the id is empty); a robot that moves for it brakes and holds."""
         if self._playing is not None and command_id in ("", self._playing.id):
+            self.stopped = True
             self._link.request(BusRequest.STOP)
             self.end_all("cancel")
         else:
             self._drop_pending("cancel")
+
+    def end_halted(self) -> None:
+        """End everything but a text that was sent after the halt, as its own clock says."""
+        newest = self._pending.entry if self._pending is not None else self._playing
+        sent_s = None if newest is None else newest.request.t_mono
+        if sent_s is None or not self.halted_s < sent_s <= time.monotonic():
+            self.end_all(self.halted_by)
 
     def end_all(self, by: str, failed: Failed | None = None) -> None:
         """End what is on its way and what is played, in `cancelled`, or the latter in `failed` when that is given."""
@@ -125,8 +143,10 @@ class Performer:
         self.planner.read_cycles()
         lost = not self.bus_alive or self._view.silent_s > BUS_SILENT_S
         report = Trigger.BUS_LOST if lost else REPORTS[self._view.state]
+        if report is Trigger.BUS_HOLDING and self.stopped:
+            report = Trigger.BUS_STOPPED
         self._follow(report)
-        self._watch_plan(report)
+        self._watch_plan()
 
     def _drop_pending(self, by: str) -> None:
         pending, self._pending = self._pending, None
@@ -230,7 +250,7 @@ class Performer:
                 break
             await self._until_holding()  # the next round starts at rest and cannot miss
         before, self._playing = self._playing, entry
-        self._moving_told, self._held_since_s = False, None
+        self._moving_told, self._held_since_s, self.stopped = False, None, False
         previous = self.planner.current
         self.planner.commit(path, plan_id, entry.id, epoch, entry.t_received_ns)
         if before is not None:
@@ -277,7 +297,7 @@ class Performer:
         if self._playing is not None:
             self.end_all(by)
 
-    def _watch_plan(self, report: Trigger) -> None:
+    def _watch_plan(self) -> None:
         plan, entry = self.planner.current, self._playing
         if plan is None or entry is None:
             return
@@ -286,7 +306,7 @@ class Performer:
             self._moving_told = True
             first_ms = round(statistics.first_motion_ms, 2)
             self._ledger.emit(entry, Progress(plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms))
-        idle = plan.all_pushed and report is Trigger.BUS_HOLDING and self._link.queued_frames == 0
+        idle = plan.all_pushed and self._view.state is BusState.HOLDING and self._link.queued_frames == 0
         self._held_since_s = (self._held_since_s or time.monotonic()) if idle else None
         stalled = self._held_since_s is not None and time.monotonic() - self._held_since_s > STALL_S
         if plan.played or (stalled and statistics.dropped):

@@ -36,6 +36,7 @@ class Trigger(Enum):
     BUS_LIMP = "bus limp"
     BUS_ARMING = "bus arming"
     BUS_HOLDING = "bus holding"
+    BUS_STOPPED = "bus holding after a stop"
     BUS_PLAYING = "bus playing"
     BUS_STOPPING = "bus stopping"
     BUS_PARKING = "bus parking"
@@ -49,7 +50,8 @@ REPORTS = tuple(t for t in Trigger if t not in COMMANDS)
 
 _S, _T = RobotState, Trigger
 _ARMED_REPORTS = {
-    _T.BUS_LIMP: _S.LIMP, _T.BUS_PLAYING: _S.MOVING, _T.BUS_STOPPING: _S.HOLDING, _T.BUS_PARKING: _S.PARKING,
+    _T.BUS_LIMP: _S.LIMP, _T.BUS_STOPPED: _S.HOLDING, _T.BUS_PLAYING: _S.MOVING, _T.BUS_STOPPING: _S.HOLDING,
+    _T.BUS_PARKING: _S.PARKING,
 }  # fmt: skip
 _ALWAYS = {
     _T.ESTOP: _S.ESTOP, _T.BUS_FAULT: _S.FAULT, _T.BUS_ESTOP: _S.ESTOP, _T.BUS_LOST: _S.FAULT,
@@ -59,7 +61,7 @@ TRANSITIONS: dict[RobotState, dict[Trigger, RobotState]] = {
     # Arming may be over between two looks at the bus process; motion and parking from limp may not.
     _S.LIMP: {
         **_ALWAYS, _T.SAY: _S.ARMING, _T.ARM: _S.ARMING, _T.PARK: _S.LIMP, _T.STOP: _S.LIMP, _T.RESET: _S.LIMP,
-        _T.BUS_LIMP: _S.LIMP, _T.BUS_ARMING: _S.ARMING, _T.BUS_HOLDING: _S.IDLE,
+        _T.BUS_LIMP: _S.LIMP, _T.BUS_ARMING: _S.ARMING, _T.BUS_HOLDING: _S.IDLE, _T.BUS_STOPPED: _S.IDLE,
     },
     _S.ARMING: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.ARMING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
@@ -67,7 +69,7 @@ TRANSITIONS: dict[RobotState, dict[Trigger, RobotState]] = {
     },
     _S.IDLE: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.IDLE, _T.PARK: _S.PARKING, _T.STOP: _S.IDLE,
-        _T.RESET: _S.IDLE, _T.BUS_HOLDING: _S.IDLE,
+        _T.RESET: _S.IDLE, _T.BUS_HOLDING: _S.IDLE, _T.BUS_STOPPED: _S.IDLE,
     },
     _S.MOVING: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.MOVING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
@@ -80,7 +82,7 @@ TRANSITIONS: dict[RobotState, dict[Trigger, RobotState]] = {
     _S.PARKING: {
         **_ALWAYS, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
         _T.BUS_LIMP: _S.LIMP, _T.BUS_PARKING: _S.PARKING, _T.BUS_STOPPING: _S.HOLDING, _T.BUS_HOLDING: _S.HOLDING,
-        _T.BUS_ARMING: _S.ARMING,
+        _T.BUS_STOPPED: _S.HOLDING, _T.BUS_ARMING: _S.ARMING,
     },
     # Both latch: only a reset leads out, and only to limp.
     _S.FAULT: {**_ALWAYS, _T.RESET: _S.LIMP, _T.STOP: _S.FAULT, _T.BUS_LIMP: _S.LIMP},

@@ -22,7 +22,9 @@ DOWN = {"hip": (1, -0.3, 0), "knee": (0, -1, 0), "ankle": (0, -1, 0), "foot": (0
         "shoulder": (1, 0, 0), "elbow": (0.1, -1, 0), "wrist": (0, -1, 0.1)}  # fmt: skip
 
 
-def raised_arm(text: str = "raise your right arm", seconds: float = 1.0, angle_rad: float = 1.2, side: str = "right") -> Motion:
+def raised_arm(
+    text: str = "raise your right arm", seconds: float = 1.0, angle_rad: float = 1.2, side: str = "right"
+) -> Motion:
     """A person who stands and lifts one straight arm sideways and lowers it, on a minimum-jerk path."""
     T = max(2, round(seconds * FPS))
     phase = np.linspace(0, 1, T)
@@ -54,7 +56,9 @@ def motion_of(joints: np.ndarray, text: str, status: str = "accepted", score: fl
 def generate(text: str, seed: int, seconds: float | None) -> Generated:
     """Raises an arm for any text but a few that misbehave on purpose."""
     if "somersault" in text:
-        return Generated(motion_of(np.zeros((0, 22, 3)), text, "rejected", 0.1), "", "needs the legs", {"text": 1.0}, "k")
+        return Generated(
+            motion_of(np.zeros((0, 22, 3)), text, "rejected", 0.1), "", "needs the legs", {"text": 1.0}, "k"
+        )
     if "broken" in text:
         raise ValueError("the model broke")
     if "slow" in text:
@@ -72,11 +76,11 @@ class KinematicGenerator:
     def __init__(self, endpoint: str, answer: Callable[[str, int, float | None], Generated] = generate) -> None:
         self.endpoint = endpoint
         self._context = zmq.Context()
-        socket = self._context.socket(zmq.ROUTER)
-        socket.bind(endpoint)
+        self._socket = self._context.socket(zmq.ROUTER)
+        self._socket.bind(endpoint)
         self._stopping = threading.Event()
         self._thread = threading.Thread(
-            target=serve, args=(socket, answer, "kinematic", lambda: not self._stopping.is_set()), daemon=True
+            target=serve, args=(self._socket, answer, "kinematic", lambda: not self._stopping.is_set()), daemon=True
         )
         self._thread.start()
 

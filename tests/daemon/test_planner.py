@@ -33,7 +33,9 @@ class Bench:
         self.sim = SimBus(ROBOT)
         port = SimPort(self.sim, self.clock)
         self.link = BusLink.create(ROBOT.n_joints)
-        self.streamer = Streamer(ROBOT, ServoBus(port, ROBOT.servos, self.clock), self.link, self.clock, watch_front=False)
+        self.streamer = Streamer(
+            ROBOT, ServoBus(port, ROBOT.servos, self.clock), self.link, self.clock, watch_front=False
+        )
         self.view = BusView(self.link, ROBOT)
         self.planner = Planner(ROBOT, self.link, self.view, queue_s)
         self.records: list[np.ndarray] = []

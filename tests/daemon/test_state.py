@@ -62,7 +62,7 @@ def test_torque_comes_only_by_arming():
     armed = {S.IDLE, S.MOVING, S.HOLDING, S.PARKING}
     for state in (S.FAULT, S.ESTOP):
         assert not armed & {TRANSITIONS[state][t] for t in REPORTS if t in TRANSITIONS[state]}
-    assert {t for t in REPORTS if TRANSITIONS[S.LIMP].get(t) in armed} == {T.BUS_HOLDING}
+    assert {t for t in REPORTS if TRANSITIONS[S.LIMP].get(t) in armed} == {T.BUS_HOLDING, T.BUS_STOPPED}
 
 
 def test_latches_open_only_by_reset():
@@ -76,7 +76,7 @@ def test_latches_open_only_by_reset():
 
 
 def test_every_bus_state_has_a_report():
-    assert {T[f"BUS_{state.name}"] for state in BusState} | {T.BUS_LOST} == set(REPORTS)
+    assert {T[f"BUS_{state.name}"] for state in BusState} | {T.BUS_LOST, T.BUS_STOPPED} == set(REPORTS)
 
 
 def test_every_state_is_reached():

@@ -1,0 +1,168 @@
+"""The generator's protocol, its process, and what the front makes of one that misbehaves."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+import zmq
+import zmq.asyncio
+from hypothesis import given
+from hypothesis import strategies as st
+
+from daemon import generation
+from daemon.generation import Generated, GeneratorClient, GeneratorError
+from daemon.generator import answer
+from mmm_core.checkpoint import MODEL_FILE
+from tests.daemon.kinematic import KinematicGenerator, generate, raised_arm
+
+needs_model = pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout")
+
+
+@pytest.fixture
+def endpoint():
+    with tempfile.TemporaryDirectory(prefix="mmmd-test-") as folder:
+        yield f"ipc://{folder}/gen"
+
+
+def ask(endpoint: str, call):
+    """Run `call(client)` with a client of the generator at `endpoint`."""
+
+    async def run():
+        context = zmq.asyncio.Context()
+        client = GeneratorClient(context, endpoint)
+        client.mark_ready("k")
+        try:
+            return await call(client)
+        finally:
+            await client.close()
+            context.destroy(linger=0)
+
+    return asyncio.run(run())
+
+
+def test_a_motion_survives_the_wire_bit_for_bit():
+    motion = raised_arm()
+    sent = Generated(motion, "raise", "why", {"decode": 1.5}, "hash")
+    message = generation.generated_message(4, sent)
+    received = generation.generated_from(
+        msgspec.msgpack.decode(generation.encode(message), type=generation.GeneratedMessage)
+    )
+    for field in ("joints_m", "head_quat_wxyz", "forearm_twist_rad", "features", "tokens"):
+        assert np.array_equal(getattr(received.motion, field), getattr(motion, field))
+    assert (received.understood, received.reason, received.timings_ms) == ("raise", "why", {"decode": 1.5})
+
+
+@pytest.mark.parametrize(
+    ("change", "found"),
+    [
+        ({"joints_m": np.full((20, 22, 3), np.nan, "<f4").tobytes()}, "NaN"),
+        ({"joints_m": b"123"}, "reshape|buffer"),
+        ({"n_frames": 19}, "reshape"),
+        ({"status": "wonderful"}, "wonderful"),
+        ({"fps": 0.0}, "fps"),
+    ],
+)
+def test_what_is_no_motion_is_a_named_failure(change, found):
+    message = generation.generated_message(1, Generated(raised_arm(), "", "", {}, ""))
+    for key, value in change.items():
+        setattr(message, key, value)
+    with pytest.raises(GeneratorError, match=found) as caught:
+        generation.generated_from(message)
+    assert caught.value.code == "bad_motion"
+
+
+def test_one_frame_is_too_few(endpoint):
+    peer = KinematicGenerator(endpoint)
+    try:
+        with pytest.raises(GeneratorError, match="1 frames"):
+            ask(endpoint, lambda client: client.generate("short", 0, None, 5.0))
+    finally:
+        peer.close()
+
+
+@given(st.binary(max_size=100))
+def test_any_bytes_either_decode_or_are_refused(frame):
+    try:
+        generation.decode_request(frame)
+    except (msgspec.MsgspecError, UnicodeDecodeError):
+        pass
+
+
+def test_an_error_of_the_model_is_answered():
+    reply = answer(generation.GenerateMessage(id=3, text="broken"), generate, "k")
+    assert isinstance(reply, generation.FailureMessage) and reply.id == 3 and "broke" in reply.found
+
+
+def test_a_generator_that_is_silent_is_a_named_failure(endpoint):
+    async def call(client):
+        with pytest.raises(GeneratorError) as caught:
+            await client.generate("wave", 0, None, 0.1)
+        assert client.timeouts == 1 and not client.busy
+        return caught.value
+
+    assert ask(endpoint, call).code == "generator_timeout"
+
+
+def test_a_generator_that_is_down_fails_at_once(endpoint):
+    async def call(client):
+        client.mark_down("ended with status 1")
+        with pytest.raises(GeneratorError, match="ended with status 1") as caught:
+            await client.generate("wave", 0, None, 5.0)
+        return caught.value
+
+    assert ask(endpoint, call).code == "generator_down"
+
+
+def test_answers_reach_the_right_asker_in_any_order(endpoint):
+    peer = KinematicGenerator(endpoint)
+
+    async def call(client):
+        return await asyncio.gather(
+            *(client.generate(t, 0, None, 5.0) for t in ("wave", "slow left", "left", "wave 2"))
+        )
+
+    try:
+        assert [g.motion.text for g in ask(endpoint, call)] == ["wave", "slow left", "left", "wave 2"]
+    finally:
+        peer.close()
+
+
+def test_the_process_refuses_a_checkpoint_that_is_none(endpoint, tmp_path):
+    """One message, no traceback."""
+    broken = tmp_path / "model.safetensors"
+    broken.write_bytes(b"no weights")
+    result = subprocess.run(
+        [sys.executable, "-m", "daemon.generator", "--bind", endpoint, "--model", str(broken)],
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert result.returncode == 1
+    assert str(broken) in result.stderr and "Traceback" not in result.stderr
+
+
+def test_the_front_holds_no_torch():
+    code = "import sys, daemon.supervisor, daemon.client, daemon.cli; print('torch' in sys.modules)"
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert result.stdout.strip() == "False"
+
+
+@needs_model
+def test_the_process_serves_the_shipped_model_and_ends_with_its_parent(endpoint):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "daemon.generator", "--bind", endpoint, "--parent-pid", str(os.getpid())],
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        motion = ask(endpoint, lambda client: client.generate("wave with your right hand", 7, 2.0, 60.0)).motion
+        assert len(motion.joints_m) == 40 and motion.status == "accepted"
+    finally:
+        process.kill()
+        process.wait(10)
+    assert not Path(endpoint.removeprefix("ipc://")).is_dir()

@@ -1,0 +1,96 @@
+"""A daemon as a person starts it: real processes, local sockets of its own, ended at the end."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from daemon.client import Client, NoAnswerError
+from daemon.config import Endpoints
+from tests.daemon.kinematic import KinematicGenerator
+
+MMMD = [sys.executable, "-m", "daemon.cli"]
+START_TIMEOUT_S = 40.0
+
+
+class RunningDaemon:
+    """`mmmd run` on sockets in a folder of its own, with a generator peer whose answers are known unless `model`."""
+
+    def __init__(self, *options: str, bus: str = "sim://", robot: str = "reference", model: bool = False) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="mmmd-test-")
+        self.folder = Path(self._folder.name)
+        self.endpoints = Endpoints(*(f"ipc://{self.folder}/{name}" for name in ("cmd", "ctl", "pub")))
+        self.peer = None if model else KinematicGenerator(f"ipc://{self.folder}/gen")
+        self.audit = self.folder / "audit.json"
+        if bus == "sim://":
+            bus = f"sim://?audit={self.audit}"
+        generator = [] if model else ["--generator", f"ipc://{self.folder}/gen"]
+        self.output = self.folder / "output"
+        command = [*MMMD, "run", "--robot", robot, "--bus", bus, *generator, *self.at, *options]
+        with self.output.open("wb") as out:
+            self.process = subprocess.Popen(command, stdout=out, stderr=out)
+
+    @property
+    def at(self) -> list[str]:
+        """Options that lead the other commands to this daemon."""
+        return ["--cmd", self.endpoints.cmd, "--ctl", self.endpoints.ctl, "--pub", self.endpoints.pub]
+
+    @property
+    def said(self) -> str:
+        """What it has printed."""
+        return self.output.read_text("utf-8", "replace")
+
+    def client(self) -> Client:
+        return Client(self.endpoints)
+
+    def until_ready(self) -> RunningDaemon:
+        """Wait until it answers and its generator does."""
+        end_s = time.monotonic() + START_TIMEOUT_S
+        while time.monotonic() < end_s and self.process.poll() is None:
+            with contextlib.suppress(NoAnswerError), self.client() as client:
+                while time.monotonic() < end_s:
+                    if client.status().generator.startswith("ready"):
+                        return self
+                    time.sleep(0.05)
+            time.sleep(0.05)
+        raise AssertionError(f"the daemon did not get ready (status {self.process.poll()}):\n{self.said}")
+
+    def ended(self, timeout_s: float = 30.0) -> int:
+        """Wait for its end; its exit status."""
+        try:
+            return self.process.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"the daemon did not end in {timeout_s} s:\n{self.said}") from None
+
+    def terminate(self) -> int:
+        self.process.send_signal(signal.SIGTERM)
+        return self.ended()
+
+    def mmmd(self, *arguments: str, timeout_s: float = 30.0) -> subprocess.CompletedProcess[str]:
+        """Run another command at this daemon."""
+        return mmmd(*arguments, *self.at, timeout_s=timeout_s)
+
+    def close(self) -> None:
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+            try:
+                self.process.wait(30)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait(5)
+        if self.peer is not None:
+            self.peer.close()
+        self._folder.cleanup()
+
+
+def mmmd(*arguments: str, timeout_s: float = 30.0, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a command to its end."""
+    return subprocess.run(
+        [*MMMD, *arguments], capture_output=True, text=True, timeout=timeout_s, env={**os.environ, **environment}, check=False
+    )  # fmt: skip
