@@ -1,0 +1,292 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+import zmq
+from mcap.reader import make_reader
+from mcap.writer import Writer
+from rig import rig, swing
+
+from daemon.errors import LogError
+from daemon.mcap_log import CYCLE_TOPIC, LogWriter, read_log
+from daemon.shared import BusLink, BusState
+from retarget.robot import RobotModel, load_robot
+
+
+@pytest.fixture(scope="module")
+def run() -> tuple[RobotModel, list[np.void]]:
+    """The records of arming, a motion and parking."""
+    with rig() as r:
+        r.arm()
+        r.push(swing(r.robot, 1.0))
+        r.until(BusState.PLAYING)
+        r.until(BusState.HOLDING)
+        return r.robot, r.records
+
+
+def write(path: Path, run, *, flush_every: int = 50, finish: bool = True) -> Path:
+    robot, records = run
+    with path.open("wb") as f:
+        writer = LogWriter(f, robot)
+        for i, record in enumerate(records):
+            writer.cycle(record)
+            if i % flush_every == flush_every - 1:
+                writer.event("v1/event", b'{"type": "progress"}')
+                writer.flush()
+        if finish:
+            writer.finish()
+    return path
+
+
+def test_what_is_written_is_read_bit_for_bit(run, tmp_path):
+    robot, records = run
+    log = read_log(write(tmp_path / "run.mcap", run))
+    assert not log.is_cut and log.problem == ""
+    assert len(log.cycles) == len(records) and log.n_events == len(records) // 50
+    for cycle, record in zip(log.cycles, records, strict=True):
+        assert cycle.goal_rad.tobytes() == record["goal_rad"].tobytes()
+        assert cycle.goal_tick == tuple(record["goal_tick"])
+        assert (cycle.cycle, cycle.torque) == (record["cycle"], bool(record["torque"]))
+        assert cycle.state == BusState(int(record["state"])).name.lower()
+    assert log.metadata["robot"] == robot.name
+    assert log.metadata["robot_toml"] == robot.path.read_text("utf-8")
+    assert log.metadata["mmmd"] and log.metadata["numpy"]
+
+
+@pytest.mark.parametrize("value", [0.1, -0.0, 5e-324, 1.7976931348623157e308, 1 / 3, np.nextafter(1.0, 2.0)])
+def test_every_float_keeps_its_bits(run, tmp_path, value):
+    robot, records = run
+    record = records[-1].copy()
+    record["goal_rad"] = value
+    record["setpoint_rad"] = np.nan
+    log = read_log(write(tmp_path / "run.mcap", (robot, [record])))
+    assert log.cycles[0].goal_rad.tobytes() == record["goal_rad"].tobytes()
+
+
+def test_any_mcap_reader_finds_named_and_typed_channels(run, tmp_path):
+    """Read with the indexed reader of the `mcap` package, as Foxglove does."""
+    path = write(tmp_path / "run.mcap", run)
+    with path.open("rb") as f:
+        reader = make_reader(f, validate_crcs=True)
+        summary = reader.get_summary()
+        assert summary is not None and summary.statistics is not None
+        assert {c.topic for c in summary.channels.values()} == {CYCLE_TOPIC, "v1/event"}
+        assert {c.message_encoding for c in summary.channels.values()} == {"json"}
+        times = []
+        for schema, _, message in reader.iter_messages(topics=[CYCLE_TOPIC]):
+            assert schema is not None and schema.encoding == "jsonschema"
+            described = json.loads(schema.data)
+            content = json.loads(message.data)
+            assert described["type"] == "object"
+            assert content.keys() <= described["properties"].keys()
+            for name, value in content.items():
+                kind = {list: "array", str: "string"}.get(type(value), "number")
+                assert described["properties"][name]["type"] == kind
+            times.append(message.log_time)
+        assert len(times) == len(run[1]) and times == sorted(times)
+
+
+def test_a_plain_text_is_recorded_as_json(run, tmp_path):
+    robot, records = run
+    with (tmp_path / "run.mcap").open("wb") as f:
+        writer = LogWriter(f, robot)
+        writer.cycle(records[0])
+        for payload in (b"wave with your right hand", b"\xff\xfe", b'{"type": "say"}'):
+            writer.event("cmd", payload)
+        writer.finish()
+    with (tmp_path / "run.mcap").open("rb") as f:
+        texts = [json.loads(m.data) for _, _, m in make_reader(f).iter_messages(topics=["cmd"])]
+    assert texts[0] == {"text": "wave with your right hand"} and texts[2] == {"type": "say"}
+
+
+def test_a_log_cut_off_anywhere_reads_to_its_last_whole_chunk(run, tmp_path):
+    """Every length: a named error while nothing is readable, then more and more cycles, never fewer, never wrong ones."""
+    whole = write(tmp_path / "run.mcap", run, flush_every=10).read_bytes()
+    numbers = [int(r["cycle"]) for r in run[1]]
+    cut = tmp_path / "cut.mcap"
+    before, errors = 0, 0
+    for length in sorted({*range(0, len(whole), 997), *range(20), *range(len(whole) - 12, len(whole))}):
+        cut.write_bytes(whole[:length])
+        try:
+            log = read_log(cut)
+        except LogError as error:
+            assert before == 0
+            assert str(cut) in str(error)
+            errors += 1
+            continue
+        assert log.is_cut and "cut off" in log.problem and f"{len(log.cycles)} cycles" in log.problem
+        assert [c.cycle for c in log.cycles] == numbers[: len(log.cycles)]
+        assert len(log.cycles) >= before
+        before = len(log.cycles)
+    assert errors > 0 and before == len(numbers)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_flipped_bit_never_changes_a_goal(run, tmp_path, seed):
+    path = write(tmp_path / "run.mcap", run)
+    data = bytearray(path.read_bytes())
+    random = np.random.default_rng(seed)
+    data[random.integers(len(data))] ^= 1 << random.integers(8)
+    path.write_bytes(data)
+    try:
+        log = read_log(path)
+    except LogError:
+        return
+    for cycle, record in zip(log.cycles, run[1], strict=False):
+        assert cycle.goal_rad.tobytes() == record["goal_rad"].tobytes()
+    assert log.is_cut or len(log.cycles) == len(run[1])
+
+
+def foreign(path: Path, **metadata: str) -> None:
+    with path.open("wb") as f:
+        writer = Writer(f)
+        writer.start(library="somebody else")
+        if metadata:
+            writer.add_metadata("mmmd", metadata)
+        writer.finish()
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda p: None, ["no such file", "mmmd run --log"]),
+        (lambda p: p.mkdir(), ["cannot be read"]),
+        (lambda p: p.write_bytes(b""), ["not an MCAP file", "empty"]),
+        (lambda p: p.write_bytes(b"PK\3\4 some archive"), ["not an MCAP file", "PK"]),
+        (lambda p: p.write_bytes(b"\x89MCAP1\r\n"), ["MCAP version 1", "update"]),
+        (foreign, ["not a log of mmmd", "somebody else"]),
+        (lambda p: foreign(p, format="2", mmmd="9.1.0"), ["format 2", "9.1.0", "reads format 1", "update"]),
+        (lambda p: foreign(p, format="1", mmmd="0.1.0"), ["no bus cycles"]),
+    ],
+)
+def test_what_is_no_log_is_refused_by_name(tmp_path, make: Callable[[Path], object], says):
+    path = tmp_path / "x.mcap"
+    make(path)
+    with pytest.raises(LogError) as caught:
+        read_log(path)
+    for part in [str(path), *says]:
+        assert part in str(caught.value)
+
+
+class Recording:
+    """The recorder's process on shared memory that the test fills."""
+
+    def __init__(self, folder: Path, robot: RobotModel) -> None:
+        self.out = folder / "run.mcap"
+        self.link = BusLink.create(robot.n_joints)
+        self.bus = BusLink.attach(self.link.path, robot.n_joints)
+        self.endpoint = f"ipc://{folder}/events"
+        self._context = zmq.Context()
+        self.events = self._context.socket(zmq.PUSH)
+        self.events.connect(self.endpoint)
+        arguments = ["--robot", "reference", "--link", str(self.link.path), "--out", str(self.out)]
+        command = [sys.executable, "-m", "daemon.recorder", *arguments, "--events", self.endpoint]
+        self.process = subprocess.Popen(command, stderr=subprocess.PIPE)
+
+    def publish(self, records: list[np.void]) -> None:
+        for record in records:
+            slot = self.bus.next_record()
+            for name in record.dtype.names or ():
+                slot[name] = record[name]
+            self.bus.publish()
+
+    def wait_for(self, what: Callable[[], bool]) -> None:
+        end_s = time.monotonic() + 30
+        while not what():
+            assert time.monotonic() < end_s and self.process.poll() is None
+            time.sleep(0.02)
+
+    def cycles(self) -> int:
+        try:
+            return len(read_log(self.out).cycles)
+        except LogError:
+            return 0
+
+    def close(self) -> None:
+        self.process.kill()
+        self.process.communicate()
+        self.events.close(0)
+        self._context.term()
+        self.link.close()
+
+
+@pytest.fixture
+def recording(tmp_path):
+    made = Recording(tmp_path, load_robot("reference"))
+    yield made
+    made.close()
+
+
+def test_sigterm_finishes_the_log(recording, run):
+    recording.publish(run[1])
+    recording.events.send_multipart([b"v1/event", msgspec.json.encode({"type": "done", "plan_id": 7})])
+    recording.wait_for(lambda: recording.cycles() > 0)
+    recording.publish(run[1][:30])
+    os.kill(recording.process.pid, signal.SIGINT)  # Ctrl-C reaches the whole group, and the parking after it belongs in
+    recording.process.terminate()
+    assert recording.process.wait(30) == 0
+    log = read_log(recording.out)
+    assert not log.is_cut
+    assert len(log.cycles) == len(run[1]) + 30
+    assert log.n_events == 1
+
+
+def test_killed_it_leaves_a_log_that_reads_to_its_last_chunk(recording, run):
+    recording.publish(run[1])
+    recording.wait_for(lambda: recording.cycles() == len(run[1]))
+    recording.process.kill()
+    recording.process.wait(30)
+    log = read_log(recording.out)
+    assert log.is_cut and "cut off" in log.problem
+    assert [c.goal_tick for c in log.cycles] == [tuple(r["goal_tick"]) for r in run[1]]
+
+
+def test_a_stopped_recorder_slows_nobody_and_its_losses_are_counted(recording, run):
+    """Frozen while the ring goes round: publishing goes on, and the log says by its numbers what is missing."""
+    recording.publish(run[1][:5])
+    recording.wait_for(lambda: recording.cycles() > 0)
+    os.kill(recording.process.pid, signal.SIGSTOP)
+    record = run[1][-1].copy()
+    for cycle in range(5, 6000):
+        record["cycle"] = cycle
+        recording.publish([record])
+    os.kill(recording.process.pid, signal.SIGCONT)
+    recording.process.terminate()
+    assert recording.process.wait(60) == 0
+    assert b"cycles dropped" in recording.process.stderr.read()
+    numbers = [c.cycle for c in read_log(recording.out).cycles]
+    assert numbers[-1] == 5999 and len(numbers) < 5000
+
+
+def test_a_file_that_cannot_be_written_ends_recording_alone(tmp_path):
+    link = BusLink.create(load_robot("reference").n_joints)
+    try:
+        arguments = ["--robot", "reference", "--link", str(link.path), "--out", str(tmp_path / "no" / "run.mcap")]
+        command = [sys.executable, "-m", "daemon.recorder", *arguments, "--events", f"ipc://{tmp_path}/events"]
+        ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    finally:
+        link.close()
+    assert ended.returncode == 1
+    assert "goes on without a log" in ended.stderr and "Traceback" not in ended.stderr
+
+
+def test_a_full_disk_ends_recording_alone():
+    if not Path("/dev/full").exists():
+        pytest.skip("needs /dev/full")
+    link = BusLink.create(load_robot("reference").n_joints)
+    try:
+        arguments = ["--robot", "reference", "--link", str(link.path), "--out", "/dev/full"]
+        command = [sys.executable, "-m", "daemon.recorder", *arguments, "--events", "ipc://@mmmd-test-full"]
+        ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    finally:
+        link.close()
+    assert ended.returncode == 1
+    assert "goes on without a log" in ended.stderr and "Traceback" not in ended.stderr
