@@ -205,7 +205,7 @@ class Performer:
             allowed="upper-body motion of one person without objects",
             do=OUT_OF_SCOPE_DO,
             understood=generated.understood,
-            scope_score=generated.motion.scope_score,
+            scope_score=round(generated.motion.scope_score, 4),
         )
         self._ledger.emit(entry, rejected)
         return None

@@ -1,4 +1,4 @@
-"""The front over its sockets, with real bus and simulator processes behind it and a generator whose answers are known."""
+"""The front over its sockets, with a real bus process, simulated servos and a generator whose answers are known."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ import zmq
 from daemon import wire
 from daemon.client import CancelledByError, Client, RefusedError
 from tests.end_to_end.harness import RunningDaemon
-
 
 OPEN: list[zmq.Socket] = []
 """Sockets of the running test: they must not be collected before their context closes them."""

@@ -26,8 +26,10 @@ def accepted(plan_id=1):
 
 
 def done():
-    return Done(plan_id=1, first_motion_ms=1, duration_s=1, frames=1, peak_speed_share=0, peak_speed_joint="", peak_speed_rad_s=0,
-                peak_speed_limit_rad_s=0, clipped_frames=0, gate_clipped_frames=0, underruns=0, direction_error_deg=0)  # fmt: skip
+    zeros = dict.fromkeys(("first_motion_ms", "duration_s", "peak_speed_share", "peak_speed_rad_s", "peak_speed_limit_rad_s",
+                           "direction_error_deg"), 0.0)  # fmt: skip
+    counts = dict.fromkeys(("frames", "clipped_frames", "gate_clipped_frames", "underruns"), 0)
+    return Done(plan_id=1, peak_speed_joint="", **zeros, **counts)
 
 
 def test_frames_of_dealer_and_req():

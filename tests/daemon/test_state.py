@@ -1,4 +1,4 @@
-"""The robot's states: every pair of state and trigger, the latches, and that what is not in the table does not happen."""
+"""The robot's states: every pair of state and trigger, the latches, and that nothing outside the table happens."""
 
 from __future__ import annotations
 

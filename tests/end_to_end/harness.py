@@ -92,5 +92,6 @@ class RunningDaemon:
 def mmmd(*arguments: str, timeout_s: float = 30.0, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run a command to its end."""
     return subprocess.run(
-        [*MMMD, *arguments], capture_output=True, text=True, timeout=timeout_s, env={**os.environ, **environment}, check=False
+        [*MMMD, *arguments], capture_output=True, text=True, timeout=timeout_s, check=False,
+        env={**os.environ, **environment},
     )  # fmt: skip

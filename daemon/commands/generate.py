@@ -1,0 +1,177 @@
+"""`mmmd generate`: text to human motion, without a robot."""
+
+from __future__ import annotations
+
+import json as json_module
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import msgspec
+import tyro
+
+from daemon.errors import CommandError
+from daemon.wire import LONGEST_S, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S
+
+if TYPE_CHECKING:
+    from mmm_core.engine import Engine, Generation
+
+_FILE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,119}")
+
+
+class Prompt(msgspec.Struct, forbid_unknown_fields=True):
+    """One line of a batch file."""
+
+    id: str
+    text: str
+    seed: int = 0
+    seconds: float | None = None
+
+
+def generate(
+    text: Annotated[str | None, tyro.conf.Positional] = None,
+    out: Path | None = None,
+    seed: int = 0,
+    seconds: float | None = None,
+    bvh: Path | None = None,
+    batch: Path | None = None,
+    model: Path | None = None,
+    threads: int = 1,
+    json: bool = False,
+) -> int:
+    """Turn a text into the motion of 22 joints at 20 fps, in an .npz file, and a .bvh for Blender on request.
+
+    BVH lengths are centimetres, y up. Exit status 1 when the text is out of the model's scope.
+
+    Example: mmmd generate "wave with your right hand" --seed 7 --out wave.npz --bvh wave.bvh
+
+    Example for many: mmmd generate --batch prompts.jsonl --out motions
+
+    Args:
+        text: what to do, in English.
+        out: .npz file to write; with --batch a folder.
+        seed: the same text, seed and seconds give the same motion.
+        seconds: length of the motion; the model chooses when it is not given.
+        bvh: BVH file to write as well.
+        batch: JSON lines of {"id", "text", "seed", "seconds"}: one .npz named by its id for each.
+        model: checkpoint; the shipped one when it is not given.
+        threads: CPU threads.
+        json: print one JSON object for each motion.
+    """
+    if (text is None) == (batch is None):
+        raise CommandError('generate: give either a text or --batch; example: mmmd generate "nod twice" --out nod.npz')
+    if out is None:
+        raise CommandError("generate: --out is missing; name the .npz file (with --batch the folder) to write")
+    if batch is not None and bvh is not None:
+        raise CommandError("generate: --bvh goes with one text; with --batch leave it out")
+    if batch is not None:
+        return _generate_batch(_prompts(batch), out, model, threads, json)
+    prompt = Prompt("", text or "", seed, seconds)
+    problem = _problem(prompt)
+    if problem:
+        raise CommandError(f"generate: {problem}")
+    for path in filter(None, (out, bvh)):
+        if not path.parent.is_dir():
+            raise CommandError(f"generate: {path}: no folder '{path.parent}'; make it, or choose another")
+    made = _load(model, threads).generate(prompt.text, seed=seed, seconds=seconds)
+    made.motion.save_npz(out)
+    if made.status == "rejected":
+        _say(_summary(prompt, made, out), json)
+        nearest = f"; the nearest it knows: {made.understood}" if made.understood else ""
+        sys.stderr.write(f"mmmd: {prompt.text!r} is out of scope: {made.reason}{nearest}\n")
+        return 1
+    if bvh is not None:
+        from mmm_core.bvh import save_bvh
+
+        save_bvh(made.motion, bvh)
+    _say(_summary(prompt, made, out), json)
+    return 0
+
+
+def _generate_batch(prompts: list[Prompt], folder: Path, model: Path | None, threads: int, json: bool) -> int:
+    from rich.console import Console
+    from rich.progress import track
+
+    folder.mkdir(parents=True, exist_ok=True)
+    engine = _load(model, threads)
+    rejected = 0
+    console = Console(stderr=True)
+    for prompt in track(prompts, "generating", console=console, disable=not console.is_terminal):
+        made = engine.generate(prompt.text, seed=prompt.seed, seconds=prompt.seconds)
+        path = folder / f"{prompt.id}.npz"
+        made.motion.save_npz(path)
+        rejected += made.status == "rejected"
+        if json:
+            _say(_summary(prompt, made, path), json)
+    if not json:
+        sys.stdout.write(f"{len(prompts)} motions in {folder}, {rejected} of them rejected as out of scope\n")
+    return 0
+
+
+def _load(model: Path | None, threads: int) -> Engine:
+    from mmm_core.engine import Engine
+
+    return Engine.load(model, threads=threads)
+
+
+def _prompts(path: Path) -> list[Prompt]:
+    """The lines of a batch file, all checked before the first is generated."""
+    try:
+        lines = path.read_text("utf-8").splitlines()
+    except UnicodeDecodeError as error:
+        raise CommandError(f"--batch {path}: not UTF-8 ({error})") from None
+    except OSError as error:
+        raise CommandError(f"--batch {path}: {error.strerror}") from None
+    prompts: list[Prompt] = []
+    seen: set[str] = set()
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            prompt = msgspec.json.decode(line, type=Prompt)
+        except msgspec.DecodeError as error:
+            allowed = 'allowed: {"id", "text", "seed", "seconds"}'
+            raise CommandError(f"--batch {path}: line {number}: {error}; {allowed}") from None
+        problem = _problem(prompt)
+        if not problem and not _FILE_ID.fullmatch(prompt.id):
+            problem = f"id {prompt.id!r} is no file name; allowed: letters, digits, '.', '_', '-', at most 120"
+        if not problem and prompt.id in seen:
+            problem = f"id {prompt.id!r} stands twice in the file"
+        if problem:
+            raise CommandError(f"--batch {path}: line {number}: {problem}")
+        seen.add(prompt.id)
+        prompts.append(prompt)
+    if not prompts:
+        raise CommandError(f"--batch {path}: no lines; one JSON object a line is expected")
+    return prompts
+
+
+def _problem(prompt: Prompt) -> str:
+    """What is wrong with a prompt; empty when nothing is."""
+    if not prompt.text.strip():
+        return f"the text is empty; allowed: 1 to {MAX_TEXT_CHARS} characters"
+    if len(prompt.text) > MAX_TEXT_CHARS:
+        return f"the text has {len(prompt.text)} characters; allowed: 1 to {MAX_TEXT_CHARS}"
+    if not 0 <= prompt.seed <= MAX_SEED:
+        return f"seed {prompt.seed}; allowed: 0 to {MAX_SEED}"
+    if prompt.seconds is not None and not SHORTEST_S <= prompt.seconds <= LONGEST_S:
+        return f"seconds {prompt.seconds:g}; allowed: {SHORTEST_S} to {LONGEST_S}"
+    return ""
+
+
+def _summary(prompt: Prompt, made: Generation, path: Path) -> dict[str, object]:
+    return {
+        "id": prompt.id, "text": prompt.text, "seed": prompt.seed, "out": str(path), "status": made.status,
+        "scope_score": round(made.scope_score, 4), "understood": made.understood, "reason": made.reason,
+        "frames": len(made.motion.joints_m), "fps": made.motion.fps, "ms": round(sum(made.timings_ms.values()), 1),
+    }  # fmt: skip
+
+
+def _say(summary: dict[str, object], json: bool) -> None:
+    if json:
+        sys.stdout.write(json_module.dumps(summary) + "\n")
+        sys.stdout.flush()
+    elif summary["status"] != "rejected":
+        frames, fps = summary["frames"], summary["fps"]
+        sys.stdout.write(f"{summary['out']}: {frames} frames at {fps:g} fps; understood as {summary['understood']}\n")
