@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+# ruckig is a compiled module without types:
+# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
+
 import numpy as np
 from numpy.typing import NDArray
 from ruckig import InputParameter, Result, Ruckig, Trajectory

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -36,7 +36,7 @@ class Shown:
 
     text: str
     seed: int
-    events: list[AnyEvent] = field(default_factory=list)
+    events: list[AnyEvent] = field(default_factory=list[AnyEvent])
 
     @property
     def accepted(self) -> Accepted | None:
@@ -64,7 +64,7 @@ def free_endpoints() -> Endpoints:
 
 
 @contextmanager
-def child(arguments: list[str], log: Path) -> Iterator[subprocess.Popen[bytes]]:
+def child(arguments: list[str], log: Path) -> Generator[subprocess.Popen[bytes]]:
     """A subcommand of mmmd in its own process; ended at the latest when the block ends."""
     with log.open("wb") as f:
         process = subprocess.Popen(
@@ -160,7 +160,9 @@ def describe(one: Shown, audited: dict[int, tuple[int, int]]) -> list[str]:
     lines = [f'"{one.text}"']
     if accepted is None:
         return [*lines, f"  refused: {last.message if isinstance(last, Refusal) else 'no answer'}"]
-    lines.append(f"  {accepted.status}: understood as {accepted.understood}; generated in {accepted.generate_ms:.0f} ms")
+    lines.append(
+        f"  {accepted.status}: understood as {accepted.understood}; generated in {accepted.generate_ms:.0f} ms"
+    )
     if isinstance(last, Done):
         first = "-" if last.first_motion_ms is None else f"{last.first_motion_ms:.0f} ms"
         lines.append(f"  first moving servo frame {first} after the text; duration {last.duration_s:.2f} s")

@@ -12,6 +12,7 @@ import tempfile
 import time
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -112,7 +113,7 @@ class BusLink:
         memory = np.memmap(path, np.uint8, "r+")
         if len(memory) != starts[-1]:
             raise ValueError(f"{path}: {len(memory)} bytes; expected {starts[-1]} for {n_joints} joints")
-        parts = [memory[a:b] for a, b in zip(starts[:-1], starts[1:], strict=True)]
+        parts = [memory[a:b] for a, b in pairwise(starts)]
         self._words = parts[0].view(np.uint64)
         self._setpoints, self._cycles, self._text = parts[1].view(setpoints), parts[2].view(cycles), parts[3]
         self._seen = {request: int(self._words[request]) for request in BusRequest}

@@ -95,7 +95,12 @@ def save_text_encoder(path: Path, encoder: MiniLm, source: str) -> None:
     del tensors["word_embedding.weight"]
     tensors["word_embedding.bytes"] = (embedding / scale).round().to(torch.int8)
     tensors["word_embedding.scale"] = scale
-    metadata = {"format": str(FORMAT), "kind": "mmmd-text", "config": json.dumps(asdict(encoder.config)), "source": source}
+    metadata = {
+        "format": str(FORMAT),
+        "kind": "mmmd-text",
+        "config": json.dumps(asdict(encoder.config)),
+        "source": source,
+    }
     _save(path, tensors, metadata)
 
 
@@ -148,7 +153,7 @@ def _load(path: Path, kind: str) -> tuple[dict[str, Tensor], dict[str, str]]:
     try:
         with safe_open(str(path), framework="pt") as f:  # type: ignore[no-untyped-call]
             metadata: dict[str, str] = f.metadata() or {}
-            tensors = {name: f.get_tensor(name) for name in f.keys()}  # noqa: SIM118 - safe_open is no mapping
+            tensors = {name: f.get_tensor(name) for name in f.keys()}
     except (SafetensorError, OSError) as error:
         raise CheckpointError(path, "", f"not a readable safetensors file ({error})", f"a {kind} file") from error
     if metadata.get("kind") != kind:
@@ -167,6 +172,8 @@ def _fill(module: nn.Module, tensors: dict[str, Tensor], path: Path, prefix: str
         if tensors[name].shape != tensor.shape:
             raise CheckpointError(path, prefix + name, f"shape {tuple(tensors[name].shape)}", f"{tuple(tensor.shape)}")
     for name in tensors.keys() - wanted.keys():
-        raise CheckpointError(path, prefix + name, "a tensor this model does not have", "only tensors of its configuration")
+        raise CheckpointError(
+            path, prefix + name, "a tensor this model does not have", "only tensors of its configuration"
+        )
     module.load_state_dict({name: t.to(wanted[name].dtype) for name, t in tensors.items()})
     module.eval().requires_grad_(False)

@@ -207,5 +207,3 @@ def _rejected(text: str, seed: int, verdict: ScopeVerdict, clock: _Clock) -> Gen
     )
     understood = f"{verdict.nearest} ({verdict.score:.2f})" if verdict.nearest else ""
     return Generation(motion, understood, verdict.reason, clock.laps_ms)
-
-

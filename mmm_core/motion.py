@@ -127,7 +127,9 @@ def load_npz(path: Path | str) -> Motion:
             raise MotionFileError(path, key, f"missing; found {sorted(fields)}", "joints (T,22,3) in metres and fps")
     joints_m = np.asarray(fields["joints"])
     if joints_m.ndim != 3 or joints_m.shape[1:] != (N_JOINTS, 3) or len(joints_m) == 0:
-        raise MotionFileError(path, "joints", f"shape {joints_m.shape}", "(T, 22, 3) with T >= 1, HumanML3D joint order")
+        raise MotionFileError(
+            path, "joints", f"shape {joints_m.shape}", "(T, 22, 3) with T >= 1, HumanML3D joint order"
+        )
     T = len(joints_m)
     identity = np.tile(np.array([1, 0, 0, 0], np.float32), (T, 1))
     try:

@@ -37,7 +37,9 @@ class Quantizer(nn.Module):
     def encode(self, latents: Tensor) -> Tensor:
         """Nearest code of each latent: (..., D) -> (...) int64."""
         flat = latents.reshape(-1, latents.shape[-1])
-        distance = self.codebook.square().sum(1) - 2 * flat @ self.codebook.T  # |c|^2 - 2 x.c; |x|^2 is the same for all
+        distance = (
+            self.codebook.square().sum(1) - 2 * flat @ self.codebook.T
+        )  # |c|^2 - 2 x.c; |x|^2 is the same for all
         return distance.argmin(1).reshape(latents.shape[:-1])
 
     def forward(self, latents: Tensor) -> tuple[Tensor, Tensor]:

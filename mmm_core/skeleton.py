@@ -32,7 +32,9 @@ _LEFT_REST = {
     "hip": (0.97, -0.2, 0.0), "knee": (0, -1, 0.15), "ankle": (0, -1, -0.15), "foot": (0.1, -0.4, 0.9),
     "collar": (0.5, 0.86, 0), "shoulder": (1, 0, 0), "elbow": (0.5, -0.75, 0.35), "wrist": (0.2, -0.3, 0.93),
 }  # fmt: skip
-_MIDDLE_REST = {"spine1": (0, 1, 0.1), "spine2": (0, 1, 0.1), "spine3": (0, 1, 0), "neck": (0, 1, 0.05), "head": (0, 0.94, 0.33)}  # fmt: skip
+_MIDDLE_REST = {
+    "spine1": (0, 1, 0.1), "spine2": (0, 1, 0.1), "spine3": (0, 1, 0), "neck": (0, 1, 0.05), "head": (0, 0.94, 0.33),
+}  # fmt: skip
 
 
 def _rest_directions() -> Array:

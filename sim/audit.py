@@ -41,8 +41,8 @@ class Audit:
 
     robot: RobotModel
     goals: int = 0
-    violations: Counter[str] = field(default_factory=Counter)
-    details: list[str] = field(default_factory=list)
+    violations: Counter[str] = field(default_factory=Counter[str])
+    details: list[str] = field(default_factory=list[str])
 
     def __post_init__(self) -> None:
         """Bounds in ticks for each servo."""
@@ -53,7 +53,9 @@ class Audit:
         self._sets = 0
         for joint, servo in zip(self.robot.joints, self.robot.servos, strict=True):
             scale = servo.gear_ratio * servo.model.ticks_per_turn / (2 * math.pi)
-            ends = [servo.zero_tick + servo.direction * scale * q for q in (joint.position_min_rad, joint.position_max_rad)]
+            ends = [
+                servo.zero_tick + servo.direction * scale * q for q in (joint.position_min_rad, joint.position_max_rad)
+            ]
             self._tracks[servo.servo_id] = _Track(
                 math.floor(min(ends)),
                 math.ceil(max(ends)),

@@ -10,10 +10,10 @@ import struct
 from collections.abc import Callable
 
 from daemon.bus.packet import BROADCAST_ID, Instruction, Packet, PacketDecoder, encode
+from retarget.robot import RobotModel
 from sim.audit import Audit
 from sim.faults import FaultSchedule
 from sim.servo import SimServo
-from retarget.robot import RobotModel
 
 _BITS_PER_BYTE = 10
 _RETURN_DELAY_UNIT_S = 2e-6
@@ -24,7 +24,9 @@ _TORQUE_ENABLE = 64
 class SimBus:
     """The servos of a robot behind real packets. Time comes from outside."""
 
-    def __init__(self, robot: RobotModel, faults: FaultSchedule | None = None, start_rad: list[float] | None = None) -> None:
+    def __init__(
+        self, robot: RobotModel, faults: FaultSchedule | None = None, start_rad: list[float] | None = None
+    ) -> None:
         pose = start_rad if start_rad is not None else robot.park_rad.tolist()
         self.robot = robot
         self.servos = {s.servo_id: SimServo(s, q) for s, q in zip(robot.servos, pose, strict=True)}
@@ -74,7 +76,9 @@ class SimBus:
             asked = [self.servos[i] for i in p.parameters[4:] if i in self.servos]
             return [(s, self._status(s, *s.read(address, length))) for s in asked]
         everyone = p.servo_id == BROADCAST_ID
-        addressed = list(self.servos.values()) if everyone else [s for s in self.servos.values() if s.servo_id == p.servo_id]
+        addressed = (
+            list(self.servos.values()) if everyone else [s for s in self.servos.values() if s.servo_id == p.servo_id]
+        )
         replies = [(s, self._one(s, p, t_s)) for s in addressed]
         return [(s, r) for s, r in replies if r is not None and (not everyone or p.instruction == Instruction.PING)]
 

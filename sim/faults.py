@@ -64,7 +64,9 @@ class FaultSchedule:
         except FileNotFoundError:
             raise ConfigError(f"{path}: no such file; a fault schedule is TOML with [[fault]] tables") from None
         except (tomllib.TOMLDecodeError, msgspec.ValidationError, UnicodeDecodeError) as error:
-            raise ConfigError(f"{path}: {error}; keys of a [[fault]]: kind, start_s, end_s, probability, servo_id") from error
+            raise ConfigError(
+                f"{path}: {error}; keys of a [[fault]]: kind, start_s, end_s, probability, servo_id"
+            ) from error
         return cls(tuple(table.fault), table.seed)
 
     def active(self, kind: str, t_s: float, servo_id: int | None = None) -> bool:

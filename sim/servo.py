@@ -9,7 +9,14 @@ from __future__ import annotations
 import math
 
 from daemon.bus.packet import ALERT_BIT, ErrorCode
-from daemon.bus.registers import CONTROL_TABLES, EEPROM_END, VELOCITY_UNIT_RAD_S, WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, Item
+from daemon.bus.registers import (
+    CONTROL_TABLES,
+    EEPROM_END,
+    VELOCITY_UNIT_RAD_S,
+    WATCHDOG_TRIPPED,
+    WATCHDOG_UNIT_S,
+    Item,
+)
 from retarget.robot import ServoSpec
 
 _TABLE_BYTES = 256
@@ -182,4 +189,6 @@ class SimServo:
         self._set("present_velocity", round(velocity))
         self._set("moving", int(abs(velocity) > 1))
         effort = round(0.6 * velocity) if self.torque else 0
-        self._set("present_current" if "present_current" in self.items else "present_load", max(-1000, min(1000, effort)))
+        self._set(
+            "present_current" if "present_current" in self.items else "present_load", max(-1000, min(1000, effort))
+        )

@@ -42,7 +42,9 @@ def bench_audit(prompts: int = 200, seed: int = 0) -> dict[str, Any]:
     stderr = Console(stderr=True)
     engine = Engine.load(threads=1)
     texts = draw_texts(prompts, seed)
-    motions = [engine.generate(t, seed=seed + i).motion for i, t in enumerate(track(texts, "generating", console=stderr))]
+    motions = [
+        engine.generate(t, seed=seed + i).motion for i, t in enumerate(track(texts, "generating", console=stderr))
+    ]
     per_robot: dict[str, Any] = {}
     for name in ROBOTS:
         rng = np.random.default_rng(seed)
@@ -114,7 +116,10 @@ class _Rig:
         self._until(BusState.LIMP)
         self._link.close()
         report = self._bus.audit.report()
-        return {key: report[key] for key in ("goals", "violations", "violations_by_kind", "self_contacts", "poses_checked", "details")}
+        return {
+            key: report[key]
+            for key in ("goals", "violations", "violations_by_kind", "self_contacts", "poses_checked", "details")
+        }
 
     def _request(self, request: BusRequest) -> None:
         self._link.request(request)

@@ -31,7 +31,10 @@ def bench_first_motion(n: int = 50, seed: int = 0, robot: str = "reference") -> 
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "daemon.log"
         ends = ["--cmd", endpoints.cmd, "--ctl", endpoints.ctl, "--pub", endpoints.pub]
-        with child(["run", "--robot", robot, "--bus", "sim://", "--quiet", *ends], log) as process, Client(endpoints) as client:
+        with (
+            child(["run", "--robot", robot, "--bus", "sim://", "--quiet", *ends], log) as process,
+            Client(endpoints) as client,
+        ):
             wait_until_ready(client, process, log)
             client.arm()
             for i, text in enumerate(texts):

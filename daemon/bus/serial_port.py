@@ -21,7 +21,9 @@ class SerialPort:
     def __init__(self, device: str, baud: int, url: str | None = None) -> None:
         self.name, self.baud = url or device, baud
         if not os.path.exists(device):
-            raise PortMissingError(self.name, f"no device '{device}'", "plug the adapter in, or list them: ls /dev/serial/by-id/")
+            raise PortMissingError(
+                self.name, f"no device '{device}'", "plug the adapter in, or list them: ls /dev/serial/by-id/"
+            )
         try:
             self._lock = PortLock(device)
         except BlockingIOError as error:
@@ -77,7 +79,9 @@ def _open(device: str, baud: int, url: str) -> serial.Serial:
             raise PortBusyError(url, f"in use by {process_holding(device)}", "stop that process") from error
         raise PortError(url, str(error), "check cable and path: ls -l /dev/serial/by-id/") from error
     except ValueError as error:
-        raise PortError(url, f"baud {baud} is not possible ({error})", "57600, 115200, 1000000, 2000000, 3000000 or 4000000") from error
+        raise PortError(
+            url, f"baud {baud} is not possible ({error})", "57600, 115200, 1000000, 2000000, 3000000 or 4000000"
+        ) from error
 
 
 def open_dxl(url: SplitResult, context: PortContext) -> SerialPort:
@@ -86,7 +90,9 @@ def open_dxl(url: SplitResult, context: PortContext) -> SerialPort:
     query = parse_qs(url.query, strict_parsing=bool(url.query))
     unknown = query.keys() - {"baud"}
     if unknown or not device:
-        raise CommandError(f"bus '{url.geturl()}': {', '.join(unknown) or 'no device'}; allowed: dxl://PATH?baud=NUMBER")
+        raise CommandError(
+            f"bus '{url.geturl()}': {', '.join(unknown) or 'no device'}; allowed: dxl://PATH?baud=NUMBER"
+        )
     text = query.get("baud", [str(context.robot.bus.baud)])[0]
     if not text.isdigit():
         raise CommandError(f"bus '{url.geturl()}': baud '{text}' is not a number; example: baud=1000000")

@@ -58,10 +58,17 @@ class ServoBus:
         self._read_request = packet.sync_read(FEEDBACK_ADDRESS, FEEDBACK_LENGTH, self.ids)
         self._goal_rows = np.zeros((n, 1 + _GOAL_POSITION_BYTES), np.uint8)
         self._goal_rows[:, 0] = self.ids
-        self._goal_head = Packet(BROADCAST_ID, Instruction.SYNC_WRITE, bytes([_GOAL_POSITION_ADDRESS, 0, _GOAL_POSITION_BYTES, 0]))
+        self._goal_head = Packet(
+            BROADCAST_ID, Instruction.SYNC_WRITE, bytes([_GOAL_POSITION_ADDRESS, 0, _GOAL_POSITION_BYTES, 0])
+        )
         zeros = np.zeros(n, np.int32)
         self.reading = BusReading(
-            zeros.copy(), zeros.copy(), zeros.copy(), np.zeros(n, bool), np.full(n, 1 << 20, np.int32), np.zeros(n, np.uint8)
+            zeros.copy(),
+            zeros.copy(),
+            zeros.copy(),
+            np.zeros(n, bool),
+            np.full(n, 1 << 20, np.int32),
+            np.zeros(n, np.uint8),
         )
         self.timeouts = zeros.copy()
         """(S,) cycles in which each servo did not answer."""
@@ -90,7 +97,11 @@ class ServoBus:
             reading.valid[:] = True
         else:
             for p in self._decoder.feed(raw):
-                if p.instruction == Instruction.STATUS and len(p.parameters) == FEEDBACK_LENGTH and p.servo_id in self._row:
+                if (
+                    p.instruction == Instruction.STATUS
+                    and len(p.parameters) == FEEDBACK_LENGTH
+                    and p.servo_id in self._row
+                ):
                     packets[p.servo_id] = p
             rows = np.array([self._row[i] for i in packets], np.int64)
             reading.valid[:] = False
@@ -133,7 +144,9 @@ class ServoBus:
             return
         hint = "check ids and cables: a servo keeps its id, a chain is cut behind the last one that answers"
         if not found:
-            hint = f"nothing answers at {self.port.baud} baud on {self.port.name}: check power, and the baud (?baud=...)"
+            hint = (
+                f"nothing answers at {self.port.baud} baud on {self.port.name}: check power, and the baud (?baud=...)"
+            )
         raise BusMismatchError(rows, hint)
 
     def read_item(self, servo_id: int, name: str) -> int:

@@ -30,8 +30,19 @@ def demo(
     from rich.progress import Progress, SpinnerColumn, TextColumn
 
     from daemon.client import Client
-    from daemon.demo import Shown, audited_plans, child, describe, draw, end, free_endpoints, perform, read_run, replayed
-    from daemon.demo import wait_until_ready
+    from daemon.demo import (
+        Shown,
+        audited_plans,
+        child,
+        describe,
+        draw,
+        end,
+        free_endpoints,
+        perform,
+        read_run,
+        replayed,
+        wait_until_ready,
+    )
     from daemon.errors import CommandError
     from retarget.robot import load_robot
 
@@ -46,7 +57,9 @@ def demo(
     endpoints = free_endpoints()
     with Progress(SpinnerColumn(), TextColumn("{task.description}"), console=console, transient=True) as bar:
         task = bar.add_task("starting the simulated robot and the daemon")
-        with child(["sim", "--robot", robot, "--link", str(link), "--audit", str(audit_file)], out / "sim.log") as servos:
+        with child(
+            ["sim", "--robot", robot, "--link", str(link), "--audit", str(audit_file)], out / "sim.log"
+        ) as servos:
             _wait_for(link)
             bus = f"dxl://{link}?baud={model.bus.baud}"
             ends = ["--cmd", endpoints.cmd, "--ctl", endpoints.ctl, "--pub", endpoints.pub]

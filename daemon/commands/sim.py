@@ -7,7 +7,9 @@ import signal
 from pathlib import Path
 
 
-def sim(robot: str = "reference", link: Path | None = None, faults: Path | None = None, audit: Path | None = None) -> int:
+def sim(
+    robot: str = "reference", link: Path | None = None, faults: Path | None = None, audit: Path | None = None
+) -> int:
     """Serve simulated servos on a tty until Ctrl-C, then print the audit of every goal they received.
 
     Anything that opens a serial port can talk to them at the robot's baud: mmmd, dynamixel-sdk, the DYNAMIXEL Wizard.

@@ -61,7 +61,9 @@ def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.
         for clip in _json_lines(folder / "clips.jsonl"):
             trial = trials.get(clip["trial"])
             if trial is None or clip["trial"] not in motions.files:
-                raise TrainingDataError(folder, clip["clip"], f"trial {clip['trial']!r} is unknown", "a trial of trials.jsonl")
+                raise TrainingDataError(
+                    folder, clip["clip"], f"trial {clip['trial']!r} is unknown", "a trial of trials.jsonl"
+                )
             if clip["split"] != split or trial["terms"] != "CMU":
                 continue
             captions = [c for c, s in zip(clip["captions"], clip["caption_source"], strict=True) if s != "KIT-ML"]

@@ -271,7 +271,13 @@ def _cross(score: Score, g: Gesture) -> None:
 def _shrug(score: Score, g: Gesture) -> None:
     palms = ArmPose((0.3, -0.85, 0.25), (0.65, 0.15, 0.7), 1.0)
     for _ in range(g.count):
-        score.move(_reach_s(score, g, 0.42), shrug=1.0 * g.size, left=palms, right=palms, head=(0.0, 0.0, score.rng.uniform(-0.15, 0.15)))
+        score.move(
+            _reach_s(score, g, 0.42),
+            shrug=1.0 * g.size,
+            left=palms,
+            right=palms,
+            head=(0.0, 0.0, score.rng.uniform(-0.15, 0.15)),
+        )
         score.hold(score.rng.uniform(0.2, 0.6))
         score.move(_reach_s(score, g, 0.42), shrug=0.0, **({} if g.count == 1 else {"head": (0.0, 0.0, 0.0)}))
 

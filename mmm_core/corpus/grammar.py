@@ -126,7 +126,7 @@ def _adverb(g: Gesture, rng: np.random.Generator) -> str:
 
 
 def _third(phrase: str, pronoun: str) -> str:
-    """"wave your hand" -> "waves their hand"; verbs after "and" follow."""
+    """Third person of an imperative: "wave your hand" becomes "waves their hand"."""
     words = phrase.split(" ")
     if words[:2] == ["do", "not"]:
         words[:2] = ["does", "not"]
@@ -193,7 +193,10 @@ def caption(gestures: list[Gesture], parallel: bool, rng: np.random.Generator) -
     if parallel:
         a, b = clauses
         if style < 0.5:
-            return _finish(_pick((f"{a} while {_gerund(b, None)}", f"{a} and {b} at the same time", f"{a} while you {b}"), rng), rng)
+            return _finish(
+                _pick((f"{a} while {_gerund(b, None)}", f"{a} and {b} at the same time", f"{a} while you {b}"), rng),
+                rng,
+            )
         subject = _pick(_PERSONS, rng)
         return _finish(subject.replace("{v}", f"{_third(a, pronoun)} while {_gerund(b, pronoun)}"), rng)
     if style < 0.5:

@@ -53,7 +53,9 @@ def train(module: nn.Module, loss_fn: LossFn, schedule: Schedule, run_dir: Path,
     run_dir.mkdir(parents=True, exist_ok=True)
     state_file = run_dir / f"{name}.pt"
     parameters = [p for p in module.parameters() if p.requires_grad]
-    optimiser = torch.optim.AdamW(parameters, schedule.learning_rate, schedule.betas, weight_decay=schedule.weight_decay)
+    optimiser = torch.optim.AdamW(
+        parameters, schedule.learning_rate, schedule.betas, weight_decay=schedule.weight_decay
+    )
     averages = [p.detach().clone() for p in parameters]
     first = 0
     if state_file.is_file():
@@ -85,7 +87,9 @@ def train(module: nn.Module, loss_fn: LossFn, schedule: Schedule, run_dir: Path,
             nn.utils.clip_grad_norm_(parameters, schedule.clip_norm)
             optimiser.step()
             decay = min(schedule.ema_decay, (step + 1) / (step + 10))
-            torch._foreach_lerp_(averages, [p.detach() for p in parameters], 1 - decay)  # noqa: SLF001
+            with torch.no_grad():
+                for average, parameter in zip(averages, parameters, strict=True):
+                    average.lerp_(parameter, 1 - decay)
             if step % 20 == 0 or step + 1 == schedule.steps:
                 values = {key: float(value.detach()) for key, value in losses.items()}
                 log.writerow([step, f"{time.monotonic() - started:.1f}", *(f"{v:.5f}" for v in values.values())])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import torch
 from hypothesis import given
 from hypothesis import strategies as st
@@ -15,7 +17,7 @@ MASK = K + 2
 
 def fixed_logits(ids: torch.Tensor) -> torch.Tensor:
     """Logits that depend on position, codebook and on what is visible, the same for every row length."""
-    B, L, C = ids.shape
+    _, L, C = ids.shape
     position = torch.arange(L).view(1, L, 1, 1)
     book = torch.arange(C).view(1, 1, C, 1)
     code = torch.arange(K).view(1, 1, 1, K)
@@ -29,7 +31,7 @@ def fixed_logits(ids: torch.Tensor) -> torch.Tensor:
 def test_every_step_masks_fewer_and_the_first_masks_all(n: int, steps: int, schedule: str) -> None:
     counts = masked_counts(n, steps, schedule)
     assert counts[0] == n
-    assert all(a > b >= 1 for a, b in zip(counts, counts[1:], strict=False))
+    assert all(a > b >= 1 for a, b in pairwise(counts))
     assert len(counts) <= steps
 
 
@@ -38,7 +40,9 @@ def test_the_cosine_counts_are_the_papers() -> None:
 
 
 @given(st.integers(1, 20), st.integers(1, 3), st.integers(0, 99), st.floats(0, 1), st.data())
-def test_the_fast_decoder_equals_the_plain_one(L: int, C: int, seed: int, temperature: float, data: st.DataObject) -> None:
+def test_the_fast_decoder_equals_the_plain_one(
+    L: int, C: int, seed: int, temperature: float, data: st.DataObject
+) -> None:
     ids = torch.randint(0, K, (2, L, C), generator=torch.Generator().manual_seed(seed))
     hidden = torch.tensor(data.draw(st.lists(st.lists(st.booleans(), min_size=L, max_size=L), min_size=2, max_size=2)))
     ids[hidden] = MASK

@@ -20,7 +20,9 @@ def tokenizer() -> Tokenizer:
 
 def small_transformer() -> MotionTransformer:
     torch.manual_seed(0)
-    config = TransformerConfig(n_codes=32, n_codebooks=3, code_dim=8, width=32, n_heads=4, n_cross=1, n_self=2, text_dim=16)
+    config = TransformerConfig(
+        n_codes=32, n_codebooks=3, code_dim=8, width=32, n_heads=4, n_cross=1, n_self=2, text_dim=16
+    )
     model = MotionTransformer(config).eval()
     model.set_codebooks([torch.randn(32, 8) for _ in range(3)])
     return model
