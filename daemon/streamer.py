@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from daemon.approach import Approach
 from daemon.bus.packet import ALERT_BIT
-from daemon.bus.registers import hardware_error_text
+from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, hardware_error_text
 from daemon.bus.servo_bus import BusReading, ServoBus
 from daemon.clock import Clock
-from daemon.errors import DaemonError, LinkError, ServoFaultError
+from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
 from retarget.robot import RobotModel
@@ -32,6 +32,8 @@ PARK_AFTER_S = 5.0
 """A silent front: after the first time decelerate and hold, after the second park and go limp."""
 WATCHDOG_UNITS = 10
 """Servo bus watchdog, 20 ms each: 200 ms without any packet on the bus and the servos stop by themselves."""
+TORQUE_OFF_REPEATS = 5
+"""Torque off is a packet that nobody answers: it is sent again, so that a spoilt one or a lost port costs nothing."""
 MISSING_CYCLES = 20
 """Half of the servos silent for so many cycles is a fault (loose plug, power)."""
 TORQUE_CHECK_CYCLES = 5
@@ -65,6 +67,8 @@ class Streamer:
         self._cycle, self._late_cycles, self._missing_cycles = 0, 0, 0
         self._pwm: int | None = None
         self._front_lost_s: float | None = None
+        self._torque_off_left = 0
+        self._ended_s = clock.now_s()
 
     def run(self) -> None:
         """Cycle at the robot's rate until a shutdown request or `stopping`, torque off at the end."""
@@ -91,16 +95,23 @@ class Streamer:
         try:
             for request in self._link.take_requests():
                 self._serve(request)
+            self._repeat_torque_off()
             self._watch_heartbeat()
+            self._check_stall()
             goal_rad = self._next_goal()
             if goal_rad is not None and self._goal_tick is not None:
                 self._goal_tick = np.rint(self._ticks.to_ticks(goal_rad)).astype(np.int32)
             reading = self._bus.exchange(self._goal_tick if self._torque else None)
             self._judge(reading)
         except (LinkError, ServoFaultError) as error:
+            if isinstance(error, LinkLostError):
+                self._goal_tick = (
+                    None  # when it is back its servos have stopped by themselves: no goal until armed anew
+                )
             self._fault(str(error))
         self._publish(self._bus.reading)
         self._cycle += 1
+        self._ended_s = self._clock.now_s()
 
     # Requests.
 
@@ -108,8 +119,8 @@ class Streamer:
         log.info("request %s in %s", request.name, self.state.name)
         if request is BusRequest.ESTOP:
             self._link.drop_queued()
-            self._bus.send_torque_off()
-            self._torque, self._goal_tick = False, None
+            self._torque, self._goal_tick, self._approach = False, None, None
+            self._torque_off_left = TORQUE_OFF_REPEATS  # the first goes out in this cycle
             self._enter(BusState.ESTOP)
         elif request is BusRequest.STOP:
             self._link.drop_queued()
@@ -261,6 +272,19 @@ class Streamer:
             log.warning("front silent for %.1f s: holding", age_s)
             self._serve(BusRequest.STOP)
 
+    def _check_stall(self) -> None:
+        """After a pause in which the servos' watchdog may have run out: they then stand still and refuse goals."""
+        pause_s = self._clock.now_s() - self._ended_s
+        if not self._torque or self._goal_tick is None or pause_s < 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S:
+            return
+        for servo_id in self._bus.ids:
+            if self._bus.read_item(servo_id, "bus_watchdog") == WATCHDOG_TRIPPED:
+                self._goal_tick = None
+                self._fault(
+                    f"the bus process was held up for {pause_s:.2f} s: servo {servo_id} stopped by its watchdog"
+                )
+                return
+
     def _judge(self, reading: BusReading) -> None:
         """A tripped servo, lost torque or half of the robot silent is a fault."""
         if self.state in (BusState.FAULT, BusState.ESTOP):
@@ -281,7 +305,10 @@ class Streamer:
                 )
 
     def _fault(self, text: str) -> None:
-        """Latch a fault: what still has torque comes to rest and holds; nothing re-arms by itself."""
+        """Latch a fault: what still has torque comes to rest and holds; nothing re-arms by itself. An e-stop stays one."""
+        if self.state is BusState.ESTOP:
+            self._link.set_text(text)
+            return
         if self.state is not BusState.FAULT:
             log.error("fault: %s", text)
             self._link.set_text(text)
@@ -295,6 +322,12 @@ class Streamer:
         except LinkError as error:
             log.error("torque off not sent: %s", error)
         self._torque, self._goal_tick = False, None
+        self._torque_off_left = TORQUE_OFF_REPEATS
+
+    def _repeat_torque_off(self) -> None:
+        if self._torque_off_left and not self._torque:
+            self._bus.send_torque_off()
+            self._torque_off_left -= 1
 
     def _enter(self, state: BusState) -> None:
         if state is not self.state:

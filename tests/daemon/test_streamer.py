@@ -1,0 +1,383 @@
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rig import rig, swing
+
+from daemon import shared
+from daemon.bus.servo_bus import ServoBus
+from daemon.errors import PortMissingError
+from daemon.shared import BusLink, BusRequest, BusState, Readiness
+from daemon.streamer import HEARTBEAT_LOST_S, PARK_AFTER_S, start
+from retarget.robot import list_robots, load_robot
+from sim.bus import SimBus
+from sim.clock import VirtualClock
+from sim.faults import Fault
+from sim.port import SimPort
+
+ROBOTS = list_robots()
+
+
+def assert_brakes_within_limits(records, robot) -> None:
+    """From the first record on the joints come to rest as fast as the acceleration allows, and no faster."""
+    velocity = np.array([r["velocity_rad_s"] for r in records])
+    change = np.abs(np.diff(velocity, axis=0))
+    assert (change <= robot.acceleration_limit_rad_s2 * robot.bus.period_s * (1 + 1e-6)).all()
+    assert (np.abs(velocity[1:]) <= np.abs(velocity[:-1]) + 1e-9).all()
+    longest_s = (robot.velocity_limit_rad_s / robot.acceleration_limit_rad_s2).max()
+    assert not velocity[int(longest_s * robot.bus.rate_hz) + 2 :].any()
+
+
+def test_nothing_moves_because_a_process_started():
+    with rig() as r:
+        r.push(swing(r.robot, 0.5))
+        before = [s.position_tick for s in r.sim.servos.values()]
+        r.cycle(100)
+        assert r.state is BusState.LIMP and not any(r.torque)
+        assert r.sim.audit.goals == 0
+        assert [s.position_tick for s in r.sim.servos.values()] == before
+        assert r.records[-1]["valid"].all(), "but it is measured"
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("seed", range(3))
+def test_arming_pins_then_goes_slowly_to_rest(name, seed):
+    robot = load_robot(name)
+    start_rad = np.random.default_rng(seed).uniform(robot.position_min_rad, robot.position_max_rad)
+    with rig(name, start_rad=start_rad) as r:
+        r.arm()
+        assert all(r.torque)
+        ticks = np.rint(r.streamer._ticks.to_ticks(robot.rest_rad)).astype(int)
+        assert list(r.records[-1]["goal_tick"]) == list(ticks)
+        assert np.abs(r.goals_rad()[0] - start_rad).max() < 0.01
+        assert np.abs([v["velocity_rad_s"] for v in r.records]).max() <= 1.0
+        r.assert_limits_kept()
+
+
+def test_setpoints_inside_the_limits_reach_the_servos_bit_for_bit():
+    with rig() as r:
+        r.arm()
+        q = swing(r.robot, 2.0)
+        first = len(r.records)
+        r.push(q, plan_id=9)
+        r.cycle(len(q) + 5)
+        played = [x for x in r.records[first:] if x["plan_id"] == 9][: len(q)]
+        assert np.array([x["goal_rad"] for x in played]).tobytes() == q.tobytes()
+        assert [x["frame"] for x in played] == list(range(len(q)))
+        assert not any(x["clipped"].any() for x in played)
+        assert r.state is BusState.HOLDING
+        r.assert_limits_kept()
+
+
+def test_stop_brakes_within_limits_and_holds():
+    with rig() as r:
+        r.arm()
+        r.push(swing(r.robot, 2.0))
+        r.cycle(60)
+        r.link.request(BusRequest.STOP)
+        r.cycle(100)
+        assert r.state is BusState.HOLDING and all(r.torque)
+        assert_brakes_within_limits(r.records[-101:], r.robot)
+        assert r.link.queued_frames == 0
+        r.assert_limits_kept()
+
+
+def test_a_late_front_makes_it_slow_down_and_go_on():
+    with rig() as r:
+        r.arm()
+        q = swing(r.robot, 2.0)
+        r.push(q[:60], last=False)
+        r.cycle(61)
+        assert r.state is BusState.PLAYING and r.records[-1]["underrun"]
+        r.cycle(60)
+        assert_brakes_within_limits(r.records[-62:], r.robot)
+        assert r.state is BusState.PLAYING, "the plan has not ended"
+        r.push(q[60:])
+        r.cycle(len(q))
+        assert r.state is BusState.HOLDING
+        assert np.array_equal(r.records[-1]["goal_rad"], q[-1])
+        r.assert_limits_kept()
+
+
+@pytest.mark.parametrize("state", ["arming", "holding", "playing", "stopping", "parking"])
+def test_e_stop_cuts_torque_in_its_cycle_and_is_latched(state):
+    with rig() as r:
+        if state == "arming":
+            r.link.request(BusRequest.ARM)
+            r.cycle(5)
+        else:
+            r.arm()
+        if state in ("playing", "stopping"):
+            r.push(swing(r.robot, 2.0))
+            r.cycle(60)
+        if state in ("stopping", "parking"):
+            r.link.request(BusRequest.STOP if state == "stopping" else BusRequest.PARK)
+            r.cycle(1)
+        assert r.state.name.lower() == state
+        r.link.request(BusRequest.ARM)
+        r.link.request(BusRequest.ESTOP)
+        r.cycle()
+        assert not any(r.torque)
+        assert r.state is BusState.ESTOP and not r.records[-1]["torque"]
+        goals = r.sim.audit.goals
+        for request in (BusRequest.ARM, BusRequest.PARK, BusRequest.STOP):
+            r.link.request(request)
+            r.push(swing(r.robot, 0.2))
+            r.cycle(5)
+            assert r.state is BusState.ESTOP and not any(r.torque)
+        assert r.sim.audit.goals == goals
+        r.link.request(BusRequest.RESET)
+        r.cycle(5)
+        assert r.state is BusState.LIMP and not any(r.torque), "reset arms nothing"
+        r.arm()
+        r.assert_limits_kept()
+
+
+def test_an_e_stop_while_unplugged_is_carried_out_when_the_bus_is_back():
+    """The torque-off that could not be sent is not forgotten: the person who pressed it believes the robot is limp."""
+    with rig("reference", Fault("unplug", start_s=3.0, end_s=3.5)) as r:
+        r.arm()
+        while r.clock.now_s() < 3.1:
+            r.cycle()
+        assert all(r.torque)
+        r.link.request(BusRequest.ESTOP)
+        r.cycle()
+        assert r.state is BusState.ESTOP
+        while r.clock.now_s() < 3.6:
+            r.cycle()
+        assert not any(r.torque)
+        assert r.state is BusState.ESTOP
+
+
+def test_parking_ends_limp_in_the_park_pose():
+    with rig() as r:
+        r.arm()
+        r.push(swing(r.robot, 2.0))
+        r.cycle(60)
+        r.link.request(BusRequest.PARK)
+        r.cycle()
+        r.until(BusState.LIMP)
+        assert not any(r.torque)
+        r.cycle(20)
+        ticks = r.streamer._ticks.rad_to_tick(r.robot.park_rad)
+        assert np.abs(r.records[-1]["present_tick"] - ticks).max() <= 3
+        r.assert_limits_kept()
+
+
+def test_a_silent_front_holds_then_parks(monkeypatch):
+    """Time of the heartbeat is the machine's; here it goes with the virtual clock."""
+    with rig(watch_front=True) as r:
+        monkeypatch.setattr(shared.time, "monotonic_ns", lambda: int(r.clock.now_s() * 1e9))
+        r.link.heartbeat()
+        r.link.request(BusRequest.ARM)
+        for _ in range(400):
+            r.link.heartbeat()
+            r.cycle()
+        assert r.state is BusState.HOLDING
+        r.push(swing(r.robot, 2.0))
+        for _ in range(30):
+            r.link.heartbeat()
+            r.cycle()
+        lost_s, first = r.clock.now_s(), len(r.records)
+        r.until(BusState.STOPPING, BusState.HOLDING, within_s=HEARTBEAT_LOST_S + 0.1)
+        assert r.clock.now_s() - lost_s == pytest.approx(HEARTBEAT_LOST_S, abs=0.05)
+        r.until(BusState.HOLDING, within_s=1.0)
+        assert all(r.torque)
+        r.until(BusState.PARKING, within_s=PARK_AFTER_S)
+        r.until(BusState.LIMP)
+        assert not any(r.torque)
+        states = [BusState(int(x["state"])).name for x in r.records[first:]]
+        assert [k for k, _ in itertools.groupby(states)] == ["PLAYING", "STOPPING", "HOLDING", "PARKING", "LIMP"]
+        r.cycle(100)
+        assert r.state is BusState.LIMP
+        r.assert_limits_kept()
+
+
+@pytest.mark.parametrize("playing", [False, True])
+def test_a_servo_that_trips_is_a_named_fault_and_nothing_rearms(playing):
+    with rig("reference", Fault("trip", start_s=4.0, servo_id=13)) as r:
+        r.arm()
+        while r.clock.now_s() < 4.2:
+            if playing and r.link.queued_frames < 20:
+                r.push(swing(r.robot, 1.0))
+            r.cycle()
+        assert r.state is BusState.FAULT
+        assert "servo 13" in r.link.text and "overload" in r.link.text
+        r.link.request(BusRequest.ARM)
+        r.cycle(200)
+        assert r.state is BusState.FAULT
+        assert not r.records[-1]["velocity_rad_s"].any()
+        r.assert_limits_kept()
+        r.link.request(BusRequest.RESET)
+        r.cycle(2)
+        assert r.state is BusState.LIMP and not any(r.torque)
+        r.link.request(BusRequest.ARM)
+        r.cycle(2)
+        assert r.state is BusState.FAULT and "servo 13" in r.link.text, "it has not been rebooted"
+        assert not any(r.torque)
+
+
+def test_torque_lost_without_a_word_is_a_fault():
+    """A servo that rebooted (a brown-out) answers as if nothing had happened, but holds nothing."""
+    with rig() as r:
+        r.arm()
+        servo = list(r.sim.servos.values())[6]
+        servo.reboot()
+        r.until(BusState.FAULT, within_s=2.0)
+        assert f"servo {servo.servo_id} " in r.link.text and "torque" in r.link.text
+        r.cycle(100)
+        assert r.state is BusState.FAULT and not servo.torque
+
+
+def test_unplugged_is_a_fault_and_plugged_in_again_nothing_moves():
+    with rig("reference", Fault("unplug", start_s=4.0, end_s=5.0)) as r:
+        r.arm()
+        while r.clock.now_s() < 6.0:
+            if r.state in (BusState.HOLDING, BusState.PLAYING) and r.link.queued_frames < 20:
+                r.push(swing(r.robot, 1.0))
+            r.cycle()
+        assert r.state is BusState.FAULT and "unplugged" in r.link.text
+        before = [s.position_tick for s in r.sim.servos.values()]
+        r.link.request(BusRequest.ARM)
+        r.cycle(100)
+        assert r.state is BusState.FAULT
+        assert [s.position_tick for s in r.sim.servos.values()] == pytest.approx(before, abs=1)
+        r.assert_limits_kept()
+        r.link.request(BusRequest.RESET)
+        r.cycle()
+        r.arm()
+        r.assert_limits_kept()
+
+
+def test_half_of_the_servos_silent_is_a_fault():
+    robot = load_robot("reference")
+    silent = [Fault("silent", start_s=4.0, servo_id=i) for i in robot.servo_ids[: robot.n_joints // 2]]
+    with rig("reference", *silent) as r:
+        r.arm()
+        r.until(BusState.FAULT, within_s=8.0)
+        assert "silent" in r.link.text
+        assert 4.0 < r.clock.now_s() < 5.0
+
+
+@pytest.mark.parametrize("kind", ["drop", "corrupt"])
+def test_lost_replies_do_not_stop_the_robot(kind):
+    """One reply in fifty lost or spoilt: the values go stale for a cycle and say so, the motion goes on."""
+    with rig("reference", Fault(kind, start_s=3.0, probability=0.02)) as r:
+        r.arm()
+        for _ in range(8):
+            r.push(swing(r.robot, 1.0))
+            r.cycle(105)
+            assert r.state is BusState.HOLDING, r.link.text
+        invalid = sum((~x["valid"].astype(bool)).sum() for x in r.records)
+        assert invalid > 20
+        r.assert_limits_kept()
+
+
+def test_arming_fails_by_name_when_a_servo_is_silent():
+    with rig("reference", Fault("silent", servo_id=15)) as r:
+        r.link.request(BusRequest.ARM)
+        r.cycle(3)
+        assert r.state is BusState.FAULT and "15" in r.link.text and "no answer" in r.link.text
+        assert not any(r.torque)
+        assert r.sim.audit.goals == 0
+
+
+def test_a_stall_longer_than_the_servos_watchdog_is_a_fault():
+    """Frozen for a second while moving: the servos stopped by themselves and would refuse goals from then on."""
+    with rig() as r:
+        r.arm()
+        r.push(swing(r.robot, 2.0))
+        r.cycle(60)
+        r.clock.sleep_until(r.clock.now_s() + 1.0)
+        r.cycle(10)
+        assert r.state is BusState.FAULT and "1.0" in r.link.text
+        r.link.request(BusRequest.RESET)
+        r.cycle(2)
+        r.arm()
+        r.assert_limits_kept()
+
+
+def test_late_cycles_are_skipped_and_counted_not_made_up_for():
+    class Slow(VirtualClock):
+        def sleep_until(self, t_s: float) -> None:
+            late = 0.055 if len(woken) == 50 else 0.0
+            woken.append(t_s)
+            super().sleep_until(t_s + late)
+
+    woken: list[float] = []
+    robot, clock = load_robot("reference"), Slow()
+    link = BusLink.create(robot.n_joints)
+    try:
+        bus = ServoBus(SimPort(SimBus(robot), VirtualClock()), robot.servos, VirtualClock())
+        streamer = start(robot, lambda: bus, link, clock)
+        assert streamer is not None
+        cycles = 0
+        inner = streamer.cycle
+
+        def cycle() -> None:
+            nonlocal cycles
+            inner()
+            cycles += 1
+            streamer.stopping = cycles == 100
+
+        streamer.cycle = cycle  # type: ignore[method-assign]
+        streamer.run()
+        record = link.cycles_since(link.n_cycles - 1)[0][0]
+    finally:
+        link.close()
+    assert 4 <= record["late_cycles"] <= 6
+    assert (np.diff(woken) >= robot.bus.period_s - 1e-9).all(), "never two cycles in one period"
+
+
+def test_start_says_why_there_is_no_robot():
+    robot = load_robot("reference")
+    clock = VirtualClock()
+    link = BusLink.create(robot.n_joints)
+
+    def missing() -> ServoBus:
+        raise PortMissingError("dxl:///dev/ttyUSB9", "no such device", "plug it in")
+
+    try:
+        assert start(robot, missing, link, clock) is None
+        assert link.readiness is Readiness.FAILED and "ttyUSB9" in link.text
+        deaf = SimPort(SimBus(robot), clock, baud=57_600)
+        assert start(robot, lambda: ServoBus(deaf, robot.servos, clock), link, clock) is None
+        assert "baud" in link.text
+        other = SimPort(SimBus(load_robot("op3")), clock)
+        assert start(robot, lambda: ServoBus(other, robot.servos, clock), link, clock) is None
+        assert "expected" in link.text and "head_yaw" in link.text
+        good = SimPort(SimBus(robot), clock)
+        assert start(robot, lambda: ServoBus(good, robot.servos, clock), link, clock) is not None
+        assert link.readiness is Readiness.READY
+    finally:
+        link.close()
+
+
+actions = st.lists(
+    st.tuples(st.sampled_from([*BusRequest, "swing", "wild", "nan", "wait"]), st.integers(1, 120)), max_size=12
+)
+
+
+@settings(max_examples=25, deadline=None)
+@given(actions, st.integers(0, 2**32 - 1))
+def test_no_order_of_requests_and_setpoints_breaks_a_limit(sequence, seed):
+    random = np.random.default_rng(seed)
+    with rig() as r:
+        r.link.request(BusRequest.ARM)
+        r.cycle()
+        for plan_id, (action, n) in enumerate(sequence, 1):
+            if isinstance(action, BusRequest):
+                r.link.request(action)
+            elif action != "wait":
+                q = swing(r.robot, 1.0)[: min(n, 200)].copy()
+                if action != "swing":
+                    q[:] = random.uniform(-4, 4, q.shape)
+                if action == "nan":
+                    q[random.integers(len(q))] = random.choice([np.nan, np.inf, 1e300])
+                r.link.push(q, plan_id, 0, r.link.epoch, last=True)
+            r.cycle(n)
+        assert r.sim.audit.report()["violations"] == 0, r.sim.audit.report()["details"]
+        torque = any(r.torque)
+        assert torque == (r.state not in (BusState.LIMP, BusState.ESTOP)) or r.state is BusState.FAULT
