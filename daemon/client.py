@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import socket as socket_module
 import time
 import uuid
 from collections.abc import Iterator
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
-from urllib.parse import urlsplit
 
 import zmq
 
 from daemon.config import Endpoints
 from daemon.errors import DaemonError
+from daemon.probe import PROBE_TIMEOUT_S, listening
 from daemon.wire import (
     Ack,
     AnyEvent,
@@ -35,7 +34,6 @@ from daemon.wire import (
     encode,
 )
 
-PROBE_TIMEOUT_S = 1.0
 REPLY_TIMEOUT_S = 5.0
 """For a reply that no motion has to be waited for."""
 FIRST_REPLY_TIMEOUT_S = 15.0
@@ -331,27 +329,12 @@ class Client:
         return self._ctl
 
     def _connect(self, endpoint: str) -> zmq.Socket[bytes]:
-        if not _listening(endpoint):
+        if not listening(endpoint):
             raise NoAnswerError(endpoint, "connect", PROBE_TIMEOUT_S)
         socket = self._context.socket(zmq.DEALER)
         socket.setsockopt(zmq.LINGER, 200)
         socket.connect(endpoint)
         return socket
-
-
-def _listening(endpoint: str) -> bool:
-    """Whether anything listens: ZeroMQ itself would wait for it in silence."""
-    try:
-        if endpoint.startswith("ipc://"):
-            with socket_module.socket(socket_module.AF_UNIX) as probe:
-                probe.settimeout(PROBE_TIMEOUT_S)
-                probe.connect(endpoint.removeprefix("ipc://"))
-        else:
-            parts = urlsplit(endpoint)
-            socket_module.create_connection((parts.hostname, parts.port or 0), PROBE_TIMEOUT_S).close()
-    except OSError:
-        return False
-    return True
 
 
 def _unexpected(event: Event, asked: str) -> DaemonError:

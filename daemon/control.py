@@ -84,7 +84,8 @@ class ControlThread:
     def close(self) -> None:
         """End the thread and close its socket."""
         self._stopping.set()
-        self._thread.join(timeout=2.0)
+        if self._thread.ident is not None:
+            self._thread.join(timeout=2.0)
         if self._thread.is_alive():
             log.error("the ctl thread did not end in 2 s")
         else:

@@ -25,6 +25,7 @@ from daemon.generation import GeneratorClient
 from daemon.ledger import Ledger, Route, split_route
 from daemon.performer import TICK_S, Performer
 from daemon.planner import Planner
+from daemon.probe import listening
 from daemon.shared import BusLink, BusRequest
 from daemon.state import CommandRefusedError, RobotState, StateMachine, Trigger
 from daemon.wire import (
@@ -342,10 +343,12 @@ class FrontControls:
 def _bind(socket: zmq.Socket[Any], key: str, endpoint: str) -> None:
     socket.setsockopt(zmq.LINGER, 0)
     socket.setsockopt(zmq.MAXMSGSIZE, MAX_RECEIVE_BYTES)
+    do = "stop the other daemon (`mmmd status` shows it), or choose another endpoint"
+    if endpoint.startswith("ipc://") and listening(endpoint):  # ZeroMQ would take the path from it
+        raise config_error(key, f"{endpoint}: Address already in use", "a free endpoint", do)
     try:
         socket.bind(endpoint)
     except zmq.ZMQError as error:
-        do = "stop the other daemon (`mmmd status` shows it), or choose another port"
         raise config_error(key, f"{endpoint}: {error}", "a free endpoint", do) from error
 
 

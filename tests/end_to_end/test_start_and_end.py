@@ -1,0 +1,206 @@
+"""How a daemon starts, refuses to start, and ends: real processes, a real tty where one is needed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
+
+pytestmark = pytest.mark.timeout(180)
+
+
+class SimulatedTty:
+    """`mmmd sim` on a link in a folder."""
+
+    def __init__(self, folder: Path, robot: str = "op3") -> None:
+        self.link = folder / "servos"
+        self.audit = folder / "tty_audit.json"
+        self.process = subprocess.Popen(
+            [*MMMD, "sim", "--robot", robot, "--link", str(self.link), "--audit", str(self.audit)],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        end_s = time.monotonic() + 20
+        while not self.link.exists():
+            assert time.monotonic() < end_s and self.process.poll() is None, "mmmd sim did not start"
+            time.sleep(0.02)
+
+    def url(self, baud: int) -> str:
+        return f"dxl://{self.link}?baud={baud}"
+
+    def close(self) -> int:
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(20)
+
+
+@pytest.fixture
+def tty(tmp_path):
+    made = SimulatedTty(tmp_path)
+    yield made
+    if made.process.poll() is None:
+        made.close()
+
+
+def baud_of(robot: str) -> int:
+    from retarget.robot import load_robot
+
+    return load_robot(robot).bus.baud
+
+
+def refused(*options: str) -> str:
+    """What `mmmd run` says when it does not start: one message, no traceback, nothing left running."""
+    folder_options = []
+    for name in ("cmd", "ctl", "pub"):
+        folder_options += [f"--{name}", f"ipc:///tmp/mmmd-refused-{os.getpid()}-{name}"]
+    result = mmmd("run", "--quiet", "--generator", "ipc:///tmp/mmmd-none", *folder_options, *options, timeout_s=60)
+    assert result.returncode in (1, 2), result.stderr
+    assert "Traceback" not in result.stderr
+    assert result.stderr.count("mmmd: ") == 1, result.stderr
+    return result.stderr
+
+
+def test_an_unknown_robot_names_the_known_ones():
+    message = refused("--robot", "asimo")
+    assert "asimo" in message and "reference" in message and "op3" in message
+
+
+def test_a_robot_file_with_a_wrong_key_names_file_key_and_allowed(tmp_path):
+    path = tmp_path / "robot.toml"
+    path.write_text('format = 1\nname = "x"\ncolour = "red"\n', "utf-8")
+    message = refused("--robot", str(path))
+    assert str(path) in message and "colour" in message and "allowed" in message
+
+
+def test_a_missing_tty():
+    message = refused("--bus", "dxl:///dev/ttyNOTHERE?baud=1000000")
+    assert "/dev/ttyNOTHERE" in message
+
+
+def test_a_bus_that_is_none():
+    assert "known" in refused("--bus", "can://x")
+    assert "baud" in refused("--bus", "sim://?baud=fast")
+
+
+def test_a_log_that_exists_is_not_overwritten(tmp_path):
+    path = tmp_path / "run.mcap"
+    path.write_text("dear old log")
+    assert "exists" in refused("--log", str(path))
+    assert path.read_text() == "dear old log"
+    assert "no folder" in refused("--log", str(tmp_path / "none" / "run.mcap"))
+
+
+def test_an_endpoint_that_others_could_reach():
+    message = refused("--cmd", "tcp://0.0.0.0:5871")
+    assert "0.0.0.0" in message and "CURVE" in message and "ssh" in message
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may open everything")
+def test_a_tty_without_permission(tty):
+    os.chmod(tty.link.resolve(), 0)
+    assert "usermod" in refused("--robot", "op3", "--bus", tty.url(baud_of("op3")))
+
+
+def test_a_wrong_baud_and_other_servos_show_a_table(tty, tmp_path):
+    wrong_baud = refused("--robot", "op3", "--bus", tty.url(57_600))
+    assert "expected" in wrong_baud and "found" in wrong_baud and "baud" in wrong_baud
+    other = refused("--robot", "reference", "--bus", tty.url(baud_of("op3")))
+    assert "expected" in other and "found" in other
+
+
+def test_over_a_real_tty_a_text_moves_and_a_second_daemon_is_told_who_has_the_port(tty):
+    url = tty.url(baud_of("op3"))
+    daemon = RunningDaemon(robot="op3", bus=url)
+    try:
+        daemon.until_ready()
+        said = daemon.mmmd("say", "wave with your right hand")
+        assert said.returncode == 0, said.stderr
+        assert "first servo frame" in said.stdout and "done" in said.stdout
+        message = refused("--robot", "op3", "--bus", url)
+        assert str(tty.link) in message or str(tty.link.resolve()) in message
+        assert daemon.terminate() == 0
+    finally:
+        daemon.close()
+    assert tty.close() == 0  # its audit found no violation
+    assert tty.audit.exists()
+
+
+def test_sigterm_parks_and_a_second_daemon_on_the_same_sockets_is_refused():
+    daemon = RunningDaemon()
+    try:
+        daemon.until_ready()
+        assert daemon.mmmd("say", "wave", "--no-wait").returncode == 0
+        message = refused("--cmd", daemon.endpoints.cmd)
+        assert daemon.endpoints.cmd in message and "already in use" in message
+        assert daemon.terminate() == 0
+        assert "parking -> limp" in daemon.said
+        assert '"violations": 0' in daemon.audit.read_text()
+    finally:
+        daemon.close()
+
+
+def test_ctrl_c_during_a_motion_parks_too_and_the_command_is_cancelled():
+    daemon = RunningDaemon()
+    try:
+        daemon.until_ready()
+        said = subprocess.Popen([*MMMD, "say", "wave", "--seconds", "5", *daemon.at], stdout=subprocess.PIPE, text=True)
+        with daemon.client() as client:
+            client.wait_for("moving", timeout_s=20)
+        daemon.process.send_signal(signal.SIGINT)
+        out, _ = said.communicate(timeout=20)
+        assert "cancelled by shutdown" in out and said.returncode == 1
+        assert daemon.ended() == 0
+    finally:
+        daemon.close()
+
+
+def test_a_latched_estop_at_the_end_is_status_3():
+    daemon = RunningDaemon()
+    try:
+        daemon.until_ready()
+        assert daemon.mmmd("estop").returncode == 0
+        assert daemon.terminate() == 3
+    finally:
+        daemon.close()
+
+
+def child_pid(daemon: RunningDaemon, module: str) -> int:
+    """The daemon's child that runs `module`."""
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = path.read_text().rsplit(")", 1)[1].split()
+            command = (path.parent / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+        except OSError:
+            continue
+        if int(fields[1]) == daemon.process.pid and module in command:
+            return int(path.parent.name)
+    raise AssertionError(f"no child runs {module}")
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_bus_process_that_dies_or_freezes_is_a_fault(number):
+    daemon = RunningDaemon()
+    pid = None
+    try:
+        daemon.until_ready()
+        with daemon.client() as client:
+            client.arm()
+            pid = child_pid(daemon, "daemon.bus_process")
+            os.kill(pid, number)
+            status = client.wait_for("fault", timeout_s=5)
+            assert "bus process" in status.reason
+        refused_say = daemon.mmmd("say", "wave")
+        assert refused_say.returncode == 1 and "fault" in refused_say.stderr
+        assert daemon.mmmd("status").returncode == 3
+        assert daemon.terminate() == 3
+    finally:
+        if pid is not None and number == signal.SIGSTOP:
+            try:
+                os.kill(pid, signal.SIGCONT)
+            except ProcessLookupError:
+                pass
+        daemon.close()
