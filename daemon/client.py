@@ -38,6 +38,7 @@ REPLY_TIMEOUT_S = 5.0
 """For a reply that no motion has to be waited for."""
 FIRST_REPLY_TIMEOUT_S = 15.0
 """For the first word about a text: longer than the daemon waits for its generator."""
+_NOT_MOVING = ("limp", "idle", "holding", "fault", "estop")
 MOTION_TIMEOUT_S = 60.0
 """For a motion to end: the longest is 10 s, before which the robot may have to be armed."""
 
@@ -184,21 +185,27 @@ class Client:
             Cancel(id=uuid.uuid4().hex, command=command_id), self._cmd_socket(), self.endpoints.cmd
         )
 
-    def stop(self) -> Ack:
-        """Brake within the limits and hold.
+    def stop(self, *, wait: bool = True) -> Ack:
+        """Brake within the limits and hold; with `wait`, return once nothing is played any more.
 
         Raises:
             NoAnswerError: not in time.
         """
-        return self._control(Stop(id=uuid.uuid4().hex))
+        ack = self._control(Stop(id=uuid.uuid4().hex))
+        if wait:
+            self.wait_for(*_NOT_MOVING, timeout_s=self._timeout_s)
+        return ack
 
-    def estop(self) -> Ack:
-        """Cut torque at once; latched.
+    def estop(self, *, wait: bool = True) -> Ack:
+        """Cut torque at once, latched; with `wait`, return once the bus process has confirmed it.
 
         Raises:
             NoAnswerError: not in time.
         """
-        return self._control(Estop(id=uuid.uuid4().hex))
+        ack = self._control(Estop(id=uuid.uuid4().hex))
+        if wait:
+            self.wait_for("estop", "fault", timeout_s=self._timeout_s)
+        return ack
 
     def reset(self, *, wait: bool = True) -> Ack:
         """Leave e-stop or fault; the robot is limp and must be armed.

@@ -347,7 +347,7 @@ def decode_cmd(frame: bytes) -> CmdRequest:
     text = _checked_text(frame)
     if text.lstrip()[:1] in ("{", "["):
         return _decode_json(text, CMD_TYPES, CmdRequest, "cmd")
-    _check_say(text, "")
+    check_text(text)
     return Say(text=text.strip())
 
 
@@ -398,7 +398,7 @@ def _decode_json(text: str, types: tuple[type[Request], ...], union: Any, socket
     _check_version(asked, request_id)
     kind = _check_type(asked, types, socket, request_id)
     if kind is Say and isinstance(asked.get("text"), str):
-        _check_say(asked["text"], request_id)
+        check_text(asked["text"], request_id)
     try:
         return msgspec.convert(asked, union)
     except msgspec.ValidationError as error:
@@ -432,7 +432,12 @@ def _check_type(raw: dict[str, Any], types: tuple[type[Request], ...], socket: s
     raise WireError("unknown_type", "read a request", found, allowed, do, request_id)
 
 
-def _check_say(text: str, request_id: str) -> None:
+def check_text(text: str, request_id: str = "") -> None:
+    """Refuse a text that is empty or too long.
+
+    Raises:
+        WireError: it is.
+    """
     if not text.strip():
         raise WireError(
             "empty_text",

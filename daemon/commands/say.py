@@ -34,8 +34,13 @@ def say(
     import uuid
 
     from daemon.client import FIRST_REPLY_TIMEOUT_S, MOTION_TIMEOUT_S
-    from daemon.wire import MAX_SEED, Accepted, Cancelled, Failed, Refusal, Say, encode
+    from daemon.wire import MAX_SEED, Accepted, Cancelled, Failed, Refusal, Say, WireError, check_text, encode
 
+    try:
+        check_text(text)
+    except WireError as error:
+        sys.stderr.write(f"mmmd: {error}\n")
+        return 2
     if not 0 <= seed <= MAX_SEED:
         sys.stderr.write(f"mmmd: --seed {seed}; allowed: 0 to {MAX_SEED}\n")
         return 2

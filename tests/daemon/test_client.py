@@ -1,0 +1,120 @@
+"""The client against endpoints that do not answer, answer nonsense, or answer late: named errors, never a hang."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+
+import pytest
+import zmq
+
+from daemon import wire
+from daemon.client import Client, NoAnswerError, RefusedError
+from daemon.config import Endpoints
+from daemon.errors import ConfigError
+
+
+class Peer:
+    """A ROUTER that answers each request with what `answer` gives, if anything."""
+
+    def __init__(self, endpoint, answer):
+        self._context = zmq.Context()
+        self._socket = self._context.socket(zmq.ROUTER)
+        self._socket.bind(endpoint)
+        self._stopping = threading.Event()
+        self._answer = answer
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def _run(self):
+        while not self._stopping.is_set():
+            if self._socket.poll(20):
+                who, frame = self._socket.recv_multipart()
+                for reply in self._answer(frame):
+                    self._socket.send_multipart([who, reply])
+
+    def close(self):
+        self._stopping.set()
+        self._thread.join(5)
+        self._context.destroy(linger=0)
+
+
+@pytest.fixture
+def endpoints(tmp_path):
+    return Endpoints(*(f"ipc://{tmp_path}/{name}" for name in ("cmd", "ctl", "pub")))
+
+
+@contextlib.contextmanager
+def talking(endpoint, answer):
+    peer = Peer(endpoint, answer)
+    try:
+        yield
+    finally:
+        peer.close()
+
+
+def test_nobody_there_is_said_at_once(endpoints):
+    began_s = time.monotonic()
+    with Client(endpoints) as client, pytest.raises(NoAnswerError, match="mmmd run") as caught:
+        client.stop()
+    assert time.monotonic() - began_s < 1 and isinstance(caught.value, TimeoutError)
+
+
+def test_a_silent_peer_is_a_time_out(endpoints):
+    with talking(endpoints.ctl, lambda _frame: []), Client(endpoints, timeout_s=0.2) as client:
+        began_s = time.monotonic()
+        with pytest.raises(NoAnswerError):
+            client.status()
+        assert 0.15 < time.monotonic() - began_s < 2
+
+
+def test_a_peer_that_is_no_daemon_is_named(endpoints):
+    with talking(endpoints.ctl, lambda _frame: [b"HTTP/1.1 400 Bad Request"]), Client(endpoints) as client:
+        with pytest.raises(wire.WireError, match="mmmd's port"):
+            client.status()
+
+
+def test_answers_to_older_requests_are_passed_over(endpoints):
+    def answer(frame):
+        request = wire.decode_ctl(frame)
+        return [wire.encode(wire.Ack(id=i, verb="stop", state="idle")) for i in ("older", request.id)]
+
+    with talking(endpoints.ctl, answer), Client(endpoints) as client:
+        assert client.stop().id != "older"
+
+
+def test_a_refusal_is_an_error_with_its_event(endpoints):
+    def answer(frame):
+        return [wire.encode(wire.Rejected(id=wire.decode_ctl(frame).id, code="wrong_state", asked="arm", found="in estop",
+                                          allowed="reset", do="reset first"))]  # fmt: skip
+
+    with talking(endpoints.ctl, answer), Client(endpoints) as client:
+        with pytest.raises(RefusedError, match="reset first") as caught:
+            client.arm()
+    assert caught.value.code == "wrong_state"
+
+
+def test_watching_a_silent_publisher_is_a_time_out(endpoints):
+    with Client(endpoints) as client, pytest.raises(NoAnswerError):
+        next(client.watch(timeout_s=0.1))
+
+
+@pytest.mark.parametrize(
+    "cmd", ["tcp://0.0.0.0:1", "tcp://*:1", "tcp://10.1.1.1:5", "udp://x", "tcp://localhost", "", "ipc://"]
+)
+def test_endpoints_that_others_could_reach_or_that_are_none(cmd):
+    with pytest.raises(ConfigError, match="allowed"):
+        Endpoints(cmd=cmd)
+
+
+@pytest.mark.parametrize(
+    "cmd", ["tcp://127.0.0.1:1", "tcp://localhost:1", "tcp://[::1]:1", "tcp://127.5.5.5:1", "ipc:///tmp/x"]
+)
+def test_local_endpoints(cmd):
+    assert Endpoints(cmd=cmd).cmd == cmd
+
+
+def test_two_sockets_at_one_place():
+    with pytest.raises(ConfigError, match="different"):
+        Endpoints(cmd="tcp://127.0.0.1:5872")
