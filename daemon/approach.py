@@ -4,7 +4,6 @@ from __future__ import annotations
 
 # ruckig is a compiled module without types:
 # pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
-
 import numpy as np
 from numpy.typing import NDArray
 from ruckig import InputParameter, Result, Ruckig, Trajectory

@@ -15,20 +15,27 @@ class PortLock:
     def __init__(self, device: str) -> None:
         name = str(Path(device).resolve()).strip("/").replace("/", "-")
         self.path = Path(tempfile.gettempdir()) / f"mmmd-{name}.lock"
-        self._fd = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+        self._fd, writable = self._open()
         try:
             fcntl.flock(self._fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             owner = os.read(self._fd, 500).decode("utf-8", "replace").strip()
             os.close(self._fd)
             raise BlockingIOError(owner or "another process") from None
-        os.ftruncate(self._fd, 0)
-        os.write(self._fd, f"process {os.getpid()} ({' '.join(sys.argv)[:300]})".encode())
+        if writable:
+            os.ftruncate(self._fd, 0)
+            os.write(self._fd, f"process {os.getpid()} ({' '.join(sys.argv)[:300]})".encode())
+
+    def _open(self) -> tuple[int, bool]:
+        """The lock file, and whether the owner's name can be written: not into a file that another user made."""
+        try:
+            return os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644), True
+        except PermissionError:
+            return os.open(self.path, os.O_RDONLY | os.O_CLOEXEC), False
 
     def release(self) -> None:
         """Give the lock up; may be called twice."""
         if self._fd >= 0:
-            os.ftruncate(self._fd, 0)
             os.close(self._fd)
             self._fd = -1
 

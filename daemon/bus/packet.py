@@ -49,6 +49,12 @@ class ErrorCode(IntEnum):
     ACCESS = 7
 
 
+def error_text(code: int) -> str:
+    """An error code in words."""
+    names = {int(e): e.name.lower().replace("_", " ") for e in ErrorCode}
+    return names.get(code, f"error {code}")
+
+
 @dataclass(frozen=True)
 class Packet:
     """One packet, parameters not stuffed. `error` is the error byte of a status packet, else 0."""

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bus import packet
-from daemon.bus.packet import BROADCAST_ID, ErrorCode, GroupReply, Instruction, Packet, PacketDecoder
+from daemon.bus.packet import BROADCAST_ID, GroupReply, Instruction, Packet, PacketDecoder, error_text
 from daemon.bus.port import Port
 from daemon.bus.registers import CONTROL_TABLES, FEEDBACK_ADDRESS, FEEDBACK_LENGTH, Item
 from daemon.clock import Clock
@@ -220,7 +220,7 @@ class ServoBus:
                     continue
                 code = p.error & ~packet.ALERT_BIT
                 if code:
-                    name = ErrorCode(code).name.lower().replace("_", " ") if code in ErrorCode else f"error {code}"
+                    name = error_text(code)
                     raise ServoFaultError(servo_id, f"instruction {request[7]:#04x}", name)
                 if len(p.parameters) == answer_bytes:  # an answer to something else has another length
                     return p

@@ -1,0 +1,31 @@
+"""A bus over simulated servos in virtual time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from daemon.bus.servo_bus import ServoBus
+from retarget.robot import RobotModel, load_robot
+from sim.bus import SimBus
+from sim.clock import VirtualClock
+from sim.faults import Fault, FaultSchedule
+from sim.port import SimPort
+
+
+@dataclass
+class BusRig:
+    """The parts, each real."""
+
+    robot: RobotModel
+    clock: VirtualClock
+    servos: SimBus
+    port: SimPort
+    bus: ServoBus
+
+
+def bus_rig(*faults: Fault, name: str = "reference", baud: int | None = None, seed: int = 0) -> BusRig:
+    """A robot's servos with faults on a schedule."""
+    robot, clock = load_robot(name), VirtualClock()
+    servos = SimBus(robot, FaultSchedule(faults, seed))
+    port = SimPort(servos, clock, baud)
+    return BusRig(robot, clock, servos, port, ServoBus(port, robot.servos, clock))

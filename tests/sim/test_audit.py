@@ -1,0 +1,85 @@
+"""The audit catches what it is there for, and nothing else."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from retarget.robot import load_robot
+from sim.audit import Audit
+
+ROBOT = load_robot("reference")
+SERVO = ROBOT.servos[2]  # waist_yaw: an XM430 without gear
+JOINT = ROBOT.joints[2]
+TICKS_PER_RAD = 4096 / (2 * math.pi)
+STEP = JOINT.velocity_limit_rad_s * TICKS_PER_RAD / ROBOT.bus.rate_hz
+BEND = JOINT.acceleration_limit_rad_s2 * TICKS_PER_RAD / ROBOT.bus.rate_hz**2
+
+
+def audited(*goals: int, on_at: int | None = None) -> dict[str, int]:
+    audit = Audit(ROBOT)
+    first = goals[0] if on_at is None else on_at
+    audit.torque(0.0, SERVO.servo_id, True, first, first)
+    for i, tick in enumerate(goals):
+        audit.goal(0.01 * i, SERVO.servo_id, tick, True)
+    return dict(audit.violations)
+
+
+def test_a_gentle_path_is_clean() -> None:
+    path = [2048 + round(50 * (1 - math.cos(i / 20))) for i in range(200)]
+    assert audited(*path) == {}
+
+
+@pytest.mark.parametrize(
+    ("goals", "kind"),
+    [
+        ((2048, 2048 + math.ceil(BEND) + 3), "acceleration"),
+        (tuple(2048 + i * (math.ceil(STEP) + 2) for i in range(8)), "velocity"),
+        (tuple(range(2600, 2800, 2)), "position"),
+    ],
+)
+def test_each_kind_of_violation_is_found(goals: tuple[int, ...], kind: str) -> None:
+    assert kind in audited(*goals)
+
+
+def test_a_step_at_the_limit_with_its_rounding_is_no_violation() -> None:
+    goals, position, velocity = [2048], 2048.0, 0.0
+    while velocity < STEP and len(goals) < 100:
+        velocity = min(STEP, velocity + BEND)
+        position += velocity
+        goals.append(round(position))
+    assert audited(*goals) == {}
+
+
+def test_a_joint_found_outside_its_range_may_come_back_but_not_go_further() -> None:
+    outside = 2048 + math.ceil(JOINT.position_max_rad * TICKS_PER_RAD) + 50
+    back = [outside - round(0.5 * i * i) for i in range(9)]
+    assert audited(*back, on_at=outside) == {}
+    assert "position" in audited(outside, outside + 1, on_at=outside)
+
+
+def test_torque_over_a_goal_away_from_the_joint_is_a_violation() -> None:
+    audit = Audit(ROBOT)
+    audit.torque(0.0, SERVO.servo_id, True, 2048, 2000)
+    assert dict(audit.violations) == {"unpinned_torque": 1}
+
+
+def test_goals_without_torque_are_counted_but_not_judged() -> None:
+    audit = Audit(ROBOT)
+    audit.goal(0.0, SERVO.servo_id, 0, False)
+    assert (audit.goals, dict(audit.violations)) == (1, {})
+
+
+def test_a_robot_that_touches_itself_is_seen() -> None:
+    audit = Audit(ROBOT)
+    pose = ROBOT.rest_rad.copy()
+    pose[ROBOT.joint_names.index("left_shoulder_roll")] = math.radians(-15)
+    pose[ROBOT.joint_names.index("left_elbow")] = math.radians(120)
+    pose[ROBOT.joint_names.index("left_shoulder_yaw")] = math.radians(-90)
+    for servo, q in zip(ROBOT.servos, pose, strict=True):
+        audit.torque(0.0, servo.servo_id, True, 0, 0)
+    for _ in range(10):
+        for servo, q in zip(ROBOT.servos, pose, strict=True):
+            audit.goal(0.0, servo.servo_id, round(2048 + servo.direction * q * TICKS_PER_RAD), True)
+    assert audit.report()["self_contacts"] > 0
