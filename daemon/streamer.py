@@ -68,7 +68,7 @@ class Streamer:
         self._pwm: int | None = None
         self._front_lost_s: float | None = None
         self._torque_off_left = 0
-        self._ended_s = clock.now_s()
+        self._fed_s = clock.now_s()
 
     def run(self) -> None:
         """Cycle at the robot's rate until a shutdown request or `stopping`, torque off at the end."""
@@ -111,7 +111,6 @@ class Streamer:
             self._fault(str(error))
         self._publish(self._bus.reading)
         self._cycle += 1
-        self._ended_s = self._clock.now_s()
 
     # Requests.
 
@@ -171,6 +170,7 @@ class Streamer:
             self._fault(f"cannot arm: {error}")
             return
         self._torque, self._goal_tick, self._pwm = True, present, PWM_START
+        self._fed_s = self._clock.now_s()
         self._gate.reset(self._ticks.tick_to_rad(present))
         self._approach_to(self.rest_rad)
         self._enter(BusState.ARMING)
@@ -274,7 +274,7 @@ class Streamer:
 
     def _check_stall(self) -> None:
         """After a pause in which the servos' watchdog may have run out: they then stand still and refuse goals."""
-        pause_s = self._clock.now_s() - self._ended_s
+        pause_s, self._fed_s = self._clock.now_s() - self._fed_s, self._clock.now_s()
         if not self._torque or self._goal_tick is None or pause_s < 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S:
             return
         for servo_id in self._bus.ids:

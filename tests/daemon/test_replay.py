@@ -152,6 +152,24 @@ def test_the_log_of_another_robot_is_refused(log_file):
         play(read_log(log_file), robot=load_robot("op3"))
 
 
+def test_interrupted_it_leaves_no_torque(log_file):
+    robot, clock = load_robot("reference"), VirtualClock()
+    sim, link = SimBus(robot), BusLink.create(robot.n_joints)
+
+    def interrupt(done: int) -> None:
+        if done == 150:
+            assert any(s.torque for s in sim.servos.values())
+            raise KeyboardInterrupt
+
+    try:
+        bus = ServoBus(SimPort(sim, clock), robot.servos, clock)
+        with pytest.raises(KeyboardInterrupt):
+            replay(read_log(log_file), robot, bus, link, clock, interrupt)
+    finally:
+        link.close()
+    assert not any(s.torque for s in sim.servos.values())
+
+
 @pytest.mark.parametrize("kind", ["trip", "unplug"])
 def test_a_fault_on_the_way_ends_the_replay(log_file, kind):
     with pytest.raises(ReplayFaultError, match="cycle") as caught:

@@ -1,0 +1,160 @@
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
+from daemon.bus.serial_port import SerialPort
+from daemon.bus.servo_bus import ServoBus
+from daemon.clock import RealClock
+from daemon.shared import BusLink, BusRequest, BusState, Readiness
+from daemon.streamer import WATCHDOG_UNITS
+from retarget.robot import load_robot
+from sim.bus import SimBus
+from sim.pty import PtyServer
+
+ROBOT = load_robot("reference")
+
+
+class BusProcess:
+    """The real process; the test is its front."""
+
+    def __init__(self, bus_url: str) -> None:
+        self.link = BusLink.create(ROBOT.n_joints)
+        command = [sys.executable, "-m", "daemon.bus_process", "--robot", "reference"]
+        command += ["--bus", bus_url, "--link", str(self.link.path)]
+        self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+
+    @property
+    def state(self) -> BusState:
+        self.link.heartbeat()
+        n = self.link.n_cycles
+        return BusState(int(self.link.cycles_since(n - 1)[0][0]["state"])) if n else BusState.LIMP
+
+    def wait_for(self, what: Callable[[], bool]) -> None:
+        end_s = time.monotonic() + 30
+        while not what():
+            assert time.monotonic() < end_s, (self.state, self.link.text)
+            time.sleep(0.01)
+
+    def close(self) -> None:
+        self.process.kill()
+        self.process.communicate()
+        self.link.close()
+
+
+@pytest.fixture
+def started():
+    processes: list[BusProcess] = []
+
+    def make(url: str) -> BusProcess:
+        processes.append(BusProcess(url))
+        return processes[-1]
+
+    yield make
+    for process in processes:
+        process.close()
+
+
+@pytest.fixture
+def servos(tmp_path):
+    """The simulated robot behind a real tty, served by a thread."""
+    server = PtyServer(SimBus(ROBOT), tmp_path / "servos")
+    thread = threading.Thread(target=server.serve, daemon=True)
+    thread.start()
+    yield server
+    server.stop()
+    thread.join(5)
+    server.close()
+
+
+def test_it_says_when_it_has_the_robot_and_what_rights_it_got(started):
+    bus = started("sim://")
+    bus.wait_for(lambda: bus.link.readiness is Readiness.READY and bus.link.n_cycles > 3)
+    assert bus.state is BusState.LIMP
+    assert all(isinstance(right, bool) for right in bus.link.has_realtime)
+    os.kill(bus.process.pid, signal.SIGINT)  # Ctrl-C is the front's to handle
+    before = bus.link.n_cycles
+    bus.wait_for(lambda: bus.link.n_cycles > before + 5)
+    bus.link.request(BusRequest.SHUTDOWN)
+    assert bus.process.wait(10) == 0
+
+
+@pytest.mark.parametrize(
+    ("url", "says"),
+    [
+        ("dxl:///dev/ttyNOSUCH?baud=1000000", "ttyNOSUCH"),
+        ("usb://x", "unknown scheme"),
+        ("sim://?baud=57600", "57600 baud"),
+    ],
+)
+def test_it_says_why_it_has_no_robot(started, url, says):
+    bus = started(url)
+    assert bus.process.wait(30) == 1
+    assert bus.link.readiness is Readiness.FAILED
+    assert says in bus.link.text
+    assert "Traceback" not in bus.process.stderr.read()
+
+
+def test_killed_while_armed_the_servos_stop_by_their_watchdog(started, servos, tmp_path):
+    """Nobody is left to brake: within the stated time every servo stands, and takes no goal until it is armed anew."""
+    bus = started(f"dxl://{tmp_path}/servos?baud=1000000")
+    bus.wait_for(lambda: bus.link.readiness is Readiness.READY)
+    bus.link.request(BusRequest.ARM)
+    bus.wait_for(lambda: bus.state is BusState.ARMING)
+    bus.process.kill()
+    bus.process.wait(10)
+    time.sleep(WATCHDOG_UNITS * WATCHDOG_UNIT_S + 0.1)  # the watchdog's time is real here
+    port = SerialPort(str(servos.link), ROBOT.bus.baud)
+    try:
+        after = ServoBus(port, ROBOT.servos, RealClock())
+        for servo_id in after.ids:
+            assert after.read_item(servo_id, "bus_watchdog") == WATCHDOG_TRIPPED
+        first = after.exchange(None).position_tick.copy()
+        assert list(after.exchange(None).position_tick) == list(first)
+    finally:
+        port.close()
+    assert servos.bus.audit.report()["violations"] == 0
+
+    again = started(f"dxl://{tmp_path}/servos?baud=1000000")
+    again.wait_for(lambda: again.link.readiness is Readiness.READY and again.link.n_cycles > 3)
+    assert again.state is BusState.LIMP, "a new process arms nothing by itself"
+    again.link.request(BusRequest.ARM)
+    again.wait_for(lambda: again.state is BusState.HOLDING)
+    again.link.request(BusRequest.PARK)
+    again.wait_for(lambda: again.state is BusState.LIMP)
+    assert servos.bus.audit.report()["violations"] == 0, servos.bus.audit.report()["details"]
+    assert not any(s.torque for s in servos.bus.servos.values())
+
+
+def test_frozen_while_armed_it_comes_back_in_a_named_fault(started, servos, tmp_path):
+    bus = started(f"dxl://{tmp_path}/servos?baud=1000000")
+    bus.wait_for(lambda: bus.link.readiness is Readiness.READY)
+    bus.link.request(BusRequest.ARM)
+    bus.wait_for(lambda: bus.state is BusState.HOLDING)
+    os.kill(bus.process.pid, signal.SIGSTOP)
+    time.sleep(2 * WATCHDOG_UNITS * WATCHDOG_UNIT_S)
+    bus.link.heartbeat()
+    os.kill(bus.process.pid, signal.SIGCONT)
+    bus.wait_for(lambda: bus.state is BusState.FAULT)
+    assert "held up" in bus.link.text and "watchdog" in bus.link.text
+    assert servos.bus.audit.report()["violations"] == 0, servos.bus.audit.report()["details"]
+
+
+def test_sigterm_leaves_the_servos_without_torque(started, servos, tmp_path: Path):
+    bus = started(f"dxl://{tmp_path}/servos?baud=1000000")
+    bus.wait_for(lambda: bus.link.readiness is Readiness.READY)
+    bus.link.request(BusRequest.ARM)
+    bus.wait_for(lambda: bus.state is BusState.HOLDING)
+    bus.process.terminate()
+    assert bus.process.wait(10) == 0
+    end_s = time.monotonic() + 5
+    while any(s.torque for s in servos.bus.servos.values()) and time.monotonic() < end_s:
+        time.sleep(0.01)
+    assert not any(s.torque for s in servos.bus.servos.values())
