@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import tempfile
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import IntEnum
 from itertools import pairwise
@@ -24,6 +25,7 @@ N_SETPOINTS = 256
 N_CYCLES = 4096
 _TEXT_BYTES = 4096
 _MAGIC = 0x6D6D6D6401
+_PREFIX = "mmmd-link-"
 
 
 class BusState(IntEnum):
@@ -125,9 +127,10 @@ class BusLink:
 
     @classmethod
     def create(cls, n_joints: int) -> BusLink:
-        """New shared memory, in /dev/shm where there is one."""
+        """New shared memory, in /dev/shm where there is one; what daemons that were killed left there is removed."""
         folder = "/dev/shm" if os.access("/dev/shm", os.W_OK) else tempfile.gettempdir()
-        fd, name = tempfile.mkstemp(prefix="mmmd-link-", dir=folder)
+        _remove_orphans(Path(folder))
+        fd, name = tempfile.mkstemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=folder)
         os.close(fd)
         return cls(Path(name), n_joints, owner=True)
 
@@ -266,3 +269,18 @@ class BusLink:
         first = max(index, n - (N_CYCLES - 64))
         rows = np.arange(first, n) % N_CYCLES
         return self._cycles[rows], n, first - index
+
+
+def _remove_orphans(folder: Path) -> None:
+    """Remove shared memory whose owner, named in the file name, is no more."""
+    for path in folder.glob(f"{_PREFIX}*-*"):
+        owner = path.name.removeprefix(_PREFIX).partition("-")[0]
+        if not owner.isdigit():
+            continue
+        try:
+            os.kill(int(owner), 0)
+        except ProcessLookupError:
+            with suppress(OSError):  # another user's
+                path.unlink()
+        except (PermissionError, OverflowError):
+            continue

@@ -152,6 +152,27 @@ def test_closing_removes_the_file_and_only_the_owner_does(link, bus):
     link.close()
 
 
+def _abandon(pipe) -> None:
+    pipe.send(BusLink.create(J).path)
+    pipe.recv()
+
+
+def test_what_a_killed_daemon_left_is_removed_and_nothing_else(link):
+    context = multiprocessing.get_context("spawn")
+    here, there = context.Pipe()
+    process = context.Process(target=_abandon, args=(there,), daemon=True)
+    process.start()
+    path = here.recv()
+    BusLink.create(J).close()
+    assert path.exists(), "its owner lives"
+    process.kill()
+    process.join(30)
+    assert path.exists()
+    BusLink.create(J).close()
+    assert not path.exists()
+    assert link.path.exists()
+
+
 def _play(path: Path, n: int) -> None:
     bus, taken = BusLink.attach(path, J), 0
     while taken < n:
