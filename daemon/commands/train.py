@@ -16,7 +16,7 @@ def train(
     out: Path = Path("runs/compact/model.safetensors"),
     clips: int = 14_000,
     tokenizer_steps: int = 2600,
-    transformer_steps: int = 7500,
+    transformer_steps: int = 6200,
     length_steps: int = 2500,
     threads: int = 1,
     seed: int = 0,

@@ -53,7 +53,7 @@ class Recipe:
     n_synthesised: int = 14_000
     tokenizer: Schedule = field(default_factory=lambda: Schedule(steps=2600, learning_rate=1e-3))
     decoder: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3))
-    transformer: Schedule = field(default_factory=lambda: Schedule(steps=7500, learning_rate=1e-3))
+    transformer: Schedule = field(default_factory=lambda: Schedule(steps=6200, learning_rate=1e-3))
     length: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3, save_every=500))
     seed: int = 0
 

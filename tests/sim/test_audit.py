@@ -77,7 +77,7 @@ def test_a_robot_that_touches_itself_is_seen() -> None:
     pose[ROBOT.joint_names.index("left_shoulder_roll")] = math.radians(-15)
     pose[ROBOT.joint_names.index("left_elbow")] = math.radians(120)
     pose[ROBOT.joint_names.index("left_shoulder_yaw")] = math.radians(-90)
-    for servo, q in zip(ROBOT.servos, pose, strict=True):
+    for servo in ROBOT.servos:
         audit.torque(0.0, servo.servo_id, True, 0, 0)
     for _ in range(10):
         for servo, q in zip(ROBOT.servos, pose, strict=True):

@@ -85,7 +85,8 @@ def test_the_checksum_is_the_sdks(data: bytes) -> None:
 
 @given(st.lists(st.integers(0, 252), min_size=1, max_size=20, unique=True), st.data())
 def test_the_fast_group_parser_equals_the_byte_parser(ids: list[int], data: st.DataObject) -> None:
-    replies = [Packet(i, Instruction.STATUS, data.draw(st.binary(min_size=10, max_size=10)), data.draw(st.sampled_from([0, 0x80]))) for i in ids]  # fmt: skip
+    errors_drawn, bytes_drawn = st.sampled_from([0, 0x80]), st.binary(min_size=10, max_size=10)
+    replies = [Packet(i, Instruction.STATUS, data.draw(bytes_drawn), data.draw(errors_drawn)) for i in ids]
     raw = b"".join(encode(p) for p in replies)
     fast = GroupReply(ids, 10).parse(raw)
     assert PacketDecoder().feed(raw) == replies

@@ -134,7 +134,7 @@ def test_a_second_owner_is_told_who_the_first_is(tty: Path) -> None:
 
 
 def test_a_missing_device_is_named_with_where_to_look() -> None:
-    with pytest.raises(PortMissingError, match="/dev/ttyNONE.*ls /dev/serial"):
+    with pytest.raises(PortMissingError, match=r"/dev/ttyNONE.*ls /dev/serial"):
         SerialPort("/dev/ttyNONE", 1_000_000)
 
 

@@ -91,7 +91,7 @@ def test_items_are_read_and_written_by_name_and_refusals_are_named() -> None:
     rig = bus_rig()
     rig.bus.write_item(1, "led", 1)
     assert rig.bus.read_item(1, "led") == 1
-    with pytest.raises(ServoFaultError, match="servo 1.*data limit"):
+    with pytest.raises(ServoFaultError, match=r"servo 1.*data limit"):
         rig.bus.write_item(1, "goal_position", 9000)
     with pytest.raises(CommandError, match="read only"):
         rig.bus.write_item(1, "present_position", 0)

@@ -1,0 +1,188 @@
+"""Kinematic checks: what a motion shows, read from joints and head, without looking at the text.
+
+Each check answers one question about a motion of the corpus's kinds. That they are right on motions that are right, and
+wrong on mirrored, absent and other ones, is tested.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.skeleton import matrix_from_quat, normalise
+
+Array = NDArray[np.floating]
+
+ARM_MOVED_DEG = 24.0
+HEAD_MOVED_DEG = 11.0
+TRUNK_MOVED_DEG = 6.0
+_ARMS = {"left": (16, 18, 20), "right": (17, 19, 21)}
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a motion shows.
+
+    Attributes:
+        arms: which arms left their hanging pose: "left", "right", "both" or "".
+        head_yaw_deg, head_pitch_deg, head_roll_deg: (T,) head against the chest: left, down, left.
+        trunk_yaw_deg, trunk_pitch_deg, trunk_roll_deg: (T,) chest against the pelvis: left, forward, left.
+        upper, fore: per side, (T, 3) bone directions in the chest frame (left, up, forward).
+        wrists_m: per side, (T, 3) wrist in the chest frame, from the middle of the shoulders.
+    """
+
+    arms: str
+    head_yaw_deg: Array
+    head_pitch_deg: Array
+    head_roll_deg: Array
+    trunk_yaw_deg: Array
+    trunk_pitch_deg: Array
+    trunk_roll_deg: Array
+    upper: dict[str, Array]
+    fore: dict[str, Array]
+    wrists_m: dict[str, Array]
+
+
+def look_at(joints_m: Array, head_quat_wxyz: Array) -> Shown:
+    """Read a motion: (T, 22, 3) joints and (T, 4) head orientation."""
+    joints = np.asarray(joints_m, np.float64)
+    pelvis = _frame(joints[:, 1] - joints[:, 2], np.broadcast_to([0.0, 1, 0], joints[:, 0].shape))
+    chest = _frame(joints[:, 13] - joints[:, 14], joints[:, 12] - joints[:, 3])
+    to_chest = np.swapaxes(chest, -1, -2)
+    upper, fore, wrists, moved = {}, {}, {}, {}
+    middle = (joints[:, 16] + joints[:, 17]) / 2
+    for side, (shoulder, elbow, wrist) in _ARMS.items():
+        upper[side] = np.einsum("tij,tj->ti", to_chest, normalise(joints[:, elbow] - joints[:, shoulder]))
+        fore[side] = np.einsum("tij,tj->ti", to_chest, normalise(joints[:, wrist] - joints[:, elbow]))
+        wrists[side] = np.einsum("tij,tj->ti", to_chest, joints[:, wrist] - middle)
+        hanging = np.array([0.15 if side == "left" else -0.15, -0.97, 0.2])
+        away = np.maximum(_angle_deg(upper[side], hanging), _angle_deg(fore[side], hanging))
+        moved[side] = bool(away.max() > ARM_MOVED_DEG)
+    arms = {(True, True): "both", (True, False): "left", (False, True): "right"}.get(
+        (moved["left"], moved["right"]), ""
+    )
+    head = _yaw_pitch_roll_deg(to_chest @ matrix_from_quat(np.asarray(head_quat_wxyz, np.float64)))
+    trunk = _yaw_pitch_roll_deg(np.swapaxes(pelvis, -1, -2) @ chest)
+    return Shown(arms, *head, *trunk, upper, fore, wrists)
+
+
+def limb(s: Shown) -> str:
+    """What moves most plainly: arm, trunk, head or nothing."""
+    if s.arms:
+        return "arm"
+    trunk = max(_reach(s.trunk_yaw_deg), _reach(s.trunk_pitch_deg), _reach(s.trunk_roll_deg))
+    head = max(_reach(s.head_yaw_deg), _reach(s.head_pitch_deg), _reach(s.head_roll_deg))
+    if trunk > max(TRUNK_MOVED_DEG, 0.4 * head):  # the trunk goes along a little when the head looks aside
+        return "trunk"
+    return "head" if head > HEAD_MOVED_DEG else ""
+
+
+def count(s: Shown, family: str) -> int | None:
+    """How often the stroke of a repeating family is made; None for families that do not repeat."""
+    if family == "nod":
+        return _strokes(s.head_pitch_deg, 8.0)
+    if family == "shake_head":
+        return max(0, _strokes(s.head_yaw_deg, 12.0) + _strokes(-s.head_yaw_deg, 12.0) - 1)
+    if family == "bow":
+        return _strokes(s.trunk_pitch_deg, 12.0)
+    if family == "clap":
+        return _strokes(-np.linalg.norm(s.wrists_m["left"] - s.wrists_m["right"], axis=-1)[_raised(s)], 0.08)
+    if family in ("wave", "punch", "beckon"):
+        sides = ("left", "right") if s.arms in ("both", "") else (s.arms,)
+        counts = [_arm_strokes(s, family, side) for side in sides]
+        return sum(counts) if family == "punch" else max(counts)
+    return None
+
+
+def direction(s: Shown, family: str) -> str:
+    """Where a gesture with a direction goes, "" when nowhere."""
+    if family == "look":
+        yaw, pitch = s.head_yaw_deg, s.head_pitch_deg
+        return _largest({"left": yaw.max(), "right": -yaw.min(), "down": pitch.max(), "up": -pitch.min()}, 15)
+    if family == "tilt_head":
+        return _largest({"left": s.head_roll_deg.max(), "right": -s.head_roll_deg.min()}, 10)
+    if family == "lean":
+        roll, pitch = s.trunk_roll_deg - s.trunk_roll_deg[0], s.trunk_pitch_deg - s.trunk_pitch_deg[0]
+        return _largest({"left": roll.max(), "right": -roll.min(), "forward": pitch.max(), "back": -pitch.min()}, 5)
+    if family == "twist":
+        return _largest({"left": s.trunk_yaw_deg.max(), "right": -s.trunk_yaw_deg.min()}, 9)
+    if family == "point":
+        side = s.arms if s.arms in ("left", "right") else "right"
+        towards = s.fore[side][_held(s, side)].mean(0)
+        x, y, z = (float(v) for v in towards)  # pointing at the floor is half forward: down counts more
+        return _largest({"left": x, "right": -x, "up": y, "down": -1.5 * y, "forward": z}, 0.4)
+    return ""
+
+
+def _arm_strokes(s: Shown, family: str, side: str) -> int:
+    fore, wrist = s.fore[side], s.wrists_m[side]
+    if family == "wave":
+        up = fore[:, 1] > 0.3
+        outward = fore[:, 0] * (1 if side == "left" else -1)
+        return _strokes(outward[up], 0.25) if up.sum() > 3 else 0
+    if family == "punch":
+        return _strokes(wrist[:, 2], 0.12)
+    return _strokes(fore[:, 1][s.upper[side][:, 2] > 0.25], 0.35)
+
+
+def _raised(s: Shown) -> NDArray[np.bool_]:
+    """Frames in which both wrists are in front or above."""
+    return (s.wrists_m["left"][:, 1] > -0.35) & (s.wrists_m["right"][:, 1] > -0.35)
+
+
+def _held(s: Shown, side: str) -> NDArray[np.bool_]:
+    """Frames in which an arm moves least of those in which it is away from rest."""
+    away = _angle_deg(s.upper[side], np.array([0.0, -1, 0])) + _angle_deg(s.fore[side], np.array([0.0, -1, 0]))
+    wanted = away > 0.7 * away.max()
+    speed = np.linalg.norm(np.gradient(s.fore[side], axis=0), axis=-1)
+    return wanted & (speed <= np.median(speed[wanted]))
+
+
+def _strokes(signal: Array, least: float) -> int:
+    """Number of peaks that rise from the valley before, and fall after (or the signal ends), by a share of the range.
+
+    0 when the range is below `least`.
+    """
+    if len(signal) < 3 or np.ptp(signal) < least:
+        return 0
+    turn = max(0.6 * least, 0.22 * float(np.ptp(signal)))
+    strokes, rising, valley, peak = 0, False, float(signal[0]), float(signal[0])
+    for value in signal[1:]:
+        if rising:
+            peak = max(peak, float(value))
+            if value < peak - turn:
+                rising, valley = False, float(value)
+        else:
+            valley = min(valley, float(value))
+            if value > valley + turn:
+                strokes, rising, peak = strokes + 1, True, float(value)
+    return strokes
+
+
+def _largest(values: dict[str, float], least: float) -> str:
+    best = max(values, key=lambda key: values[key])
+    return best if values[best] > least else ""
+
+
+def _reach(angle_deg: Array) -> float:
+    return float(np.abs(angle_deg - angle_deg[0]).max())
+
+
+def _yaw_pitch_roll_deg(R: Array) -> tuple[Array, Array, Array]:
+    forward, left = R[..., 2], R[..., 0]
+    yaw = np.arctan2(forward[:, 0], forward[:, 2])
+    pitch = -np.arcsin(np.clip(forward[:, 1], -1, 1))
+    roll = -np.arcsin(np.clip(left[:, 1], -1, 1))
+    return np.rad2deg(yaw), np.rad2deg(pitch), np.rad2deg(roll)
+
+
+def _angle_deg(a: Array, b: Array) -> Array:
+    return np.rad2deg(np.arccos(np.clip((a * normalise(b)).sum(-1), -1, 1)))
+
+
+def _frame(left: Array, up: Array) -> Array:
+    x = normalise(left)
+    z = normalise(np.cross(x, up))
+    return np.stack([x, np.cross(z, x), z], -1)
