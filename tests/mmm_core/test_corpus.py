@@ -1,0 +1,158 @@
+"""Gestures, sentences and real clips: what training sees."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mmm_core.corpus.cmu import mirror_words, read_clips
+from mmm_core.corpus.families import FAMILIES, Gesture
+from mmm_core.corpus.grammar import caption, known_commands
+from mmm_core.corpus.phrases import DIRECTED, PHRASES
+from mmm_core.corpus.score import REST_ARM, Score
+from mmm_core.corpus.stream import make_corpus
+from mmm_core.corpus.synthesis import ClipSpec, draw_spec, synthesise, synthesise_spec
+from mmm_core.errors import TrainingDataError
+from mmm_core.features import recover
+
+SHARED = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared"))
+
+
+@given(st.integers(0, 3000))
+def test_every_clip_is_whole_tokens_finite_and_bounded_in_speed(seed: int) -> None:
+    """The bound is loose: an arm raised from hanging straight up swings through its middle at up to 11 m/s."""
+    clip = synthesise(np.random.default_rng(seed))
+    assert len(clip.features) % 4 == 0
+    assert 4 <= len(clip.features) <= 196
+    assert np.isfinite(clip.features).all()
+    joints = recover(clip.features).joints_m
+    assert np.linalg.norm(np.diff(joints[:, [20, 21]], axis=0), axis=-1).max() * 20 < 13.0, "wrists, m/s"
+
+
+def test_a_clip_depends_on_seed_and_number_alone() -> None:
+    first, again = make_corpus(6, None, 3), make_corpus(4, None, 3)
+    for a, b in zip(first[:4], again, strict=True):
+        assert np.array_equal(a.features, b.features)
+        assert a.captions == b.captions
+    assert not np.array_equal(make_corpus(1, None, 4)[0].features, first[0].features)
+
+
+@pytest.mark.parametrize("name", sorted(FAMILIES))
+def test_every_family_performs_and_speaks_in_all_its_forms(name: str) -> None:
+    family = FAMILIES[name]
+    for side in family.sides or ("",):
+        for where in family.directions or ("",):
+            for seed in range(2):
+                spec = ClipSpec((Gesture(name, side, 2 if family.counts else 1, where),))
+                clip = synthesise_spec(spec, np.random.default_rng(seed))
+                assert clip is not None
+                assert all(c and "{" not in c for c in clip.captions)
+
+
+@given(st.integers(0, 3000))
+def test_a_sentence_names_no_side_that_the_motion_has_not(seed: int) -> None:
+    """A plain one-armed gesture without contrast: "left" in the words means the left arm."""
+    rng = np.random.default_rng(seed)
+    side = str(rng.choice(["left", "right"]))
+    other = {"left": "right", "right": "left"}[side]
+    words = caption([Gesture("raise", side)], False, rng).lower()
+    denied = any(w in words for w in ("not ", "don't", "instead", "leave"))
+    assert other not in words.split() or denied
+    named = any(sorted(word.strip(".,!")) == sorted(side) for word in words.split())  # a slip of the finger counts
+    assert named or side == "right", "an unnamed side is the right one"
+
+
+def test_each_family_has_words_and_each_table_a_family() -> None:
+    assert set(PHRASES) | set(DIRECTED) == set(FAMILIES)
+    for name, family in FAMILIES.items():
+        for where in family.directions or ("",):
+            table = DIRECTED.get(name, {}).get(where, PHRASES.get(name, {}))
+            for side in family.sides or ("",):
+                assert table.get({"both": "both", "": "none"}.get(side, "one")), (name, where, side)
+
+
+def test_known_commands_are_plain() -> None:
+    known = known_commands()
+    assert {"wave your left hand", "clap three times", "point up"} <= known
+    assert not [c for c in known if "{" in c or "  " in c]
+
+
+def test_sequences_and_parallels_are_drawn() -> None:
+    specs = [draw_spec(np.random.default_rng(i)) for i in range(200)]
+    assert {len(s.gestures) for s in specs} == {1, 2}
+    assert any(s.parallel for s in specs)
+
+
+def test_a_score_holds_what_it_does_not_move() -> None:
+    rest = {"left": REST_ARM.vector(), "head": np.zeros(3)}
+    score = Score(np.random.default_rng(0), rest)
+    score.hold(0.5)
+    score.move(1.0, head=(1.0, 0.0, 0.0))
+    times = np.array([0.0, 0.5, 1.0, 1.5, 3.0])
+    assert np.allclose(score.sample("head", times)[:, 0], [0, 0, 0.5, 1, 1])
+    assert np.allclose(score.sample("left", times), rest["left"])
+
+
+@pytest.mark.parametrize(
+    ("said", "mirrored"),
+    [
+        ("waves the left hand", "waves the right hand"),
+        ("Left arm up", "Right arm up"),
+        ("turns right right away", "turns left right away"),
+        ("he left the room with his left hand up", "he left the room with his right hand up"),
+        ("the hand on the left hip, then on the right", "the hand on the right hip, then on the left"),
+        ("walks clockwise", "walks counterclockwise"),
+        ("walks counter-clockwise", "walks clockwise"),
+        ("is all right", "is all right"),
+        ("raises its right arm right after", "raises its left arm right after"),
+    ],
+)
+def test_words_of_a_mirrored_clip(said: str, mirrored: str) -> None:
+    assert mirror_words(said) == mirrored
+
+
+@pytest.mark.skipif(
+    not (SHARED / "data/clips.jsonl").is_file(), reason="the shared motion data is not beside this checkout"
+)
+def test_real_clips_come_with_their_mirror_and_only_usable_ones() -> None:
+    clips = list(read_clips(SHARED / "data"))
+    assert len(clips) > 300
+    assert len(clips) % 2 == 0
+    assert all(24 <= len(f) <= 196 and c for f, c in clips)
+
+
+def folder(path: Path, clip: dict[str, object]) -> Path:
+    (path / "trials.jsonl").write_text(json.dumps({"trial": "a", "terms": "CMU", "bad_frames": []}) + "\n")
+    base = {
+        "clip": "c1",
+        "trial": "a",
+        "start": 0,
+        "end": 40,
+        "split": "train",
+        "captions": ["x"],
+        "caption_source": ["ours"],
+    }
+    (path / "clips.jsonl").write_text(json.dumps(base | clip) + "\n")
+    np.savez(path / "motions_common_skeleton.npz", a=np.zeros((40, 22, 3), np.float32))
+    return path
+
+
+def test_a_span_outside_its_recording_is_named(tmp_path: Path) -> None:
+    with pytest.raises(TrainingDataError, match=r"c1.*frames 10 to 90.*40 frames"):
+        list(read_clips(folder(tmp_path, {"start": 10, "end": 90})))
+
+
+def test_an_unknown_recording_is_named(tmp_path: Path) -> None:
+    with pytest.raises(TrainingDataError, match=r"'b' is unknown"):
+        list(read_clips(folder(tmp_path, {"trial": "b"})))
+
+
+def test_a_folder_without_files_is_named(tmp_path: Path) -> None:
+    with pytest.raises(TrainingDataError, match=r"trials\.jsonl"):
+        list(read_clips(tmp_path))

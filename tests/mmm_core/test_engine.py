@@ -1,0 +1,135 @@
+"""The shipped model: repeatable, in its range, and clear about what it will not do; files that are no checkpoint."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from safetensors.torch import load_file, save_file
+
+from mmm_core.checkpoint import MODEL_FILE, load_model
+from mmm_core.engine import Engine
+from mmm_core.errors import CheckpointError, GenerationError
+from mmm_core.evaluation.checks import look_at
+from mmm_core.tokens import unpack_ids
+
+
+@pytest.fixture(scope="module")
+def engine() -> Engine:
+    return Engine.load()
+
+
+def test_the_same_text_seed_and_length_give_the_same_motion(engine: Engine) -> None:
+    a, b, c = (engine.generate("wave with your left hand", seed=s).motion for s in (4, 4, 5))
+    assert np.array_equal(a.joints_m, b.joints_m)
+    assert np.array_equal(a.tokens, b.tokens)
+    assert not np.array_equal(a.tokens, c.tokens)
+
+
+@pytest.mark.parametrize("seconds", [0.8, 2.0, 3.33, 9.8])
+def test_the_callers_length_wins_to_the_frame(engine: Engine, seconds: float) -> None:
+    motion = engine.generate("clap your hands", seconds=seconds).motion
+    assert len(motion.joints_m) == round(seconds * 20)
+    assert motion.features.shape == (len(motion.joints_m), 263)
+    assert len(motion.tokens) == -(-len(motion.joints_m) // 4)
+    assert (unpack_ids(motion.tokens, 512, 3) < 512).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "arms"),
+    [
+        ("wave with your right hand", "right"),
+        ("wave with your left hand", "left"),
+        ("raise your left arm", "left"),
+        ("raise your right arm", "right"),
+        ("raise both arms", "both"),
+        ("salute with your right hand", "right"),
+        ("nod twice", ""),
+        ("look to the left", ""),
+    ],
+)
+def test_the_right_arms_move(engine: Engine, text: str, arms: str) -> None:
+    found = [
+        look_at(m.joints_m, m.head_quat_wxyz).arms for m in (engine.generate(text, seed=s).motion for s in range(3))
+    ]
+    assert found.count(arms) >= 2, found
+
+
+def test_bones_keep_their_length(engine: Engine) -> None:
+    joints = engine.generate("throw your arms up", seconds=3).motion.joints_m
+    for a, b, length in ((16, 18, 0.262), (18, 20, 0.252), (17, 19, 0.262), (19, 21, 0.252)):
+        assert np.allclose(np.linalg.norm(joints[:, a] - joints[:, b], axis=-1), length, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "   ", "asdf qwer zxcv", "kick the ball with your left foot", "lève le bras gauche"]
+)
+def test_what_it_cannot_do_is_rejected_with_a_reason(engine: Engine, text: str) -> None:
+    generation = engine.generate(text)
+    assert generation.status == "rejected"
+    assert generation.reason
+    assert len(generation.motion.joints_m) == 0
+
+
+@pytest.mark.parametrize(
+    "text", ["wave " * 2000, "振って", "🤖👋", "\x00\x01", "wave; DROP TABLE servos;--", "ß" * 500]
+)
+def test_any_text_gets_an_answer(engine: Engine, text: str) -> None:
+    assert engine.generate(text).status in ("accepted", "degraded", "rejected")
+
+
+@pytest.mark.parametrize("bad", [{"seed": -1}, {"seed": 2**31}, {"seconds": 0.0}, {"seconds": 60.0}])
+def test_seeds_and_lengths_out_of_range_are_refused(engine: Engine, bad: dict[str, float]) -> None:
+    with pytest.raises(GenerationError, match="allowed"):
+        engine.generate("wave", **bad)  # type: ignore[arg-type]
+
+
+def test_the_understood_side_is_the_side_of_the_words(engine: Engine) -> None:
+    assert "right" in engine.generate("wave with your right hand").understood
+    assert "left" in engine.generate("wave with your left hand").understood
+
+
+def test_a_missing_checkpoint_is_named(tmp_path: Path) -> None:
+    with pytest.raises(CheckpointError, match="no such file"):
+        load_model(tmp_path / "none.safetensors")
+
+
+def test_garbage_is_no_checkpoint(tmp_path: Path) -> None:
+    (tmp_path / "x.safetensors").write_bytes(b"garbage" * 100)
+    with pytest.raises(CheckpointError, match="not a readable safetensors file"):
+        load_model(tmp_path / "x.safetensors")
+
+
+def changed(tmp_path: Path, **metadata: str) -> Path:
+    from safetensors import safe_open
+
+    with safe_open(str(MODEL_FILE), framework="pt") as f:
+        old = f.metadata()
+    save_file(load_file(str(MODEL_FILE)), str(tmp_path / "m.safetensors"), metadata=old | metadata)
+    return tmp_path / "m.safetensors"
+
+
+@pytest.mark.parametrize(("key", "value"), [("kind", "other"), ("format", "99")])
+def test_another_kind_or_format_is_refused_by_name(tmp_path: Path, key: str, value: str) -> None:
+    with pytest.raises(CheckpointError, match=f"'{key}'.*'{value}'"):
+        load_model(changed(tmp_path, **{key: value}))
+
+
+def test_a_tensor_of_another_shape_is_named_with_both_shapes(tmp_path: Path) -> None:
+    from safetensors import safe_open
+
+    with safe_open(str(MODEL_FILE), framework="pt") as f:
+        metadata = f.metadata()
+    tensors = load_file(str(MODEL_FILE)) | {"transformer.head.weight": torch.zeros(3, 3)}
+    save_file(tensors, str(tmp_path / "m.safetensors"), metadata=metadata)
+    with pytest.raises(CheckpointError, match=r"transformer\.head\.weight.*\(3, 3\).*\(1536, 256\)"):
+        load_model(tmp_path / "m.safetensors")
+
+
+def test_the_checkpoint_says_where_it_comes_from() -> None:
+    provenance = load_model().provenance
+    assert {"recipe", "clips", "data", "revision"} <= provenance.keys()
+    json.dumps(provenance)

@@ -1,0 +1,73 @@
+"""Training: a cut run goes on with the same result; corruption does what it says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import torch
+from hypothesis import given
+from hypothesis import strategies as st
+from torch import nn
+
+from mmm_core.training.run import Schedule, train
+from mmm_core.training.transformer_training import Corruption, corrupt
+
+
+def loss_of(model: nn.Module, cut_at: int | None = None):
+    def loss_fn(step: int, generator: torch.Generator) -> dict[str, torch.Tensor]:
+        if step == cut_at:
+            raise KeyboardInterrupt
+        x = torch.randn(16, 3, generator=generator)
+        return {"loss": (model(torch.dropout(x, 0.2, True)) - x.sum(1, keepdim=True)).square().mean()}
+
+    return loss_fn
+
+
+def fresh() -> nn.Linear:
+    torch.manual_seed(0)
+    return nn.Linear(3, 1)
+
+
+def test_a_run_cut_at_any_step_gives_the_same_weights(tmp_path: Path) -> None:
+    schedule = Schedule(steps=60, warmup_steps=5, save_every=7)
+    whole = fresh()
+    train(whole, loss_of(whole), schedule, tmp_path / "whole", "m")
+    cut = fresh()
+    with pytest.raises(KeyboardInterrupt):
+        train(cut, loss_of(cut, cut_at=33), schedule, tmp_path / "cut", "m")
+    again = fresh()
+    train(again, loss_of(again), schedule, tmp_path / "cut", "m")
+    assert torch.equal(whole.weight, again.weight)
+    assert torch.equal(whole.bias, again.bias)
+
+
+def test_training_learns_and_leaves_the_averaged_weights(tmp_path: Path) -> None:
+    model = fresh()
+    schedule = Schedule(steps=400, learning_rate=0.02, warmup_steps=5, weight_decay=0.0, ema_decay=0.9)
+    train(model, loss_of(model), schedule, tmp_path, "m")
+    assert torch.allclose(model.weight, torch.full((1, 3), 0.8), atol=0.1), "dropout of 0.2 makes 0.8 the best weight"
+    assert not model.training
+
+
+def test_the_learning_rate_rises_falls_and_ends_at_its_share() -> None:
+    schedule = Schedule(steps=1000, learning_rate=1.0, warmup_steps=100, final_share=0.05)
+    assert schedule.rate(0) == pytest.approx(0.01)
+    assert schedule.rate(99) == pytest.approx(1.0)
+    assert schedule.rate(1000) == pytest.approx(0.05)
+
+
+@given(st.integers(0, 500), st.integers(1, 20), st.integers(1, 20))
+def test_corruption_masks_at_least_its_share_and_leaves_end_and_padding(seed: int, a: int, b: int) -> None:
+    K, L = 32, 24
+    ids = torch.full((2, L, 3), K + 1)
+    for row, n in enumerate((a, b)):
+        ids[row, :n] = torch.randint(K, (n, 3), generator=torch.Generator().manual_seed(seed))
+        ids[row, n] = K
+    n_tokens = torch.tensor([a, b])
+    out = corrupt(ids, n_tokens, K, Corruption(masked_share=0.4), torch.Generator().manual_seed(seed))
+    for row, n in enumerate((a, b)):
+        masked = (out[row, :n, 0] == K + 2).sum()
+        assert masked >= max(1, round(0.4 * n) - 1)
+        assert (out[row, :n][out[row, :n, 0] != K + 2] < K).all()
+        assert torch.equal(out[row, n:], ids[row, n:])
