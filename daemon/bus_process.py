@@ -8,18 +8,23 @@ import logging
 import os
 import signal
 import sys
+import threading
+import time
 from pathlib import Path
 
 from daemon.bus.open import PortContext, open_port
 from daemon.bus.servo_bus import ServoBus
 from daemon.clock import RealClock
-from daemon.shared import BusLink
-from daemon.streamer import start
+from daemon.shared import BusLink, BusState
+from daemon.streamer import Streamer, start
 from retarget.robot import load_robot
 
 log = logging.getLogger(__name__)
 
 FIFO_PRIORITY = 40
+ORPHAN_CHECK_S = 0.5
+ORPHAN_END_S = 30.0
+"""Longest life without a front: holding, parking and a fault in which torque was kept are over by then."""
 _MCL_CURRENT_AND_FUTURE = 3
 
 
@@ -46,11 +51,23 @@ def main() -> int:
     # The front parks the robot and then asks for shutdown; Ctrl-C reaches the whole group and is the front's to handle.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, stop)
+    threading.Thread(target=_end_with_parent, args=(streamer, os.getppid()), daemon=True).start()
     try:
         streamer.run()
     finally:
         streamer.close()
     return 0
+
+
+def _end_with_parent(streamer: Streamer, parent_pid: int) -> None:
+    """Give the port back once the front is gone for good: when the robot is parked, or nobody came in a while."""
+    while os.getppid() == parent_pid:
+        time.sleep(ORPHAN_CHECK_S)
+    orphaned_s = time.monotonic()
+    while streamer.state not in (BusState.LIMP, BusState.ESTOP) and time.monotonic() - orphaned_s < ORPHAN_END_S:
+        time.sleep(ORPHAN_CHECK_S)
+    log.warning("the front is gone; ending with the robot in %s", streamer.state.name)
+    streamer.stopping = True
 
 
 def _take_rights() -> tuple[bool, bool]:

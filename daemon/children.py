@@ -20,11 +20,17 @@ class Child:
 
     Attributes:
         name: for the log.
-        said: the last lines of its stderr.
+        said: the last lines of its stderr, when that is followed.
+
+    Args:
+        name: for the log.
+        module: what to run.
+        arguments: its arguments.
+        follow: read its stderr. Not for a process that must go on when this one is frozen: it could block on the pipe.
     """
 
-    def __init__(self, name: str, module: str, arguments: Sequence[str]) -> None:
-        self.name = name
+    def __init__(self, name: str, module: str, arguments: Sequence[str], *, follow: bool = False) -> None:
+        self.name, self._follow = name, follow
         self._module, self._arguments = module, list(arguments)
         self._process: asyncio.subprocess.Process | None = None
         self._forward: asyncio.Task[None] | None = None
@@ -52,9 +58,11 @@ class Child:
         self.said.clear()
         self._process = await asyncio.create_subprocess_exec(
             sys.executable, "-m", self._module, *self._arguments,
-            stdin=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE, env=environment, start_new_session=True,
+            stdin=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE if self._follow else None, env=environment,
+            start_new_session=True,
         )  # fmt: skip
-        self._forward = asyncio.create_task(self._forward_stderr(self._process))
+        if self._follow:
+            self._forward = asyncio.create_task(self._forward_stderr(self._process))
 
     async def ended(self) -> int:
         """Wait for its end; its exit status, negative for a signal."""

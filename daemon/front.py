@@ -135,7 +135,10 @@ class Front:
             return state
         end_s = time.monotonic() + self._config.park_timeout_s
         asked_s = float("-inf")
+        ticking = next((t for t in self._tasks if t.get_name() == self._tick_forever.__name__), None)
         while time.monotonic() < end_s:
+            if ticking is None or ticking.done():  # it failed, which is why the robot is to be parked
+                self.performer.tick()
             if self.machine.state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP):
                 return self.machine.state
             if self.machine.state is not RobotState.PARKING and time.monotonic() - asked_s > PARK_AGAIN_S:

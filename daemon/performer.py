@@ -10,6 +10,8 @@ import logging
 import time
 from dataclasses import dataclass
 
+import msgspec
+
 from daemon.bus_view import BusView
 from daemon.config import DaemonConfig
 from daemon.generation import Generated, GeneratorClient, GeneratorError
@@ -116,16 +118,14 @@ class Performer:
             self.end_all(self.halted_by)
 
     def end_all(self, by: str, failed: Failed | None = None) -> None:
-        """End what is on its way and what is played, in `cancelled`, or the latter in `failed` when that is given."""
-        self._drop_pending(by)
+        """End what is on its way and what is played, in `cancelled`, or in `failed` when that is given."""
+        self._drop_pending(by, failed)
         entry, plan = self._playing, self.planner.current
         self._playing = None
         self.planner.drop()
         if entry is not None:
             plan_id = plan.plan_id if plan is not None else 0
-            if failed is not None:
-                failed.plan_id = plan_id
-            self._ledger.emit(entry, failed or Cancelled(plan_id=plan_id, by=by))
+            self._ledger.emit(entry, _ending(plan_id, by, failed))
 
     def current_command(self) -> CurrentCommand | None:
         """What is being played."""
@@ -148,14 +148,14 @@ class Performer:
         self._follow(report)
         self._watch_plan()
 
-    def _drop_pending(self, by: str) -> None:
+    def _drop_pending(self, by: str, failed: Failed | None = None) -> None:
         pending, self._pending = self._pending, None
         if pending is None:
             return
         pending.cancelled_by = by
         if not pending.committing and pending.task is not None:
             pending.task.cancel()
-        self._ledger.emit(pending.entry, Cancelled(plan_id=0, by=by))
+        self._ledger.emit(pending.entry, _ending(0, by, failed))
 
     async def _perform(self, pending: Pending, epoch: int) -> None:
         entry = pending.entry
@@ -342,6 +342,11 @@ def _accepted(entry: Entry, plan_id: int, generated: Generated) -> Accepted:
         duration_s=round(motion.duration_s, 3),
         generate_ms=round(sum(generated.timings_ms.values()), 2),
     )
+
+
+def _ending(plan_id: int, by: str, failed: Failed | None) -> Cancelled | Failed:
+    """The event that ends a command; each gets its own, for the ledger fills in its id."""
+    return Cancelled(plan_id=plan_id, by=by) if failed is None else msgspec.structs.replace(failed, plan_id=plan_id)
 
 
 def _failed(code: str, found: str, allowed: str, do: str) -> Failed:

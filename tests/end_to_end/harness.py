@@ -9,12 +9,15 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from daemon.client import Client, NoAnswerError
 from daemon.config import Endpoints
-from tests.daemon.kinematic import KinematicGenerator
+from daemon.generation import Generated
+from tests.daemon.kinematic import KinematicGenerator, generate
 
+Answer = Callable[[str, int, float | None], Generated]
 MMMD = [sys.executable, "-m", "daemon.cli"]
 START_TIMEOUT_S = 40.0
 
@@ -22,11 +25,18 @@ START_TIMEOUT_S = 40.0
 class RunningDaemon:
     """`mmmd run` on sockets in a folder of its own, with a generator peer whose answers are known unless `model`."""
 
-    def __init__(self, *options: str, bus: str = "sim://", robot: str = "reference", model: bool = False) -> None:
+    def __init__(
+        self,
+        *options: str,
+        bus: str = "sim://",
+        robot: str = "reference",
+        model: bool = False,
+        answer: Answer = generate,
+    ) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="mmmd-test-")
         self.folder = Path(self._folder.name)
         self.endpoints = Endpoints(*(f"ipc://{self.folder}/{name}" for name in ("cmd", "ctl", "pub")))
-        self.peer = None if model else KinematicGenerator(f"ipc://{self.folder}/gen")
+        self.peer = None if model else KinematicGenerator(f"ipc://{self.folder}/gen", answer)
         self.audit = self.folder / "audit.json"
         if bus == "sim://":
             bus = f"sim://?audit={self.audit}"

@@ -1,0 +1,183 @@
+"""Processes and servos that fail under a running daemon: each ends in a named, safe state, and every command ends."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from daemon.client import CancelledByError, RefusedError
+from tests.end_to_end.harness import RunningDaemon
+from tests.end_to_end.test_start_and_end import child_pid
+
+pytestmark = pytest.mark.timeout(180)
+
+
+def gone(pid: int) -> bool:
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rsplit(")", 1)[1].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+def within(seconds: float, what: str, condition) -> None:
+    end_s = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end_s, f"not within {seconds} s: {what}"
+        time.sleep(0.05)
+
+
+def faulty(tmp_path: Path, **fault: object) -> str:
+    """A bus URL with one fault; its time runs from the simulator's start."""
+    path = tmp_path / "faults.toml"
+    path.write_text("[[fault]]\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in fault.items()))
+    return f"sim://?faults={path}&audit={tmp_path / 'audit.json'}"
+
+
+def test_a_killed_front_leaves_a_parked_robot_and_no_process(tmp_path):
+    """Hold after 0.5 s, park after 5 s, then the bus process gives the port back."""
+    audit = tmp_path / "audit.json"
+    daemon = RunningDaemon(bus=f"sim://?audit={audit}")
+    try:
+        daemon.until_ready()
+        assert daemon.mmmd("say", "wave", "--no-wait").returncode == 0
+        with daemon.client() as client:
+            client.wait_for("moving", timeout_s=10)
+        bus = child_pid(daemon, "daemon.bus_process")
+        daemon.process.kill()
+        daemon.process.wait(5)
+        within(20, "the bus process has ended", lambda: gone(bus))
+        assert "PARKING -> LIMP" in daemon.said
+        assert json.loads(audit.read_text())["violations"] == 0
+    finally:
+        daemon.close()
+
+
+def test_a_frozen_front_means_hold_then_park_and_it_goes_on_when_it_is_back():
+    daemon = RunningDaemon()
+    try:
+        daemon.until_ready()
+        assert daemon.mmmd("say", "wave", "--seconds", "9", "--no-wait").returncode == 0
+        with daemon.client() as client:
+            client.wait_for("moving", timeout_s=10)
+        daemon.process.send_signal(signal.SIGSTOP)
+        within(15, "parked", lambda: "PARKING -> LIMP" in daemon.said)
+        daemon.process.send_signal(signal.SIGCONT)
+        with daemon.client() as client:
+            client.wait_for("limp", timeout_s=5)
+            within(3, "the command has ended", lambda: client.status().command is None)
+            assert client.say("wave").done
+        assert daemon.terminate() == 0
+        assert json.loads(daemon.audit.read_text())["violations"] == 0
+    finally:
+        daemon.process.send_signal(signal.SIGCONT)
+        daemon.close()
+
+
+@pytest.mark.parametrize("kind", ["trip", "unplug"])
+def test_a_servo_that_trips_and_a_bus_that_goes_end_the_command_in_fault(tmp_path, kind):
+    fault = {"kind": kind, "start_s": 6.0} | ({"servo_id": 3} if kind == "trip" else {})
+    daemon = RunningDaemon(bus=faulty(tmp_path, **fault))
+    try:
+        daemon.until_ready()
+        with daemon.client() as client:
+            with pytest.raises(RefusedError) as caught:
+                for _ in range(20):
+                    client.say("wave", seconds=2.0)
+            assert caught.value.event.code == "fault" and caught.value.exit_status == 3
+            status = client.wait_for("fault", timeout_s=3)
+            assert status.must_arm and status.reason
+            with pytest.raises(RefusedError, match="mmmd reset"):
+                client.say("wave")
+        assert daemon.mmmd("status").returncode == 3
+        assert daemon.terminate() == 3
+        assert json.loads((tmp_path / "audit.json").read_text())["violations"] == 0
+    finally:
+        daemon.close()
+
+
+def test_a_servo_that_does_not_answer_when_arming_is_a_fault_before_anything_moves(tmp_path):
+    daemon = RunningDaemon(bus=faulty(tmp_path, kind="silent", servo_id=5, start_s=4.0))
+    try:
+        daemon.until_ready()
+        time.sleep(4.0)  # the simulator's own clock: the servo is silent from here on
+        with daemon.client() as client, pytest.raises(RefusedError) as caught:
+            client.say("wave")
+        assert caught.value.code == "fault" and "5" in str(caught.value)
+        assert daemon.terminate() == 3
+    finally:
+        daemon.close()
+
+
+def test_lost_and_broken_replies_change_nothing_that_people_see(tmp_path):
+    daemon = RunningDaemon(bus=faulty(tmp_path, kind="drop", probability=0.01))
+    try:
+        daemon.until_ready()
+        with daemon.client() as client:
+            assert client.say("wave").done.gate_clipped_frames == 0
+        assert daemon.terminate() == 0
+        assert json.loads((tmp_path / "audit.json").read_text())["violations"] == 0
+    finally:
+        daemon.close()
+
+
+def test_a_frozen_generator_is_a_named_failure_and_is_noticed_again():
+    """The generator of somebody else: nothing to start again, but texts fail in bounded time and then work."""
+    frozen = threading.Event()
+
+    def answer(text, seed, seconds):
+        from tests.daemon.kinematic import generate
+
+        if "freeze" in text:
+            frozen.wait(14)
+        return generate(text, seed, seconds)
+
+    daemon = RunningDaemon(answer=answer)
+    try:
+        daemon.until_ready()
+        with daemon.client() as client:
+            client.arm()
+            outcome: list[Exception] = []
+
+            def freeze() -> None:
+                with daemon.client() as other:
+                    try:
+                        other.say("freeze")
+                    except (RefusedError, CancelledByError) as error:
+                        outcome.append(error)
+
+            thread = threading.Thread(target=freeze)
+            thread.start()
+            time.sleep(0.3)
+            began_s = time.monotonic()
+            client.stop()  # nothing waits behind the generator
+            assert time.monotonic() - began_s < 1
+            thread.join(20)
+            assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "stop"
+            frozen.set()
+            within(15, "the generator answers", lambda: client.status().generator.startswith("ready"))
+            assert client.say("wave").done
+        assert daemon.terminate() == 0
+    finally:
+        daemon.close()
+
+
+def test_a_frozen_recorder_slows_nobody_and_a_killed_one_is_reported(tmp_path):
+    daemon = RunningDaemon("--log", str(tmp_path / "run.mcap"))
+    try:
+        daemon.until_ready()
+        pid = child_pid(daemon, "daemon.recorder")
+        os.kill(pid, signal.SIGSTOP)
+        with daemon.client() as client:
+            assert client.say("wave").done.first_motion_ms < 3000
+            os.kill(pid, signal.SIGKILL)
+            within(5, "it is reported", lambda: "recording ended" in daemon.said)
+            assert client.say("left wave").done
+        assert daemon.terminate() == 0
+    finally:
+        daemon.close()

@@ -1,0 +1,135 @@
+"""The main job with the shipped model: texts over ZeroMQ move simulated servos, are recorded and replayed."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+
+from daemon.wire import Accepted, Cancelled, Done, Progress, Say
+from mmm_core.checkpoint import MODEL_FILE
+from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
+from tests.end_to_end.test_start_and_end import child_pid
+
+pytestmark = [
+    pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout"),
+    pytest.mark.timeout(240),
+]
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A recorded run of the shipped model; the tests of this module share it."""
+    log = tmp_path_factory.mktemp("run") / "run.mcap"
+    daemon = RunningDaemon("--log", str(log), model=True)
+    daemon.log = log
+    try:
+        yield daemon.until_ready()
+    finally:
+        daemon.close()
+
+
+def test_three_texts_one_of_them_during_a_motion(run):
+    with run.client() as robot:
+        first = robot.say("wave with your right hand")
+        assert first.events[0].status == "accepted" and "wave" in first.events[0].understood
+        assert isinstance(first.done, Done) and first.done.gate_clipped_frames == 0
+        overtaken = robot.events_of(Say(id="overtaken", text="raise your left arm"))
+        events = [next(overtaken) for _ in range(2)]
+        assert [type(e) for e in events] == [Accepted, Progress]
+        with run.client() as other:
+            second = other.say("nod twice")
+        assert second.done is not None and second.done.underruns == 0
+        last = next(overtaken)
+        assert isinstance(last, Cancelled) and last.by == f"say {second.id}"
+
+
+def test_out_of_scope_is_rejected_with_a_reason_and_a_score(run):
+    result = run.mmmd("say", "swim across the lake", "--json")
+    event = json.loads(result.stdout)
+    assert result.returncode == 1 and event["code"] == "out_of_scope" and event["found"] and event["scope_score"] < 1
+
+
+def test_a_killed_generator_is_started_again_while_the_robot_holds(run):
+    with run.client() as robot:
+        robot.arm()
+        os.kill(child_pid(run, "daemon.generator"), signal.SIGKILL)
+        end_s = time.monotonic() + 5
+        while robot.status().generator.startswith("ready"):
+            assert time.monotonic() < end_s
+            time.sleep(0.02)
+        assert robot.status().state in ("idle", "holding")
+        end_s = time.monotonic() + 60
+        while not robot.status().generator.startswith("ready"):
+            assert time.monotonic() < end_s, robot.status().generator
+            time.sleep(0.1)
+        assert robot.say("bow").done
+
+
+def test_three_lines_of_any_language(run):
+    """As in the README: a REQ socket, the plain text, an answer."""
+    lines = (
+        "import zmq, sys; s = zmq.Context().socket(zmq.REQ); s.connect(sys.argv[1])\n"
+        "s.send(b'wave with your right hand')\n"
+        "print(s.recv().decode())\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", lines, run.endpoints.cmd], capture_output=True, text=True, timeout=30, check=True
+    )
+    assert json.loads(result.stdout)["type"] == "accepted"
+
+
+def test_the_log_replays_to_the_same_goals(run):
+    """Last of the module: ends the daemon, whose audit must be clean, and replays its log."""
+    with run.client() as robot:
+        robot.wait_for("idle", "holding", timeout_s=20)
+    assert run.terminate() == 0
+    audit = json.loads(run.audit.read_text())
+    assert audit["goals"] > 0 and audit["violations"] == 0 and audit["self_contacts"] == 0
+    replayed = mmmd("replay", str(run.log), "--bus", "sim://", "--json", timeout_s=120)
+    assert replayed.returncode == 0, replayed.stderr + replayed.stdout
+    report = json.loads(replayed.stdout)
+    assert report["identical"] and report["goals"] > 500 and report["audit"]["violations"] == 0
+
+
+def free_ports(n: int) -> list[int]:
+    sockets = [socket.socket() for _ in range(n)]
+    try:
+        for s in sockets:
+            s.bind(("127.0.0.1", 0))
+        return [s.getsockname()[1] for s in sockets]
+    finally:
+        for s in sockets:
+            s.close()
+
+
+def test_a_checkpoint_that_is_none_is_said_and_the_robot_stays_where_it_is(tmp_path):
+    """Nothing stands in for the model: texts fail with the reason, the other commands go on; over TCP."""
+    ports = free_ports(3)
+    at = [
+        x
+        for name, port in zip(("cmd", "ctl", "pub"), ports, strict=True)
+        for x in (f"--{name}", f"tcp://127.0.0.1:{port}")
+    ]
+    broken = tmp_path / "model.safetensors"
+    broken.write_bytes(b"no weights")
+    output = tmp_path / "output"
+    with output.open("wb") as out:
+        process = subprocess.Popen([*MMMD, "run", "--model", str(broken), *at], stdout=out, stderr=out)
+    try:
+        end_s = time.monotonic() + 40
+        while "down" not in mmmd("status", *at).stdout:
+            assert time.monotonic() < end_s, output.read_text()
+        said = mmmd("say", "wave", *at)
+        assert said.returncode == 1 and "generator" in said.stderr and str(broken) in said.stderr
+        status = json.loads(mmmd("status", "--json", *at).stdout)
+        assert status["state"] == "limp"
+    finally:
+        process.terminate()
+        assert process.wait(20) == 0
