@@ -299,7 +299,7 @@ class Streamer:
         self._refuse_hardware_errors(reading)
         if self._cycle % TORQUE_CHECK_CYCLES == 0:
             row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)
-            if reading.valid[row] and self._bus.read_item(self._bus.ids[row], "torque_enable") == 0:
+            if reading.valid[row] and self._bus.poll_item(self._bus.ids[row], "torque_enable") == 0:
                 self._fault(
                     f"servo {self._bus.ids[row]} ({self.robot.joint_names[row]}) lost its torque; it may have rebooted"
                 )

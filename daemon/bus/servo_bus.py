@@ -24,6 +24,8 @@ _MARGIN_S = 0.004
 """On top of wire time: scheduling on a shared machine and one USB frame."""
 _GOAL_POSITION_ADDRESS, _GOAL_POSITION_BYTES = 116, 4
 _TRIES = 3
+_SETUP_MARGIN_S = 0.03
+"""For single questions outside the cycle: nothing waits for them, and a busy machine may answer late."""
 
 
 @dataclass
@@ -155,6 +157,12 @@ class ServoBus:
         answer = self._ask(packet.read(servo_id, item.address, item.size), servo_id, item.size)
         return item.decode(answer.parameters)
 
+    def poll_item(self, servo_id: int, name: str) -> int | None:
+        """Value of one item, asked once and within the cycle; None when the servo did not answer in time."""
+        item = self._item(servo_id, name)
+        answer = self._ask_once(packet.read(servo_id, item.address, item.size), servo_id, item.size, _MARGIN_S)
+        return None if answer is None else item.decode(answer.parameters)
+
     def write_item(self, servo_id: int, name: str, value: int) -> None:
         """Set one item of one servo and wait for its answer.
 
@@ -205,15 +213,15 @@ class ServoBus:
         Only instructions that may be repeated are sent this way.
         """
         for _ in range(_TRIES):
-            answer = self._ask_once(request, servo_id, answer_bytes)
+            answer = self._ask_once(request, servo_id, answer_bytes, _SETUP_MARGIN_S)
             if answer is not None:
                 return answer
         raise LinkTimeoutError(f"servo {servo_id} did not answer instruction {request[7]:#04x} on {self.port.name}")
 
-    def _ask_once(self, request: bytes, servo_id: int, answer_bytes: int) -> Packet | None:
+    def _ask_once(self, request: bytes, servo_id: int, answer_bytes: int, margin_s: float) -> Packet | None:
         self._drop_late_answers()
         self.port.write(request)
-        deadline = self._clock.now_s() + self._wire_s(len(request) + 11 + answer_bytes) + 2 * _MARGIN_S
+        deadline = self._clock.now_s() + self._wire_s(len(request) + 11 + answer_bytes) + margin_s
         while (left := deadline - self._clock.now_s()) > 0:
             for p in self._decoder.feed(self.port.read(256, left)):
                 if p.servo_id != servo_id or p.instruction != Instruction.STATUS:

@@ -105,7 +105,7 @@ def test_a_servo_that_never_answers_times_out_after_three_tries() -> None:
     rig = bus_rig(Fault("silent", servo_id=4))
     with pytest.raises(LinkTimeoutError, match="servo 4"):
         rig.bus.read_item(4, "led")
-    assert rig.clock.now_s() < 0.05
+    assert rig.clock.now_s() < 0.15
 
 
 def test_an_unplugged_port_is_lost_not_slow() -> None:
