@@ -36,7 +36,7 @@ class EngineSettings:
     fewest_steps: int = 4
     most_steps: int = 10
     steps_per_token: float = 0.2
-    temperature: float = 0.7
+    temperature: float = 0.5
     guidance: float = 2.0
 
     def n_steps(self, n_tokens: int) -> int:
