@@ -170,7 +170,8 @@ class Performer:
             async with self._take_lock:
                 await self._take_over(pending, generated, plan_id, epoch)
         except CommandRefusedError as error:
-            failed = _failed(error.command.value, str(error), ", ".join(error.allowed), error.do)
+            found = f"the robot is in {error.state.value}"
+            failed = _failed("wrong_state", found, ", ".join(error.allowed), error.do)
             self._ledger.emit(entry, failed)
         except RetargetError as error:
             self.planner.give_up()
