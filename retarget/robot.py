@@ -220,6 +220,8 @@ def _read(path: Path) -> RobotModel:
         raise RobotFileError(path, "bus.rate_hz", str(table.bus.rate_hz), "1 to 1000")
     joints = tuple(_joint(path, i, j, table.motion) for i, j in enumerate(table.joint))
     servos = tuple(_servo(path, i, j) for i, j in enumerate(table.joint))
+    for i, (joint, servo) in enumerate(zip(joints, servos, strict=True)):
+        _refuse_beyond_servo(path, f"joint[{i}] '{joint.name}'", joint, servo)
     _refuse_doubles(path, "name", [j.name for j in joints])
     _refuse_doubles(path, "role", [j.role for j in joints])
     _refuse_doubles(path, "servo.id", [str(s.servo_id) for s in servos])
@@ -250,6 +252,16 @@ def _joint(path: Path, i: int, j: _JointTable, motion: _MotionTable) -> JointSpe
         j.name, j.role, math.radians(low), math.radians(high), velocity, math.radians(acceleration_deg_s2),
         math.radians(j.rest_deg), math.radians(j.park_deg),
     )  # fmt: skip
+
+
+def _refuse_beyond_servo(path: Path, key: str, joint: JointSpec, servo: ServoSpec) -> None:
+    """In position mode a servo takes goals of one turn only and refuses the rest."""
+    turn = servo.model.ticks_per_turn
+    scale = servo.direction * servo.gear_ratio * turn / (2 * math.pi)
+    low, high = sorted(servo.zero_tick + scale * q for q in (joint.position_min_rad, joint.position_max_rad))
+    if low < 0 or high > turn - 1:
+        found = f"reaches servo ticks {low:.0f} to {high:.0f}"
+        raise RobotFileError(path, f"{key}: position_limit_deg", found, f"ticks 0 to {turn - 1} of {servo.model.name}")
 
 
 def _servo(path: Path, i: int, j: _JointTable) -> ServoSpec:

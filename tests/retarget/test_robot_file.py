@@ -38,6 +38,7 @@ CHANGES = [
     ("reversed limits", "[-80, 80]", "[80, -80]", ["head_yaw", "position_limit_deg", "[80.0, -80.0]", "low < high"]),
     ("rest outside", "rest_deg = 0", "rest_deg = 99", ["head_yaw", "rest_deg", "99", "[-80.0, 80.0]"]),
     ("two joints on one servo", "{ id = 2,", "{ id = 1,", ["servo.id", "'1'", "each once"]),
+    ("beyond the servo's turn", "[-80, 80]", "[-80, 181]", ["head_yaw", "ticks 1138 to 4107", "0 to 4095"]),
     ("unknown servo", '"XL330-M288"', '"XL999"', ["XL999", "XM430-W350"]),
     ("unknown role", 'role = "head_yaw"', 'role = "tail"', ["role", "'tail'", "left_elbow"]),
     ("two joints of one role", 'role = "head_pitch"', 'role = "head_yaw"', ["role", "head_yaw", "each once"]),
