@@ -35,9 +35,9 @@ class EngineSettings:
 
     fewest_steps: int = 4
     most_steps: int = 10
-    steps_per_token: float = 0.2
+    steps_per_token: float = 0.12
     temperature: float = 0.5
-    guidance: float = 2.0
+    guidance: float = 1.0
 
     def n_steps(self, n_tokens: int) -> int:
         """Decoding steps for a motion of `n_tokens`."""

@@ -1,0 +1,218 @@
+"""Laws of retargeting, for any motion: bounds at every rate, no self-contact, mirrors, joins, the same bits."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from random_motions import mirrored, random_motion, real_motions
+
+from mmm_core.motion import Motion
+from retarget.arms import Arm, subproblem_2
+from retarget.errors import MotionError
+from retarget.kinematics import Kinematics, rotate
+from retarget.limits import limit_step
+from retarget.paths import JointPath, JointState
+from retarget.pipeline import Retargeter
+from retarget.robot import load_robot
+
+RETARGETERS = {name: Retargeter(load_robot(name)) for name in ("reference", "op3")}
+kinds = st.sampled_from(["noise", "teleport", "smooth"])
+robots = st.sampled_from(sorted(RETARGETERS))
+RATES_HZ = (20.0, 100.0, 125.0, 200.0)
+
+
+def check_bounds(path: JointPath, start: JointState, r: Retargeter, rate_hz: float) -> None:
+    period, limits = 1 / rate_hz, r.limits
+    q = np.concatenate(
+        [(start.position_rad - start.velocity_rad_s * period)[None], start.position_rad[None], path.at_rate(rate_hz)]
+    )
+    assert (q[2:] >= limits.position_min_rad - 1e-12).all()
+    assert (q[2:] <= limits.position_max_rad + 1e-12).all()
+    assert (np.abs(np.diff(q, axis=0)) <= limits.velocity_rad_s * period * (1 + 1e-7)).all()
+    bend = np.abs(np.diff(q, n=2, axis=0))
+    assert (bend <= limits.acceleration_rad_s2 * period**2 * (1 + 1e-6) + 1e-12).all()
+
+
+def at_rest(r: Retargeter) -> JointState:
+    return JointState(r.robot.rest_rad, np.zeros(r.robot.n_joints))
+
+
+@settings(max_examples=12)
+@given(robots, st.integers(0, 10_000), kinds, st.integers(1, 60))
+def test_no_bound_is_passed_at_any_rate_and_the_path_ends_at_rest(name: str, seed: int, kind: str, T: int) -> None:
+    r = RETARGETERS[name]
+    path = r.retarget(random_motion(seed, T, kind), at_rest(r))
+    for rate_hz in RATES_HZ:
+        check_bounds(path, at_rest(r), r, rate_hz)
+    assert not path.velocity_at(np.array([path.duration_s])).any()
+
+
+@settings(max_examples=8)
+@given(robots, st.integers(0, 10_000), kinds)
+def test_the_daemons_gate_passes_the_path_bit_for_bit(name: str, seed: int, kind: str) -> None:
+    r = RETARGETERS[name]
+    path = r.retarget(random_motion(seed, 30, kind), at_rest(r)).at_rate(r.robot.bus.rate_hz)
+    position, velocity = r.robot.rest_rad, np.zeros(r.robot.n_joints)
+    for q in path:
+        goal = limit_step(q, position, velocity, r.limits, r.robot.bus.period_s)
+        assert np.array_equal(goal, q)
+        position, velocity = goal, (goal - position) / r.robot.bus.period_s
+
+
+@settings(max_examples=8)
+@given(robots, st.integers(0, 10_000), st.integers(1, 50))
+def test_a_take_over_joins_in_position_and_velocity(name: str, seed: int, at: int) -> None:
+    r = RETARGETERS[name]
+    first = r.retarget(random_motion(seed, 40, "smooth"), at_rest(r))
+    t_s = np.array([min(at / 100, first.duration_s)])
+    state = JointState(first.at(t_s)[0], first.velocity_at(t_s)[0])
+    second = r.retarget(random_motion(seed + 1, 30, "noise"), state)
+    assert np.allclose(second.at(np.array([0.0]))[0], state.position_rad)
+    assert np.allclose(second.velocity_at(np.array([0.0]))[0], state.velocity_rad_s)
+    for rate_hz in RATES_HZ:
+        check_bounds(second, state, r, rate_hz)
+
+
+@settings(max_examples=6)
+@given(robots, st.integers(0, 10_000), kinds)
+def test_no_emitted_frame_touches_itself_by_mujocos_own_check(name: str, seed: int, kind: str) -> None:
+    """MuJoCo's contacts on a model of its own; pairs two joints apart overlap by design and are left out."""
+    r = RETARGETERS[name]
+    model = mujoco.MjModel.from_xml_path(str(r.robot.description_path))
+    data = mujoco.MjData(model)
+    address = [model.joint(n).qposadr[0] for n in r.robot.joint_names]
+    parent = model.body_parentid
+
+    def near(a: int, b: int) -> bool:
+        above = {a: {parent[a], parent[parent[a]]}, b: {parent[b], parent[parent[b]]}}
+        return a in above[b] or b in above[a] or parent[a] == parent[b]
+
+    def touching(q: np.ndarray) -> set[tuple[int, int]]:
+        data.qpos[address] = q
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_collision(model, data)
+        bodies = [tuple(sorted(model.geom_bodyid[list(c.geom)])) for c in data.contact if c.dist < 0]
+        return {pair for pair in bodies if not near(*pair)}
+
+    resting = touching(r.robot.rest_rad)
+    for q in r.retarget(random_motion(seed, 25, kind), at_rest(r)).at_rate(100.0)[::2]:
+        assert touching(q) <= resting
+
+
+@settings(max_examples=6)
+@given(st.integers(0, 10_000))
+def test_the_mirrored_motion_gives_the_mirrored_path(seed: int) -> None:
+    r = RETARGETERS["reference"]
+    m = random_motion(seed, 25, "smooth")
+    plain, other = r.retarget(m).q_rad, r.retarget(mirrored(m)).q_rad
+    names = list(r.robot.joint_names)
+    for j, name in enumerate(names):
+        side, _, part = name.partition("_")
+        swap = {"left": "right", "right": "left"}.get(side)
+        k = names.index(f"{swap}_{part}") if swap else j
+        sign = -1.0 if name in ("head_yaw", "waist_yaw") else 1.0
+        assert np.abs(plain[:, j] - sign * other[:, k]).max() < 0.02, name
+
+
+def test_the_same_motion_gives_the_same_bits() -> None:
+    m = random_motion(5, 30, "noise")
+    for name in RETARGETERS:
+        a, b = (Retargeter(load_robot(name)).retarget(m).control_rad for _ in range(2))
+        assert np.array_equal(a, b)
+
+
+@pytest.mark.parametrize("name", sorted(RETARGETERS))
+def test_forward_kinematics_is_mujocos(name: str) -> None:
+    robot = load_robot(name)
+    kinematics = Kinematics(robot)
+    model = mujoco.MjModel.from_xml_path(str(robot.description_path))
+    data = mujoco.MjData(model)
+    rng = np.random.default_rng(0)
+    q = rng.uniform(robot.position_min_rad, robot.position_max_rad, (20, robot.n_joints))
+    places = kinematics.places(q)
+    for t in range(len(q)):
+        data.qpos[[model.joint(n).qposadr[0] for n in robot.joint_names]] = q[t]
+        mujoco.mj_kinematics(model, data)
+        for k, point in enumerate(kinematics.key_points):
+            if point.name in ("left_wrist", "right_wrist", "head", "chest"):
+                assert np.allclose(places[t, k], data.site(point.name).xpos, atol=1e-9), point.name
+
+
+@given(st.integers(0, 10_000))
+def test_a_six_joint_arm_reaches_the_directions_of_any_pose_it_has(seed: int) -> None:
+    robot = load_robot("reference")
+    arm = Arm(RETARGETERS["reference"].kinematics, "left")
+    rng = np.random.default_rng(seed)
+    q = rng.uniform(robot.position_min_rad[list(arm.joints)], robot.position_max_rad[list(arm.joints)], (1, 4))
+    upper, fore = arm.directions(q)
+    found_upper, found_fore = arm.directions(arm.solve(upper, fore, None).q_rad)
+    assert np.allclose(found_upper, upper, atol=1e-6)
+    assert np.allclose(found_fore, fore, atol=1e-6)
+
+
+@given(st.integers(0, 10_000), st.sampled_from([1.0, -1.0]))
+def test_subproblem_2_turns_p_into_q(seed: int, sign: float) -> None:
+    rng = np.random.default_rng(seed)
+    q = rng.normal(size=(4, 3))
+    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    a1, a2, p = np.array([0.0, 1, 0]), np.array([1.0, 0, 0]), np.array([0.0, 0, -1])
+    angle1, angle2 = subproblem_2(a1, a2, p, q, sign)
+    assert np.allclose(rotate(a1, angle1, rotate(a2, angle2, np.broadcast_to(p, (4, 3)))), q, atol=1e-9)
+
+
+def test_recorded_motion_keeps_its_directions_on_a_robot_that_can() -> None:
+    motions = real_motions()
+    errors = [RETARGETERS["reference"].retarget(m).report.direction_mean_deg for m in motions.values()]
+    assert np.median(errors) < 8.0, errors
+
+
+def test_motions_that_cannot_be_retargeted_are_named() -> None:
+    r, good = RETARGETERS["reference"], random_motion(0, 3, "smooth")
+    fields = {f: getattr(good, f) for f in good.__dataclass_fields__}
+    collapsed = np.array(good.joints_m)
+    collapsed[:, 18] = collapsed[:, 16]
+    with pytest.raises(MotionError, match=r"left arm.*bone of 0\.0000 m"):
+        r.retarget(Motion(**(fields | {"joints_m": collapsed})))
+    empty = {k: fields[k][:0] for k in ("joints_m", "head_quat_wxyz", "forearm_twist_rad", "features")}
+    with pytest.raises(MotionError, match="no frames"):
+        r.retarget(Motion(**(fields | empty)))
+
+
+def test_the_command_writes_every_field(tmp_path: Path) -> None:
+    from daemon.cli import main
+
+    m = random_motion(3, 30, "smooth")
+    m.save_npz(tmp_path / "in.npz")
+    assert (
+        main(["retarget", str(tmp_path / "in.npz"), "--robot", "op3", "--out", str(tmp_path / "out.npz"), "--json"])
+        == 0
+    )
+    with np.load(tmp_path / "out.npz") as out:
+        T, robot = len(out["q_rad"]), load_robot("op3")
+        assert out["q_rad"].shape == (T, 8)
+        assert tuple(out["joint_names"]) == robot.joint_names
+        assert out["ticks"].shape == (T, 8)
+        assert out["servo_ids"].tolist() == list(robot.servo_ids)
+        assert out["keypoints"].shape == (T, 8, 3)
+        wanted = {f"{s}_{p}" for s in ("left", "right") for p in ("shoulder", "elbow", "wrist")} | {"head", "chest"}
+        assert set(out["keypoint_names"]) == wanted
+        assert out["head_quat_wxyz"].shape == (T, 4)
+        assert (float(out["rate_hz"]), str(out["up_axis"])) == (20.0, "z")
+        assert "direction_mean_deg" in json.loads(str(out["report"]))
+
+
+def test_the_command_names_a_file_it_cannot_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from daemon.cli import main
+
+    assert main(["retarget", str(tmp_path / "none.npz"), "--out", str(tmp_path / "out.npz")]) == 1
+    assert "no such file" in capsys.readouterr().err
+    np.savez(tmp_path / "bad.npz", joints=np.zeros((4, 21, 3)), fps=20.0)
+    assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 1
+    assert "(T, 22, 3)" in capsys.readouterr().err
+    assert not (tmp_path / "out.npz").exists()
