@@ -20,6 +20,8 @@ DEGRADE_BELOW = 0.58
 OUTSIDE_MARGIN = 0.03
 """A text is refused when something outside lies nearer by this much, and reported as degraded from a tie on."""
 _SIDES = re.compile(r"\b(left|right|both)\b")
+_NUMBERS = {"once": "1", "one": "1", "twice": "2", "two": "2", "three": "3", "four": "4", "five": "5", "six": "6"}
+_COUNTS = re.compile(r"\b(once|twice|one|two|three|four|five|six|[1-9])\b")
 
 
 @dataclass(frozen=True)
@@ -52,24 +54,22 @@ class ScopeIndex:
     commands: list[str]
     vectors: Tensor
     n_known: int
-    _sides: list[frozenset[str]] = field(init=False)
+    _named: list[tuple[frozenset[str], frozenset[str]]] = field(init=False)
 
     def __post_init__(self) -> None:
-        """Note which sides each known command names."""
-        object.__setattr__(self, "_sides", [_named_sides(c) for c in self.commands[: self.n_known]])
+        """Note which sides and counts each known command names."""
+        object.__setattr__(self, "_named", [(_sides(c), _counts(c)) for c in self.commands[: self.n_known]])
 
     def judge(self, text: str, sentence: Tensor) -> ScopeVerdict:
         """Verdict for a text and its unit sentence vector (D,).
 
-        The vector hardly tells left from right, so among the known commands only those that name the same sides are
-        taken as the meaning, where there are any.
+        The vector hardly tells left from right or two from three, so the meaning is taken from the known commands that
+        name the same sides and counts, else the same sides and no count, else from all.
         """
         cosine = self.vectors @ sentence
         known, outside = cosine[: self.n_known], cosine[self.n_known :]
         score = float(known.max())
-        same_sides = torch.tensor([sides == _named_sides(text) for sides in self._sides])
-        candidates = known.masked_fill(~same_sides, -1.0) if same_sides.any() else known
-        nearest = self.commands[int(candidates.argmax())]
+        nearest = self.commands[self._meaning(text, known)]
         if score < REJECT_BELOW:
             reason = f"nothing like it was learnt (nearest: '{nearest}', {score:.2f}; needed {REJECT_BELOW})"
             return ScopeVerdict("rejected", score, nearest, reason)
@@ -83,6 +83,21 @@ class ScopeIndex:
             return ScopeVerdict("degraded", score, nearest, reason)
         return ScopeVerdict("accepted", score, nearest, "")
 
+    def _meaning(self, text: str, known: Tensor) -> int:
+        """Index of the nearest known command that says nothing else than the text about sides and counts."""
+        sides, counts = _sides(text), _counts(text)
+        for wanted in ((sides, counts), (sides, frozenset[str]())):
+            fitting = torch.tensor([named == wanted for named in self._named])
+            if fitting.any():
+                nearest = int(known.masked_fill(~fitting, -1.0).argmax())
+                if wanted[1] == frozenset() or float(known[nearest]) > 0.95 * float(known.max()):
+                    return nearest
+        return int(known.argmax())
 
-def _named_sides(text: str) -> frozenset[str]:
+
+def _sides(text: str) -> frozenset[str]:
     return frozenset(_SIDES.findall(text.lower()))
+
+
+def _counts(text: str) -> frozenset[str]:
+    return frozenset(_NUMBERS.get(word, word) for word in _COUNTS.findall(text.lower()))

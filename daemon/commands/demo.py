@@ -48,7 +48,7 @@ def demo(
 
     if texts and len(texts) != len(TEXTS):
         raise CommandError(f"{len(texts)} texts; the demo takes {len(TEXTS)}, or none for its own")
-    console = Console(highlight=False)
+    console = Console(highlight=False, soft_wrap=True)
     model = load_robot(robot)
     out.mkdir(parents=True, exist_ok=True)
     link, log_file, audit_file = out / "servos", out / "run.mcap", out / "audit.json"
