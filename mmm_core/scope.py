@@ -100,4 +100,4 @@ def _sides(text: str) -> frozenset[str]:
 
 
 def _counts(text: str) -> frozenset[str]:
-    return frozenset(_NUMBERS.get(word, word) for word in _COUNTS.findall(text.lower()))
+    return frozenset(_NUMBERS.get(str(word), str(word)) for word in _COUNTS.findall(text.lower()))
