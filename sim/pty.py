@@ -24,8 +24,10 @@ _OTHER_SPEED = getattr(termios, "BOTHER", 0o010000)
 class PtyServer:
     """Serves a `SimBus` on a pseudo terminal, with a link at a path of choice. Clients may come and go."""
 
-    def __init__(self, bus: SimBus, link: Path | None = None) -> None:
+    def __init__(self, bus: SimBus, link: Path | None = None, baud: int | None = None) -> None:
         self.bus = bus
+        self.baud = baud or bus.robot.bus.baud
+        """What the servos are set to."""
         self._master, self._slave = pty.openpty()  # our own slave end stays open, so that a client may leave
         tty.setraw(self._slave)
         os.set_blocking(self._master, False)
@@ -52,9 +54,9 @@ class PtyServer:
             except (BlockingIOError, OSError):
                 continue
             now = time.monotonic() - self._start_s
-            if self.bus.faults.active("unplug", now) or self._client_baud() != self.bus.robot.bus.baud:
+            if self.bus.faults.active("unplug", now) or self._client_baud() != self.baud:
                 continue
-            for at_s, reply in self._grouped(self.bus.receive(data, now, self.bus.robot.bus.baud)):
+            for at_s, reply in self._grouped(self.bus.receive(data, now, self.baud)):
                 left = at_s + self._start_s - time.monotonic()
                 if left > 0:
                     time.sleep(left)
@@ -80,6 +82,6 @@ class PtyServer:
                 pass
 
     def _client_baud(self) -> int:
-        """Speed that the client has set; the robot's own where the system cannot tell."""
+        """Speed that the client has set; the servos' own where the system cannot tell."""
         speed = termios.tcgetattr(self._slave)[5]
-        return _SPEEDS.get(speed, self.bus.robot.bus.baud) if speed != _OTHER_SPEED else self.bus.robot.bus.baud
+        return _SPEEDS.get(speed, self.baud) if speed != _OTHER_SPEED else self.baud

@@ -54,14 +54,14 @@ def demo(
     link, log_file, audit_file = out / "servos", out / "run.mcap", out / "audit.json"
     log_file.unlink(missing_ok=True)  # of an earlier demo
     shown = [Shown(text, seed) for seed, text in enumerate(texts or TEXTS)]
-    endpoints = free_endpoints()
+    endpoints, baud = free_endpoints(), str(model.bus.baud)
     with Progress(SpinnerColumn(), TextColumn("{task.description}"), console=console, transient=True) as bar:
         task = bar.add_task("starting the simulated robot and the daemon")
         with child(
-            ["sim", "--robot", robot, "--link", str(link), "--audit", str(audit_file)], out / "sim.log"
+            ["sim", "--robot", robot, "--link", str(link), "--audit", str(audit_file), "--baud", baud], out / "sim.log"
         ) as servos:
             _wait_for(link)
-            bus = f"dxl://{link}?baud={model.bus.baud}"
+            bus = f"dxl://{link}?baud={baud}"
             ends = ["--cmd", endpoints.cmd, "--ctl", endpoints.ctl, "--pub", endpoints.pub]
             command = ["run", "--robot", robot, "--bus", bus, "--log", str(log_file), *ends]
             with child(command, out / "daemon.log") as daemon, Client(endpoints) as client:

@@ -8,15 +8,19 @@ from pathlib import Path
 
 
 def sim(
-    robot: str = "reference", link: Path | None = None, faults: Path | None = None, audit: Path | None = None
+    robot: str = "reference",
+    link: Path | None = None,
+    faults: Path | None = None,
+    audit: Path | None = None,
+    baud: int = 1_000_000,
 ) -> int:
     """Serve simulated servos on a tty until Ctrl-C, then print the audit of every goal they received.
 
-    Anything that opens a serial port can talk to them at the robot's baud: mmmd, dynamixel-sdk, the DYNAMIXEL Wizard.
+    Anything that opens a serial port can talk to them: mmmd, dynamixel-sdk, the DYNAMIXEL Wizard.
     Exit status 1 when a goal broke a limit.
 
     Example: mmmd sim --robot op3 --link ./servos
-    and then: mmmd run --robot op3 --bus "dxl://./servos?baud=2000000"
+    and then: mmmd run --robot op3 --bus "dxl://./servos?baud=1000000"
 
     Args:
         robot: name of a packaged robot, or the path of a robot.toml.
@@ -24,6 +28,7 @@ def sim(
         faults: TOML file with [[fault]] tables: kind (drop, corrupt, silent, trip, unplug), start_s, end_s,
             probability, servo_id.
         audit: file to write the audit to, as JSON.
+        baud: what the servos are set to; at another baud they stay silent.
     """
     from rich.console import Console
 
@@ -35,11 +40,11 @@ def sim(
     console = Console()
     model = load_robot(robot)
     bus = SimBus(model, FaultSchedule.load(faults) if faults else None)
-    server = PtyServer(bus, link)
+    server = PtyServer(bus, link, baud)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda _number, _frame: server.stop())
     where = f"{link} -> {server.device}" if link else server.device
-    console.print(f"{model.n_joints} servos of '{model.name}' at {model.bus.baud} baud on {where}", highlight=False)
+    console.print(f"{model.n_joints} servos of '{model.name}' at {baud} baud on {where}", highlight=False)
     try:
         server.serve()
     finally:

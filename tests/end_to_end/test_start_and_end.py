@@ -22,7 +22,7 @@ class SimulatedTty:
         self.link = folder / "servos"
         self.audit = folder / "tty_audit.json"
         self.process = subprocess.Popen(
-            [*MMMD, "sim", "--robot", robot, "--link", str(self.link), "--audit", str(self.audit)],
+            [*MMMD, "sim", "--robot", robot, "--link", str(self.link), "--audit", str(self.audit), "--baud", str(baud_of(robot))],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
         end_s = time.monotonic() + 20
