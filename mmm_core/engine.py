@@ -8,40 +8,18 @@ from pathlib import Path
 
 import numpy as np
 import torch
-import torch.nn.functional as F
 from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
-from mmm_core.decode import DecodeSettings, decode
 from mmm_core.errors import GenerationError
 from mmm_core.features import recover
 from mmm_core.motion import FPS, N_FEATURES, N_JOINTS, Motion
+from mmm_core.sampling import SamplingSettings, empty_row, fill
 from mmm_core.scope import ScopeVerdict
 from mmm_core.text import MiniLm, TextStates
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames
 
 SHORTEST_S = 0.8
-
-
-@dataclass(frozen=True)
-class EngineSettings:
-    """How the shipped model is asked.
-
-    Attributes:
-        steps_per_token: decoding steps for each token of the motion, within `fewest_steps` and `most_steps`.
-        temperature: randomness; 0 always takes the likeliest id.
-        guidance: how much the text is stressed; 1 is the plain model, above it a second pass without text is subtracted.
-    """
-
-    fewest_steps: int = 4
-    most_steps: int = 10
-    steps_per_token: float = 0.12
-    temperature: float = 0.5
-    guidance: float = 1.0
-
-    def n_steps(self, n_tokens: int) -> int:
-        """Decoding steps for a motion of `n_tokens`."""
-        return min(self.most_steps, max(self.fewest_steps, round(self.steps_per_token * n_tokens)))
 
 
 @dataclass(frozen=True)
@@ -74,7 +52,7 @@ class Generation:
 class Engine:
     """The motion model, ready to be asked. Not for several threads at once."""
 
-    def __init__(self, model: Model, encoder: MiniLm, checkpoint_hash: str, settings: EngineSettings) -> None:
+    def __init__(self, model: Model, encoder: MiniLm, checkpoint_hash: str, settings: SamplingSettings) -> None:
         self.model = model
         self.encoder = encoder
         self.checkpoint_hash = checkpoint_hash
@@ -82,7 +60,7 @@ class Engine:
 
     @classmethod
     def load(
-        cls, path: Path | None = None, *, threads: int | None = 1, settings: EngineSettings | None = None
+        cls, path: Path | None = None, *, threads: int | None = 1, settings: SamplingSettings | None = None
     ) -> Engine:
         """The engine with the checkpoint at `path` (the shipped one when None).
 
@@ -94,7 +72,7 @@ class Engine:
         if threads is not None:
             torch.set_num_threads(threads)
         path = path or MODEL_FILE
-        return cls(load_model(path), load_text_encoder(), file_hash(path), settings or EngineSettings())
+        return cls(load_model(path), load_text_encoder(), file_hash(path), settings or SamplingSettings())
 
     def generate(self, text: str, *, seed: int = 0, seconds: float | None = None) -> Generation:
         """The motion for `text`; the same text, seed and seconds give the same motion.
@@ -149,22 +127,7 @@ class Engine:
     def decode_text(self, states: TextStates, n_tokens: int, seed: int) -> Tensor:
         """(1, n_tokens, C) ids for a text."""
         transformer = self.model.transformer
-        guidance = self.settings.guidance
-        guided = guidance != 1.0
-        context = transformer.read_text(_with_no_text(states, transformer.no_text(1)) if guided else states)
-        C = self.model.tokenizer.n_codebooks
-        end = torch.full((1, 1, C), transformer.ids.end)
-
-        def logits_fn(ids: Tensor) -> Tensor:
-            closed = torch.cat([ids, end], 1)
-            if not guided:
-                return transformer(closed, context)[:, :-1]
-            with_text, without = transformer(closed.expand(2, -1, -1), context)[:, :-1].chunk(2)
-            return without + guidance * (with_text - without)
-
-        settings = DecodeSettings(self.settings.n_steps(n_tokens), "cosine", self.settings.temperature)
-        masked = torch.full((1, n_tokens, C), transformer.ids.mask)
-        return decode(masked, logits_fn, transformer.ids.mask, settings, [seed])
+        return fill(transformer, states, [empty_row(transformer, n_tokens)], [seed], self.settings)[0][None]
 
 
 class _Clock:
@@ -178,18 +141,6 @@ class _Clock:
         now = time.perf_counter()
         self.laps_ms[name] = 1e3 * (now - self._last)
         self._last = now
-
-
-def _with_no_text(states: TextStates, empty: TextStates) -> TextStates:
-    """Two rows: the text, and "no text" padded to its width."""
-    width = states.words.shape[1]
-    words = F.pad(empty.words, (0, 0, 0, width - 1))
-    mask = F.pad(empty.word_mask, (0, width - 1))
-    return TextStates(
-        torch.cat([states.words, words]),
-        torch.cat([states.word_mask, mask]),
-        torch.cat([states.sentence, empty.sentence]),
-    )
 
 
 def _rejected(text: str, seed: int, verdict: ScopeVerdict, clock: _Clock) -> Generation:
