@@ -75,20 +75,41 @@ def features_from_joints(
     return features
 
 
-def root_path(features: Array) -> tuple[Array, Array]:
-    """Yaw (T,) and root position (T, 3) by summing the steps; the start is the origin, facing +z."""
-    yaw = np.concatenate([[0.0], np.cumsum(-2.0 * features[:-1, 0])])
-    root = np.zeros((len(features), 3))
-    root[1:, [0, 2]] = features[:-1, 1:3]
-    root = np.cumsum(np.einsum("tij,tj->ti", rotation_y(yaw), root), 0)
-    root[:, 1] = features[:, 3]
+@dataclass(frozen=True)
+class Root:
+    """Where a motion stands: the next frame's yaw and place, so that a motion can be recovered piece by piece."""
+
+    yaw_rad: float = 0.0
+    x_m: float = 0.0
+    z_m: float = 0.0
+
+
+def root_path(features: Array, start: Root | None = None) -> tuple[Array, Array]:
+    """Yaw (T,) and root position (T, 3) by summing the steps from `start`, by default the origin, facing +z."""
+    yaw, root = _root_with_next(features, start or Root())
+    return yaw[:-1], root[:-1]
+
+
+def root_after(features: Array, start: Root | None = None) -> Root:
+    """Where the frame after `features` stands."""
+    yaw, root = _root_with_next(features, start or Root())
+    return Root(float(yaw[-1]), float(root[-1, 0]), float(root[-1, 2]))
+
+
+def _root_with_next(features: Array, start: Root) -> tuple[Array, Array]:
+    """Yaw (T + 1,) and root position (T + 1, 3); the last row is the frame that follows."""
+    yaw = start.yaw_rad + np.concatenate([[0.0], np.cumsum(-2.0 * features[:, 0])])
+    root = np.zeros((len(features) + 1, 3))
+    root[1:, [0, 2]] = features[:, 1:3]
+    root = np.cumsum(np.einsum("tij,tj->ti", rotation_y(yaw), root), 0) + np.array([start.x_m, 0.0, start.z_m])
+    root[:, 1] = np.append(features[:, 3], features[-1:, 3])
     return yaw, root
 
 
-def recover(features: Array) -> RecoveredMotion:
+def recover(features: Array, start: Root | None = None) -> RecoveredMotion:
     """Joints, head and forearms from (T, 263) features, through the rotation channels: bones keep their length."""
     features = np.asarray(features, np.float64)
-    yaw, root = root_path(features)
+    yaw, root = root_path(features, start)
     local = np.empty((len(features), 22, 3, 3))
     local[:, 0] = rotation_y(yaw)
     local[:, 1:] = from_six_d(features[:, 67:193].reshape(-1, 21, 6))
@@ -97,14 +118,40 @@ def recover(features: Array) -> RecoveredMotion:
     return RecoveredMotion(joints, quat_wxyz(world[:, 15]), twist)
 
 
-def joints_from_positions(features: Array) -> Array:
-    """(T, 22, 3) joints from the position channels, as the reference recovers them."""
+def recover_from_positions(features: Array, start: Root | None = None) -> RecoveredMotion:
+    """The same from the position channels, for data whose rotations have other rest directions than ours (HumanML3D).
+
+    The head's turn and the forearms' twist cannot be seen in positions: the head follows the neck, the twist is 0.
+    """
     features = np.asarray(features, np.float64)
-    yaw, root = root_path(features)
-    local = features[:, 4:67].reshape(-1, 21, 3)
+    joints = joints_from_positions(features, start)
+    yaw, _ = root_path(features, start)
+    local = local_rotations(joints, yaw, None, None)
+    _, world = forward_kinematics(local, joints[:, 0])
+    return RecoveredMotion(joints, quat_wxyz(world[:, 15]), np.zeros((len(joints), 2)))
+
+
+def joints_from_positions(features: Array, start: Root | None = None) -> Array:
+    """(T, J, 3) joints from the position channels, as the reference recovers them; 263 features give 22, KIT's 251 21."""
+    features = np.asarray(features, np.float64)
+    n_joints = joints_of(features.shape[1])
+    yaw, root = root_path(features, start)
+    local = features[:, 4 : 4 + 3 * (n_joints - 1)].reshape(-1, n_joints - 1, 3)
     world = np.einsum("tij,tkj->tki", rotation_y(yaw), local)
     world[..., [0, 2]] += root[:, None, [0, 2]]
     return np.concatenate([root[:, None], world], 1)
+
+
+def joints_of(n_features: int) -> int:
+    """Joints of a feature row: 4 + 9 (J - 1) + 3 J + 4 values, so 22 for 263 and 21 for KIT's 251.
+
+    Raises:
+        ValueError: no number of joints has so many features.
+    """
+    n_joints, rest = divmod(n_features + 1, 12)
+    if rest or n_joints < 2:
+        raise ValueError(f"{n_features} features belong to no skeleton; expected 12 J - 1: 263 (22 joints), 251 (21)")
+    return n_joints
 
 
 def mirror(features: Array) -> NDArray[np.float32]:

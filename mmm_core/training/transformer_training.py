@@ -69,7 +69,7 @@ def train_transformer(
     """A transformer trained on `corpus`."""
     how = how or Corruption()
     model = MotionTransformer(config)
-    model.set_codebooks([q.codebook for q in tokenizer._books()])  # noqa: SLF001 - the codes are shared by design
+    model.set_codebooks([q.codebook for q in tokenizer.books])
     buckets = length_buckets(corpus.ids)
     weight = np.array([_drawing_weight(rows, corpus.is_real, how.real_share) for rows in buckets.values()])
     lengths, K = list(buckets), config.n_codes

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import re
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -26,6 +27,8 @@ from mmm_core.official import (
 from mmm_core.quantizer import OfficialRuleQuantizer, perplexity
 from mmm_core.sampling import OFFICIAL_SAMPLING, empty_row, fill
 from mmm_core.schedule import official_counts
+from mmm_core.story import official_transition_settings, transition_row
+from mmm_core.streaming import StreamingDecoder
 from mmm_core.text import TextStates
 from mmm_core.transformer import OFFICIAL, MotionTransformer
 from mmm_core.vqvae import HEIGHT_CHANNELS, VqVae, VqVaeConfig
@@ -317,3 +320,37 @@ class TestRefusals:
             read_statistics(folder / "mean.npy", folder / "std.npy", tokenizer)
         read_statistics(folder / "mean.npy", folder / "std.npy", tokenizer, any_statistics=True)
         assert float(tokenizer.std[0]) == pytest.approx(0.013)
+
+
+def test_long_range_with_generated_transitions(
+    io: dict[str, Tensor], tokenizer: VqVae, transformer: MotionTransformer
+) -> None:
+    """Four prompts as a batch, two tokens between neighbours, one decoding; streamed, it gives the same motion."""
+    lengths = [f // 4 for f in io["long.in.frames"].tolist()]
+    text, uniform = text_of(io, 4, "long"), io["long.in.uniform_noise"]
+    base = fill(
+        transformer,
+        text,
+        [empty_row(transformer, n) for n in lengths],
+        [0] * 4,
+        OFFICIAL_SAMPLING,
+        recorded_noise(uniform),
+    )
+    for row, expected in zip(base, io["long.out.base_ids"], strict=True):
+        assert torch.equal(row[:, 0], expected[: len(row)])
+    mask = transformer.ids.mask
+    rows = [transition_row(a, b, mask) for a, b in pairwise(base)]
+    for row, expected in zip(rows, io["long.out.transition_input_ids"], strict=True):
+        assert torch.equal(row[:, 0], expected[: len(row)])
+    left = TextStates(text.words[:3], text.word_mask[:3], text.sentence[:3])
+    settings = official_transition_settings(OFFICIAL_SAMPLING)
+    filled = fill(transformer, left, rows, [0] * 3, settings, recorded_noise(uniform[10:, :3]))
+    pieces = [base[0]]
+    for row, masked, following in zip(filled, rows, base[1:], strict=True):
+        pieces += [row[masked[:, 0] == mask], following]
+    ids = torch.cat(pieces)
+    assert torch.equal(ids[:, 0], io["long.out.all_tokens"][0])
+    torch.testing.assert_close(tokenizer.decode(ids[None]), io["long.out.motion"], **TOLERANCE)
+    decoder = StreamingDecoder(tokenizer)
+    streamed = torch.cat([*(decoder.push(piece) for piece in pieces), decoder.finish()])
+    torch.testing.assert_close(streamed, io["long.out.motion"][0], **TOLERANCE)
