@@ -37,6 +37,10 @@ COMMANDS: dict[str, CommandEntry] = {
     "sim": CommandEntry("daemon.commands.sim:sim", "simulated servos behind a real tty"),
     "robot": CommandEntry("daemon.commands.robot:robot", "list, check and show robots"),
     "generate": CommandEntry("daemon.commands.generate:generate", "text to human motion: .npz and .bvh"),
+    "edit": CommandEntry("daemon.commands.edit:edit", "a stretch, an end or a body part of a motion made again"),
+    "import-official": CommandEntry(
+        "daemon.commands.import_official:import_official", "the MMM authors' checkpoints as one file of ours"
+    ),
     "retarget": CommandEntry("daemon.commands.retarget:retarget", "human motion to joint angles and servo ticks"),
     "replay": CommandEntry("daemon.commands.replay:replay", "a recorded run again, through the same gate"),
     "render": CommandEntry("daemon.commands.render:render", "pictures of a motion or a run"),

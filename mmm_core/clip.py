@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import gzip
 import json
+import pickle
 from dataclasses import dataclass
 from pathlib import Path
 
 import torch
 import torch.nn.functional as F
+from safetensors import SafetensorError
+from safetensors.torch import load_file
 from tokenizers import Regex, Tokenizer, decoders, models, normalizers, pre_tokenizers
 from torch import Tensor, nn
 
@@ -74,7 +77,7 @@ class ClipText(nn.Module):
     def piece_ids(self, texts: list[str]) -> Tensor:
         """(B, 77) ids: start, pieces, end (the highest id), zeros; a longer text is cut before its end mark."""
         if self.word_pieces is None:
-            raise CheckpointError(Path(), "vocabulary", "none was given", "a CLIP byte-pair vocabulary file")
+            raise CheckpointError(Path("vocabulary"), "", "not in the checkpoint", "one imported with --vocabulary")
         start, end = self.config.vocabulary - 2, self.config.vocabulary - 1
         ids = torch.zeros(len(texts), self.config.context, dtype=torch.int64)
         for row, encoded in enumerate(self.word_pieces.encode_batch(texts, add_special_tokens=False)):
@@ -95,6 +98,36 @@ class ClipText(nn.Module):
         x = self.norm_out(x)
         sentence = x[torch.arange(len(ids)), ids.argmax(1)] @ self.projection
         return TextStates(x, torch.ones(ids.shape, dtype=torch.bool), sentence)
+
+
+def read_clip(path: Path, vocabulary: Path) -> ClipText:
+    """The text tower from OpenAI's `ViT-B-32.pt` (a TorchScript archive), or from a state dict (.pt, .safetensors).
+
+    Raises:
+        CheckpointError: a file is missing, holds something else, or the two do not fit each other.
+    """
+    if not path.is_file():
+        raise CheckpointError(path, "", "no such file", "CLIP ViT-B/32's weights")
+    try:
+        if path.suffix == ".safetensors":
+            state = load_file(str(path))
+        else:
+            try:
+                state = torch.load(path, map_location="cpu", weights_only=True)
+            except RuntimeError:  # a TorchScript archive: its tensors are read, its code is not called
+                state = torch.jit.load(str(path), map_location="cpu").state_dict()  # type: ignore[no-untyped-call]
+    except (pickle.UnpicklingError, SafetensorError, RuntimeError, OSError, ValueError, EOFError) as error:
+        first = str(error).split("\n", 1)[0]
+        raise CheckpointError(path, "", f"not readable ({first})", "ViT-B-32.pt or a state dict of tensors") from None
+    if not isinstance(state, dict):
+        raise CheckpointError(path, "", f"a {type(state).__name__}", "a state dict of tensors")
+    tower = clip_from_openai(dict(state), path)
+    pieces = read_vocabulary(vocabulary)
+    if pieces.get_vocab_size() != tower.config.vocabulary:
+        found = f"{pieces.get_vocab_size()} pieces"
+        raise CheckpointError(vocabulary, "", found, f"{tower.config.vocabulary}, as many as the weights have")
+    tower.word_pieces = pieces
+    return tower
 
 
 def clip_from_openai(state: dict[str, Tensor], path: Path, n_heads: int | None = None) -> ClipText:

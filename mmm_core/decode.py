@@ -41,8 +41,8 @@ def seeded_noise(seeds: list[int]) -> NoiseFn:
         rows: list[Tensor] = []
         for seed, n in zip(seeds, asked.sum(1).tolist(), strict=True):
             generator = torch.Generator().manual_seed((seed * 1_000_003 + step) % (2**63 - 1))
-            rows.append(torch.empty(n, *shape).exponential_(generator=generator).clamp_min_(1e-30))
-        return torch.cat(rows).log_().neg_()  # -log of an exponential variable is Gumbel
+            rows.append(torch.rand(n, *shape, generator=generator))
+        return torch.cat(rows).clamp_(1e-20, 1 - 1e-7).log_().neg_().log_().neg_()  # -log(-log u) is Gumbel
 
     return noise
 

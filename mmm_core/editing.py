@@ -38,10 +38,7 @@ class Edit:
 
 def part_names(engine: Engine) -> tuple[str, ...]:
     """Body parts that can be edited apart with this model, in the order of its codebooks."""
-    config = engine.model.tokenizer.config
-    if hasattr(config, "parts"):
-        return tuple(p.name for p in config.parts)
-    return ("upper", "lower") if config.layout == "halves" else ("whole",)
+    return engine.model.tokenizer.part_names
 
 
 def edit(engine: Engine, motion: Motion, what: Edit | Sequence[Edit], text: str, *, seed: int = 0) -> Motion:

@@ -5,15 +5,17 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import torch
 from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
-from mmm_core.errors import GenerationError
+from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.features import Root, recover, recover_from_positions
 from mmm_core.motion import FPS, N_FEATURES, N_JOINTS, Motion
+from mmm_core.packed import Precision, fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.scope import ScopeVerdict
 from mmm_core.text import TextEncoder, TextStates
@@ -63,11 +65,20 @@ class Engine:
 
     @classmethod
     def load(
-        cls, path: Path | None = None, *, threads: int | None = 1, settings: SamplingSettings | None = None
+        cls,
+        path: Path | None = None,
+        *,
+        threads: int | None = 1,
+        settings: SamplingSettings | None = None,
+        precision: Precision | Literal["auto"] = "fp32",
     ) -> Engine:
         """The engine with the checkpoint at `path` (the shipped one when None).
 
-        `threads` sets torch's threads for the whole process; None leaves them as they are.
+        Args:
+            path: checkpoint.
+            threads: torch's threads for the whole process; None leaves them as they are.
+            settings: how the model is asked; None takes what suits the checkpoint.
+            precision: of the matrix products; bf16 is another model's choice of tokens now and then, "auto" times both.
 
         Raises:
             CheckpointError: a file is missing or does not fit.
@@ -76,8 +87,15 @@ class Engine:
             torch.set_num_threads(threads)
         path = path or MODEL_FILE
         model = load_model(path)
-        plain = SamplingSettings() if model.text is None else OFFICIAL_SAMPLING
-        return cls(model, model.text or load_text_encoder(), file_hash(path), settings or plain)
+        plain = SamplingSettings() if model.rest_pose == "mmmd" else OFFICIAL_SAMPLING
+        encoder = model.text or load_text_encoder()
+        if getattr(encoder.config, "embedding", encoder.config.width) != model.transformer.config.text_dim:
+            expected = "one with CLIP's text tower in it: import it with --clip and --vocabulary"
+            raise CheckpointError(path, "text", "no text encoder of its width", expected)
+        chosen = fastest_precision() if precision == "auto" else precision
+        pack(model.transformer, chosen)
+        pack(encoder, chosen)
+        return cls(model, encoder, file_hash(path), settings or plain)
 
     def generate(self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int = 1) -> Generation:
         """The motion for `text`; the same text, seed and seconds give the same motion.
@@ -111,12 +129,20 @@ class Engine:
 
     def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
         """States of a text, and how far it lies from what the model can do."""
-        if not text.strip():
-            return self.encoder.encode([" "]), ScopeVerdict("rejected", 0.0, "", "the text is empty")
-        states = self.encoder.encode([text])
-        if self.model.scope is None:
-            return states, ScopeVerdict("accepted", 1.0, "", "")
-        return states, self.model.scope.judge(text, states.sentence[0])
+        return self.understand_all([text])[0]
+
+    def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
+        """The same of several texts, read together."""
+        states = self.encoder.encode([text if text.strip() else "." for text in texts])
+        verdicts: list[ScopeVerdict] = []
+        for text, sentence in zip(texts, states.sentence, strict=True):
+            if not text.strip():
+                verdicts.append(ScopeVerdict("rejected", 0.0, "", "the text is empty"))
+            elif self.model.scope is None:
+                verdicts.append(ScopeVerdict("accepted", 1.0, "", ""))
+            else:
+                verdicts.append(self.model.scope.judge(text, sentence))
+        return [(states.row(i), verdict) for i, verdict in enumerate(verdicts)]
 
     def predicted_frames(self, states: TextStates) -> int:
         """Number of frames the length predictor gives for the first text, whole tokens.

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from itertools import islice, pairwise
 
 import torch
 from torch import Tensor
@@ -27,6 +28,8 @@ TRANSITION_TOKENS = 2
 """Generated between two segments: 0.4 s, as in the released model."""
 READ_AHEAD = 8
 """Segments made in one batch once the first is on its way."""
+SCENE_STRIDE = 104_729
+"""Between the seeds of scenes."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +44,8 @@ class Scene:
 class _Segment:
     scene: Scene
     verdict: ScopeVerdict
-    states: TextStates
-    ids: Tensor  # (L, C)
+    text: TextStates
+    ids: Tensor  # (L, C); none when rejected
 
 
 def tell(engine: Engine, scenes: Iterable[Scene], *, seed: int = 0) -> Iterator[Motion]:
@@ -56,33 +59,36 @@ def tell(engine: Engine, scenes: Iterable[Scene], *, seed: int = 0) -> Iterator[
     """
     check_seed(seed)
     decoder, root = StreamingDecoder(engine.model.tokenizer), Root()
-    previous: _Segment | None = None
-    for segment in _segments(engine, scenes, seed):
-        if segment.verdict.status == "rejected":
-            yield no_motion(segment.scene.text, seed, segment.verdict)
-            continue
-        if previous is None:
-            new = segment.ids
-        else:
-            between = transition(engine, previous.states, previous.ids, segment.ids, seed, engine.settings)
-            new = torch.cat([between, segment.ids])
-        features = decoder.push(new).numpy()
-        if len(features):
-            yield engine.motion_of_features(features, new, segment.scene.text, seed, segment.verdict, root)
-            root = root_after(features, root)
-        previous = segment
+    last: _Segment | None = None
+    for batch in _batches(scenes):
+        segments = _segments(engine, batch, seed)
+        taken = [s for s in segments if len(s.ids)]
+        between = iter(_transitions(engine, [last, *taken] if last else taken, seed))
+        for segment in segments:
+            if not len(segment.ids):
+                yield no_motion(segment.scene.text, seed, segment.verdict)
+                continue
+            new = segment.ids if last is None else torch.cat([next(between), segment.ids])
+            features = decoder.push(new).numpy()
+            if len(features):
+                yield engine.motion_of_features(features, new, segment.scene.text, seed, segment.verdict, root)
+                root = root_after(features, root)
+            last = segment
     rest = decoder.finish().numpy()
-    if previous is not None and len(rest):
-        yield engine.motion_of_features(rest, previous.ids[:0], previous.scene.text, seed, previous.verdict, root)
+    if last is not None and len(rest):
+        yield engine.motion_of_features(rest, last.ids[:0], last.scene.text, seed, last.verdict, root)
 
 
-def transition(
-    engine: Engine, text: TextStates, left: Tensor, right: Tensor, seed: int, settings: SamplingSettings
-) -> Tensor:
-    """(2, C) ids between two rows, for the left one's text: half of each row is the context."""
-    row = transition_row(left, right, engine.model.transformer.ids.mask)
-    n_left = _half(left)
-    return fill(engine.model.transformer, text, [row], [seed], settings)[0][n_left : n_left + TRANSITION_TOKENS]
+def _transitions(engine: Engine, segments: list[_Segment], seed: int) -> list[Tensor]:
+    """(2, C) ids between neighbours, for the left one's text: half of each row is the context. One step, one batch."""
+    if len(segments) < 2:
+        return []
+    transformer = engine.model.transformer
+    rows = [transition_row(a.ids, b.ids, transformer.ids.mask) for a, b in pairwise(segments)]
+    text = TextStates.stacked([s.text for s in segments[:-1]])
+    settings = replace(engine.settings, fewest_steps=1, most_steps=1)
+    filled = fill(transformer, text, rows, [seed] * len(rows), settings)
+    return [new[(row == transformer.ids.mask).any(-1)] for new, row in zip(filled, rows, strict=True)]
 
 
 def transition_row(left: Tensor, right: Tensor, mask_id: int) -> Tensor:
@@ -102,36 +108,33 @@ def _half(ids: Tensor) -> int:
     return half - 1 if 2 * half >= MAX_TOKENS - 1 else half
 
 
-def _segments(engine: Engine, scenes: Iterable[Scene], seed: int) -> Iterator[_Segment]:
-    """Segments in order: the first alone, so that motion begins at once, then in batches."""
-    waiting: list[tuple[int, Scene]] = []
+def _batches(scenes: Iterable[Scene]) -> Iterator[list[tuple[int, Scene]]]:
+    """Numbered scenes: the first alone, so that motion begins at once, then several together."""
+    numbered = enumerate(scenes)
     size = 1
-    for number, scene in enumerate(scenes):
-        waiting.append((number, scene))
-        if len(waiting) == size:
-            yield from _batch(engine, waiting, seed)
-            waiting, size = [], READ_AHEAD
-    if waiting:
-        yield from _batch(engine, waiting, seed)
+    while batch := list(islice(numbered, size)):
+        yield batch
+        size = READ_AHEAD
 
 
-def _batch(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> Iterator[_Segment]:
-    understood = [engine.understand(scene.text) for _, scene in scenes]
-    nothing = torch.zeros(0, engine.model.tokenizer.n_codebooks, dtype=torch.int64)
-    ids: dict[int, Tensor] = {}
-    taken = [i for i, (_, verdict) in enumerate(understood) if verdict.status != "rejected"]
-    if taken:
-        rows, seeds = [], []
-        for i in taken:
-            number, scene = scenes[i]
-            n_frames = (engine.predicted_frames(understood[i][0]) if scene.seconds is None
-                        else frames_for_seconds(scene.seconds, FPS))  # fmt: skip
+def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> list[_Segment]:
+    """A segment for each scene, made in one batch."""
+    understood = engine.understand_all([scene.text for _, scene in scenes])
+    rows, seeds, texts = [], [], []
+    for (number, scene), (text, verdict) in zip(scenes, understood, strict=True):
+        if verdict.status != "rejected":
+            n_frames = (
+                engine.predicted_frames(text) if scene.seconds is None else frames_for_seconds(scene.seconds, FPS)
+            )
             rows.append(empty_row(engine.model.transformer, tokens_for_frames(n_frames)))
-            seeds.append((seed + 104_729 * number) % 2**31)
-        texts = TextStates.stacked([understood[i][0] for i in taken])
-        ids = dict(zip(taken, fill(engine.model.transformer, texts, rows, seeds, engine.settings), strict=True))
-    for i, (states, verdict) in enumerate(understood):
-        yield _Segment(scenes[i][1], verdict, states, ids.get(i, nothing))
+            seeds.append((seed + SCENE_STRIDE * number) % 2**31)
+            texts.append(text)
+    made = iter(fill(engine.model.transformer, TextStates.stacked(texts), rows, seeds, engine.settings) if rows else [])
+    nothing = torch.zeros(0, engine.model.tokenizer.n_codebooks, dtype=torch.int64)
+    return [
+        _Segment(scene, verdict, text, nothing if verdict.status == "rejected" else next(made))
+        for (_, scene), (text, verdict) in zip(scenes, understood, strict=True)
+    ]
 
 
 def check_scenes(scenes: list[Scene]) -> None:

@@ -130,6 +130,11 @@ class Tokenizer(nn.Module):
         """Ids per position."""
         return len(self.config.parts)
 
+    @property
+    def part_names(self) -> tuple[str, ...]:
+        """Body part of each codebook."""
+        return tuple(p.name for p in self.config.parts)
+
     def _latents(self, normalised: Tensor) -> list[Tensor]:
         return [
             encoder(normalised[..., list(part.channels)])

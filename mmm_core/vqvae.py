@@ -137,6 +137,11 @@ class VqVae(nn.Module):
         """Ids per position."""
         return len(self.channels)
 
+    @property
+    def part_names(self) -> tuple[str, ...]:
+        """Body part of each codebook."""
+        return ("whole",) if self.config.layout == "whole" else ("upper", "lower")
+
     def normalise(self, features: Tensor) -> Tensor:
         """Features in their own units -> what the encoders see."""
         if self.config.layout == "whole":

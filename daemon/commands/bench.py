@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-BenchName = Literal["generate", "first-motion", "audit"]
+BenchName = Literal["generate", "official", "story", "first-motion", "audit"]
 
 
 def bench(
@@ -15,7 +15,8 @@ def bench(
 ) -> int:
     """Measure one figure and print it.
 
-    generate: a whole 196-frame motion on one thread. first-motion: text to first moving servo frame, warm, through the
+    generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten steps.
+    story: ten minutes of motion from 59 texts on two threads. first-motion: text to first moving servo frame, warm, through the
     daemon. audit: many texts through the daemon's bus side on two robots, every goal checked against the limits.
 
     Example: mmmd bench first-motion --json
@@ -32,6 +33,14 @@ def bench(
         from daemon.bench.generate import bench_generate
 
         figures = bench_generate(seed)
+    elif name == "official":
+        from daemon.bench.official import bench_official
+
+        figures = bench_official(seed)
+    elif name == "story":
+        from daemon.bench.story import N_SCENES, bench_story
+
+        figures = bench_story(n or N_SCENES, seed)
     elif name == "first-motion":
         from daemon.bench.first_motion import bench_first_motion
 

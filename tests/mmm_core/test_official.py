@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import os
 import re
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 import torch
 from torch import Tensor
 
-from mmm_core.clip import clip_from_openai
+from mmm_core.clip import byte_pairs, clip_from_openai, read_vocabulary
 from mmm_core.decode import NoiseFn
-from mmm_core.errors import CheckpointError
+from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.features import joints_from_positions, root_path
 from mmm_core.official import (
     read_pickle,
@@ -296,24 +298,20 @@ class TestRefusals:
         with pytest.raises(CheckpointError, match="differs from the tokenizer file"):
             transformer_from_official(state, tokenizer, GOLDEN, n_heads=4)
 
-    def test_a_pickle_with_code_is_not_run(self, tmp_path: object) -> None:
-        import os
-        from pathlib import Path
-
+    def test_a_pickle_with_code_is_not_run(self, tmp_path: Path) -> None:
         class Trap:
             def __reduce__(self) -> tuple[object, tuple[str]]:
                 return os.system, (f"touch {tmp_path}/run",)
 
-        path = Path(str(tmp_path)) / "trap.pth"
+        path = tmp_path / "trap.pth"
         torch.save({"net": Trap()}, path)
         with pytest.raises(CheckpointError, match="more than tensors"):
             read_pickle(path, "net")
-        assert not (Path(str(tmp_path)) / "run").exists()
+        assert not (tmp_path / "run").exists()
 
-    def test_humanml3ds_own_spread_is_refused(self, tmp_path: object) -> None:
-        from pathlib import Path
+    def test_humanml3ds_own_spread_is_refused(self, tmp_path: Path) -> None:
 
-        folder, tokenizer = Path(str(tmp_path)), VqVae(VqVaeConfig(width=8, n_codes=8, code_dim=4))
+        folder, tokenizer = tmp_path, VqVae(VqVaeConfig(width=8, n_codes=8, code_dim=4))
         np.save(folder / "mean.npy", np.zeros(263))
         np.save(folder / "std.npy", np.full(263, 0.013))
         with pytest.raises(CheckpointError, match=r"\[0:4\]"):
@@ -354,3 +352,103 @@ def test_long_range_with_generated_transitions(
     decoder = StreamingDecoder(tokenizer)
     streamed = torch.cat([*(decoder.push(piece) for piece in pieces), decoder.finish()])
     torch.testing.assert_close(streamed, io["long.out.motion"][0], **TOLERANCE)
+
+
+class TestImport:
+    """The command on a pair of files, as a user who has the weights runs it."""
+
+    @staticmethod
+    def files(folder: Path) -> list[str]:
+        torch.save({"net": golden("vqvae_tiny")}, folder / "vq.pth")
+        torch.save({"trans": golden("t2m_trans_tiny")}, folder / "trans.pth")
+        np.save(folder / "mean.npy", np.zeros(263))
+        np.save(folder / "std.npy", np.ones(263))
+        out = ["--out", str(folder / "official.safetensors"), "--heads", "4", "--json"]
+        stats = ["--mean", str(folder / "mean.npy"), "--std", str(folder / "std.npy"), "--any-statistics"]
+        return ["import-official", str(folder / "vq.pth"), str(folder / "trans.pth"), *stats, *out]
+
+    def test_the_pair_becomes_one_file_that_decodes_the_same(
+        self, tmp_path: Path, io: dict[str, Tensor], capsys: pytest.CaptureFixture[str]
+    ) -> None:
+        from daemon.cli import main
+        from mmm_core.checkpoint import load_model
+
+        assert main(self.files(tmp_path)) == 0
+        summary = json.loads(capsys.readouterr().out)
+        assert summary["codebook"] == [64, 16]
+        assert set(summary["files"]) == {"vq.pth", "trans.pth", "mean.npy", "std.npy"}
+        model = load_model(tmp_path / "official.safetensors")
+        decoded = model.tokenizer.decode(io["vq.in.decode_codes49"][..., None])
+        torch.testing.assert_close(decoded, io["vq.out.decode49"], **TOLERANCE)
+        noise = recorded_noise(io["smp.in.uniform_noise"])
+        row = empty_row(model.transformer, 49)
+        filled = fill(model.transformer, text_of(io, 1), [row], [0], OFFICIAL_SAMPLING, noise)[0]
+        assert torch.equal(filled[:, 0], io["smp.argmax_b1_f196.out.ids"][0, :49])
+
+    def test_other_statistics_need_the_option(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        from daemon.cli import main
+
+        assert main([a for a in self.files(tmp_path) if a != "--any-statistics"]) == 1
+        assert "--any-statistics" in capsys.readouterr().err
+        assert not (tmp_path / "official.safetensors").exists()
+
+    def test_a_file_of_the_wrong_kind_is_named(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        from daemon.cli import main
+
+        arguments = self.files(tmp_path)
+        arguments[1], arguments[2] = arguments[2], arguments[1]
+        assert main(arguments) == 1
+        assert "key 'net'" in capsys.readouterr().err
+
+    def test_with_clip_the_file_answers_texts(
+        self, tmp_path: Path, tokenizer: VqVae, transformer: MotionTransformer
+    ) -> None:
+        from mmm_core.checkpoint import Model, save_model
+        from mmm_core.engine import Engine
+
+        text = clip_from_openai(golden("clip_text_tiny"), GOLDEN, n_heads=4)
+        text.word_pieces = _few_pieces()
+        path = tmp_path / "with_clip.safetensors"
+        save_model(path, Model(tokenizer, transformer, None, None, {}, text, "humanml3d"), half=False)
+        engine = Engine.load(path, threads=None)
+        motion = engine.generate("a man waves", seed=3, seconds=2.3).motion
+        assert motion.joints_m.shape == (46, 22, 3), "any length, not only whole tokens"
+        with pytest.raises(GenerationError, match="not trained to choose a length"):
+            engine.generate("a man waves")
+
+
+def _few_pieces() -> object:
+    """A vocabulary of 200 pieces, as many as the tiny tower has."""
+    from tokenizers import Tokenizer, models, pre_tokenizers
+
+    letters = [chr(c) for c in range(97, 123)]
+    ids = {piece: i for i, piece in enumerate(["?", *letters, *(f"piece{n}" for n in range(171)), "<start>", "<end>"])}
+    pieces = Tokenizer(models.BPE(ids, [], unk_token="?"))
+    pieces.pre_tokenizer = pre_tokenizers.Whitespace()
+    return pieces
+
+
+class TestClipVocabulary:
+    MERGES = (("w", "a"), ("v", "e</w>"), ("wa", "ve</w>"), ("t", "h"), ("th", "e</w>"))
+
+    def test_pieces_by_hand(self) -> None:
+        """Ids: 256 bytes, the same at a word's end, then the merges; case and spaces do not matter."""
+        pieces = byte_pairs(list(self.MERGES))
+        wave, the = 512 + 2, 512 + 4
+        assert pieces.encode("The   WAVE", add_special_tokens=False).ids == [the, wave]
+        comma = 256 + (ord(",") - ord("!"))
+        assert pieces.encode("wave, the", add_special_tokens=False).ids == [wave, comma, the]
+        assert pieces.get_vocab_size() == 512 + 5 + 2
+
+    def test_the_published_files_form_is_read(self, tmp_path: Path) -> None:
+        import gzip
+
+        lines = ['"bpe_simple_vocab_16e6.txt#version: 0.2', *(f"{a} {b}" for a, b in self.MERGES)]
+        (tmp_path / "v.txt.gz").write_bytes(gzip.compress("\n".join(lines).encode()))
+        pieces = read_vocabulary(tmp_path / "v.txt.gz")
+        assert pieces.encode("the wave", add_special_tokens=False).ids == [516, 514]
+
+    def test_what_is_no_vocabulary_is_named(self, tmp_path: Path) -> None:
+        (tmp_path / "v.txt.gz").write_bytes(b"no gzip")
+        with pytest.raises(CheckpointError, match="not a vocabulary"):
+            read_vocabulary(tmp_path / "v.txt.gz")
