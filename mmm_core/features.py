@@ -28,7 +28,6 @@ from mmm_core.skeleton import (
 
 CONTACT_SPEED_M = 0.045
 """A foot joint that moves less than this in a frame, per axis sum of squares 0.002 as in HumanML3D, stands."""
-_FEET = (7, 10, 8, 11)
 
 
 @dataclass(frozen=True)
@@ -46,6 +45,31 @@ class RecoveredMotion:
     forearm_twist_rad: Array
 
 
+@dataclass(frozen=True)
+class FeatureLayout:
+    """What the features of a skeleton of J joints need to know about it.
+
+    Attributes:
+        n_joints: J; a row has 12 J - 1 values.
+        left_feet: ankle and toe of the left foot.
+        right_feet: the same of the right.
+        contact_m2: a foot joint whose step in a frame has a smaller square stands.
+    """
+
+    n_joints: int
+    left_feet: tuple[int, int]
+    right_feet: tuple[int, int]
+    contact_m2: float
+
+    @property
+    def n_features(self) -> int:
+        """Values in a row."""
+        return 12 * self.n_joints - 1
+
+
+HUMANML3D = FeatureLayout(22, (7, 10), (8, 11), CONTACT_SPEED_M**2)
+
+
 def features_from_joints(
     joints_m: Array,
     head_R_world: Array | None = None,
@@ -55,24 +79,32 @@ def features_from_joints(
 
     Without `head_R_world` (T, 3, 3) and `forearm_twist_rad` (T, 2) the head and forearms show no twist.
     """
-    T = len(joints_m)
     yaw = facing_yaw_rad(joints_m)
     rotations = local_rotations(joints_m, yaw, head_R_world, forearm_twist_rad)
-    to_root = np.swapaxes(rotation_y(yaw), -1, -2)  # (T, 3, 3) world -> root frame
+    return features_from_rotations(joints_m, yaw, rotations[:, 1:], HUMANML3D)
+
+
+def features_from_rotations(
+    joints_m: Array, yaw_rad: Array, rotations: Array, layout: FeatureLayout
+) -> NDArray[np.float32]:
+    """(T, 12 J - 1) features of joints (T, J, 3), the root's yaw (T,) and the others' rotations (T, J - 1, 3, 3)."""
+    T, J = len(joints_m), layout.n_joints
+    to_root = np.swapaxes(rotation_y(yaw_rad), -1, -2)  # (T, 3, 3) world -> root frame
     place = joints_m[:, 0] * np.array([1.0, 0.0, 1.0])
     local = np.einsum("tij,tkj->tki", to_root, joints_m - place[:, None])
     step = np.diff(joints_m, axis=0, append=joints_m[-1:] * 2 - joints_m[-2:-1] if T > 1 else joints_m)
     following = np.minimum(np.arange(T) + 1, T - 1)
-    features = np.empty((T, 263), np.float32)
-    features[:, 0] = -0.5 * np.diff(yaw, append=yaw[-1:])
     root_step = np.einsum("tij,tj->ti", to_root[following], step[:, 0])
-    features[:, 1:3] = root_step[:, [0, 2]]
-    features[:, 3] = joints_m[:, 0, 1]
-    features[:, 4:67] = local[:, 1:].reshape(T, 63)
-    features[:, 67:193] = six_d(rotations[:, 1:]).reshape(T, 126)
-    features[:, 193:259] = np.einsum("tij,tkj->tki", to_root, step).reshape(T, 66)
-    features[:, 259:263] = np.square(step[:, _FEET]).sum(-1) < CONTACT_SPEED_M**2
-    return features
+    feet = np.square(step[:, layout.left_feet + layout.right_feet]).sum(-1)
+    return np.concatenate([
+        -0.5 * np.diff(yaw_rad, append=yaw_rad[-1:])[:, None],
+        root_step[:, [0, 2]],
+        joints_m[:, 0, 1, None],
+        local[:, 1:].reshape(T, 3 * (J - 1)),
+        six_d(rotations).reshape(T, 6 * (J - 1)),
+        np.einsum("tij,tkj->tki", to_root, step).reshape(T, 3 * J),
+        feet < layout.contact_m2,
+    ], 1).astype(np.float32)  # fmt: skip
 
 
 @dataclass(frozen=True)
