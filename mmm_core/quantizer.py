@@ -10,6 +10,8 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mmm_core import distributed
+
 DECAY = 0.99
 DEAD_BELOW = 0.3
 """A code whose moving average of uses falls below this is moved to a random latent of the batch."""
@@ -36,20 +38,19 @@ class Quantizer(nn.Module):
 
     def encode(self, latents: Tensor) -> Tensor:
         """Nearest code of each latent: (..., D) -> (...) int64."""
-        flat = latents.reshape(-1, latents.shape[-1])
-        distance = (
-            self.codebook.square().sum(1) - 2 * flat @ self.codebook.T
-        )  # |c|^2 - 2 x.c; |x|^2 is the same for all
+        flat = latents.reshape(-1, latents.shape[-1]).float()
+        with torch.autocast(flat.device.type, enabled=False):
+            distance = self.codebook.square().sum(1) - 2 * flat @ self.codebook.T  # |x|^2 is the same for all
         return distance.argmin(1).reshape(latents.shape[:-1])
 
     def forward(self, latents: Tensor) -> tuple[Tensor, Tensor]:
         """Quantised latents with straight-through gradient, and the commitment loss.
 
-        In training mode the codebook is updated from this batch first.
+        In training mode the codebook is updated from this batch first, of all processes.
         """
-        flat = latents.detach().reshape(-1, latents.shape[-1])
+        latents = latents.float()
         if self.training:
-            self._update(flat)
+            self._update(distributed.gathered(latents.detach()).flatten(0, -2))
         quantised = F.embedding(self.encode(latents.detach()), self.codebook)
         commitment = F.mse_loss(latents, quantised)
         return latents + (quantised - latents).detach(), commitment
@@ -74,6 +75,7 @@ class Quantizer(nn.Module):
             self.uses[dead] = 1.0
             self.sums[dead] = replacement
         self.codebook.copy_(self.sums / self.uses.clamp_min(1e-6)[:, None])
+        distributed.from_first([self.codebook, self.uses, self.sums])
 
 
 class OfficialRuleQuantizer(Quantizer):
@@ -91,15 +93,15 @@ class OfficialRuleQuantizer(Quantizer):
 
     def forward(self, latents: Tensor) -> tuple[Tensor, Tensor]:
         """As `Quantizer.forward`; the update comes after the codes are chosen."""
-        flat = latents.detach().reshape(-1, latents.shape[-1])
+        latents = latents.float()
+        whole = distributed.gathered(latents.detach()).flatten(0, -2) if self.training else latents
         if self.training and int(self.n_updates) == 0:
-            self.codebook.copy_(_fill(flat, len(self.codebook)))
+            self.codebook.copy_(_fill(whole, len(self.codebook)))
             self.sums.copy_(self.codebook)
             self.uses.fill_(1.0)
-        ids = self.encode(latents.detach())
-        quantised = F.embedding(ids, self.codebook)
+        quantised = F.embedding(self.encode(latents.detach()), self.codebook)
         if self.training:
-            self._move(flat, ids.reshape(-1))
+            self._move(whole, self.encode(whole))
         return latents + (quantised - latents).detach(), F.mse_loss(latents, quantised)
 
     @torch.no_grad()
@@ -112,11 +114,12 @@ class OfficialRuleQuantizer(Quantizer):
         self.n_updates += 1
         if int(self.n_updates) % (RESET_EVERY + 1) == 0:
             dead = ~(self.ever_used | used)
-            shuffled = flat[torch.randperm(len(flat))]
+            shuffled = flat[torch.randperm(len(flat)).to(flat.device)]
             candidate = torch.where(dead[:, None], _fill(shuffled, n_codes), candidate)
         else:
             self.ever_used |= used
         self.codebook.copy_(candidate)
+        distributed.from_first([self.codebook, self.uses, self.sums])
 
 
 def perplexity(ids: Tensor, n_codes: int) -> Tensor:
@@ -131,10 +134,10 @@ def _fill(flat: Tensor, n: int) -> Tensor:
     if len(flat) >= n:
         return flat[:n]
     tiled = flat.repeat(-(-n // len(flat)), 1)[:n]
-    return tiled + 0.01 / flat.shape[1] ** 0.5 * torch.randn_like(tiled)
+    return tiled + 0.01 / flat.shape[1] ** 0.5 * torch.randn(tiled.shape).to(tiled)
 
 
 def _pick(flat: Tensor, n: int) -> Tensor:
     """N random rows of `flat`, repeated with a little noise when there are too few."""
-    index = torch.randint(len(flat), (n,))
-    return flat[index] + 1e-3 * torch.randn(n, flat.shape[1])
+    index = torch.randint(len(flat), (n,)).to(flat.device)
+    return flat[index] + 1e-3 * torch.randn(n, flat.shape[1]).to(flat)

@@ -39,6 +39,14 @@ class TextStates:
             self.words.repeat(times, 1, 1), self.word_mask.repeat(times, 1), self.sentence.repeat(times, 1)
         )
 
+    def part(self, rows: slice) -> TextStates:
+        """Some of the texts."""
+        return TextStates(self.words[rows], self.word_mask[rows], self.sentence[rows])
+
+    def to(self, device: torch.device) -> TextStates:
+        """The same on a device."""
+        return TextStates(self.words.to(device), self.word_mask.to(device), self.sentence.to(device))
+
     @staticmethod
     def stacked(several: list[TextStates]) -> TextStates:
         """The texts of `several` after one another, padded to the longest."""

@@ -9,12 +9,12 @@ and a linear layer, which a CPU runs faster than conv1d.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mmm_core.features import joints_of
 from mmm_core.motion import N_FEATURES
 from mmm_core.quantizer import Quantizer
 from mmm_core.tokens import FRAMES_PER_TOKEN
@@ -135,6 +135,10 @@ class Tokenizer(nn.Module):
         """Body part of each codebook."""
         return tuple(p.name for p in self.config.parts)
 
+    def normalise(self, features: Tensor) -> Tensor:
+        """Features in their own units -> what the encoders see."""
+        return (features - self.mean) / self.std
+
     def _latents(self, normalised: Tensor) -> list[Tensor]:
         return [
             encoder(normalised[..., list(part.channels)])
@@ -143,7 +147,7 @@ class Tokenizer(nn.Module):
 
     def encode(self, features: Tensor) -> Tensor:
         """(B, T, 263) features, T a multiple of four -> (B, T/4, C) ids."""
-        latents = self._latents((features - self.mean) / self.std)
+        latents = self._latents(self.normalise(features))
         return torch.stack([q.encode(z) for q, z in zip(self.books, latents, strict=True)], -1)
 
     def decode(self, ids: Tensor) -> Tensor:
@@ -182,11 +186,13 @@ def feature_std(features: Tensor) -> Tensor:
     blown up: groups have floors.
     """
     std = features.std(0)
-    borders = [0, 1, 3, 4, *range(67, 194, 6), 259, 263]
-    groups = [*pairwise(borders[:3]), (3, 4), (4, 67), *pairwise(borders[4:-2]), (193, 259), (259, 263)]
-    floors = {(0, 1): 2e-3, (1, 3): 3e-3, (3, 4): 2e-2, (4, 67): 5e-2, (193, 259): 8e-3, (259, 263): 0.3}
+    n_joints = joints_of(len(std))
+    rotations = 4 + 3 * (n_joints - 1)
+    velocities = rotations + 6 * (n_joints - 1)
+    contacts = velocities + 3 * n_joints
+    groups = [(0, 1, 2e-3), (1, 3, 3e-3), (3, 4, 2e-2), (4, rotations, 5e-2), (velocities, contacts, 8e-3),
+              (contacts, contacts + 4, 0.3), *((j, j + 6, 0.06) for j in range(rotations, velocities, 6))]  # fmt: skip
     out = std.clone()
-    for lo, hi in groups:
-        floor = floors.get((lo, hi), 0.06)
+    for lo, hi, floor in groups:
         out[lo:hi] = max(float(std[lo:hi].square().mean().sqrt()), floor)
     return out

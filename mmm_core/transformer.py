@@ -182,7 +182,9 @@ class MotionTransformer(nn.Module):
     def no_text(self, batch: int) -> TextStates:
         """The states that stand for "no text" (text dropout, guidance)."""
         empty = self.no_words.expand(batch, 1, -1)
-        return TextStates(empty, torch.ones(batch, 1, dtype=torch.bool), self.no_words.expand(batch, -1))
+        return TextStates(
+            empty, torch.ones(batch, 1, dtype=torch.bool, device=empty.device), self.no_words.expand(batch, -1)
+        )
 
     def forward(self, ids: Tensor, context: TextContext, wanted: Tensor | None = None) -> Tensor:
         """Logits of `ids` (B, L, C): (B, L, C, K), or (N, C, K) at the N positions of `wanted` (B, L), row by row.
@@ -198,7 +200,7 @@ class MotionTransformer(nn.Module):
         for block, keys_values in zip(self.cross, context.keys_values, strict=True):
             x = block(x, keys_values, context.word_bias)
         x = torch.cat([context.sentence[:, None], x], 1) + self.positions[: L + 1]
-        bias = F.pad(torch.zeros(B, L, dtype=x.dtype).masked_fill(is_pad, MASKED_KEY), (1, 0))[:, None, None, :]
+        bias = F.pad(x.new_zeros(B, L).masked_fill(is_pad, MASKED_KEY), (1, 0))[:, None, None, :]
         *blocks, last = self.blocks
         for block in blocks:
             x = block(x, bias)
