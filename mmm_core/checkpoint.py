@@ -33,6 +33,7 @@ FORMAT = 1
 WEIGHTS_DIR = Path(__file__).parent / "weights"
 MODEL_FILE = WEIGHTS_DIR / "mmm_compact.safetensors"
 TEXT_FILE = WEIGHTS_DIR / "minilm.safetensors"
+EVALUATOR_FILE = WEIGHTS_DIR / "evaluator.safetensors"
 WORD_PIECES_FILE = WEIGHTS_DIR / "minilm_word_pieces.json"
 
 
@@ -157,6 +158,31 @@ def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None)
     tensors["word_embedding.weight"] = quantised
     _fill(encoder, tensors, path, "")
     return encoder
+
+
+def save_tensors(path: Path, tensors: Mapping[str, Tensor], kind: str, metadata: dict[str, Any]) -> None:
+    """Write tensors of another kind (an evaluator, say); an older file stays whole if writing fails."""
+    plain = {name: t.detach().clone().contiguous() for name, t in tensors.items()}
+    _save(path, plain, {"format": str(FORMAT), "kind": kind, "metadata": json.dumps(metadata)})
+
+
+def load_tensors(path: Path, kind: str) -> tuple[dict[str, Tensor], dict[str, Any]]:
+    """Read what `save_tensors` wrote.
+
+    Raises:
+        CheckpointError: missing, not a safetensors file, or of another kind or format.
+    """
+    tensors, metadata = _load(path, kind)
+    return tensors, json.loads(metadata["metadata"])
+
+
+def fill_module(module: nn.Module, tensors: dict[str, Tensor], path: Path) -> None:
+    """Load `tensors` into `module`, for inference.
+
+    Raises:
+        CheckpointError: a tensor is missing, too many or of another shape.
+    """
+    _fill(module, tensors, path, "")
 
 
 def file_hash(path: Path) -> str:
