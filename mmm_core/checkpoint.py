@@ -207,6 +207,9 @@ def _save(path: Path, tensors: dict[str, Tensor], metadata: dict[str, str]) -> N
     try:
         save_file(tensors, str(partial), metadata=metadata)
         os.replace(partial, path)
+    except (SafetensorError, OSError) as error:
+        kept = "the older file is whole" if path.is_file() else "nothing was written"
+        raise CheckpointError(path, "", f"could not be written ({error}); {kept}", "room on the disk") from error
     finally:
         partial.unlink(missing_ok=True)
 
