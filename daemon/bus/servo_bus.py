@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bus import packet
+from daemon.bus.models import CONTROL_TABLES
 from daemon.bus.packet import BROADCAST_ID, GroupReply, Instruction, Packet, PacketDecoder, error_text
 from daemon.bus.port import Port
-from daemon.bus.registers import CONTROL_TABLES, FEEDBACK_ADDRESS, FEEDBACK_LENGTH, Item
+from daemon.bus.registers import FEEDBACK_ADDRESS, FEEDBACK_LENGTH, Item
 from daemon.clock import Clock
 from daemon.errors import BusMismatchError, CommandError, LinkTimeoutError, MismatchRow, ServoFaultError
 from retarget.robot import ServoSpec

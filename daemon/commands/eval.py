@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import json as json_module
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
 from daemon.errors import CommandError
 
+if TYPE_CHECKING:
+    from mmm_core.motion import Motion
+
+PROBE_ROBOTS = ("reference", "op3")
 EvalName = Literal["probes", "real", "paper"]
 MOST_REPEATS = 1000
+TABLE_WIDTH = 150
+"""Characters a line, where no terminal says otherwise: a table in a file is not cut."""
 
 
 def eval(
@@ -34,7 +41,8 @@ def eval(
 ) -> int:
     """Measure the model.
 
-    probes: side, limb, count (within one) and direction of motions for commands in words it was not trained on.
+    probes: side, limb, count (within one) and direction of motions for commands in words it was not trained on, as
+    generated and as two robots' paths show them.
 
     real: against held-out motion of people with the evaluator of this repository: R-precision of generated against real,
     FID of generated against the tokenizer's own. --data is the folder of docs/DATA.md.
@@ -74,7 +82,7 @@ def eval(
             name, _data_folder(name, data), split, model, (evaluator, glove, evaluator_mean, evaluator_std),
             _checked(name, repeats, motions_per_text, tables, temperature),
         )  # fmt: skip
-    console = Console()
+    console = Console() if sys.stdout.isatty() else Console(width=TABLE_WIDTH)
     if json:
         console.out(json_module.dumps(figures))
     elif name == "paper":
@@ -87,6 +95,7 @@ def eval(
 
 
 def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Every probe generated once for each seed; the same motions are then checked on each robot."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -94,20 +103,36 @@ def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, A
     from mmm_core.corpus.heldout import PROBES
     from mmm_core.engine import Engine
     from mmm_core.evaluation.probes import evaluate
+    from retarget.as_human import shown_on_a_person
+    from retarget.pipeline import Retargeter
+    from retarget.robot import load_robot
 
     engine = Engine.load(model)
+    motions: dict[tuple[str, int], Motion] = {}
+
+    def generated(text: str, seed: int) -> Motion:
+        motions[text, seed] = engine.generate(text, seed=seed).motion
+        return motions[text, seed]
+
+    figures: dict[str, Any] = {}
     with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("probes", total=len(PROBES) * seeds)
-        generated = evaluate(
-            lambda text, seed: engine.generate(text, seed=seed).motion,
-            range(seeds),
-            lambda n: bar.update(task, completed=n),
-        )
+        task = bar.add_task("generated", total=len(PROBES) * seeds)
+        figures["generated"] = evaluate(generated, range(seeds), lambda n: bar.update(task, completed=n))
+        for name in PROBE_ROBOTS:
+            retargeter = Retargeter(load_robot(name))
+
+            def on_robot(text: str, seed: int, retargeter: Retargeter = retargeter) -> Motion:
+                return shown_on_a_person(retargeter, motions[text, seed])
+
+            bar.reset(task, description=name, total=len(PROBES) * seeds)
+            found = evaluate(on_robot, range(seeds), lambda n: bar.update(task, completed=n))
+            figures.setdefault("retargeted", {})[name] = found
     method = (
-        "held-out probes (mmm_core/corpus/heldout.py), kinematic checks on generated joints; refused counts as wrong"
+        "held-out probes (mmm_core/corpus/heldout.py), kinematic checks on generated joints, and on the joints that a robot's "
+        "path shows (retarget/as_human.py); refused counts as wrong"
     )
-    found = {"generated": generated, "n": generated["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
-    return found, generated
+    figures |= {"n": figures["generated"]["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
+    return figures, {"generated": figures["generated"], **figures["retargeted"]}
 
 
 @dataclass(frozen=True)
