@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json as json_module
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -12,11 +14,13 @@ import tyro
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:
-    from mmm_core.evaluation.protocol import Reader
     from mmm_core.motion import Motion
 
 PROBE_ROBOTS = ("reference", "op3")
 EvalName = Literal["probes", "real", "paper"]
+MOST_REPEATS = 1000
+TABLE_WIDTH = 150
+"""Characters a line, where no terminal says otherwise: a table in a file is not cut."""
 
 
 def eval(
@@ -27,6 +31,9 @@ def eval(
     data: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None,
     split: tuple[Literal["train", "val", "test"], ...] = (),
     model: tuple[Path, ...] = (),
+    tables: tuple[int, ...] = (),
+    temperature: float | None = None,
+    motions_per_text: int = 30,
     evaluator: Path | None = None,
     glove: Path | None = None,
     evaluator_mean: Path | None = None,
@@ -41,14 +48,14 @@ def eval(
     FID of generated against the tokenizer's own. --data is the folder of docs/DATA.md.
 
     paper: the tables of the paper's section 5 for the data and checkpoints given: 1 or 2 comparison, 3 speed, 4 editing in
-    time, 5 upper body, 6 ablations (over steps, and over several --model).
+    time, 5 upper body, 6 ablations (over steps, and over several --model). docs/evaluation.md says how all is measured.
 
     Example: mmmd eval probes --json
 
     Example: mmmd eval real --data ../shared/data --json
 
     Example: mmmd eval paper --data HumanML3D --model official.safetensors --evaluator finest.tar --glove glove
-    --evaluator-mean meta/mean.npy --evaluator-std meta/std.npy
+    --evaluator-mean meta/mean.npy --evaluator-std meta/std.npy --tables 1 4
 
     Args:
         name: what to evaluate.
@@ -58,6 +65,9 @@ def eval(
         data: data folder (real, paper).
         split: splits to take; val and test of a clips.jsonl folder, else test.
         model: checkpoint; the shipped one when it is not given; several for table 6.
+        tables: of the paper; all when none is given.
+        temperature: of sampling; 1 for imported models, else the model's own when it is not given.
+        motions_per_text: motions for each of at most 100 texts, for MModality.
         evaluator: an evaluator of `mmmd train evaluator`, or the published finest.tar; ours when it is not given.
         glove: folder of the published word vectors, with finest.tar.
         evaluator_mean: statistics finest.tar was trained with.
@@ -65,31 +75,19 @@ def eval(
     """
     from rich.console import Console
 
-    from daemon.bench.report import context
-
-    first = model[0] if model else None
     if name == "probes":
-        figures, shown = _probes(first, seeds)
+        figures, shown = _probes(model[0] if model else None, seeds)
     else:
-        if data is None:
-            raise CommandError(f"eval {name}: --data is missing; example: mmmd eval {name} --data ../shared/data")
-        if not 1 <= repeats <= 1000:
-            raise CommandError(f"eval {name}: --repeats {repeats}; allowed: 1 to 1000")
-        splits = split or (("val", "test") if (data / "clips.jsonl").is_file() else ("test",))
-        reader = _reader(evaluator, glove, evaluator_mean, evaluator_std)
-        figures = (
-            _real(reader, data, splits, first, repeats)
-            if name == "real"
-            else _paper(reader, data, splits, model, repeats)
-        )
-        figures |= context(0, f"{repeats} repeats, splits {', '.join(splits)}, lengths of the real motions")
-        shown = figures
-    console = Console()
+        figures = shown = _measured(
+            name, _data_folder(name, data), split, model, (evaluator, glove, evaluator_mean, evaluator_std),
+            _checked(name, repeats, motions_per_text, tables, temperature),
+        )  # fmt: skip
+    console = Console() if sys.stdout.isatty() else Console(width=TABLE_WIDTH)
     if json:
         console.out(json_module.dumps(figures))
     elif name == "paper":
         _print_tables(console, figures["tables"])
-        console.print(f"n {figures['n']} pairs; {figures['caveat']}", highlight=False)
+        console.print(f"n {figures['n']} motions; {figures['caveat']}", highlight=False)
     else:
         for key, value in shown.items():
             console.print(f"{key}: {value}", highlight=False)
@@ -137,82 +135,78 @@ def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, A
     return figures, {"generated": figures["generated"], **figures["retargeted"]}
 
 
-def _reader(evaluator: Path | None, glove: Path | None, mean: Path | None, std: Path | None) -> Reader:
-    """The evaluator to measure with."""
-    import numpy as np
-    import torch
+@dataclass(frozen=True)
+class _Asked:
+    """How much is measured."""
 
-    from mmm_core.checkpoint import EVALUATOR_FILE, load_text_encoder
-    from mmm_core.evaluation.extractors import load_evaluator, load_published
-    from mmm_core.evaluation.protocol import Reader
-    from mmm_core.evaluation.words import read_vectors
-
-    if glove is None:
-        return Reader(load_evaluator(evaluator or EVALUATOR_FILE)[0], load_text_encoder())
-    if evaluator is None or mean is None or std is None:
-        raise CommandError("eval: --glove goes with --evaluator finest.tar, --evaluator-mean and --evaluator-std")
-    statistics = [torch.tensor(np.load(p, allow_pickle=False)) for p in (mean, std)]
-    return Reader(load_published(evaluator, *statistics, n_features=len(statistics[0])), read_vectors(glove))
+    repeats: int
+    each: int
+    tables: tuple[int, ...]
+    temperature: float | None
 
 
-def _real(reader: Reader, data: Path, splits: tuple[Any, ...], model: Path | None, repeats: int) -> dict[str, Any]:
-    from mmm_core.engine import Engine
-    from mmm_core.evaluation.paper import comparison
-    from mmm_core.evaluation.protocol import read_pairs
-
-    engine, pairs = Engine.load(model), read_pairs(data, splits)
-    with _Bar("real") as progress:
-        table = comparison(reader, engine, pairs, repeats, progress)
-    lines = {name: {key: _number(value) for key, value in row.items()} for name, row in table.items()}
-    made, real, again = lines["generated"], lines["real motion"], lines["tokenizer"]
-    return {
-        "r1_ratio": round(made["R1"] / real["R1"], 4) if real.get("R1") else None,
-        "fid_ratio": round(made["FID"] / again["FID"], 4) if again["FID"] else None,
-        "r_precision": {name: [row.get(f"R{k}") for k in (1, 2, 3)] for name, row in lines.items()},
-        "fid": {name: row["FID"] for name, row in lines.items()},
-        "mm_dist": {name: row["MM-Dist"] for name, row in lines.items()},
-        "diversity": {name: row["Diversity"] for name, row in lines.items()},
-        "mmodality": made["MModality"],
-        "n": len(pairs),
-        "n_texts": len({p.text for p in pairs}),
-        "caveat": _caveat(len(pairs), reader),
-        "checkpoint": engine.checkpoint_hash,
-    }
+def _checked(name: str, repeats: int, each: int, tables: tuple[int, ...], temperature: float | None) -> _Asked:
+    if not 1 <= repeats <= MOST_REPEATS:
+        raise CommandError(f"eval {name}: --repeats {repeats}; allowed: 1 to {MOST_REPEATS}")
+    if not 2 <= each <= MOST_REPEATS:
+        raise CommandError(f"eval {name}: --motions-per-text {each}; allowed: 2 to {MOST_REPEATS}")
+    if not set(tables) <= {1, 2, 3, 4, 5, 6}:
+        raise CommandError(f"eval {name}: --tables {' '.join(map(str, tables))}; allowed: 1 to 6")
+    if temperature is not None and not 0 <= temperature <= 10:
+        raise CommandError(f"eval {name}: --temperature {temperature}; allowed: 0 to 10")
+    return _Asked(repeats, each, tables, temperature)
 
 
-def _paper(
-    reader: Reader, data: Path, splits: tuple[Any, ...], models: tuple[Path, ...], repeats: int
+def _data_folder(name: str, data: Path | None) -> Path:
+    if data is None:
+        raise CommandError(f"eval {name}: --data is missing; example: mmmd eval {name} --data ../shared/data")
+    return data
+
+
+def _measured(
+    name: str,
+    data: Path,
+    split: Sequence[Any],
+    models: Sequence[Path],
+    evaluator: tuple[Path | None, Path | None, Path | None, Path | None],
+    asked: _Asked,
 ) -> dict[str, Any]:
+    from daemon.bench.report import context
     from mmm_core.engine import Engine
-    from mmm_core.evaluation import paper
-    from mmm_core.evaluation.protocol import read_pairs
+    from mmm_core.evaluation import paper, report
 
-    engines = {path.name: Engine.load(path) for path in models} or {"shipped": Engine.load()}
-    engine, pairs = next(iter(engines.values())), read_pairs(data, splits)
-    comparison = "2 (comparison, KIT-ML)" if pairs[0].features.shape[1] == 251 else "1 (comparison)"
-    makers: dict[str, Callable[[_Bar], Any]] = {
-        comparison: lambda bar: paper.comparison(reader, engine, pairs, repeats, bar),
-        "3 (speed)": lambda bar: paper.speed(reader, engine, pairs, min(repeats, 3), bar),
-        "4 (editing in time)": lambda bar: paper.editing_in_time(reader, engine, pairs, repeats, bar),
-        "5 (editing the upper body)": lambda bar: paper.editing_the_upper_body(reader, engine, pairs, repeats, bar),
-        "6 (ablations)": lambda bar: paper.ablations(reader, engines, pairs, min(repeats, 5), bar),
-    }
-    tables: dict[str, Any] = {}
-    for title, make in makers.items():
-        with _Bar(f"table {title}") as progress:
-            table = make(progress)
-        tables[title] = {name: {k: _both(v) for k, v in row.items()} for name, row in table.items()}
-    return {"tables": tables, "n": len(pairs), "caveat": _caveat(len(pairs), reader)}
+    if evaluator[1] is not None and None in evaluator:
+        raise CommandError("eval: --glove goes with --evaluator finest.tar, --evaluator-mean and --evaluator-std")
+    splits = split or report.default_splits(data)
+    reader, evaluator_hash = report.load_reader(*evaluator)
+    loaded: dict[str, Engine] = {str(path): Engine.load(path) for path in models} or {"shipped": Engine.load()}
+    engines = {key: paper.for_evaluation(engine, asked.temperature) for key, engine in loaded.items()}
+    engine = next(iter(engines.values()))
+    pairs = report.measured_pairs(reader, list(engines.values()), data, splits)
+    with _Bar() as bar:
+        if name == "real":
+            figures = report.real_figures(reader, engine, pairs, asked.repeats, asked.each, bar.titled("real"))
+        else:
+            figures = report.paper_figures(
+                reader, engines, pairs, asked.repeats, asked.each, asked.tables, bar.titled
+            )  # fmt: skip
+    method = (
+        f"{asked.repeats} repeats, splits {', '.join(splits)}, one caption of each motion a repeat, lengths of the real "
+        f"motions, temperature {engine.settings.temperature}, {asked.each} motions a text for MModality; docs/evaluation.md"
+    )
+    return {
+        **figures, "splits": list(splits), "checkpoint": engine.checkpoint_hash, "evaluator": evaluator_hash,
+        **context(0, method),
+    }  # fmt: skip
 
 
 class _Bar:
     """A line on stderr that says how far a table is."""
 
-    def __init__(self, title: str) -> None:
+    def __init__(self) -> None:
         from rich.console import Console
 
-        self._status = Console(stderr=True).status(title)
-        self._title = title
+        self._status = Console(stderr=True).status("reading")
 
     def __enter__(self) -> _Bar:
         self._status.start()
@@ -221,35 +215,20 @@ class _Bar:
     def __exit__(self, *_: object) -> None:
         self._status.stop()
 
-    def __call__(self, text: str) -> None:
-        self._status.update(f"{self._title} {text}")
-
-
-def _number(value: Any) -> float:
-    return round(float(getattr(value, "mean", value)), 4)
-
-
-def _both(value: Any) -> Any:
-    """A mean with its half width, or a plain number."""
-    if hasattr(value, "half_width"):
-        return [round(value.mean, 4), round(value.half_width, 4)]
-    return round(float(value), 4)
-
-
-def _caveat(n: int, reader: Reader) -> str:
-    width = reader.evaluator.config.embedding
-    small = f"{n} pairs are few for FID in {width} dimensions" if n < 10 * width else "enough pairs for FID"
-    return f"{small}; the literature measures 4,400 (HumanML3D)"
+    def titled(self, title: str) -> Callable[[str], None]:
+        """A function that takes how far it is."""
+        return lambda text: self._status.update(f"{title}, repeat {text}")
 
 
 def _print_tables(console: Any, tables: dict[str, Any]) -> None:
     from rich.table import Table
 
+    from mmm_core.evaluation.report import COLUMNS
+
     for title, lines in tables.items():
-        shown = Table(title=f"Table {title}", title_justify="left")
-        columns = sorted({key for row in lines.values() for key in row})
-        for column in ("", *columns):
-            shown.add_column(column)
+        found = {key for row in lines.values() for key in row}
+        columns = [c for c in COLUMNS if c in found] + sorted(found - set(COLUMNS))
+        shown = Table("", *columns, title=f"Table {title}", title_justify="left")
         for name, row in lines.items():
             cells = [row.get(c, "") for c in columns]
             shown.add_row(name, *(f"{c[0]:.3f}±{c[1]:.3f}" if isinstance(c, list) else str(c) for c in cells))

@@ -8,9 +8,10 @@ MiniLM's word states instead of GloVe and parts of speech.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Literal
 
 import torch
 from torch import Tensor, nn
@@ -18,7 +19,7 @@ from torch.nn.utils.rnn import pack_padded_sequence
 
 from mmm_core.checkpoint import fill_module, load_tensors, save_tensors
 from mmm_core.errors import CheckpointError
-from mmm_core.tokens import FRAMES_PER_TOKEN
+from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 
 N_CONTACTS = 4
 """Foot contacts, the last features, are not shown to the evaluator."""
@@ -27,7 +28,10 @@ KIND = "mmmd-evaluator"
 
 @dataclass(frozen=True)
 class EvaluatorConfig:
-    """Sizes; the defaults are the published ones for HumanML3D."""
+    """Sizes; the defaults are the published ones for HumanML3D.
+
+    `rest_pose` says whose rest directions the rotations are relative to that it learnt from (see `checkpoint.Model`).
+    """
 
     n_features: int = 263
     movement: int = 512
@@ -36,9 +40,12 @@ class EvaluatorConfig:
     embedding: int = 512
     word: int = 300
     part_of_speech: int = 15
+    rest_pose: Literal["mmmd", "humanml3d"] = "humanml3d"
 
 
-OURS = EvaluatorConfig(movement=128, text_hidden=128, motion_hidden=128, embedding=64, word=384, part_of_speech=0)
+OURS = EvaluatorConfig(
+    movement=128, text_hidden=128, motion_hidden=128, embedding=64, word=384, part_of_speech=0, rest_pose="mmmd"
+)
 """What this repository trains: small, since a few hundred clips of people are there to learn from."""
 
 
@@ -119,9 +126,14 @@ class Evaluator(nn.Module):
         self.register_buffer("std", torch.ones(config.n_features))
 
     def motions(self, features: Sequence[Tensor]) -> Tensor:
-        """(B, embedding) of B motions (T_i, F), in their own units; zeros fill the batch after normalising."""
+        """(B, embedding) of B motions (T_i, F), in their own units; a motion's vector does not depend on its neighbours.
+
+        Zeros fill the batch after normalising, always to the longest motion there is: the convolution at a motion's end
+        sees whether padding follows (through its bias), so the width is part of what the published extractor learnt.
+        """
         lengths = torch.tensor([len(f) // FRAMES_PER_TOKEN for f in features])
-        batch = self.mean.new_zeros(len(features), int(lengths.max()) * FRAMES_PER_TOKEN, self.config.n_features)
+        width = max(MAX_TOKENS, int(lengths.max())) * FRAMES_PER_TOKEN
+        batch = self.mean.new_zeros(len(features), width, self.config.n_features)
         for row, one in zip(batch, features, strict=True):
             n = len(one) // FRAMES_PER_TOKEN * FRAMES_PER_TOKEN
             row[:n] = (one[:n].to(self.mean) - self.mean) / self.std
@@ -163,9 +175,12 @@ def load_published(path: Path, mean: Tensor, std: Tensor, n_features: int = 263)
     except Exception as error:
         first = str(error).split("\n", 1)[0]
         raise CheckpointError(path, "", f"not readable as tensors ({first})", "the published finest.tar") from error
-    missing = [p for p in parts if not isinstance(content, dict) or p not in content]
-    if missing:
-        raise CheckpointError(path, missing[0], "missing", ", ".join(parts))
+    for part in parts:
+        if not isinstance(content, dict) or not isinstance(content.get(part), Mapping):
+            raise CheckpointError(path, part, "missing, or no dict of tensors", ", ".join(parts))
+    for name, statistic in (("mean", mean), ("std", std)):
+        if statistic.shape != (n_features,):
+            raise CheckpointError(path, name, f"shape {tuple(statistic.shape)}", f"({n_features},)")
     evaluator = Evaluator(EvaluatorConfig(n_features=n_features))
     tensors = {f"{p}.{k}": t for p in parts for k, t in content[p].items()}
     fill_module(evaluator, {**tensors, "mean": mean.float(), "std": std.float()}, path)

@@ -16,22 +16,26 @@ from torch import Tensor
 
 from mmm_core.editing import part_names
 from mmm_core.engine import Engine
-from mmm_core.evaluation.metrics import REPEATS, Interval
+from mmm_core.evaluation.metrics import Interval
+from mmm_core.evaluation.pairs import Pair
 from mmm_core.evaluation.protocol import (
     GENERATE_BATCH,
-    Motions,
-    Pair,
+    N_MODALITY,
+    Make,
     Progress,
-    Reader,
     decode,
+    fid_between_halves,
     generate,
     measure,
     measure_modality,
+    measure_same,
     reconstruct,
     seconds_per_sentence,
+    seeds_of,
+    text_states,
 )
+from mmm_core.evaluation.reader import Motions, Reader
 from mmm_core.sampling import fill
-from mmm_core.text import TextStates
 
 Table = dict[str, dict[str, Interval | float | int]]
 """Lines by name, each with its columns."""
@@ -45,14 +49,28 @@ STRETCHES: dict[str, tuple[tuple[float, float], ...]] = {
 """What is made again, as shares of the motion; half of it in every task."""
 
 
-def comparison(reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, progress: Progress) -> Table:
-    """Tables 1 and 2."""
-    generated: dict[str, Any] = measure(reader, pairs, lambda s: generate(engine, pairs, s), repeats, progress)
-    generated["MModality"] = measure_modality(reader, engine, pairs, min(repeats, REPEATS))
+def for_evaluation(engine: Engine, temperature: float | None = None) -> Engine:
+    """The engine as it is measured: the released model at temperature 1, as its authors do, ours as it is used."""
+    if temperature is None:
+        temperature = 1.0 if engine.settings.official else engine.settings.temperature
+    return _with_settings(engine, temperature=temperature)
+
+
+def comparison(
+    reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, progress: Progress, each: int = N_MODALITY
+) -> Table:
+    """Tables 1 and 2; `each` motions for a text give MModality.
+
+    The line of halves is what FID is between two samples of real motion of half the size.
+    """
     return {
-        "real motion": {**measure(reader, pairs, lambda _s: [p.features for p in pairs], repeats)},
-        "tokenizer": {**measure(reader, pairs, lambda _s: reconstruct(engine, pairs), 1)},
-        "generated": generated,
+        "real motion": {**measure_same(reader, pairs, _real, repeats)},
+        "real motion, one half against the other": {"FID": fid_between_halves(reader, pairs, repeats)},
+        "tokenizer": {**measure_same(reader, pairs, lambda some, _seed: reconstruct(engine, some), repeats)},
+        "generated": {
+            **measure(reader, pairs, _generate(engine), repeats, progress),
+            "MModality": measure_modality(reader, engine, pairs, repeats, each),
+        },
     }
 
 
@@ -60,7 +78,7 @@ def speed(reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, p
     """Table 3: seconds for a sentence (AITS) beside FID, for several numbers of steps."""
     table: Table = {}
     for steps, faster in _with_steps(engine):
-        row = measure(reader, pairs, lambda s, e=faster: generate(e, pairs, s), repeats, progress)
+        row = measure(reader, pairs, _generate(faster), repeats, progress)
         table[f"{steps} steps"] = {"AITS s": seconds_per_sentence(faster, pairs), "FID": row["FID"]}
     return table
 
@@ -68,12 +86,12 @@ def speed(reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, p
 def editing_in_time(reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, progress: Progress) -> Table:
     """Table 4: half of each real motion is made again with the same text."""
 
-    def task(stretches: Sequence[tuple[float, float]]) -> Callable[[int], Motions]:
+    def task(stretches: Sequence[tuple[float, float]]) -> Make:
         def hide(ids: Tensor) -> None:
             for start, end in stretches:
                 ids[round(start * len(ids)) : round(end * len(ids))] = engine.model.transformer.ids.mask
 
-        return lambda seed: _made_again(engine, pairs, hide, seed)
+        return lambda some, seed: _made_again(engine, some, hide, seed)
 
     return {name: {**measure(reader, pairs, task(s), repeats, progress)} for name, s in STRETCHES.items()}
 
@@ -90,7 +108,7 @@ def editing_the_upper_body(
     def hide(ids: Tensor) -> None:
         ids[:, upper] = engine.model.transformer.ids.mask
 
-    row = measure(reader, pairs, lambda seed: _made_again(engine, pairs, hide, seed), repeats, progress)
+    row = measure(reader, pairs, lambda some, seed: _made_again(engine, some, hide, seed), repeats, progress)
     return {" and ".join(names[i] for i in upper): {**row}}
 
 
@@ -100,11 +118,9 @@ def ablations(
     """Table 6: steps with the first checkpoint, then each checkpoint with what its recipe says of itself."""
     table: Table = {}
     for steps, other in _with_steps(next(iter(engines.values()))):
-        table[f"{steps} steps"] = {
-            **measure(reader, pairs, lambda s, e=other: generate(e, pairs, s), repeats, progress)
-        }
+        table[f"{steps} steps"] = {**measure(reader, pairs, _generate(other), repeats, progress)}
     for name, engine in engines.items():
-        row: dict[str, Any] = {**measure(reader, pairs, lambda s, e=engine: generate(e, pairs, s), repeats, progress)}
+        row: dict[str, Any] = {**measure(reader, pairs, _generate(engine), repeats, progress)}
         config = engine.model.tokenizer.config
         row |= {"codes": config.n_codes, "code width": config.code_dim}
         recipe = engine.model.provenance.get("recipe", {})
@@ -113,13 +129,22 @@ def ablations(
     return table
 
 
+def _real(pairs: Sequence[Pair], _seed: int) -> Motions:
+    return [p.features for p in pairs]
+
+
+def _generate(engine: Engine) -> Make:
+    return lambda pairs, seed: generate(engine, pairs, seed)
+
+
 def _with_steps(engine: Engine) -> list[tuple[int, Engine]]:
     """The engine with other numbers of steps."""
-    settings = [replace(engine.settings, fewest_steps=n, most_steps=n, official=False) for n in STEPS]
-    return [
-        (n, Engine(engine.model, engine.encoder, engine.checkpoint_hash, s))
-        for n, s in zip(STEPS, settings, strict=True)
-    ]
+    return [(n, _with_settings(engine, fewest_steps=n, most_steps=n, official=False)) for n in STEPS]
+
+
+def _with_settings(engine: Engine, **changes: Any) -> Engine:
+    settings = replace(engine.settings, **changes)
+    return Engine(engine.model, engine.encoder, engine.checkpoint_hash, settings)
 
 
 @torch.inference_mode()
@@ -131,7 +156,6 @@ def _made_again(engine: Engine, pairs: Sequence[Pair], hide: Callable[[Tensor], 
         rows = [engine.model.tokenizer.encode(torch.from_numpy(p.features)[None])[0].clone() for p in some]
         for row in rows:
             hide(row)
-        states = TextStates.stacked([s for s, _ in engine.understand_all([p.text for p in some])])
-        seeds = [(seed * 1_000_003 + i + k) % 2**31 for k in range(len(some))]
+        states, seeds = text_states(engine, some), seeds_of(some, i, seed)
         made += decode(engine, fill(engine.model.transformer, states, rows, seeds, engine.settings))
     return made

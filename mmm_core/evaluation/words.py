@@ -14,9 +14,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mmm_core.errors import CheckpointError
+from mmm_core.errors import CheckpointError, EvaluationError
 
 MAX_WORDS = 20
+MARKS = ("unk", "sos", "eos")
+"""Words that every caption needs: for what is unknown or padded, its start and its end."""
 PARTS_OF_SPEECH = (
     "VERB", "NOUN", "DET", "ADP", "NUM", "AUX", "PRON", "ADJ", "ADV",
     "Loc_VIP", "Body_VIP", "Obj_VIP", "Act_VIP", "Desc_VIP", "OTHER",
@@ -37,17 +39,22 @@ class WordVectors:
 
     def __init__(self, vectors: dict[str, np.ndarray]) -> None:
         self.vectors = vectors
+        self.width = len(next(iter(vectors.values())))
 
     def read(self, captions: list[tuple[str, ...]]) -> tuple[Tensor, Tensor, Tensor]:
         """Word vectors (B, 22, 300), parts of speech (B, 22, 15) and lengths (B,); start and end marks are added.
 
         A caption of more than twenty tokens is cut.
+
+        Raises:
+            EvaluationError: a caption has no tokens, as those of a clips.jsonl folder.
         """
+        if not all(captions):
+            raise EvaluationError("captions without word/POS tokens", "a HumanML3D or KIT-ML folder for GloVe vectors")
         width = MAX_WORDS + 2
-        size = len(next(iter(self.vectors.values())))
         words, kinds = (
-            np.zeros((len(captions), width, size), np.float32),
-            np.zeros((len(captions), width, 15), np.float32),
+            np.zeros((len(captions), width, self.width), np.float32),
+            np.zeros((len(captions), width, len(PARTS_OF_SPEECH)), np.float32),
         )
         lengths = []
         for row, tokens in enumerate(captions):
@@ -76,11 +83,17 @@ def read_vectors(folder: Path) -> WordVectors:
         table = np.load(paths[0], allow_pickle=False)
     except (OSError, ValueError, EOFError) as error:
         raise CheckpointError(paths[0], "", f"not a readable .npy ({error})", "(N, 300)") from None
+    if table.ndim != 2 or not np.issubdtype(table.dtype, np.floating) or not np.isfinite(table).all():
+        raise CheckpointError(paths[0], "", f"{table.dtype} of shape {table.shape}", "(N, 300) finite numbers")
     words, index = (_plain_pickle(path) for path in paths[1:])
     try:
-        return WordVectors({word: table[index[word]] for word in words})
-    except (KeyError, IndexError, TypeError) as error:
+        vectors = {str(word): table[int(index[word])] for word in words}
+    except (KeyError, IndexError, TypeError, ValueError) as error:
         raise CheckpointError(paths[2], "", f"does not fit the other two ({error!r})", "a row for each word") from None
+    for mark in MARKS:
+        if mark not in vectors:
+            raise CheckpointError(paths[1], mark, "missing", f"the words {', '.join(MARKS)} among the {len(vectors)}")
+    return WordVectors(vectors)
 
 
 class _NothingRuns(pickle.Unpickler):
@@ -94,5 +107,5 @@ def _plain_pickle(path: Path) -> Any:
     try:
         with path.open("rb") as f:
             return _NothingRuns(f).load()
-    except (pickle.UnpicklingError, EOFError, ValueError, AttributeError, IndexError) as error:
+    except Exception as error:  # a broken pickle can raise nearly anything; none of it has run code of the file
         raise CheckpointError(path, "", f"not a plain pickle ({error})", "words or numbers; nothing was run") from None

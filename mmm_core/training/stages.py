@@ -133,13 +133,13 @@ class Stages:
         row = {caption: i for i, caption in enumerate(captions)}
         rows = [[row[c] for c in clip.captions] for clip in self.clips]
         is_real = np.array([c.is_real for c in self.clips])
-        states = self._caption_states(captions)
+        states = self._caption_states(captions, self.text, "captions.pt")
         return TokenCorpus(encode_clips(self.clips, self.tokenizer), rows, states, is_real)
 
-    def _caption_states(self, captions: list[str]) -> CaptionStates:
-        path = self.run.folder / "captions.pt"
+    def _caption_states(self, captions: list[str], encoder: TextEncoder, name: str) -> CaptionStates:
+        path = self.run.folder / name
         if not path.is_file() and distributed.rank() == 0:
-            CaptionStates.encode(captions, self.text).save(path)
+            CaptionStates.encode(captions, encoder).save(path)
         distributed.wait()
         return CaptionStates.load(path)
 
@@ -162,13 +162,19 @@ class Stages:
 
     @cached_property
     def evaluator(self) -> Evaluator:
-        """The extractors that evaluation uses; written beside the run's states when it is done."""
+        """The extractors that evaluation uses; written beside the run's states when it is done.
+
+        It reads MiniLM's states whatever the model reads, so that models with other text encoders can be compared.
+        """
         captions = sorted({c for clip in self.clips for c in clip.captions})
         row = {caption: i for i, caption in enumerate(captions)}
         rows = [[row[c] for c in clip.captions] for clip in self.clips]
-        states = self._caption_states(captions)
+        shared = self.recipe.text.encoder == "minilm"
+        encoder, name = (self.text, "captions.pt") if shared else (load_text_encoder(), "captions_minilm.pt")
+        states = self._caption_states(captions, encoder, name)
         width, words = self.clips[0].features.shape[1], states.words.shape[1]
-        config = replace(OURS, n_features=width, word=words)
+        pose = "mmmd" if self.folder is None else "humanml3d"
+        config = replace(OURS, n_features=width, word=words, rest_pose=pose)
         evaluator = train_evaluator(self.clips, states, rows, self.recipe.evaluator, self.run, config)
         if distributed.rank() == 0:
             save_evaluator(self.run.folder / "evaluator.safetensors", evaluator, self.provenance())
