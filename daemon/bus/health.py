@@ -62,8 +62,8 @@ class HealthTracker:
         """Judge a cycle: who answered with which error byte. True when somebody was just quarantined."""
         missing = self.asked & ~valid
         alert = valid & ((error & ALERT_BIT) != 0)
-        if not missing.any() and not alert.any() and not self._alerted.any() and not self._missed.any():
-            self.state[self.asked & ~self.faulted] = Health.OK
+        if not (missing.any() or alert.any() or self._alerted.any() or self._missed.any() or self.faulted.any()):
+            self.state[self.asked] = Health.OK
             return False
         self._missed[valid] = 0
         self._missed[missing] += 1

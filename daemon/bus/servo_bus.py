@@ -313,8 +313,12 @@ class ServoBus:
     def _note_reboot(self, row: int) -> None:
         self.health.faulted[row] = True
         name = f"servo {self.ids[row]} ({self.servos[row].joint_name})"
+        now_s, n_lost = self._clock.now_s(), int(self.health.faulted.sum())
         text = f"{name} has lost torque and settings; to be armed anew"
-        self.events.add(BusEventKind.REBOOTED, self._clock.now_s(), text, self.ids[row])
+        self.events.add(BusEventKind.REBOOTED, now_s, text, self.ids[row])
+        if 2 * n_lost >= len(self.ids) > 2:
+            text = f"{n_lost} of {len(self.ids)} servos have lost their torque: the supply voltage broke down"
+            self.events.add(BusEventKind.BROWN_OUT, now_s, text)
 
     def _read_slow(self) -> None:
         """Slow registers of the next servo in turn; what they reveal is an event."""
@@ -335,9 +339,6 @@ class ServoBus:
         self.reading.slow_read_s[row] = asked_s
         if self._torque_expected and self.reading.torque[row] == 0 and not self.health.faulted[row]:
             self._note_reboot(row)
-            if self.health.faulted.sum() * 2 >= len(self.ids) > 2:
-                text = f"{int(self.health.faulted.sum())} servos lost their torque: the supply voltage broke down"
-                self.events.add(BusEventKind.BROWN_OUT, asked_s, text)
 
     # Who is there.
 
