@@ -10,7 +10,8 @@ DaemonError
 ├── BusMismatchError(rows)         other servos than the robot file says
 ├── LinkError                      bytes lost or bad
 │   ├── LinkTimeoutError           no answer in time                                 (TimeoutError)
-│   └── LinkLostError              the device is gone
+│   ├── LinkLostError              the device is gone
+│   └── PacketError                bytes that are no whole packet                    (ValueError)
 ├── LogError(path)                 a log that cannot be read                         (ValueError)
 ├── ConfigError(key)               a setting outside what is allowed                 (ValueError)
 └── RequestError(code)             a message that cannot be carried out              (ValueError)
@@ -88,6 +89,10 @@ class LinkTimeoutError(LinkError, TimeoutError):
 
 class LinkLostError(LinkError):
     """The device is gone: unplugged, or its other end closed."""
+
+
+class PacketError(LinkError, ValueError):
+    """A packet whose content is not what its instruction says."""
 
 
 class LogError(DaemonError, ValueError):
