@@ -34,7 +34,7 @@ class BusView:
         self._servo_map = JointServoMap(robot)
         self.index = 0
         self.at_rest = True
-        self._last_cycle_s = time.monotonic()
+        self._last_cycle_s: float | None = None
         self.state = BusState.LIMP
         self.goal_rad: Array = robot.park_rad.copy()
         self.present_rad: Array = robot.park_rad.copy()
@@ -47,6 +47,10 @@ class BusView:
         """Cycles since the last call, and how many were lost between."""
         records, self.index, lost = self._link.cycles_since(self.index)
         self.lost += lost
+        if (
+            self._last_cycle_s is None
+        ):  # the first look: the bus process has just become ready, its first cycle is to come
+            self._last_cycle_s = time.monotonic()
         if len(records):
             last = records[-1]
             self._last_cycle_s = time.monotonic()
@@ -64,8 +68,8 @@ class BusView:
 
     @property
     def silent_s(self) -> float:
-        """Seconds since the newest cycle."""
-        return time.monotonic() - self._last_cycle_s
+        """Seconds since the newest cycle; before the first, since the first look for one."""
+        return 0.0 if self._last_cycle_s is None else time.monotonic() - self._last_cycle_s
 
     @property
     def message(self) -> str:

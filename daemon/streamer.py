@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from daemon.approach import Approach
 from daemon.bus.packet import ALERT_BIT
-from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, hardware_error_text
+from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.bus.servo_bus import BusReading, ServoBus
 from daemon.clock import Clock
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
@@ -38,7 +38,7 @@ MISSING_CYCLES = 20
 """Half of the servos silent for so many cycles is a fault (loose plug, power)."""
 TORQUE_CHECK_CYCLES = 5
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
-"""Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all."""
+"""Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
 _ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
 
 
@@ -149,6 +149,7 @@ class Streamer:
         self._link.set_text("")
         try:
             self._bus.verify()
+            self._bus.clear_watchdog()
             reading = self._bus.exchange(None)
             if not reading.valid.all():
                 silent = ", ".join(str(i) for i, ok in zip(self._bus.ids, reading.valid, strict=True) if not ok)
@@ -156,15 +157,16 @@ class Streamer:
                 return
             present = reading.position_tick.copy()
             self._refuse_hardware_errors(reading)
-            self._bus.write_all("bus_watchdog", 0)
             for servo_id, tick in zip(self._bus.ids, present, strict=True):
                 self._bus.write_item(servo_id, "goal_position", int(tick))
                 pinned = self._bus.read_item(servo_id, "goal_position")
                 if pinned != tick:
                     raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
-                self._bus.write_item(servo_id, "goal_pwm", PWM_START)
+            self._bus.set_effort(PWM_START / PWM_FULL, confirmed=True)
             self._bus.write_all("torque_enable", 1)
-            self._bus.write_all("bus_watchdog", WATCHDOG_UNITS)
+            without = self._bus.arm_watchdog(WATCHDOG_UNITS)
+            if without:
+                log.warning("no bus watchdog to rely on: servo %s", ", ".join(map(str, without)))
         except DaemonError as error:
             self._cut_torque()
             self._fault(f"cannot arm: {error}")
@@ -178,7 +180,7 @@ class Streamer:
     def _refuse_hardware_errors(self, reading: BusReading) -> None:
         for row in np.flatnonzero(reading.error & ALERT_BIT):
             servo_id = self._bus.ids[int(row)]
-            text = hardware_error_text(self._bus.read_item(servo_id, "hardware_error_status"))
+            text = self._bus.hardware_error_text(servo_id)
             raise ServoFaultError(servo_id, "hardware error status", f"{text}; reboot the servo")
 
     # Goals.
@@ -247,7 +249,7 @@ class Streamer:
     def _ramp_torque(self) -> None:
         if self._pwm is not None and self._cycle % 5 == 0:
             self._pwm = min(PWM_FULL, self._pwm + round((PWM_FULL - PWM_START) * 5 * self._period_s / PWM_RAMP_S))
-            self._bus.send_all("goal_pwm", self._pwm)
+            self._bus.set_effort(self._pwm / PWM_FULL)
             if self._pwm == PWM_FULL:
                 self._pwm = None
 
@@ -277,13 +279,10 @@ class Streamer:
         pause_s, self._fed_s = self._clock.now_s() - self._fed_s, self._clock.now_s()
         if not self._torque or self._goal_tick is None or pause_s < 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S:
             return
-        for servo_id in self._bus.ids:
-            if self._bus.read_item(servo_id, "bus_watchdog") == WATCHDOG_TRIPPED:
-                self._goal_tick = None
-                self._fault(
-                    f"the bus process was held up for {pause_s:.2f} s: servo {servo_id} stopped by its watchdog"
-                )
-                return
+        tripped = self._bus.tripped_watchdogs()
+        if tripped:
+            self._goal_tick = None
+            self._fault(f"the bus process was held up for {pause_s:.2f} s: servo {tripped[0]} stopped by its watchdog")
 
     def _judge(self, reading: BusReading) -> None:
         """A tripped servo, lost torque or half of the robot silent is a fault."""
@@ -361,6 +360,9 @@ def start(robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock) -> S
         return None
     try:
         bus.verify()
+        plan = bus.plan()
+        if not plan.require(robot.bus.rate_hz):
+            log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))
         bus.exchange(None)
     except DaemonError as error:
         bus.port.close()

@@ -194,8 +194,22 @@ class FakePort:
 def spec(name: str, servo_id: int) -> ServoSpec:
     """A servo of a robot file."""
     m = MODELS[MODEL_NUMBERS[name]]
-    model = ServoModel(name, m.model_number, m.protocol, m.ticks_per_turn, 5.0, m.has_current)
-    return ServoSpec(servo_id, f"joint_{servo_id}", model, 1, 1.0, m.zero_tick)
+    model = ServoModel(
+        name,
+        m.model_number,
+        m.protocol,
+        m.ticks_per_turn,
+        m.zero_tick,
+        0,
+        m.ticks_per_turn - 1,
+        5.0,
+        m.has_current,
+        False,
+    )
+    joint = servo_id - 1
+    return ServoSpec(
+        servo_id, f"joint_{servo_id}", model, 1, 1.0, m.zero_tick, ((joint, 1.0),), model.min_tick, model.max_tick
+    )
 
 
 def fake(*names: str, **port: object) -> tuple[FakePort, list[ServoSpec], VirtualClock]:
