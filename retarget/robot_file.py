@@ -261,7 +261,7 @@ def _refuse_beyond_servo(path: Path, key: str, servo: ServoSpec, joints: Sequenc
     if servo.linkage is not None:
         reach = servo.linkage.to_servo(reach)
     low, high = sorted(float(t) for t in servo.zero_tick + servo.ticks_per_rad * reach)
-    if low < servo.min_tick or high > servo.max_tick:
+    if math.ceil(low - 1e-9) < servo.min_tick or math.floor(high + 1e-9) > servo.max_tick:  # whole ticks are used
         found = f"reaches servo ticks {low:.0f} to {high:.0f}"
         allowed = f"ticks {servo.min_tick} to {servo.max_tick} of {servo.model.name} (servo {servo.servo_id})"
         raise RobotFileError(path, key, found, allowed)
