@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
+from daemon.bus.models import CONTROL_TABLES
 from daemon.bus.packet import ALERT_BIT, ErrorCode
 from daemon.bus.registers import (
-    CONTROL_TABLES,
     EEPROM_END,
     VELOCITY_UNIT_RAD_S,
     WATCHDOG_TRIPPED,

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from rig import rig, swing
 
 from daemon import shared
-from daemon.bus.registers import CONTROL_TABLES
+from daemon.bus.models import CONTROL_TABLES
 from daemon.bus.servo_bus import ServoBus
 from daemon.errors import PortMissingError
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
