@@ -16,6 +16,7 @@ from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
 from retarget.robot_tables import BLANK
 from retarget.servos import servo_models
+from retarget.standing import standing_pose
 
 Array = NDArray[np.float64]
 _UNLIMITED_DEG = (-90.0, 90.0)
@@ -72,15 +73,9 @@ def propose(description: Path, robot_file: Path, servo: str = BLANK) -> Proposal
 
 def _hanging(retargeter: Retargeter) -> Array:
     """(J,) arms down and a little outwards, elbows a little bent, clear of the body where that can be."""
-    robot = retargeter.robot
-    q = np.clip(np.zeros(robot.n_joints), robot.position_min_rad, robot.position_max_rad)
+    q = retargeter.robot.rest_rad
     for outward in _OUTWARD:
-        for arm in retargeter.arms:
-            side = 1.0 if arm.side == "left" else -1.0
-            upper, fore = np.array([[0.0, side * outward, -1]]), np.array([[0.25, side * outward, -1]])
-            columns = list(arm.joints)
-            solution = arm.solve(upper / np.linalg.norm(upper), fore / np.linalg.norm(fore), None)
-            q[columns] = np.clip(solution.q_rad[0], robot.position_min_rad[columns], robot.position_max_rad[columns])
+        q = standing_pose(retargeter, (0.0, outward, -1.0), (0.25, outward, -1.0))
         if retargeter.contact.clearance_m(q[None])[0] >= _CLEAR_M:
             break
     return q

@@ -9,10 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from retarget.pipeline import Retargeter
     from retarget.proposal import Proposal
     from retarget.robot import RobotModel
 
@@ -137,9 +133,13 @@ def _show(console: Any, model: RobotModel, out: Path, text: str, seed: int) -> i
     from daemon.robot_picture import Pose, robot_picture
     from mmm_core.engine import Engine
     from retarget.pipeline import Retargeter
+    from retarget.standing import standing_pose
 
     retargeter = Retargeter(model)
-    poses = [Pose("rest", model.rest_rad), Pose("arms out", _arms_out(retargeter))]
+    poses = [
+        Pose("rest", model.rest_rad),
+        Pose("arms out", standing_pose(retargeter, (0.0, 1.0, 0.0), (0.0, 1.0, 0.0))),
+    ]
     motion = Engine.load(threads=None).generate(text, seed=seed).motion
     if len(motion.joints_m):
         q_rad = retargeter.retarget(motion).q_rad
@@ -149,14 +149,3 @@ def _show(console: Any, model: RobotModel, out: Path, text: str, seed: int) -> i
     robot_picture(model, poses, out)
     console.print(f"{out}: drawn")
     return 0
-
-
-def _arms_out(retargeter: Retargeter) -> NDArray[np.float64]:
-    """(J,) the rest pose with both arms to the sides, as far as they go."""
-    import numpy as np
-
-    q = retargeter.robot.rest_rad.copy()
-    for arm in retargeter.arms:
-        out = np.array([[0.0, 1.0 if arm.side == "left" else -1.0, 0.0]])
-        q[list(arm.joints)] = arm.solve(out, out, q[list(arm.joints)]).q_rad[0]
-    return np.clip(q, retargeter.robot.position_min_rad, retargeter.robot.position_max_rad)
