@@ -33,13 +33,18 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="the bus process of mmmd; started by `mmmd run`")
     for name in ("--robot", "--bus", "--link"):
         parser.add_argument(name, required=True)
+    parser.add_argument("--after-loss", action="store_true")
     arguments = parser.parse_args()
     logging.basicConfig(level=logging.INFO, format="bus: %(levelname)s %(message)s")
     robot = load_robot(arguments.robot)
     link = BusLink.attach(Path(arguments.link), robot.n_joints)
     clock = RealClock()
     streamer = start(
-        robot, lambda: ServoBus(open_port(arguments.bus, PortContext(robot, clock)), robot.servos, clock), link, clock
+        robot,
+        lambda: ServoBus(open_port(arguments.bus, PortContext(robot, clock)), robot.servos, clock),
+        link,
+        clock,
+        after_loss=arguments.after_loss,
     )
     if streamer is None:
         return 1
