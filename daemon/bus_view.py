@@ -62,8 +62,10 @@ class BusView:
             self.state = BusState(int(last["state"]))
         return records, lost
 
-    def begin(self) -> None:
-        """The bus process has just said that it is ready: its silence counts from here."""
+    def begin(self, state: BusState = BusState.LIMP) -> None:
+        """The bus process has just said that it is ready, in `state`: its silence counts from here."""
+        self.update()  # what one before it has published is not its own
+        self.state, self.at_rest = state, True
         self._last_cycle_s = time.monotonic()
 
     @property
