@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-BenchName = Literal["generate", "first-motion", "audit"]
+BenchName = Literal["generate", "first-motion", "audit", "bus"]
 
 
 def bench(
@@ -16,7 +16,8 @@ def bench(
     """Measure one figure and print it.
 
     generate: a whole 196-frame motion on one thread. first-motion: text to first moving servo frame, warm, through the
-    daemon. audit: many texts through the daemon's bus side on two robots, every goal checked against the limits.
+    daemon. audit: many texts through the daemon's bus side on two robots, every goal checked against the limits. bus:
+    codec and servo bus against a wire kept on a pty, beside other drivers where they are installed.
 
     Example: mmmd bench first-motion --json
 
@@ -36,6 +37,10 @@ def bench(
         from daemon.bench.first_motion import bench_first_motion
 
         figures = bench_first_motion(n or 50, seed)
+    elif name == "bus":
+        from daemon.bench.bus import bench_bus
+
+        figures = bench_bus(seed=seed)
     else:
         from daemon.bench.audit import bench_audit
 
