@@ -203,8 +203,8 @@ class ServoBus:
         whole = step.take(self._raw, self.reading)
         rows = step.rows
         if whole.all():
-            valid[rows] = True
-            self.reading.read_s[rows] = sent_s
+            valid[step.index] = True
+            self.reading.read_s[step.index] = sent_s
             return
         valid[rows[whole]] = True
         if not isinstance(step, FastSyncStep):
@@ -273,6 +273,9 @@ class ServoBus:
     def _judge(self, valid: NDArray[np.bool_]) -> None:
         """Ages, health, quarantine."""
         reading, now_s = self.reading, self._clock.now_s()
+        if valid.all() and self.health.all_well(reading.error) and not self._careful:
+            reading.age_cycles[:] = 0
+            return
         reading.age_cycles += 1
         reading.age_cycles[valid] = 0
         silent_before = self.health.asked.copy()
