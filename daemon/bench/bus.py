@@ -15,7 +15,7 @@ from rich.console import Console
 
 from daemon.bench.bus_peers import PEERS, c_client_us, installed, sdk_codec_us
 from daemon.bench.report import context
-from daemon.bench.wire_emulator import CURRENT_RAW, MODEL_NUMBER, POSITION_TICK, VELOCITY_RAW
+from daemon.bench.wire_emulator import CURRENT_RAW, POSITION_TICK, VELOCITY_RAW
 from daemon.bus.feedback import FastSyncStep, SyncStep
 from daemon.bus.group import GroupWrite
 from daemon.bus.packet import Part, fast_status, status
