@@ -78,6 +78,7 @@ class Front:
         self.performer = Performer(config, link, planner, self.follower, self.ledger, sources)
         self._desk = Desk(robot, self.performer, sources, self.ledger, generator, self.state_event)
         self._started_s = time.monotonic()
+        self.recording = str(config.log) if config.log else ""
         self._last_values: dict[bytes, bytes] = {}
         self._tasks: list[asyncio.Task[None]] = []
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -238,7 +239,7 @@ class Front:
             present_rad=[round(float(q), 5) for q in self.view.present_rad],
             queued_ms=round(1e3 * self.link.queued_frames / self._robot.bus.rate_hz, 1),
             bus_info=self.view.counters(),
-            recording=str(self._config.log) if self._config.log else "",
+            recording=self.recording,
             uptime_s=round(time.monotonic() - self._started_s, 2),
             waiting=self.performer.waiting_ids(),
             idle=self.performer.layers.idle_style or "off",

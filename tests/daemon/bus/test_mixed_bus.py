@@ -363,7 +363,7 @@ def test_what_is_not_there_is_named() -> None:
 def test_a_servo_without_a_control_table_is_refused() -> None:
     far, servos, clock = fake("XM430-W350")
     strange = replace(servos[0].model, name="XQ-1", model_number=9999)
-    odd = replace(servos[0], model=strange)
+    odd = replace(servos[0], joint_name="arm", model=strange)
     with pytest.raises(ConfigError, match=r"XQ-1.*known: XH430-W350"):
         ServoBus(far, [odd], clock)
 
