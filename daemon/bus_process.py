@@ -39,7 +39,7 @@ def main() -> int:
     arguments = parser.parse_args()
     logging.basicConfig(level=logging.INFO, format="bus: %(levelname)s %(message)s")
     robot = load_robot(arguments.robot)
-    link = BusLink.attach(Path(arguments.link), robot.n_joints)
+    link = BusLink.attach(Path(arguments.link), robot.n_joints, robot.n_servos)
     clock = RealClock()
 
     def open_bus() -> ServoBus:

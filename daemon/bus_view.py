@@ -38,8 +38,8 @@ class BusView:
         self.state = BusState.LIMP
         self.goal_rad: Array = robot.park_rad.copy()
         self.present_rad: Array = robot.park_rad.copy()
-        self.valid = np.zeros(robot.n_joints, bool)
-        self.error = np.zeros(robot.n_joints, np.uint8)
+        self.valid = np.zeros(robot.n_servos, bool)
+        self.error = np.zeros(robot.n_servos, np.uint8)
         self.lost = 0
         self.underruns = 0
 

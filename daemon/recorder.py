@@ -36,7 +36,7 @@ def main() -> int:
     arguments = parser.parse_args()
     logging.basicConfig(level=logging.INFO, format="recorder: %(levelname)s %(message)s")
     robot = load_robot(arguments.robot)
-    link = BusLink.attach(Path(arguments.link), robot.n_joints)
+    link = BusLink.attach(Path(arguments.link), robot.n_joints, robot.n_servos)
     stopping: list[int] = []
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, lambda number, _frame: stopping.append(number))

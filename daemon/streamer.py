@@ -303,7 +303,7 @@ class Streamer:
             row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)
             if reading.valid[row] and self._bus.poll_item(self._bus.ids[row], "torque_enable") == 0:
                 self._fault(
-                    f"servo {self._bus.ids[row]} ({self.robot.joint_names[row]}) lost its torque; it may have rebooted"
+                    f"servo {self._bus.ids[row]} ({self.robot.servos[row].joint_name}) lost its torque; it may have rebooted"
                 )
 
     def _fault(self, text: str) -> None:

@@ -78,7 +78,7 @@ class Supervisor:
     def __init__(self, config: DaemonConfig) -> None:
         self._config = config
         self._robot: RobotModel = load_robot(config.robot)
-        self._link = BusLink.create(self._robot.n_joints)
+        self._link = BusLink.create(self._robot.n_joints, self._robot.n_servos)
         self._folder = tempfile.TemporaryDirectory(prefix="mmmd-")
         self._context = zmq.asyncio.Context()
         self._children: list[Child] = []

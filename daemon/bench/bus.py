@@ -116,10 +116,7 @@ def _emulator(baud: int, *, fast: bool = True, loss: float = 0.0, dead: int = 0)
 @contextmanager
 def _bus(device: str, baud: int, *, verify: bool = True) -> Generator[ServoBus]:
     model = servo_models()["XM430-W350"]
-    servos = [
-        ServoSpec(i, f"joint_{i}", model, 1, 1.0, model.zero_tick, ((n, 1.0),), model.min_tick, model.max_tick)
-        for n, i in enumerate(IDS)
-    ]
+    servos = [ServoSpec.direct(i, f"joint_{i}", model) for i in IDS]
     port = SerialPort(device, baud)
     try:
         bus = ServoBus(port, servos, RealClock())

@@ -44,7 +44,7 @@ def sim(
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda _number, _frame: server.stop())
     where = f"{link} -> {server.device}" if link else server.device
-    console.print(f"{model.n_joints} servos of '{model.name}' at {baud} baud on {where}", highlight=False)
+    console.print(f"{model.n_servos} servos of '{model.name}' at {baud} baud on {where}", highlight=False)
     try:
         server.serve()
     finally:

@@ -193,10 +193,7 @@ class FakePort:
 
 def spec(name: str, servo_id: int) -> ServoSpec:
     """A servo of a robot file."""
-    model = servo_models()[name]
-    return ServoSpec(
-        servo_id, f"joint_{servo_id}", model, 1, 1.0, model.zero_tick, ((servo_id - 1, 1.0),), model.min_tick, model.max_tick
-    )  # fmt: skip
+    return ServoSpec.direct(servo_id, f"joint_{servo_id}", servo_models()[name], servo_id - 1)
 
 
 def fake(*names: str, **port: object) -> tuple[FakePort, list[ServoSpec], VirtualClock]:
