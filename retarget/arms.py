@@ -1,10 +1,15 @@
 """Arms in closed form: joint angles from the directions of upper arm and forearm.
 
-For an arm whose first two axes are orthogonal (pitch and roll, in any order, any zero pose) the upper arm's direction
-gives both angles in two ways; a third axis along the upper arm and the elbow then give the forearm's direction in two
-ways (Paden-Kahan subproblem 2; Murray, Li, Sastry 1994, sec. 3.2). Arms without that third axis cannot reach both
-directions: a few Gauss-Newton steps from each start find the least weighted error. Among the ways, dynamic programming
-picks those that stay within the limits and move least.
+Families by the joints from chest to elbow, found in the description, with any axes, signs, order and zero pose:
+
+- three shoulder axes and an elbow (arms of 4 to 7 joints): the angle between the bones gives the elbow, two ways; the
+  shoulder's rotation then follows from both directions and splits into its three angles, two ways (Paden-Kahan
+  subproblems; Murray, Li, Sastry 1994, sec. 3.2). Any pair of directions is reached, in up to four ways.
+- two shoulder axes and an elbow (3 joints), one and an elbow, or two without an elbow (2 joints): most pairs cannot be
+  reached. From several closed-form starts Gauss-Newton steps within the limits find the least weighted error.
+
+Among the ways, dynamic programming picks those that stay within the limits and move least. Where axes do not meet or
+bones lie beside them, the directions follow the true points and a few damped steps take up what the closed form left.
 """
 
 from __future__ import annotations
@@ -19,96 +24,217 @@ from retarget.kinematics import Kinematics, cross, rotate, skew
 
 Array = NDArray[np.float64]
 UPPER_WEIGHT, FORE_WEIGHT = 1.0, 1.0
-_GAUSS_NEWTON_STEPS = 6
+_LEAST_ERROR_STEPS, _OFFSET_STEPS = 7, 3
+_DAMPING = 1e-3
+_LARGEST_STEP_RAD = 0.6
 _LIMIT_COST, _ERROR_COST = 1.0, 4.0
 """Per radian outside a limit and per radian of direction error, against per radian of joint motion."""
+_LEAST_SINE = 0.3
+"""Sine of the angle between neighbouring shoulder axes below which one of them is of no use."""
+_SAME_M = 1e-6
+"""An axis so near the shoulder passes through it."""
+_SPREAD = {2: 21, 3: 9}
+"""Poses for each joint among which a start for the least error is looked for, by number of joints."""
+_STRAIGHT = 1e-6
+"""Sine below which two directions count as parallel."""
 
 
 @dataclass(frozen=True)
-class ArmSolution:
-    """Angles (T, n) of the arm's joints up to the elbow, and how much each is seen, (T, n) in 0..1."""
+class Bones:
+    """Directions of both bones for angles (..., n), and how they change.
 
-    q_rad: Array
-    seen: Array
+    Attributes:
+        upper, fore: (..., 3) unit directions.
+        upper_jacobian, fore_jacobian: (..., n, 3) change of each per radian of each joint.
+    """
+
+    upper: Array
+    fore: Array
+    upper_jacobian: Array
+    fore_jacobian: Array
 
 
 class Arm:
-    """One arm of a robot: `joints` are the indices of shoulder (two or three) and elbow joints in order."""
+    """One arm of a robot: `joints` are the indices of its joints from the chest to the elbow, in order."""
 
     def __init__(self, kinematics: Kinematics, side: str) -> None:
         robot = kinematics.robot
-        elbow = robot.joint_with_role(f"{side}_elbow")
         points = {p.name: p for p in kinematics.key_points}
-        if elbow is None or f"{side}_wrist" not in points:
-            allowed = f"a joint with role {side}_elbow and a site {side}_wrist"
-            raise RobotFileError(robot.path, f"{side} arm", "no elbow joint or no site for the wrist", allowed)
         roles = {f"{side}_{part}" for part in ("shoulder_pitch", "shoulder_roll", "shoulder_yaw", "elbow")}
-        self.joints = tuple(j for j in kinematics.chains[elbow] if robot.joints[j].role in roles)
+        found = [j for j in range(robot.n_joints) if robot.joints[j].role in roles]
+        allowed = f"joints with roles {side}_shoulder_pitch, _roll, _yaw, _elbow (two to four) and a site {side}_wrist"
+        if f"{side}_wrist" not in points or f"{side}_shoulder" not in points:
+            raise RobotFileError(robot.path, f"{side} arm", f"no site '{side}_wrist' or no shoulder joint", allowed)
+        wrist = points[f"{side}_wrist"]
+        self.joints = tuple(j for j in wrist.chain if j in found)
         self.side = side
-        self.axes = kinematics.axes[list(self.joints)]
-        self.low = robot.position_min_rad[list(self.joints)]
-        self.high = robot.position_max_rad[list(self.joints)]
-        shoulder, wrist = points[f"{side}_shoulder"].zero_m, points[f"{side}_wrist"].zero_m
-        elbow_m = kinematics.anchors[elbow]
-        self.upper0 = _unit(elbow_m - shoulder)
-        self.fore0 = _unit(wrist - elbow_m)
-        self.has_yaw = len(self.joints) == 4
-        if len(self.joints) not in (3, 4) or abs(self.axes[0] @ self.axes[1]) > 0.05:
-            allowed = "two orthogonal shoulder axes, an optional axis along the upper arm, an elbow"
-            raise RobotFileError(robot.path, f"{side} arm", f"{len(self.joints)} joints to the elbow", allowed)
-        if self.has_yaw:  # the upper arm is taken along its own axis, so that the yaw does not move it
-            self.upper0 = self.axes[2] * np.sign(self.axes[2] @ self.upper0)
+        elbow = robot.joint_with_role(f"{side}_elbow")
+        self.has_elbow = elbow is not None
+        n_shoulder = len(self.joints) - self.has_elbow
+        if not (1 <= n_shoulder <= 3 and len(self.joints) >= 2) or set(found) != set(self.joints):
+            names = ", ".join(robot.joint_names[j] for j in found) or "no joints"
+            raise RobotFileError(robot.path, f"{side} arm", f"{names} on the way to the wrist", allowed)
+        if self.has_elbow and self.joints[-1] != elbow:
+            raise RobotFileError(robot.path, f"{side} arm", "a shoulder joint beyond the elbow", "the elbow as last")
+        rows = list(self.joints)
+        self.axes, self._anchors = kinematics.axes[rows], kinematics.anchors[rows]
+        self.low, self.high = robot.position_min_rad[rows], robot.position_max_rad[rows]
+        self._middle = (self.low + self.high) / 2
+        shoulder = points[f"{side}_shoulder"]
+        self._shoulder_m, self._wrist_m = shoulder.zero_m, wrist.zero_m
+        self._elbow_m = self._wrist_m if elbow is None else kinematics.anchors[elbow]
+        below = np.array([j not in shoulder.chain for j in self.joints])
+        self.upper0 = _unit(self._elbow_m - self._shoulder_m)
+        self.fore0 = self.upper0 if elbow is None else _unit(self._wrist_m - self._elbow_m)
+        self.upper_m = float(np.linalg.norm(self._elbow_m - self._shoulder_m))
+        self.fore_m = float(np.linalg.norm(self._wrist_m - self._elbow_m)) if self.has_elbow else 0.0
+        for a in range(n_shoulder - 1):
+            if np.linalg.norm(cross(self.axes[a], self.axes[a + 1])) < _LEAST_SINE:
+                pair = f"'{robot.joint_names[rows[a]]}' and '{robot.joint_names[rows[a + 1]]}' turn about nearly one axis"
+                raise RobotFileError(robot.path, f"{side} arm", pair, "neighbouring shoulder axes well apart")
+        self.reaches_all = n_shoulder == 3 and self.has_elbow
+        self._n_shoulder = n_shoulder
+        self._skews = np.array([skew(a) for a in self.axes])
+        self._skews_squared = self._skews @ self._skews
+        last = self.axes[n_shoulder - 1]
+        self._across3 = _unit(cross(last, np.eye(3)[np.abs(last).argmin()]))
+        # A joint between shoulder and elbow whose axis misses the shoulder moves the elbow other than by turning the bone.
+        lever = np.linalg.norm(cross(self.axes, self._anchors - self._shoulder_m), axis=1)
+        self._offset = below & (np.arange(len(rows)) < n_shoulder) & (lever > _SAME_M)
+        self._has_offsets = bool(self._offset.any())
+        if not self.reaches_all:
+            steps = _SPREAD[len(rows)]
+            ranges = [np.linspace(a, b, steps) for a, b in zip(self.low, self.high, strict=True)]
+            self._spread_rad = np.stack(np.meshgrid(*ranges), -1).reshape(-1, len(rows))
+            upper, fore = self.directions(self._spread_rad)
+            self._spread_upper, self._spread_fore = UPPER_WEIGHT * upper.T, FORE_WEIGHT * fore.T
 
-    def solve(self, upper: Array, fore: Array, previous_rad: Array | None) -> ArmSolution:
-        """Angles for unit directions `upper` and `fore` (T, 3) in the chest frame, first near `previous_rad` (n,)."""
-        shoulder = [subproblem_2(self.axes[0], self.axes[1], self.upper0, upper, s) for s in (1.0, -1.0)]
-        candidates: list[Array] = []
-        if self.has_yaw:
-            for q1, q2 in shoulder:
-                local = rotate(self.axes[1], -q2, rotate(self.axes[0], -q1, fore))
-                for s in (1.0, -1.0):
-                    candidates.append(
-                        np.stack([q1, q2, *subproblem_2(self.axes[2], self.axes[3], self.fore0, local, s)], -1)
-                    )
+    def solve(self, upper: Array, fore: Array, previous_rad: Array | None) -> Array:
+        """(T, n) angles within the limits for unit directions (T, 3) in the chest frame, the first near `previous_rad`."""
+        if self.reaches_all:
+            ways = self._every_pair(upper, fore)
+            if self._has_offsets:
+                ways = self._refine(ways, upper, fore, _OFFSET_STEPS)
         else:
-            between = _unit(upper + fore)
-            starts = shoulder + [subproblem_2(self.axes[0], self.axes[1], self.upper0, between, s) for s in (1.0, -1.0)]
-            for q1, q2 in starts:
-                local = rotate(self.axes[1], -q2, rotate(self.axes[0], -q1, fore))
-                start = np.stack([q1, q2, angle_about(self.axes[2], self.fore0, local)], -1)
-                candidates.append(self._refine(start, upper, fore))
-        ways = self._nearest_turn(np.stack(candidates, 1))  # (T, C, n)
-        q = self._choose(ways, upper, fore, previous_rad)
-        return ArmSolution(q, self._seen(q))
+            ways = self._refine(self._starts(upper, fore), upper, fore, _LEAST_ERROR_STEPS)
+        return self._choose(self._nearest_turn(ways), upper, fore, previous_rad)
 
     def directions(self, q: Array) -> tuple[Array, Array]:
-        """Directions of upper arm and forearm, each (..., 3), for angles (..., n)."""
-        upper = np.broadcast_to(self.upper0, (*q.shape[:-1], 3))
-        fore = np.broadcast_to(self.fore0, (*q.shape[:-1], 3))
-        for j in range(len(self.joints) - 1, -1, -1):
-            fore = rotate(self.axes[j], q[..., j], fore)
-            if j < 2:
-                upper = rotate(self.axes[j], q[..., j], upper)
-        return upper, fore
+        """Unit directions of upper arm and forearm, each (..., 3), for angles (..., n)."""
+        turned = np.eye(3)
+        upper = self.upper0
+        R = self._rotations(q)
+        for j in range(self._n_shoulder):
+            turned = turned @ R[..., j, :, :]
+        upper = _unit(self._upper_vector(R)[0]) if self._has_offsets else turned @ self.upper0
+        if self.has_elbow:
+            return upper, turned @ R[..., -1, :, :] @ self.fore0
+        return upper, upper
 
-    def _refine(self, q: Array, upper: Array, fore: Array) -> Array:
-        """Gauss-Newton on both direction errors, angles kept inside their limits."""
-        for _ in range(_GAUSS_NEWTON_STEPS):
-            q = np.clip(q, self.low, self.high)
-            u, f = self.directions(q)
-            axis1 = np.broadcast_to(self.axes[0], u.shape)
-            axis2 = rotate(self.axes[0], q[:, 0], np.broadcast_to(self.axes[1], u.shape))
-            axis3 = rotate(self.axes[0], q[:, 0], rotate(self.axes[1], q[:, 1], np.broadcast_to(self.axes[2], u.shape)))
-            wu, wf = UPPER_WEIGHT**0.5, FORE_WEIGHT**0.5
-            J = np.concatenate([
-                wu * np.stack([cross(axis1, u), cross(axis2, u), np.zeros_like(u)], -1),
-                wf * np.stack([cross(axis1, f), cross(axis2, f), cross(axis3, f)], -1),
-            ], 1)  # (T, 6, 3)  # fmt: skip
-            error = np.concatenate([wu * (upper - u), wf * (fore - f)], 1)
-            normal = J.transpose(0, 2, 1) @ J + 1e-3 * np.eye(3)
-            step = np.linalg.solve(normal, (J.transpose(0, 2, 1) @ error[..., None]))[..., 0]
-            q = q + np.clip(step, -0.5, 0.5)
-        return np.clip(q, self.low, self.high)
+    def bones(self, q: Array) -> Bones:
+        """Directions of both bones for angles (..., n), with their Jacobians."""
+        R = self._rotations(q)
+        turned = np.broadcast_to(np.eye(3), R.shape[:-3] + (3, 3))
+        axes = np.empty((*q.shape, 3))
+        upper = np.empty((*q.shape[:-1], 3))
+        for j in range(len(self.joints)):
+            if j == self._n_shoulder:
+                upper = turned @ self.upper0
+            axes[..., j, :] = turned @ self.axes[j]
+            turned = turned @ R[..., j, :, :]
+        fore = turned @ self.fore0
+        if not self.has_elbow:
+            upper = fore
+        upper_jacobian = cross(axes, upper[..., None, :])
+        if self._has_offsets:
+            upper, upper_jacobian = self._upper_with_offsets(R, axes)
+        upper_jacobian[..., self._n_shoulder :, :] = 0.0
+        return Bones(upper, fore, upper_jacobian, cross(axes, fore[..., None, :]))
+
+    def _rotations(self, q: Array) -> Array:
+        """(..., n, 3, 3) rotation of each joint."""
+        sine, versine = np.sin(q)[..., None, None], (1 - np.cos(q))[..., None, None]
+        return np.eye(3) + sine * self._skews + versine * self._skews_squared
+
+    def _upper_vector(self, R: Array) -> tuple[Array, list[Array]]:
+        """(..., 3) shoulder to elbow, and for each shoulder joint the vector from what it turns about to the elbow."""
+        n = self._n_shoulder
+        levers: list[Array] = []
+        v = np.broadcast_to(self._elbow_m - self._shoulder_m, (*R.shape[:-3], 3))
+        for j in range(n - 1, -1, -1):
+            # The joint's axis misses the shoulder by `beside`; about all others the bone itself turns.
+            beside = self._anchors[j] - self._shoulder_m if self._offset[j] else np.zeros(3)
+            lever = (R[..., j, :, :] @ (v - beside)[..., None])[..., 0]
+            levers = [(R[..., j, :, :] @ w[..., None])[..., 0] for w in levers]
+            levers.insert(0, lever)
+            v = lever + beside
+        return v, levers
+
+    def _upper_with_offsets(self, R: Array, axes: Array) -> tuple[Array, Array]:
+        v, levers = self._upper_vector(R)
+        length = np.linalg.norm(v, axis=-1, keepdims=True)
+        upper = v / length
+        jacobian = np.zeros((*axes.shape[:-2], len(self.joints), 3))
+        for j, lever in enumerate(levers):
+            moved = cross(axes[..., j, :], lever)
+            jacobian[..., j, :] = (moved - (moved * upper).sum(-1, keepdims=True) * upper) / length
+        return upper, jacobian
+
+    def _every_pair(self, upper: Array, fore: Array) -> Array:
+        """(T, 4, 4) the four ways of a shoulder of three axes and an elbow, where bones turn about the shoulder."""
+        a1, a2, a3, elbow_axis = self.axes
+        middle, spread = _turns_to(elbow_axis, self.fore0, self.upper0, (upper * fore).sum(-1))
+        elbow = np.stack([middle - spread, middle + spread], 1)  # (T, 2)
+        bent = rotate(elbow_axis, elbow, self.fore0)  # (T, 2, 3) forearm in the upper arm's zero frame
+        R = _frame(upper, fore)[:, None] @ np.swapaxes(_frame(self.upper0, bent), -1, -2)  # (T, 2, 3, 3)
+        middle, spread = _turns_to(a2, a3, a1, (R @ a3) @ a1)
+        q2 = np.stack([middle - spread, middle + spread], 2)  # (T, 2, 2)
+        R = R[:, :, None]
+        q1 = angle_about(a1, rotate(a2, q2, a3), R @ a3)
+        back = rotate(a2, -q2, rotate(a1, -q1, R @ self._across3))
+        q3 = angle_about(a3, self._across3, back)
+        ways = np.stack([q1, q2, q3, np.broadcast_to(elbow[:, :, None], q1.shape)], -1)
+        return ways.reshape(len(upper), 4, 4)
+
+    def _starts(self, upper: Array, fore: Array) -> Array:
+        """(T, C, n) angles from which to look for the least error: each bone by itself, and between both."""
+        between = _unit(upper + fore)
+        starts: list[Array] = []
+        for aim in (upper, between) if self.has_elbow else (between,):
+            if self._n_shoulder == 1:
+                shoulders = [(angle_about(self.axes[0], self.upper0, aim),)]
+            else:
+                shoulders = [subproblem_2(self.axes[0], self.axes[1], self.upper0, aim, s) for s in (1.0, -1.0)]
+            for shoulder in shoulders:
+                if not self.has_elbow:
+                    starts.append(np.stack(shoulder, -1))
+                    continue
+                local = fore
+                for axis, q in zip(self.axes, shoulder, strict=False):
+                    local = rotate(axis, -q, local)
+                starts.append(np.stack([*shoulder, angle_about(self.axes[-1], self.fore0, local)], -1))
+        # The nearest of poses spread over the range: limits make valleys that the others may miss.
+        nearest = (upper @ self._spread_upper + fore @ self._spread_fore).argmax(1)
+        return np.stack([*starts, self._spread_rad[nearest]], 1)
+
+    def _refine(self, q: Array, upper: Array, fore: Array, steps: int) -> Array:
+        """Gauss-Newton on both direction errors from angles (T, C, n), kept inside their limits."""
+        q = np.clip(self._nearest_turn(q), self.low, self.high)
+        upper, fore = upper[:, None], fore[:, None]
+        damping = _DAMPING * np.eye(q.shape[-1])
+        for _ in range(steps):
+            b = self.bones(q)
+            slope = UPPER_WEIGHT * (b.upper_jacobian @ (upper - b.upper)[..., None]) + FORE_WEIGHT * (
+                b.fore_jacobian @ (fore - b.fore)[..., None]
+            )  # (T, C, n, 1)
+            # A joint at its limit that is pushed further out stays; the others make up for it.
+            stuck = ((q <= self.low) & (slope[..., 0] < 0)) | ((q >= self.high) & (slope[..., 0] > 0))
+            free = ~stuck[..., None]
+            ju, jf = b.upper_jacobian * free, b.fore_jacobian * free
+            normal = UPPER_WEIGHT * ju @ np.swapaxes(ju, -1, -2) + FORE_WEIGHT * jf @ np.swapaxes(jf, -1, -2)
+            step = np.linalg.solve(normal + damping, slope * free)[..., 0]
+            q = np.clip(q + np.clip(step, -_LARGEST_STEP_RAD, _LARGEST_STEP_RAD), self.low, self.high)
+        return q
 
     def _nearest_turn(self, ways: Array) -> Array:
         """Whole turns added where that brings an angle into its limits."""
@@ -139,37 +265,47 @@ class Arm:
             way[t - 1] = back[t, way[t]]
         return inside[np.arange(T), way]
 
-    def _seen(self, q: Array) -> Array:
-        """How much each joint's turning shows: the first not with the arm along its axis, the yaw not when straight."""
-        upper, fore = self.directions(q)
-        seen = np.ones_like(q)
-        across_upper = np.linalg.norm(upper @ skew(self.axes[0]), axis=-1)
-        across_fore = np.linalg.norm(fore @ skew(self.axes[0]), axis=-1)
-        seen[:, 0] = np.maximum(across_upper, across_fore) ** 2
-        if self.has_yaw:
-            seen[:, 2] = np.linalg.norm(cross(upper, fore), axis=-1) ** 2
-        return seen
-
 
 def subproblem_2(axis1: Array, axis2: Array, p: Array, q: Array, sign: float) -> tuple[Array, Array]:
-    """Angles (T,), (T,) with R(axis1) R(axis2) p = q for orthogonal unit axes; the nearest direction where none exists.
+    """Angles (T,), (T,) with R(axis1) R(axis2) p = q for unit vectors; the nearest direction where none exists.
 
     `sign` (+1 or -1) picks one of the two ways.
     """
-    along1, along2 = q @ axis1, float(p @ axis2)
-    rest = 1 - along2**2 - along1**2
-    along1 = np.where(rest < 0, np.clip(along1, -np.sqrt(1 - along2**2), np.sqrt(1 - along2**2)), along1)
-    third = sign * np.sqrt(np.maximum(rest, 0.0))
-    middle = along2 * axis2 + along1[..., None] * axis1 + third[..., None] * cross(axis1, axis2)
-    return angle_about(axis1, middle, q), angle_about(axis2, p, middle)
+    middle, spread = _turns_to(axis2, p, axis1, q @ axis1)
+    angle2 = middle + sign * spread
+    return angle_about(axis1, rotate(axis2, angle2, p), q), angle2
 
 
 def angle_about(axis: Array, a: Array, b: Array) -> Array:
-    """(T,) angle about unit `axis` that turns `a` nearest to `b`; 0 where either lies along the axis."""
+    """(...,) angle about unit `axis` that turns `a` nearest to `b`; 0 where either lies along the axis."""
     a = a - (a @ axis)[..., None] * axis
-    b = b - (b @ axis)[..., None] * axis
     sine, cosine = (a * (b @ skew(axis))).sum(-1), (a * b).sum(-1)
-    return np.where(np.abs(sine) + np.abs(cosine) > 1e-9, np.arctan2(sine, cosine), 0.0)
+    return np.where(np.abs(sine) + np.abs(cosine) > _STRAIGHT, np.arctan2(sine, cosine), 0.0)
+
+
+def _turns_to(axis: Array, v: Array, onto: Array, height: Array) -> tuple[Array, Array]:
+    """Angles m, s (...,): turned by m + s or m - s about `axis`, `v` has the component `height` (...,) along `onto`.
+
+    Where no angle gives that much or that little, s is 0 or pi and the component as near as can be.
+    """
+    still = float(axis @ onto) * float(axis @ v)
+    cosine, sine = float(onto @ v) - still, float(onto @ cross(axis, v))
+    reach = max(float(np.hypot(cosine, sine)), 1e-9)
+    return np.full(height.shape, np.arctan2(sine, cosine)), np.arccos(np.clip((height - still) / reach, -1, 1))
+
+
+def _frame(a: Array, b: Array) -> Array:
+    """(..., 3, 3) rotations whose columns are `a`, what is across both, and what is across that; any such when parallel."""
+    a, b = np.broadcast_arrays(a, b)
+    across = cross(a, b)
+    length = np.linalg.norm(across, axis=-1, keepdims=True)
+    if (length < _STRAIGHT).any():
+        least = np.eye(3)[np.abs(a).argmin(-1)]
+        other = cross(a, least)
+        across = np.where(length < _STRAIGHT, other, across)
+        length = np.linalg.norm(across, axis=-1, keepdims=True)
+    across = across / length
+    return np.stack([a, across, cross(a, across)], -1)
 
 
 def _unit(v: Array) -> Array:

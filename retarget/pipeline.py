@@ -13,11 +13,12 @@ from retarget.arms import Arm
 from retarget.collision import SelfContact
 from retarget.human import HumanPose, read_human
 from retarget.kinematics import Kinematics
-from retarget.limits import JointLimits, brake, limit_path, limit_step, stopping_velocity_rad_s
+from retarget.following import limit_path
+from retarget.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
 from retarget.paths import JointPath, JointState
+from retarget.posing import Poser
 from retarget.report import RetargetReport
 from retarget.robot import RobotModel
-from retarget.trunk import solve_neck, solve_waist
 
 Array = NDArray[np.float64]
 _REST_PULL = 0.02
@@ -38,7 +39,8 @@ class Retargeter:
         self.robot = robot
         self.kinematics = Kinematics(robot)
         self.limits = JointLimits.of(robot)
-        self.arms = tuple(Arm(self.kinematics, side) for side in ("left", "right"))
+        self._poser = Poser(self.kinematics, self.limits)
+        self.arms = self._poser.arms
         self.contact = SelfContact(robot)
         arm = [j.role.startswith(("left_", "right_")) for j in robot.joints]
         self._mobility = np.array(arm, np.float64)  # arms give way, the head keeps looking where it looks
@@ -124,25 +126,24 @@ class Retargeter:
         return np.array(points)
 
     def solve(self, human: HumanPose, start: JointState | None) -> Array:
-        """(T, J) joint angles for each frame, before limits in time."""
-        T = len(human.trunk_yaw_rad)
-        q = np.tile(self.robot.rest_rad, (T, 1))
-        solve_waist(self.kinematics, human, q)
-        q = np.clip(q, self.limits.position_min_rad, self.limits.position_max_rad)
-        solve_neck(self.kinematics, human, q)
-        before = self.robot.rest_rad if start is None else start.position_rad
+        """(T, J) joint angles for each frame within the position limits, before limits in time and contacts."""
+        return self._poser.solve(human, None if start is None else start.position_rad)
+
+    def arm(self, side: str) -> Arm:
+        """The arm of a side."""
+        return next(arm for arm in self.arms if arm.side == side)
+
+    def direction_errors_deg(self, human: HumanPose, q_rad: Array) -> Array:
+        """(4, T) angle between human and robot bone: left upper arm, left forearm, right upper arm, right forearm."""
+        rows: list[Array] = []
         for arm in self.arms:
-            columns = list(arm.joints)
-            solution = arm.solve(human.upper[arm.side], human.fore[arm.side], before[columns])
-            q[:, columns] = _let_rest(solution.q_rad, solution.seen, before[columns])
-            twist = self.robot.joint_with_role(f"{arm.side}_forearm_yaw")
-            if twist is not None:
-                along = self.kinematics.axes[twist] @ arm.fore0
-                q[:, twist] = np.sign(along) * human.forearm_twist_rad[arm.side]
-        return q
+            upper, fore = arm.directions(q_rad[:, list(arm.joints)])
+            rows += [_angle_deg(upper, human.upper[arm.side]), _angle_deg(fore, human.fore[arm.side])]
+        return np.stack(rows)
 
     def _limited(self, wanted: Array, start: JointState, period: float, settle: bool) -> Array:
         """Control points of a path that keeps every limit; when settling, the last pose is held until reached."""
+        wanted = _controls(wanted)
         half = start.velocity_rad_s * (period / 2)
         before, position = start.position_rad - half, start.position_rad + half
         if settle:
@@ -171,7 +172,8 @@ class Retargeter:
             short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
             short |= toward * (points[-1] - end) > 0
             if not short.any():
-                rest = limit_path(wanted[k:], points[-1], velocity, limits, period)
+                part = wanted[k:]
+                rest = limit_path(part, points[-1], velocity, limits, period, lambda: self._poser.importance(part))
                 return np.concatenate([points[1:], rest])
             gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
             braking = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)
@@ -183,7 +185,7 @@ class Retargeter:
         self, human: HumanPose, wanted: Array, path: Array, rate_hz: float, interventions: int
     ) -> RetargetReport:
         """Compare the path with the human, frame by frame."""
-        q = path[2 : 2 + len(wanted)]
+        q = ((path[1:-1] + path[2:]) / 2)[: len(wanted)]
         angles: dict[str, Array] = {}
         for arm in self.arms:
             upper, fore = arm.directions(q[:, list(arm.joints)])
@@ -210,27 +212,13 @@ class Retargeter:
         )
 
 
-def _let_rest(q: Array, seen: Array, before: Array) -> Array:
-    """Smooth each joint as far as its turning is unseen: least squares on targets weighted by `seen` and on steps.
+def _controls(frames: Array) -> Array:
+    """(T, J) control points whose spline passes near frames (T, J): the spline's own smoothing undone to fourth order.
 
-    (T, n) -> (T, n); the tridiagonal systems of all joints are solved together (Thomas algorithm).
+    The path is at frame t half way between two control points, so these are for the times between frames.
     """
-    T = len(q)
-    lower_pull = _REST_PULL
-    weight = seen + 1e-4
-    diagonal = weight + lower_pull * np.where((np.arange(T) < T - 1)[:, None], 2.0, 1.0)
-    right = weight * q
-    right[0] += lower_pull * before
-    gain = np.empty_like(q)
-    value = np.empty_like(q)
-    gain[0], value[0] = -lower_pull / diagonal[0], right[0] / diagonal[0]
-    for t in range(1, T):
-        pivot = diagonal[t] + lower_pull * gain[t - 1]
-        gain[t] = -lower_pull / pivot
-        value[t] = (right[t] + lower_pull * value[t - 1]) / pivot
-    for t in range(T - 2, -1, -1):
-        value[t] -= gain[t] * value[t + 1]
-    return value
+    more = np.concatenate([frames[:1], frames, frames[-1:], frames[-1:]])
+    return (5 * (more[1:-2] + more[2:-1]) - more[:-3] - more[3:]) / 8
 
 
 def _spread(hit: NDArray[np.bool_], n: int) -> Array:
