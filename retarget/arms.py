@@ -8,8 +8,8 @@ Families by the joints from chest to elbow, found in the description, with any a
 - two shoulder axes and an elbow (3 joints), one and an elbow, or two without an elbow (2 joints): most pairs cannot be
   reached. From several closed-form starts Gauss-Newton steps within the limits find the least weighted error.
 
-Among the ways, dynamic programming picks those that stay within the limits and move least. Where axes do not meet or
-bones lie beside them, the directions follow the true points and a few damped steps take up what the closed form left.
+`branches` picks among the ways. Where axes do not meet or bones lie beside them, the directions follow the true points
+and a few damped steps take up what the closed form left.
 """
 
 from __future__ import annotations
@@ -33,6 +33,8 @@ _LEAST_SINE = 0.3
 """Sine of the angle between neighbouring shoulder axes below which one of them is of no use."""
 _SAME_M = 1e-6
 """An axis so near the shoulder passes through it."""
+_SEEN_ACROSS, _SEEN_BENT = 0.15, 0.05
+"""Squared sines from which on the first and the third shoulder joint count as fully seen."""
 _SPREAD = {2: 21, 3: 9}
 """Poses for each joint among which a start for the least error is looked for, by number of joints."""
 _STRAIGHT = 1e-6
@@ -90,7 +92,9 @@ class Arm:
         self.fore_m = float(np.linalg.norm(self._wrist_m - self._elbow_m)) if self.has_elbow else 0.0
         for a in range(n_shoulder - 1):
             if np.linalg.norm(cross(self.axes[a], self.axes[a + 1])) < _LEAST_SINE:
-                pair = f"'{robot.joint_names[rows[a]]}' and '{robot.joint_names[rows[a + 1]]}' turn about nearly one axis"
+                pair = (
+                    f"'{robot.joint_names[rows[a]]}' and '{robot.joint_names[rows[a + 1]]}' turn about nearly one axis"
+                )
                 raise RobotFileError(robot.path, f"{side} arm", pair, "neighbouring shoulder axes well apart")
         self.reaches_all = n_shoulder == 3 and self.has_elbow
         self._n_shoulder = n_shoulder
@@ -109,15 +113,46 @@ class Arm:
             upper, fore = self.directions(self._spread_rad)
             self._spread_upper, self._spread_fore = UPPER_WEIGHT * upper.T, FORE_WEIGHT * fore.T
 
-    def solve(self, upper: Array, fore: Array, previous_rad: Array | None) -> Array:
-        """(T, n) angles within the limits for unit directions (T, 3) in the chest frame, the first near `previous_rad`."""
+    def ways(self, upper: Array, fore: Array) -> Array:
+        """(T, C, n) angles in C ways for unit directions (T, 3) in the chest frame; those of arms that reach all may pass limits."""
+        if not self.reaches_all:
+            return self._refine(self._starts(upper, fore), upper, fore, _LEAST_ERROR_STEPS)
+        ways = self._every_pair(upper, fore)
+        if self._has_offsets:
+            ways = self._refine(ways, upper, fore, _OFFSET_STEPS)
+        return self._nearest_turn(ways)
+
+    def within_limits(self, q: Array, upper: Array, fore: Array) -> Array:
+        """(T, n) angles within the limits; where one is cut off, the other joints make up for it as far as they can."""
+        inside = np.clip(q, self.low, self.high)
+        cut = (inside != q).any(1)
+        if cut.any():
+            inside[cut] = self._refine(q[cut][:, None], upper[cut], fore[cut], _LEAST_ERROR_STEPS)[:, 0]
+        return inside
+
+    def own_cost(self, ways: Array, upper: Array, fore: Array, seen: Array) -> Array:
+        """(T, C) what each way costs by itself, in radians of movement: what lies outside limits, directions missed."""
+        outside = np.abs(ways - np.clip(ways, self.low, self.high))
+        cost = (_LIMIT_COST + _ERROR_COST) * (outside * seen).sum(-1)
+        if not self.reaches_all or self._has_offsets:
+            u, f = self.directions(ways)
+            for found, wanted in ((u, upper), (f, fore)):
+                cost = cost + _ERROR_COST * np.linalg.norm(found - wanted[:, None], axis=-1)
+        return cost
+
+    def seen(self, ways: Array, upper: Array, fore: Array) -> Array:
+        """(T, C, n) how much the turning of each joint shows, 0 to 1.
+
+        With the third axis along the first, only their sum shows; with the arm straight, the third does not.
+        """
+        seen = np.ones(ways.shape)
         if self.reaches_all:
-            ways = self._every_pair(upper, fore)
-            if self._has_offsets:
-                ways = self._refine(ways, upper, fore, _OFFSET_STEPS)
-        else:
-            ways = self._refine(self._starts(upper, fore), upper, fore, _LEAST_ERROR_STEPS)
-        return self._choose(self._nearest_turn(ways), upper, fore, previous_rad)
+            a1, a2, a3 = self.axes[:3]
+            across = 1 - (rotate(a2, ways[..., 1], a3) @ a1) ** 2
+            bent = 1 - (upper * fore).sum(-1) ** 2
+            seen[..., 0] = np.minimum(across / _SEEN_ACROSS, 1)
+            seen[..., 2] = seen[..., 0] * np.minimum(bent / _SEEN_BENT, 1)[:, None]
+        return seen
 
     def directions(self, q: Array) -> tuple[Array, Array]:
         """Unit directions of upper arm and forearm, each (..., 3), for angles (..., n)."""
@@ -240,30 +275,6 @@ class Arm:
         """Whole turns added where that brings an angle into its limits."""
         middle = (self.low + self.high) / 2
         return ways - 2 * np.pi * np.round((ways - middle) / (2 * np.pi))
-
-    def _choose(self, ways: Array, upper: Array, fore: Array, previous_rad: Array | None) -> Array:
-        """Dynamic programming over the C ways of each frame: (T, C, n) -> (T, n) inside the limits."""
-        T, C, _ = ways.shape
-        inside = np.clip(ways, self.low, self.high)
-        u, f = self.directions(inside)
-        error = np.arccos(np.clip((u * upper[:, None]).sum(-1), -1, 1)) + np.arccos(
-            np.clip((f * fore[:, None]).sum(-1), -1, 1)
-        )
-        own = _LIMIT_COST * np.abs(ways - inside).sum(-1) + _ERROR_COST * error  # (T, C)
-        total = own[0].copy()
-        if previous_rad is not None:
-            total += np.abs(inside[0] - previous_rad).sum(-1)
-        back = np.zeros((T, C), np.int64)
-        move = np.abs(inside[1:, :, None] - inside[:-1, None, :]).sum(-1)  # (T-1, C to, C from)
-        for t in range(1, T):
-            via = total[None] + move[t - 1]
-            back[t] = via.argmin(1)
-            total = via[np.arange(C), back[t]] + own[t]
-        way = np.zeros(T, np.int64)
-        way[-1] = total.argmin()
-        for t in range(T - 1, 0, -1):
-            way[t - 1] = back[t, way[t]]
-        return inside[np.arange(T), way]
 
 
 def subproblem_2(axis1: Array, axis2: Array, p: Array, q: Array, sign: float) -> tuple[Array, Array]:

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from mmm_core.motion import Motion
 from retarget.arms import Arm
+from retarget.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.collision import SelfContact
+from retarget.following import limit_path
 from retarget.human import HumanPose, read_human
 from retarget.kinematics import Kinematics
-from retarget.following import limit_path
 from retarget.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
 from retarget.paths import JointPath, JointState
 from retarget.posing import Poser
@@ -21,12 +22,6 @@ from retarget.report import RetargetReport
 from retarget.robot import RobotModel
 
 Array = NDArray[np.float64]
-_REST_PULL = 0.02
-"""Weight of smoothness against a fully seen joint's target: below a degree for human motion, all for an unseen one."""
-_AIM_M = 0.010
-"""Distance that a pose led round a contact keeps; the path is then checked against the smaller `collision.MARGIN_M`."""
-_YIELDS = ((0.025, 0.0), (0.04, 0.25), (0.04, 0.6), (0.04, 1.0))
-"""When the path still touches: distance to keep around the place and share drawn towards the rest pose, one by one."""
 _SETTLE_FRAMES = 16
 """Time given to reach the last pose; what then still moves, brakes."""
 _STILL_RAD = 1e-5
@@ -42,8 +37,7 @@ class Retargeter:
         self._poser = Poser(self.kinematics, self.limits)
         self.arms = self._poser.arms
         self.contact = SelfContact(robot)
-        arm = [j.role.startswith(("left_", "right_")) for j in robot.joints]
-        self._mobility = np.array(arm, np.float64)  # arms give way, the head keeps looking where it looks
+        self._avoidance = Avoidance(robot, self.contact, self.limits)
 
     def retarget(self, motion: Motion, start: JointState | None = None, *, settle: bool = True) -> JointPath:
         """The robot's path for a motion.
@@ -60,17 +54,18 @@ class Retargeter:
         wanted = self.solve(human, start)
         period = 1.0 / motion.fps
         begin = self._begin(wanted, start)
-        eased, interventions = self._lead_round(wanted, begin.position_rad)
-        path = self._limited(eased, begin, period, settle)
-        for aim_m, share in _YIELDS:
-            hit = self.contact.along(path)
+        eased, interventions = self._avoidance.lead_round(wanted, begin.position_rad)
+        path = self._limited(eased, wanted, begin, period, settle)
+        hit = self.contact.along(path)
+        for strength in STRENGTHS:
             if not hit.any():
                 break
-            interventions += _stretches(hit)
-            eased = self._yield(eased, path, hit, aim_m, share)
-            path = self._limited(eased, begin, period, settle)
-        else:
-            path = self._stop_before_contact(path, period)
+            interventions += stretches(hit)
+            eased = self._avoidance.push(eased, path, hit, strength)
+            path = self._limited(eased, wanted, begin, period, settle)
+            hit = self.contact.along(path)
+        if hit.any():
+            path = self._stop_before_contact(path, hit, period)
         report = self._report(human, wanted, path, motion.fps, interventions)
         ends = self.limits.position_min_rad, self.limits.position_max_rad
         return JointPath(path, self.robot.joint_names, motion.fps, report, ends)
@@ -80,35 +75,10 @@ class Retargeter:
         if start is not None:
             return start
         first = np.clip(wanted[:1], self.limits.position_min_rad, self.limits.position_max_rad)
-        return JointState(self._lead_round(first, self.robot.rest_rad)[0][0], np.zeros(self.robot.n_joints))
+        return JointState(self._avoidance.lead_round(first, self.robot.rest_rad)[0][0], np.zeros(self.robot.n_joints))
 
-    def _lead_round(self, wanted: Array, before: Array) -> tuple[Array, int]:
-        """Poses (T, J) clear of the robot, each near the wanted one and the one before; how many stretches changed."""
-        low, high = self.limits.position_min_rad, self.limits.position_max_rad
-        clear = np.clip(wanted, low, high)
-        touching = self.contact.clearance_m(clear) < _AIM_M
-        for t in np.flatnonzero(touching):
-            from_pose = clear[t - 1] if t else before
-            clear[t] = self.contact.lead_round(clear[t], from_pose, _AIM_M, self._mobility, low, high)
-        return clear, _stretches(touching)
-
-    def _yield(self, eased: Array, path: Array, hit: NDArray[np.bool_], aim_m: float, share: float) -> Array:
-        """Poses (T, J) changed where the path made of them touches: more distance, and a share towards rest."""
-        low, high = self.limits.position_min_rad, self.limits.position_max_rad
-        T = len(eased)
-        near = _spread(hit, T)
-        changed = eased + (share * near)[:, None] * (self.robot.rest_rad - eased)
-        for t in np.flatnonzero(near >= 1.0):
-            changed[t] = self.contact.lead_round(
-                changed[t], changed[t - 1] if t else path[1], aim_m, self._mobility, low, high
-            )
-        return changed
-
-    def _stop_before_contact(self, path: Array, period: float) -> Array:
+    def _stop_before_contact(self, path: Array, hit: NDArray[np.bool_], period: float) -> Array:
         """The path up to where it can brake before it first touches, then held; the last resort."""
-        hit = self.contact.along(path)
-        if not hit.any():
-            return path
         first = int(hit.argmax())
         back = 1
         while True:
@@ -141,14 +111,17 @@ class Retargeter:
             rows += [_angle_deg(upper, human.upper[arm.side]), _angle_deg(fore, human.fore[arm.side])]
         return np.stack(rows)
 
-    def _limited(self, wanted: Array, start: JointState, period: float, settle: bool) -> Array:
-        """Control points of a path that keeps every limit; when settling, the last pose is held until reached."""
-        wanted = _controls(wanted)
+    def _limited(self, eased: Array, posed: Array, start: JointState, period: float, settle: bool) -> Array:
+        """Control points of a path near `eased` (T, J) that keeps every limit; what differs from `posed` matters most.
+
+        When settling, the last pose is held until reached.
+        """
+        wanted, led = _controls(eased), eased - posed
         half = start.velocity_rad_s * (period / 2)
         before, position = start.position_rad - half, start.position_rad + half
         if settle:
-            wanted = np.concatenate([wanted, np.repeat(wanted[-1:], _SETTLE_FRAMES, 0)])
-        points = np.concatenate([[before], self._joined(wanted, before, position, period)])
+            wanted, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in (wanted, led))
+        points = np.concatenate([[before], self._joined(wanted, led, before, position, period)])
         if not settle:
             return points
         n = len(points)
@@ -156,7 +129,7 @@ class Retargeter:
         last = max(n - _SETTLE_FRAMES, int(moving[-1]) + 2 if len(moving) else 0)
         return self._held(points[:last], period, last + 1)
 
-    def _joined(self, wanted: Array, before: Array, position: Array, period: float) -> Array:
+    def _joined(self, wanted: Array, led: Array, before: Array, position: Array, period: float) -> Array:
         """(T + 1, J) control points from the second, `position`, on.
 
         A joint that the start leaves just enough room to brake has its next control points at or beyond the position
@@ -172,8 +145,10 @@ class Retargeter:
             short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
             short |= toward * (points[-1] - end) > 0
             if not short.any():
-                part = wanted[k:]
-                rest = limit_path(part, points[-1], velocity, limits, period, lambda: self._poser.importance(part))
+                part, away = wanted[k:], led[k:]
+                rest = limit_path(
+                    part, points[-1], velocity, limits, period, lambda: self._poser.importance(part, away)
+                )
                 return np.concatenate([points[1:], rest])
             gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
             braking = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)
@@ -219,17 +194,6 @@ def _controls(frames: Array) -> Array:
     """
     more = np.concatenate([frames[:1], frames, frames[-1:], frames[-1:]])
     return (5 * (more[1:-2] + more[2:-1]) - more[:-3] - more[3:]) / 8
-
-
-def _spread(hit: NDArray[np.bool_], n: int) -> Array:
-    """(n,) 1 at frames that touch and two around them, falling to 0 over half a second."""
-    distance = np.abs(np.arange(n)[:, None] - np.minimum(np.flatnonzero(hit), n - 1)[None]).min(1)
-    return np.clip(1 - (distance - 2) / 10, 0.0, 1.0)
-
-
-def _stretches(of: NDArray[np.bool_]) -> int:
-    """Number of separate runs of true."""
-    return int(of[0]) + int((of[1:] & ~of[:-1]).sum())
 
 
 def _angle_deg(a: Array, b: Array) -> Array:

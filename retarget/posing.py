@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.arms import Arm
+from retarget.branches import choose, fill_unseen
 from retarget.following import Importance, each_by_itself
 from retarget.human import HumanPose
 from retarget.kinematics import Kinematics
@@ -28,7 +29,8 @@ _MOST_LOST_RAD = 0.03
 """A frame in which resting still costs more than this keeps its closed-form pose."""
 _LEAST = 1e-4
 """Weight of a joint's own angle in the limiter, so that an unseen joint too has somewhere to go."""
-_CHANGED_RAD = 1e-9
+_CHANGED_RAD = 1e-6
+_LED_WEIGHT = 3.0
 
 
 class Poser:
@@ -54,51 +56,64 @@ class Poser:
         solve_waist(self.kinematics, human, q)
         np.clip(q, low, high, out=q)
         solve_neck(self.kinematics, human, q)
-        for arm in self.arms:
-            q[:, arm.joints] = arm.solve(human.upper[arm.side], human.fore[arm.side], before[list(arm.joints)])
         for group in self._groups:
-            self._let_rest(group, human, q, before)
+            self._solve_arms(group, human, q, before)
         for arm, twist in self._twists:
             if twist is not None:
                 along = self.kinematics.axes[twist] @ arm.fore0
                 q[:, twist] = np.sign(along) * human.forearm_twist_rad[arm.side]
         return np.clip(q, low, high, out=q)
 
-    def importance(self, q_rad: Array) -> list[Importance]:
-        """What matters of each joint around poses (T, J): directions for arms, angles for the rest."""
+    def importance(self, q_rad: Array, led_rad: Array) -> list[Importance]:
+        """What matters of each joint around poses (T, J): directions for arms, angles for the rest.
+
+        Where poses were led round a contact by `led_rad` (T, J), going less far that way matters too.
+        """
         T = len(q_rad)
         every: list[Importance] = []
         for group in self._groups:
             joints = np.array([arm.joints for arm in group], np.int64)
             hessian = np.stack([_hessian(arm, q_rad[:, arm.joints])[0] for arm in group])
             hessian += _LEAST * np.eye(joints.shape[1])
+            led = np.stack([led_rad[:, arm.joints] for arm in group])
+            length = np.maximum(np.linalg.norm(led, axis=-1, keepdims=True), _CHANGED_RAD)
+            hessian += (
+                _LED_WEIGHT
+                * np.where(length > _CHANGED_RAD, led / length, 0.0)[..., None]
+                * (led / length)[..., None, :]
+            )
             every.append(Importance(joints, hessian, np.zeros((len(group), T, joints.shape[1]))))
         if self._others:
             every.append(each_by_itself(T, self._others))
         return every
 
-    def _let_rest(self, arms: list[Arm], human: HumanPose, q: Array, before: Array) -> None:
-        """Replace the arms' angles in `q` (T, J) by those of least movement that show the same."""
-        joints = [list(arm.joints) for arm in arms]
-        solved = np.stack([q[:, j] for j in joints])  # (G, T, w)
-        start = np.stack([before[j] for j in joints])
-        low, high = (np.stack([x[j] for j in joints])[:, None] for x in (self._limits.position_min_rad, self._limits.position_max_rad))
-        aims = [arm.directions(s) for arm, s in zip(arms, solved, strict=True)]
-        x = solved
-        lost = np.zeros(x.shape[:2])
+    def _solve_arms(self, arms: list[Arm], human: HumanPose, q: Array, before: Array) -> None:
+        """Write the angles of arms of one kind into `q` (T, J)."""
+        aims = [(human.upper[arm.side], human.fore[arm.side]) for arm in arms]
+        ways = [arm.ways(*aim) for arm, aim in zip(arms, aims, strict=True)]
+        seen = [arm.seen(w, *aim) for arm, w, aim in zip(arms, ways, aims, strict=True)]
+        cost = [arm.own_cost(w, *aim, s) for arm, w, aim, s in zip(arms, ways, aims, seen, strict=True)]
+        start = np.stack([before[list(arm.joints)] for arm in arms])
+        chosen, chosen_seen = choose(np.stack(ways), np.stack(cost), np.stack(seen), start)
+        closed = np.stack([arm.within_limits(c, *aim) for arm, c, aim in zip(arms, chosen, aims, strict=True)])
+        x, shown = closed.copy(), [arm.directions(c) for arm, c in zip(arms, closed, strict=True)]
+        for g in range(len(arms)):
+            fill_unseen(x[g], chosen_seen[g], start[g])
+        x = self._let_rest(arms, x, shown, start)
+        for g, arm in enumerate(arms):
+            q[:, arm.joints] = np.where((_lost(arm, x[g], shown[g]) > _MOST_LOST_RAD)[:, None], closed[g], x[g])
+
+    def _let_rest(self, arms: list[Arm], x: Array, shown: list[tuple[Array, Array]], start: Array) -> Array:
+        """(G, T, w) angles of least movement from near `x` that show the same directions."""
+        low, high = np.stack([arm.low for arm in arms])[:, None], np.stack([arm.high for arm in arms])[:, None]
         for _ in range(_REST_STEPS):
-            parts = [_hessian(arm, x[g], aims[g]) for g, arm in enumerate(arms)]
+            parts = [_hessian(arm, x[g], shown[g]) for g, arm in enumerate(arms)]
             hessian = np.stack([p[0] for p in parts]) + 1e-6 * np.eye(x.shape[-1])
-            slope = np.stack([p[1] for p in parts])
-            linear = (hessian @ x[..., None])[..., 0] + slope
+            linear = (hessian @ x[..., None])[..., 0] + np.stack([p[1] for p in parts])
             x = np.clip(least_moving(Wish(hessian, linear, _REST_PULL), start), low, high)
-            found = [arm.directions(x[g]) for g, arm in enumerate(arms)]
-            lost = np.stack([np.maximum(_apart(f[0], a[0]), _apart(f[1], a[1])) for f, a in zip(found, aims, strict=True)])
-            if lost.max() < _SEEN_RAD:
+            if max(float(_lost(arm, x[g], shown[g]).max()) for g, arm in enumerate(arms)) < _SEEN_RAD:
                 break
-        x = np.where((lost > _MOST_LOST_RAD)[..., None], solved, x)
-        for g, j in enumerate(joints):
-            q[:, j] = x[g]
+        return x
 
 
 def _hessian(arm: Arm, q: Array, aim: tuple[Array, Array] | None = None) -> tuple[Array, Array]:
@@ -112,6 +127,8 @@ def _hessian(arm: Arm, q: Array, aim: tuple[Array, Array] | None = None) -> tupl
     return hessian, (J @ error[..., None])[..., 0]
 
 
-def _apart(a: Array, b: Array) -> Array:
-    """(T,) length of the difference of unit vectors: nearly the angle between them."""
-    return np.asarray(np.linalg.norm(a - b, axis=-1), np.float64)
+def _lost(arm: Arm, q: Array, shown: tuple[Array, Array]) -> Array:
+    """(T,) the larger direction error of (T, n) against the directions `shown`."""
+    upper, fore = arm.directions(q)
+    apart = [np.linalg.norm(found - wanted, axis=-1) for found, wanted in ((upper, shown[0]), (fore, shown[1]))]
+    return np.maximum(*apart)

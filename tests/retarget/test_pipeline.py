@@ -151,9 +151,9 @@ def test_a_six_joint_arm_reaches_the_directions_of_any_pose_it_has(seed: int) ->
     rng = np.random.default_rng(seed)
     q = rng.uniform(robot.position_min_rad[list(arm.joints)], robot.position_max_rad[list(arm.joints)], (1, 4))
     upper, fore = arm.directions(q)
-    found_upper, found_fore = arm.directions(arm.solve(upper, fore, None).q_rad)
-    assert np.allclose(found_upper, upper, atol=1e-6)
-    assert np.allclose(found_fore, fore, atol=1e-6)
+    found_upper, found_fore = arm.directions(arm.ways(upper, fore))
+    assert np.allclose(found_upper, upper[:, None], atol=1e-6)
+    assert np.allclose(found_fore, fore[:, None], atol=1e-6)
 
 
 @given(st.integers(0, 10_000), st.sampled_from([1.0, -1.0]))
