@@ -16,9 +16,7 @@ _AIM_M = 0.004
 """A pose led round keeps so much more than the margin, for what limits in time then cut off."""
 _PUSHED_ON_M = 0.006
 """A path that touches is pushed so much further than the margin."""
-_FADING = 0.7
-"""Share of one frame's push that the next one starts from."""
-_PUSHES, _ROUNDS = 5, 5
+_PUSHES, _ROUNDS = 8, 4
 _MOST_PUSHED_RAD = 0.15
 _DAMPING = 1e-5
 _AROUND = (1.0, 0.85, 0.5, 0.2)
@@ -36,27 +34,28 @@ class Avoidance:
 
     def lead_round(self, wanted_rad: Array, before_rad: Array) -> tuple[Array, int]:
         """Poses (T, J) clear of the robot, each near the wanted one; how many stretches of them were changed."""
-        clear = np.clip(wanted_rad, self._low, self._high)
+        clear = wanted_rad.copy()
         touching = self._contact.frames(clear)
-        for t in np.flatnonzero(touching):
-            target = clear[t].copy()
-            came_from, pushed = (clear[t - 1], clear[t - 1] - wanted_rad[t - 1]) if t else (before_rad, 0.0)
-            q, free = self._pushed_out(np.clip(target + _FADING * pushed, self._low, self._high), _AIM_M, _PUSHES)
-            clear[t] = q if free else self._from_outside(target, came_from)
+        some = np.flatnonzero(touching)
+        if len(some):
+            clear[some], free = self._pushed_out(clear[some], _AIM_M)
+            for t in some[~free]:  # too deep to see the way out: come from the pose before, on its side
+                clear[t] = self._from_outside(wanted_rad[t], clear[t - 1] if t else before_rad)
         return clear, stretches(touching)
 
     def push(self, eased_rad: Array, path_rad: Array, hit: NDArray[np.bool_], strength: float) -> Array:
         """Targets (T, J) changed where the path made of them, (N, J) control points, touches in segments `hit` (N - 2,)."""
         T = len(eased_rad)
         pushes = np.zeros_like(eased_rad)
-        for k in np.flatnonzero(hit):
-            c0, c1, c2 = path_rad[k : k + 3]
-            poses = np.stack([(c0 + c1) / 2, (c0 + 6 * c1 + c2) / 8, (c1 + c2) / 2])
-            worst = poses[int(self._contact.clearance_m(poses).argmin())]
-            out, _ = self._pushed_out(worst, _PUSHED_ON_M, _PUSHES)
-            # Segment k runs from frame k - 1 to frame k.
-            for t in {min(max(k - 1, 0), T - 1), min(k, T - 1)}:
-                pushes[t] = _larger(pushes[t], out - worst)
+        segments = np.flatnonzero(hit)
+        c0, c1, c2 = path_rad[segments], path_rad[segments + 1], path_rad[segments + 2]
+        poses = np.stack([(c0 + c1) / 2, (c0 + 6 * c1 + c2) / 8, (c1 + c2) / 2], 1)  # (S, 3, J)
+        clearance = self._contact.clearance_m(poses.reshape(-1, path_rad.shape[1])).reshape(-1, 3)
+        worst = poses[np.arange(len(segments)), clearance.argmin(1)]
+        out = self._pushed_out(worst, _PUSHED_ON_M)[0] - worst
+        for k, push in zip(segments, out, strict=True):  # segment k runs from frame k - 1 to frame k
+            for t in {min(max(int(k) - 1, 0), T - 1), min(int(k), T - 1)}:
+                pushes[t] = _larger(pushes[t], push)
         spread = np.zeros_like(pushes)
         near = np.zeros((T, 1))
         touched = np.zeros(T, bool)
@@ -70,22 +69,31 @@ class Avoidance:
         changed = changed + strength * near * (self._rest_rad - changed)
         return np.clip(changed, self._low, self._high)
 
-    def _pushed_out(self, q: Array, aim_m: float, pushes: int) -> tuple[Array, bool]:
-        """A pose (J,) moved the least until it keeps the margin and `aim_m` more; whether that came about."""
-        for _ in range(pushes):
-            near = self._contact.near(q, aim_m)
-            if not len(near.lack_m):
-                return q, True
-            A = near.gradient * self._mobility
-            push = np.asarray(np.linalg.solve(A @ A.T + _DAMPING * np.eye(len(A)), near.lack_m), np.float64)
-            q = np.clip(q + np.clip(push @ A, -_MOST_PUSHED_RAD, _MOST_PUSHED_RAD), self._low, self._high)
-        return q, not len(self._contact.near(q, 0.0).lack_m)
+    def _pushed_out(self, q_rad: Array, aim_m: float) -> tuple[Array, NDArray[np.bool_]]:
+        """Poses (T, J) moved little until they keep the margin and `aim_m` more, and which of them keep the margin.
+
+        The worst pair of each is pushed apart by the least movement, again and again.
+        """
+        q = q_rad.copy()
+        rows = np.arange(len(q))
+        free = np.zeros(len(q), bool)
+        for _ in range(_PUSHES):
+            lack, way = self._contact.worst(q[rows], aim_m)
+            free[rows] = lack <= aim_m
+            rows, lack, way = rows[lack > 0], lack[lack > 0, None], way[lack > 0]
+            if not len(rows):
+                break
+            way = way * self._mobility
+            push = lack * way / ((way * way).sum(1, keepdims=True) + _DAMPING)
+            push = np.minimum(np.maximum(push, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
+            q[rows] = np.minimum(np.maximum(q[rows] + push, self._low), self._high)
+        return q, free
 
     def _from_outside(self, target: Array, q: Array) -> Array:
         """A pose near `target` reached from `q` on its own side, step by step; best effort."""
         for _ in range(_ROUNDS):
             q = q + np.clip(target - q, -2 * _MOST_PUSHED_RAD, 2 * _MOST_PUSHED_RAD)
-            q, _ = self._pushed_out(q, _AIM_M, 3)
+            q = self._pushed_out(q[None], _AIM_M)[0][0]
         return q
 
 

@@ -13,48 +13,67 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 _UNSEEN = 0.5
 """A joint seen less than this is filled in from the frames around."""
+_OUT_OF_QUESTION_RAD = 0.5
+"""A way that costs more in every frame is not looked at where another costs nothing."""
 
 
 def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tuple[Array, Array]:
     """Angles of the cheapest row of ways, and how much each is seen there, both (G, T, n).
 
     Args:
-        ways: (G, T, C, n) angles of G arms in C ways, within the limits.
+        ways: (G, T, C, n) angles of G arms in C ways.
         own_cost: (G, T, C) what each costs by itself, in radians of movement.
         seen: (G, T, C, n) how much each joint shows, 0 to 1.
         previous_rad: (G, n) angles before the first frame.
     """
-    G, T, C, _ = ways.shape
-    arms = np.arange(G)[:, None]
-    total = np.zeros((G, 1))
-    kept = previous_rad[:, None]  # (G, C, n) where each joint was last seen on the way to each state
-    came = np.zeros((T, G, C), np.int64)
-    for t in range(T):
-        weight, angles = seen[:, t], ways[:, t]
-        gone = angles[:, :, None] - kept[:, None]  # (G, C to, C from, n)
-        via = total[:, None] + (np.abs(gone) * weight[:, :, None]).sum(-1)
-        best = came[t] = via.argmin(2)
-        total = np.take_along_axis(via, best[..., None], 2)[..., 0] + own_cost[:, t]
-        before = kept[arms, best]
-        kept = before + weight * (angles - before)
-    way = np.zeros((T, G), np.int64)
-    way[-1] = total.argmin(1)
-    for t in range(T - 1, 0, -1):
-        way[t - 1] = came[t, arms[:, 0], way[t]]
-    at = way.T[:, :, None, None]
+    G, T, C, n = ways.shape
+    free, costly = ~own_cost.any(1), (own_cost > _OUT_OF_QUESTION_RAD).all(1)  # (G, C)
+    if (free.any(1) & ((free | costly).all(1))).all():  # one way lies within the limits all along, the others never
+        g, way = np.arange(G), free.argmax(1)
+        return ways[g, :, way], seen[g, :, way]
+    known = np.concatenate([np.broadcast_to(previous_rad[:, None, None], (G, 1, C, n)), ways], 1)
+    hidden = seen < _UNSEEN
+    if hidden.any():
+        frames = np.arange(1, T + 1)[:, None, None]
+        last_seen = np.maximum.accumulate(np.where(hidden, 0, frames), 1)
+        known[:, 1:] = np.take_along_axis(known, last_seen, 1)
+    move = np.abs(known[:, 1:, :, None] - known[:, :-1, None]).sum(-1)  # (G, T, C to, C from)
+    way = np.array([_cheapest(move[g].tolist(), own_cost[g].tolist()) for g in range(G)])
+    at = way[:, :, None, None]
     return np.take_along_axis(ways, at, 2)[:, :, 0], np.take_along_axis(seen, at, 2)[:, :, 0]
 
 
-def fill_unseen(q_rad: Array, seen: Array, previous_rad: Array) -> NDArray[np.bool_]:
-    """Draw a line in place over joints of `q_rad` (T, n) that are hardly seen; (T,) which frames were changed.
+def fill_unseen(q_rad: Array, seen: Array, previous_rad: Array) -> None:
+    """Draw a line in place over joints of `q_rad` (T, n) that are hardly seen.
 
     Before the first seen frame a joint comes from `previous_rad` (n,); after the last it stays.
     """
-    changed = np.zeros(len(q_rad), bool)
-    for j in np.flatnonzero((seen < _UNSEEN).any(0)):
-        hidden = seen[:, j] < _UNSEEN
+    unseen = seen < _UNSEEN
+    for j in np.flatnonzero(unseen.any(0)):
+        hidden = unseen[:, j]
         frames = np.flatnonzero(~hidden) + 1
         known = np.concatenate([previous_rad[j : j + 1], q_rad[~hidden, j]])
         q_rad[hidden, j] = np.interp(np.flatnonzero(hidden) + 1, np.concatenate([[0], frames]), known)
-        changed |= hidden
-    return changed
+
+
+def _cheapest(move: list[list[list[float]]], own: list[list[float]]) -> list[int]:
+    """The way of each frame, for costs of going (T, C to, C from) and of being there (T, C); all start as one.
+
+    Plain numbers: with so few ways a loop is faster than arrays.
+    """
+    total = [0.0] * len(own[0])
+    came: list[list[int]] = []
+    for to_each, own_t in zip(move, own, strict=True):
+        best: list[int] = []
+        after: list[float] = []
+        for costs, own_cost in zip(to_each, own_t, strict=True):
+            via = [a + b for a, b in zip(total, costs, strict=True)]
+            least = min(via)
+            best.append(via.index(least))
+            after.append(least + own_cost)
+        came.append(best)
+        total = after
+    way = [total.index(min(total))]
+    for best in reversed(came[1:]):
+        way.append(best[way[-1]])
+    return way[::-1]

@@ -8,7 +8,7 @@ by more than what the shapes move, which bounds it from below: a path found free
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 from typing import Any
 
 import numpy as np
@@ -28,19 +28,6 @@ _MEASURED_M = 0.03
 _DEEPEST = 8
 """Halvings of a segment after which it counts as touching; distances that near and movements that small do not occur."""
 _CAPSULE_TYPES = (2, 3)  # mjGEOM_SPHERE, mjGEOM_CAPSULE
-
-
-@dataclass(frozen=True)
-class Nearness:
-    """Pairs of one pose that are nearer than asked.
-
-    Attributes:
-        lack_m: (P,) what is missing of the distance asked for.
-        gradient: (P, J) how each distance grows with each joint.
-    """
-
-    lack_m: Array
-    gradient: Array
 
 
 class SelfContact:
@@ -63,24 +50,41 @@ class SelfContact:
 
     def distances_m(self, q_rad: Array) -> Array:
         """(T, P) distance of each pair in each pose (T, J): exact where small, else not more than the true one."""
-        T, n_geoms = len(q_rad), self._model.ngeom
-        place, turn = np.empty((T, n_geoms, 3)), np.empty((T, n_geoms, 9))
-        for i, q in enumerate(q_rad):
-            self._place(q)
-            place[i], turn[i] = self._data.geom_xpos, self._data.geom_xmat
-        axis = turn[:, self._axis_rows[:, None], self._axis_columns]  # (T, geoms, 3)
+        place, axis = self._placed(q_rad)
         a, b = self._pairs.T
         squared, _, _ = nearest_along(
             place[:, a] - place[:, b], axis[:, a], axis[:, b], self._half_m[a], self._half_m[b]
         )
         distance = np.sqrt(squared) - self._radii_m
-        near = (distance < _MEASURED_M) & ~self._exact
-        if near.any():
-            for i in np.flatnonzero(near.any(1)):
-                self._place(q_rad[i])
-                for p in np.flatnonzero(near[i]):
-                    distance[i, p] = self._measured(p)[0]
+        for i, p in np.argwhere((distance < _MEASURED_M) & ~self._exact):
+            self._place(q_rad[i])
+            distance[i, p] = self._measured(int(p))[0]
         return distance
+
+    def worst(self, q_rad: Array, aim_m: float) -> tuple[Array, Array]:
+        """What the worst pair of each pose (T, J) lacks of its margin and `aim_m` more, (T,), and the way out, (T, J).
+
+        The way out is how its distance grows with each joint.
+        """
+        lack = self._margin_m + aim_m - self.distances_m(q_rad)
+        pair = lack.argmax(1)
+        gradient = np.zeros_like(q_rad)
+        for i in np.flatnonzero(lack.max(1) > 0):
+            self._place(q_rad[i])
+            gradient[i] = self._way_out(int(pair[i]), float(lack[i, pair[i]] - self._margin_m[pair[i]] - aim_m))
+        return lack[np.arange(len(pair)), pair], gradient
+
+    def _way_out(self, pair: int, overlap_m: float) -> Array:
+        """(J,) how the distance of a pair in the pose set grows with each joint."""
+        point1, point2 = self._nearest_points(pair)
+        apart = point2 - point1
+        if overlap_m > 0 and not self._exact[pair]:
+            apart = -apart  # MuJoCo's points have passed each other where shapes overlap
+        normal = apart / max(math.sqrt(float(apart @ apart)), 1e-9)
+        a, b = self._model.geom_bodyid[self._pairs[pair]]
+        lever = (point1 + point2) / 2 - self._data.xanchor[self._joint_ids]
+        turned = cross(self._data.xaxis[self._joint_ids], lever) @ normal
+        return np.asarray(turned * (self._above[b] - self._above[a]), np.float64)
 
     def frames(self, q_rad: Array) -> NDArray[np.bool_]:
         """(T,) whether each frame of (T, J) comes closer to itself than the margin."""
@@ -95,25 +99,6 @@ class SelfContact:
         touching = self._pairs[self.distances_m(q_rad[None])[0] < self._margin_m]
         bodies = self._model.geom_bodyid[touching]
         return sorted({(str(self._model.body(a).name), str(self._model.body(b).name)) for a, b in bodies})
-
-    def near(self, q_rad: Array, aim_m: float) -> Nearness:
-        """What of a pose (J,) is nearer than `aim_m` more than the margin, and which way leads out."""
-        lack = self._margin_m + aim_m - self.distances_m(q_rad[None])[0]
-        close = np.flatnonzero(lack > 0)
-        gradient = np.empty((len(close), len(self._joint_ids)))
-        if len(close):
-            self._place(q_rad)
-            axis, anchor = self._data.xaxis[self._joint_ids], self._data.xanchor[self._joint_ids]
-            for i, p in enumerate(close):
-                point1, point2 = self._nearest_points(p)
-                apart = point2 - point1
-                if not self._exact[p] and self._margin_m[p] + aim_m < lack[p]:
-                    apart = -apart  # MuJoCo's points have passed each other where shapes overlap
-                normal = apart / max(float(np.linalg.norm(apart)), 1e-9)
-                a, b = self._model.geom_bodyid[self._pairs[p]]
-                middle = (point1 + point2) / 2
-                gradient[i] = (cross(axis, middle - anchor) @ normal) * (self._above[b] - self._above[a])
-        return Nearness(lack[close], gradient)
 
     def along(self, control_rad: Array) -> NDArray[np.bool_]:
         """(N - 2,) whether the robot may touch itself in each segment of a quadratic spline of N control points."""
@@ -137,6 +122,15 @@ class SelfContact:
             segment, moved = np.concatenate([segment, segment]), np.concatenate([moved, moved])
         hit[segment] = True
         return hit
+
+    def _placed(self, q_rad: Array) -> tuple[Array, Array]:
+        """(T, geoms, 3) centres and axes of the capsules in poses (T, J)."""
+        place, turn = np.empty((len(q_rad), self._model.ngeom, 3)), np.empty((len(q_rad), self._model.ngeom, 9))
+        xpos, xmat = self._data.geom_xpos, self._data.geom_xmat
+        for i, q in enumerate(q_rad):
+            self._place(q)
+            place[i], turn[i] = xpos, xmat
+        return place, turn[:, self._axis_rows, self._axis_columns]
 
     def _place(self, q_rad: Array) -> None:
         self._data.qpos[self._address] = q_rad
@@ -178,7 +172,7 @@ class SelfContact:
                 self._half_m[g] = size[g].max()
                 radius[g] = float(np.hypot(*np.delete(size[g], along[g])))
         self._radius_m, self._exact_geom = radius, exact
-        self._axis_rows = np.arange(model.ngeom)
+        self._axis_rows = np.arange(model.ngeom)[:, None]
         self._axis_columns = along[:, None] + np.array([0, 3, 6])
 
     def _take(self, pairs: NDArray[np.int64]) -> None:

@@ -17,7 +17,7 @@ from retarget.lookahead import Bounds, Wish, nearest_path
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-_WINDOW_FRAMES, _AHEAD_FRAMES = 64, 16
+_WINDOW_FRAMES, _AHEAD_FRAMES = 24, 10
 """A long reference is solved in windows, each with so many frames after it in view."""
 _TAIL_WEIGHT = 1e-3
 """Weight of the frames after the last known one, in which the joints come to rest."""
@@ -58,25 +58,27 @@ def limit_path(
     `importance` is asked, only when a limit is passed, what matters for groups that hold every joint once; None: all alike.
     """
     T, J = reference_rad.shape
-    ends = limits.position_min_rad, limits.position_max_rad
-    inside = np.clip(reference_rad, *ends)
-    before = np.concatenate([position_rad[None], inside[:-1]])
-    kept = _kept(inside, before, velocity_rad_s, limits, period_s)
-    if kept.all():
-        return inside
+    path = np.clip(reference_rad, limits.position_min_rad, limits.position_max_rad)
+    if _kept(path, position_rad, velocity_rad_s, limits, period_s).all():
+        return path
     groups = (each_by_itself(T, range(J)),) if importance is None else importance()
-    path = inside.copy()
     position, velocity = position_rad, velocity_rad_s
     for k in range(0, T, _WINDOW_FRAMES):
         n = min(_WINDOW_FRAMES, T - k)
         frames = slice(k, min(T, k + n + _AHEAD_FRAMES))
-        for group in groups:
-            _solve(group, frames, reference_rad, ~kept, path, position, velocity, limits, period_s)
-        part = path[k : k + n]
-        np.clip(part, *ends, out=part)
-        part[:] = _follow(part, position, velocity, limits, period_s)
-        before_last = part[-2] if n > 1 else position
-        position, velocity = part[-1].copy(), (part[-1] - before_last) / period_s
+        kept = _kept(path[frames], position, velocity, limits, period_s)
+        if not kept.all():
+            for group in groups:
+                _solve(group, frames, reference_rad, ~kept, path, position, velocity, limits, period_s)
+            part = path[k : k + n]
+            np.clip(part, limits.position_min_rad, limits.position_max_rad, out=part)
+            part[:] = _follow(part, position, velocity, limits, period_s)
+        before = path[k + n - 2] if n > 1 else position
+        position, velocity = path[k + n - 1].copy(), (path[k + n - 1] - before) / period_s
+        if k + n < T:  # what was planned beyond this window is planned anew from where it ends
+            path[k + n : frames.stop] = np.clip(
+                reference_rad[k + n : frames.stop], limits.position_min_rad, limits.position_max_rad
+            )
     return path
 
 
@@ -97,9 +99,8 @@ def _solve(
         return
     joints = group.joints[some]
     bounds = Bounds(
-        limits.position_min_rad[joints][:, None], limits.position_max_rad[joints][:, None],
-        (limits.velocity_rad_s * period_s)[joints][:, None],
-        (limits.acceleration_rad_s2 * period_s**2)[joints][:, None],
+        limits.position_min_rad[joints], limits.position_max_rad[joints],
+        (limits.velocity_rad_s * period_s)[joints], (limits.acceleration_rad_s2 * period_s**2)[joints],
     )  # fmt: skip
     tail = int(np.ceil((bounds.step / bounds.bend).max())) + 1
     first = reference[frames][:, joints].transpose(1, 0, 2)
@@ -114,24 +115,20 @@ def _solve(
         path[frames, joints.ravel()] = found[:, :length].transpose(1, 0, 2).reshape(length, -1)
 
 
-def _kept(path: Array, before: Array, velocity: Array, limits: JointLimits, period_s: float) -> NDArray[np.bool_]:
-    """(J,) whether each joint may follow `path` as it is."""
-    return np.asarray((_steps(path, before, velocity, limits, period_s) == path).all(0), bool)
-
-
-def _steps(path: Array, before: Array, velocity: Array, limits: JointLimits, period_s: float) -> Array:
-    """(T, J) the causal step towards each frame of `path` from the one before."""
-    ahead = np.diff(path, axis=0, append=path[-1:]) / period_s
-    came = np.concatenate([velocity[None], np.diff(before, axis=0) / period_s])
-    return limit_step(path, before, came, limits, period_s, ahead)
+def _kept(path: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> NDArray[np.bool_]:
+    """(J,) whether each joint may follow `path` (T, J) from a state as it is."""
+    before = np.concatenate([position[None], path])
+    speed = (path - before[:-1]) / period_s
+    came, ahead = np.concatenate([velocity[None], speed[:-1]]), np.concatenate([speed[1:], speed[-1:]])
+    steps = limit_step(path, before[:-1], came, limits, period_s, ahead)
+    return np.asarray((steps == path).all(0), bool)
 
 
 def _follow(reference: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> Array:
     """Causal following of `reference`, each step knowing the velocity of the reference after it."""
-    before = np.concatenate([position[None], reference[:-1]])
-    if _kept(reference, before, velocity, limits, period_s).all():
+    if _kept(reference, position, velocity, limits, period_s).all():
         return reference
-    ahead = np.diff(reference, axis=0, append=reference[-1:]) / period_s
+    ahead = np.diff(reference, axis=0, append=2 * reference[-1:] - reference[-2:-1]) / period_s
     path = np.empty_like(reference)
     for k in range(len(reference)):
         following = limit_step(reference[k], position, velocity, limits, period_s, ahead[k])

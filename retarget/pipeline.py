@@ -5,20 +5,22 @@ human -> waist -> neck -> arms -> unseen joints rest -> limits -> self-contact -
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import Motion
-from retarget.arms import Arm
+from retarget.arm_chain import ArmChain
 from retarget.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.collision import SelfContact
-from retarget.following import limit_path
+from retarget.following import Importance, limit_path
 from retarget.human import HumanPose, read_human
 from retarget.kinematics import Kinematics
 from retarget.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
 from retarget.paths import JointPath, JointState
-from retarget.posing import Poser
-from retarget.report import RetargetReport
+from retarget.posing import ArmsFollow, Poser, Poses
+from retarget.report import BONES, Comparison
 from retarget.robot import RobotModel
 
 Array = NDArray[np.float64]
@@ -28,14 +30,21 @@ _STILL_RAD = 1e-5
 
 
 class Retargeter:
-    """Turns human motions into paths of one robot."""
+    """Turns human motions into paths of one robot.
 
-    def __init__(self, robot: RobotModel) -> None:
+    Attributes:
+        robot, kinematics, limits: the robot.
+        arms: left and right.
+        contact: its distances to itself.
+    """
+
+    def __init__(self, robot: RobotModel, arms_follow: ArmsFollow = "chest") -> None:
+        """Arms keep their directions against the chest, or (`arms_follow`) against the world as the pelvis faces it."""
         self.robot = robot
         self.kinematics = Kinematics(robot)
         self.limits = JointLimits.of(robot)
-        self._poser = Poser(self.kinematics, self.limits)
-        self.arms = self._poser.arms
+        self._poser = Poser(self.kinematics, self.limits, arms_follow)
+        self.arms: tuple[ArmChain, ...] = self._poser.chains
         self.contact = SelfContact(robot)
         self._avoidance = Avoidance(robot, self.contact, self.limits)
 
@@ -48,41 +57,55 @@ class Retargeter:
             settle: end at rest, with a few more frames where braking needs them.
 
         Raises:
-            MotionError: the motion is empty or has bones without length.
+            MotionError: the motion is empty or has bones that no human has.
         """
-        human = read_human(motion)
-        wanted = self.solve(human, start)
+        poses = self.solve(read_human(motion), start)
         period = 1.0 / motion.fps
-        begin = self._begin(wanted, start)
-        eased, interventions = self._avoidance.lead_round(wanted, begin.position_rad)
-        path = self._limited(eased, wanted, begin, period, settle)
-        hit = self.contact.along(path)
+        begin = self._begin(poses.q_rad, start)
+        eased, interventions = poses.q_rad, 0
+        path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+        if hit.any():
+            eased, interventions = self._avoidance.lead_round(eased, begin.position_rad)
+            path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
         for strength in STRENGTHS:
             if not hit.any():
                 break
             interventions += stretches(hit)
-            eased = self._avoidance.push(eased, path, hit, strength)
-            path = self._limited(eased, wanted, begin, period, settle)
-            hit = self.contact.along(path)
+            eased = self._avoidance.push(eased, path, hit[: len(path) - 2], strength)
+            path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
         if hit.any():
             path = self._stop_before_contact(path, hit, period)
-        report = self._report(human, wanted, path, motion.fps, interventions)
         ends = self.limits.position_min_rad, self.limits.position_max_rad
-        return JointPath(path, self.robot.joint_names, motion.fps, report, ends)
+        comparison = self._compare(poses, path, motion.fps, interventions)
+        return JointPath(path, self.robot.joint_names, motion.fps, comparison, ends)
+
+    def solve(self, human: HumanPose, start: JointState | None = None) -> Poses:
+        """The poses for each frame within the position limits, before limits in time and contacts."""
+        return self._poser.solve(human, None if start is None else start.position_rad)
+
+    def direction_errors_deg(self, poses: Poses, q_rad: Array) -> Array:
+        """(4, T) angle between human and robot bone in poses (T, J), in the order of `report.BONES`."""
+        found = np.concatenate(self._poser.directions(q_rad))
+        wanted = np.concatenate([poses.upper, poses.fore])[:, : len(q_rad)]
+        # Exact for small angles too, where an arc cosine is not.
+        apart, sum_ = np.linalg.norm(found - wanted, axis=-1), np.linalg.norm(found + wanted, axis=-1)
+        errors = np.rad2deg(2 * np.arctan2(apart, sum_))
+        assert len(errors) == len(BONES)
+        return errors
 
     def _begin(self, wanted: Array, start: JointState | None) -> JointState:
         """The given start, or at rest in the first frame's pose, led round contacts."""
         if start is not None:
             return start
-        first = np.clip(wanted[:1], self.limits.position_min_rad, self.limits.position_max_rad)
-        return JointState(self._avoidance.lead_round(first, self.robot.rest_rad)[0][0], np.zeros(self.robot.n_joints))
+        first, _ = self._avoidance.lead_round(wanted[:1], self.robot.rest_rad)
+        return JointState(first[0], np.zeros(self.robot.n_joints))
 
     def _stop_before_contact(self, path: Array, hit: NDArray[np.bool_], period: float) -> Array:
         """The path up to where it can brake before it first touches, then held; the last resort."""
         first = int(hit.argmax())
         back = 1
         while True:
-            kept = max(2, first + 2 - back)
+            kept = max(2, min(first + 2 - back, len(path)))
             stopped = self._held(path[:kept], period, len(path))
             if kept == 2 or not self.contact.along(stopped).any():
                 return stopped
@@ -95,26 +118,13 @@ class Retargeter:
             points.append(brake(points[-1], (points[-1] - points[-2]) / period, self.limits, period))
         return np.array(points)
 
-    def solve(self, human: HumanPose, start: JointState | None) -> Array:
-        """(T, J) joint angles for each frame within the position limits, before limits in time and contacts."""
-        return self._poser.solve(human, None if start is None else start.position_rad)
+    def _limited(
+        self, eased: Array, posed: Array, start: JointState, period: float, settle: bool
+    ) -> tuple[Array, NDArray[np.bool_]]:
+        """Control points of a path near `eased` (T, J) that keeps every limit, and which segments touch.
 
-    def arm(self, side: str) -> Arm:
-        """The arm of a side."""
-        return next(arm for arm in self.arms if arm.side == side)
-
-    def direction_errors_deg(self, human: HumanPose, q_rad: Array) -> Array:
-        """(4, T) angle between human and robot bone: left upper arm, left forearm, right upper arm, right forearm."""
-        rows: list[Array] = []
-        for arm in self.arms:
-            upper, fore = arm.directions(q_rad[:, list(arm.joints)])
-            rows += [_angle_deg(upper, human.upper[arm.side]), _angle_deg(fore, human.fore[arm.side])]
-        return np.stack(rows)
-
-    def _limited(self, eased: Array, posed: Array, start: JointState, period: float, settle: bool) -> Array:
-        """Control points of a path near `eased` (T, J) that keeps every limit; what differs from `posed` matters most.
-
-        When settling, the last pose is held until reached.
+        What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
+        touches when the path brakes at its end counts too.
         """
         wanted, led = _controls(eased), eased - posed
         half = start.velocity_rad_s * (period / 2)
@@ -123,11 +133,20 @@ class Retargeter:
             wanted, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in (wanted, led))
         points = np.concatenate([[before], self._joined(wanted, led, before, position, period)])
         if not settle:
-            return points
+            return points, self.contact.along(np.concatenate([points, self._braking(points, period)]))
         n = len(points)
         moving = np.flatnonzero((np.abs(np.diff(points, axis=0)) > _STILL_RAD).any(1))
         last = max(n - _SETTLE_FRAMES, int(moving[-1]) + 2 if len(moving) else 0)
-        return self._held(points[:last], period, last + 1)
+        points = self._held(points[:last], period, last + 1)
+        return points, self.contact.along(points)
+
+    def _braking(self, control: Array, period: float) -> Array:
+        """(n, J) control points after `control` when every joint stops as fast as its acceleration allows."""
+        step = control[-1] - control[-2]
+        loss = self.limits.acceleration_rad_s2 * period**2
+        n = int(np.ceil((np.abs(step) / loss).max()))
+        left = np.maximum(np.abs(step) - np.arange(1, n + 1)[:, None] * loss, 0.0)
+        return control[-1] + np.cumsum(np.sign(step) * left, 0)
 
     def _joined(self, wanted: Array, led: Array, before: Array, position: Array, period: float) -> Array:
         """(T + 1, J) control points from the second, `position`, on.
@@ -145,10 +164,7 @@ class Retargeter:
             short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
             short |= toward * (points[-1] - end) > 0
             if not short.any():
-                part, away = wanted[k:], led[k:]
-                rest = limit_path(
-                    part, points[-1], velocity, limits, period, lambda: self._poser.importance(part, away)
-                )
+                rest = limit_path(wanted[k:], points[-1], velocity, limits, period, self._importance(wanted, led, k))
                 return np.concatenate([points[1:], rest])
             gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
             braking = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)
@@ -156,35 +172,17 @@ class Retargeter:
             points.append(np.where(short, inward, limit_step(wanted[k], points[-1], velocity, limits, period)))
         return np.array(points[1:])
 
-    def _report(
-        self, human: HumanPose, wanted: Array, path: Array, rate_hz: float, interventions: int
-    ) -> RetargetReport:
-        """Compare the path with the human, frame by frame."""
-        q = ((path[1:-1] + path[2:]) / 2)[: len(wanted)]
-        angles: dict[str, Array] = {}
-        for arm in self.arms:
-            upper, fore = arm.directions(q[:, list(arm.joints)])
-            n = len(q)
-            angles[f"{arm.side}_upper_arm"] = _angle_deg(upper, human.upper[arm.side][:n])
-            angles[f"{arm.side}_forearm"] = _angle_deg(fore, human.fore[arm.side][:n])
-        every = np.concatenate(list(angles.values()))
-        outside = (wanted < self.limits.position_min_rad - 1e-9) | (wanted > self.limits.position_max_rad + 1e-9)
-        changed = np.abs(q - wanted[: len(q)]) > np.deg2rad(1.0)
-        speed = np.abs(np.diff(path, axis=0)).max(0) * rate_hz / self.limits.velocity_rad_s
-        acceleration = np.abs(np.diff(path, n=2, axis=0)).max(0) * rate_hz**2 / self.limits.acceleration_rad_s2
-        names = self.robot.joint_names
-        return RetargetReport(
-            direction_mean_deg=round(float(every.mean()), 3),
-            direction_p95_deg=round(float(np.percentile(every, 95)), 3),
-            direction_max_deg=round(float(every.max()), 3),
-            bone_mean_deg={name: round(float(a.mean()), 3) for name, a in angles.items()},
-            clipped_frames=int(outside.any(1).sum()),
-            clipped_joints={names[j]: int(n) for j, n in enumerate(changed.sum(0)) if n},
-            interventions=interventions,
-            peak_speed_share=round(float(speed.max()), 4),
-            peak_speed_joint=names[int(speed.argmax())],
-            peak_acceleration_share=round(float(acceleration.max()), 4),
-        )
+    def _importance(self, wanted: Array, led: Array, first: int) -> Callable[[], Sequence[Importance]]:
+        return lambda: self._poser.importance(wanted[first:], led[first:])
+
+    def _compare(self, poses: Poses, path: Array, rate_hz: float, interventions: int) -> Comparison:
+        """What came out against what was wanted, frame by frame."""
+        T = len(poses.q_rad)
+        q = ((path[1:-1] + path[2:]) / 2)[:T]
+        return Comparison(
+            self.robot.joint_names, lambda: self.direction_errors_deg(poses, q), poses.q_rad - q, poses.outside, path,
+            rate_hz, self.limits, interventions,
+        )  # fmt: skip
 
 
 def _controls(frames: Array) -> Array:
@@ -194,7 +192,3 @@ def _controls(frames: Array) -> Array:
     """
     more = np.concatenate([frames[:1], frames, frames[-1:], frames[-1:]])
     return (5 * (more[1:-2] + more[2:-1]) - more[:-3] - more[3:]) / 8
-
-
-def _angle_deg(a: Array, b: Array) -> Array:
-    return np.rad2deg(np.arccos(np.clip((a * b).sum(-1), -1, 1)))

@@ -79,11 +79,9 @@ def _fidelity(retargeter: Retargeter, motions: Any) -> dict[str, Any]:
     violations = collisions = interventions = 0
     for motion in motions:
         path = retargeter.retarget(motion)
-        human = read_human(motion)
-        T = len(motion.joints_m)
-        errors.append(retargeter.direction_errors_deg(human, path.q_rad[:T]))
-        ends = retargeter.limits.position_min_rad, retargeter.limits.position_max_rad
-        reach.append(retargeter.direction_errors_deg(human, np.clip(retargeter.solve(human, None), *ends)))
+        poses = retargeter.solve(read_human(motion))
+        errors.append(retargeter.direction_errors_deg(poses, path.q_rad[: len(motion.joints_m)]))
+        reach.append(retargeter.direction_errors_deg(poses, poses.q_rad))
         violations += sum(_violations(path, retargeter, rate_hz) for rate_hz in _CHECKED_HZ)
         collisions += check.frames(path.at_rate(_CONTACT_HZ))
         interventions += path.report.interventions
