@@ -58,7 +58,9 @@ def read_arm(kinematics: Kinematics, side: str) -> ArmChain:
     """
     robot = kinematics.robot
     points = {p.name: p for p in kinematics.key_points}
-    found = {j for j in range(robot.n_joints) if robot.joints[j].role in {f"{side}_{p}" for p in (*_SHOULDER_PARTS, "elbow")}}
+    found = {
+        j for j in range(robot.n_joints) if robot.joints[j].role in {f"{side}_{p}" for p in (*_SHOULDER_PARTS, "elbow")}
+    }
     allowed = f"joints with roles {side}_shoulder_pitch, _roll, _yaw, _elbow (two to four) and a site {side}_wrist"
     if f"{side}_wrist" not in points or f"{side}_shoulder" not in points:
         raise RobotFileError(robot.path, f"{side} arm", f"no site '{side}_wrist' or no shoulder joint", allowed)

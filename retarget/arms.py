@@ -21,11 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.arm_chain import ArmChain
+from retarget.branches import UNSEEN, fill_unseen
 from retarget.kinematics import cross, skew
 
 Array = NDArray[np.float64]
 UPPER_WEIGHT, FORE_WEIGHT = 1.0, 1.0
-_LEAST_ERROR_STEPS, _OFFSET_STEPS = 7, 3
+_LEAST_ERROR_STEPS, _CUT_STEPS, _OFFSET_STEPS = 7, 3, 3
+_DONE_RAD = 1e-4
 _DAMPING = 1e-3
 _LARGEST_STEP_RAD = 0.6
 _LIMIT_COST, _ERROR_COST = 5.0, 4.0
@@ -126,10 +128,26 @@ class Arms:
         inside = np.minimum(np.maximum(q, self.low), self.high)
         cut = (inside != q).any((0, 2))
         if cut.any():
-            better = self._refine(q[:, cut, None], upper[:, cut], fore[:, cut], _LEAST_ERROR_STEPS)[:, :, 0]
+            better = self._refine(q[:, cut, None], upper[:, cut], fore[:, cut], _CUT_STEPS)[:, :, 0]
             some = (inside != q).any(2)[:, cut]
             inside[:, cut] = np.where(some[..., None], better, inside[:, cut])
         return inside
+
+    def rested(self, q: Array, seen: Array, upper: Array, fore: Array, previous: Array) -> Array:
+        """(G, M, n) angles near which those of `q` that do not show may rest, from `previous` (G, n) on.
+
+        With the first and the third axis in line only the sum of their angles shows, which stays as it is.
+        """
+        if not (seen < UNSEEN).any():
+            return q
+        x = q.copy()
+        straight = (1 - np.einsum("gmi,gmi->gm", upper, fore) ** 2) / _SEEN_BENT
+        in_line = np.sign(self._third_turn.at(np.cos(q[..., 1]), np.sin(q[..., 1])) @ self.axes[:, 0, :, None])[..., 0]
+        for g in range(len(q)):
+            fill_unseen(x[g, :, 0], seen[g, :, 0], previous[g, 0])
+            x[g, :, 2] += in_line[g] * (q[g, :, 0] - x[g, :, 0])
+            fill_unseen(x[g, :, 2], straight[g], previous[g, 2])
+        return x
 
     def directions(self, q: Array) -> tuple[Array, Array]:
         """Unit directions of upper arm and forearm, each (G, M, 3), for angles (G, M, n)."""
@@ -148,17 +166,14 @@ class Arms:
     def bones(self, q: Array) -> Bones:
         """Directions of both bones for angles (G, M, n), and how they change."""
         R = self._rotations(q)
-        turned = R[:, :, 0]
+        turned = above = R[:, :, 0]
         axes = np.empty((*q.shape, 3))
         axes[:, :, 0] = self.axes[:, None, 0]
         for j in range(1, self.n_joints):
             axes[:, :, j] = (turned @ self.axes[:, None, j, :, None])[..., 0]
-            if j == self._n_shoulder:
-                upper = (turned @ self.upper0[:, None, :, None])[..., 0]
-            turned = turned @ R[:, :, j]
+            turned, above = turned @ R[:, :, j], turned
         fore = (turned @ self.fore0[:, None, :, None])[..., 0]
-        if not self._has_elbow:
-            upper = fore
+        upper = (above @ self.upper0[:, None, :, None])[..., 0] if self._has_elbow else fore
         slope = np.zeros((*q.shape, 6))
         n = self._n_shoulder
         if self._has_offsets:
@@ -213,9 +228,9 @@ class Arms:
         if lost.any():  # the first and the third axis in line: their sum alone counts, and must be right
             ways[..., 2] = np.where(lost, self._third_alone(ways, R), q3)
         seen = np.ones((G, M, 2, 2, 4))
-        across = np.minimum((1 - height**2) / _SEEN_ACROSS, 1)
+        across = np.minimum(np.maximum(1 - height**2, 0.0) / _SEEN_ACROSS, 1)
         seen[..., 0] = across[..., None]
-        seen[..., 2] = (across * np.minimum((1 - cosine**2) / _SEEN_BENT, 1)[:, :, None])[..., None]
+        seen[..., 2] = (across * np.minimum(np.maximum(1 - cosine**2, 0.0) / _SEEN_BENT, 1)[:, :, None])[..., None]
         return ways.reshape(G, M, 4, 4), seen.reshape(G, M, 4, 4)
 
     def _zero_frame(self, bent: Array) -> Array:
@@ -295,6 +310,8 @@ class Arms:
             step = np.linalg.solve(normal, np.where(stuck, 0.0, fall)[..., None])[..., 0]
             q = q + np.minimum(np.maximum(step, -_LARGEST_STEP_RAD), _LARGEST_STEP_RAD)
             q = np.minimum(np.maximum(q, self.low), self.high)
+            if step.size and np.abs(step).max() < _DONE_RAD:
+                break
         return q.reshape(G, M, C, n)
 
     def _nearest_turn(self, ways: Array) -> Array:
@@ -346,7 +363,7 @@ def _angle_about(axis: Array, a: Array, b: Array, *, first_has_ways: bool = True
     across = cross(flat, along) if first_has_ways else cross(along, flat)
     sine = np.einsum("...wi,...i->...w", many, across)
     cosine = np.einsum("...wi,...i->...w", many, flat)
-    lost = np.abs(sine) + np.abs(cosine) < _STRAIGHT
+    lost = np.abs(sine) + np.abs(cosine) < _STRAIGHT**2
     return np.where(lost, 0.0, np.arctan2(sine, cosine)), lost
 
 

@@ -16,7 +16,7 @@ _AIM_M = 0.004
 """A pose led round keeps so much more than the margin, for what limits in time then cut off."""
 _PUSHED_ON_M = 0.006
 """A path that touches is pushed so much further than the margin."""
-_PUSHES, _ROUNDS = 8, 4
+_PUSHES = 6
 _MOST_PUSHED_RAD = 0.15
 _DAMPING = 1e-5
 _AROUND = (1.0, 0.85, 0.5, 0.2)
@@ -39,8 +39,10 @@ class Avoidance:
         some = np.flatnonzero(touching)
         if len(some):
             clear[some], free = self._pushed_out(clear[some], _AIM_M)
-            for t in some[~free]:  # too deep to see the way out: come from the pose before, on its side
-                clear[t] = self._from_outside(wanted_rad[t], clear[t - 1] if t else before_rad)
+            lost = some[~free]
+            if len(lost):  # too deep to see the way out: go from the pose before to the pose after
+                clear[lost] = _between(clear, lost, before_rad)
+                clear[lost] = self._pushed_out(clear[lost], _AIM_M)[0]
         return clear, stretches(touching)
 
     def push(self, eased_rad: Array, path_rad: Array, hit: NDArray[np.bool_], strength: float) -> Array:
@@ -60,7 +62,7 @@ class Avoidance:
         near = np.zeros((T, 1))
         touched = np.zeros(T, bool)
         touched[np.minimum(np.flatnonzero(hit), T - 1)] = True
-        for away, share in enumerate(_AROUND):
+        for away, share in enumerate(_AROUND[:T]):
             for shift in {away, -away}:
                 to, of = slice(max(shift, 0), T + min(shift, 0)), slice(max(-shift, 0), T - max(shift, 0))
                 spread[to] = _larger(spread[to], share * pushes[of])
@@ -89,17 +91,18 @@ class Avoidance:
             q[rows] = np.minimum(np.maximum(q[rows] + push, self._low), self._high)
         return q, free
 
-    def _from_outside(self, target: Array, q: Array) -> Array:
-        """A pose near `target` reached from `q` on its own side, step by step; best effort."""
-        for _ in range(_ROUNDS):
-            q = q + np.clip(target - q, -2 * _MOST_PUSHED_RAD, 2 * _MOST_PUSHED_RAD)
-            q = self._pushed_out(q[None], _AIM_M)[0][0]
-        return q
-
 
 def stretches(of: NDArray[np.bool_]) -> int:
     """Number of separate runs of true."""
     return int(of[0]) + int((of[1:] & ~of[:-1]).sum())
+
+
+def _between(q_rad: Array, frames: NDArray[np.int64], before_rad: Array) -> Array:
+    """(n, J) poses on lines between those of `q_rad` (T, J) beside `frames` (n,); the last known stays."""
+    kept = np.setdiff1d(np.arange(len(q_rad)), frames)
+    at = np.concatenate([[0], kept + 1])
+    known = np.concatenate([before_rad[None], q_rad[kept]])
+    return np.stack([np.interp(frames + 1, at, known[:, j]) for j in range(q_rad.shape[1])], 1)
 
 
 def _larger(a: Array, b: Array) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-_UNSEEN = 0.5
+UNSEEN = 0.5
 """A joint seen less than this is filled in from the frames around."""
 _OUT_OF_QUESTION_RAD = 0.5
 """A way that costs more in every frame is not looked at where another costs nothing."""
@@ -27,14 +27,14 @@ def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tu
         previous_rad: (G, n) angles before the first frame.
     """
     G, T, C, n = ways.shape
-    free, costly = ~own_cost.any(1), (own_cost > _OUT_OF_QUESTION_RAD).all(1)  # (G, C)
+    free, costly = own_cost.max(1) == 0, own_cost.min(1) > _OUT_OF_QUESTION_RAD  # (G, C)
     if (free.any(1) & ((free | costly).all(1))).all():  # one way lies within the limits all along, the others never
-        g, way = np.arange(G), free.argmax(1)
-        return ways[g, :, way], seen[g, :, way]
+        way = free.argmax(1)[:, None, None, None]
+        return np.take_along_axis(ways, way, 2)[:, :, 0], np.take_along_axis(seen, way, 2)[:, :, 0]
     known = np.concatenate([np.broadcast_to(previous_rad[:, None, None], (G, 1, C, n)), ways], 1)
-    hidden = seen < _UNSEEN
+    hidden = seen < UNSEEN
     if hidden.any():
-        frames = np.arange(1, T + 1)[:, None, None]
+        frames: NDArray[np.int64] = np.arange(1, T + 1)[:, None, None]
         last_seen = np.maximum.accumulate(np.where(hidden, 0, frames), 1)
         known[:, 1:] = np.take_along_axis(known, last_seen, 1)
     move = np.abs(known[:, 1:, :, None] - known[:, :-1, None]).sum(-1)  # (G, T, C to, C from)
@@ -43,17 +43,16 @@ def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tu
     return np.take_along_axis(ways, at, 2)[:, :, 0], np.take_along_axis(seen, at, 2)[:, :, 0]
 
 
-def fill_unseen(q_rad: Array, seen: Array, previous_rad: Array) -> None:
-    """Draw a line in place over joints of `q_rad` (T, n) that are hardly seen.
+def fill_unseen(q_rad: Array, seen: Array, previous_rad: float) -> None:
+    """Draw a line in place over the angles (T,) of one joint where it is hardly seen (T,).
 
-    Before the first seen frame a joint comes from `previous_rad` (n,); after the last it stays.
+    Before the first seen frame the joint comes from `previous_rad`; after the last it stays.
     """
-    unseen = seen < _UNSEEN
-    for j in np.flatnonzero(unseen.any(0)):
-        hidden = unseen[:, j]
-        frames = np.flatnonzero(~hidden) + 1
-        known = np.concatenate([previous_rad[j : j + 1], q_rad[~hidden, j]])
-        q_rad[hidden, j] = np.interp(np.flatnonzero(hidden) + 1, np.concatenate([[0], frames]), known)
+    hidden = seen < UNSEEN
+    if hidden.any():
+        frames = np.concatenate([[0], np.flatnonzero(~hidden) + 1])
+        known = np.concatenate([[previous_rad], q_rad[~hidden]])
+        q_rad[hidden] = np.interp(np.flatnonzero(hidden) + 1, frames, known)
 
 
 def _cheapest(move: list[list[list[float]]], own: list[list[float]]) -> list[int]:

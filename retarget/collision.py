@@ -8,7 +8,7 @@ by more than what the shapes move, which bounds it from below: a path found free
 
 from __future__ import annotations
 
-import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,11 +23,22 @@ MARGIN_M = 0.010
 """Poses nearer to themselves than this count as touching; pairs that rest nearer may come half as near as they rest."""
 _SURE_M = 0.001
 """Least distance proved for the time between two poses."""
-_MEASURED_M = 0.03
+_FARTHEST_M = 1.0
+_MEASURED_M = 0.025
 """Other shapes are measured exactly when their bounds come so near."""
 _DEEPEST = 8
 """Halvings of a segment after which it counts as touching; distances that near and movements that small do not occur."""
 _CAPSULE_TYPES = (2, 3)  # mjGEOM_SPHERE, mjGEOM_CAPSULE
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """Capsules, (T, geoms, 3) centres and axes, and joints, (T, J, 3) axes and anchors, in T poses."""
+
+    centre: Array
+    axis: Array
+    joint_axis: Array
+    anchor: Array
 
 
 class SelfContact:
@@ -36,6 +47,7 @@ class SelfContact:
     def __init__(self, robot: RobotModel, margin_m: float = MARGIN_M) -> None:
         self._model: Any = description_spec(robot).compile()
         self._data: Any = mujoco.MjData(self._model)
+        self._points = np.zeros(6)
         joints = [self._model.joint(name) for name in robot.joint_names]
         self._address = np.array([j.qposadr[0] for j in joints])
         self._joint_ids = np.array([j.id for j in joints])
@@ -50,45 +62,49 @@ class SelfContact:
 
     def distances_m(self, q_rad: Array) -> Array:
         """(T, P) distance of each pair in each pose (T, J): exact where small, else not more than the true one."""
-        place, axis = self._placed(q_rad)
-        a, b = self._pairs.T
-        squared, _, _ = nearest_along(
-            place[:, a] - place[:, b], axis[:, a], axis[:, b], self._half_m[a], self._half_m[b]
-        )
-        distance = np.sqrt(squared) - self._radii_m
-        for i, p in np.argwhere((distance < _MEASURED_M) & ~self._exact):
-            self._place(q_rad[i])
-            distance[i, p] = self._measured(int(p))[0]
-        return distance
+        return self._distances(q_rad, self._placed(q_rad))[0]
 
     def worst(self, q_rad: Array, aim_m: float) -> tuple[Array, Array]:
         """What the worst pair of each pose (T, J) lacks of its margin and `aim_m` more, (T,), and the way out, (T, J).
 
         The way out is how its distance grows with each joint.
         """
-        lack = self._margin_m + aim_m - self.distances_m(q_rad)
-        pair = lack.argmax(1)
-        gradient = np.zeros_like(q_rad)
-        for i in np.flatnonzero(lack.max(1) > 0):
+        placed = self._placed(q_rad)
+        distance, s, t = self._distances(q_rad, placed)
+        lack = self._margin_m + aim_m - distance
+        rows, pair = np.arange(len(q_rad)), lack.argmax(1)
+        a, b = self._pairs[pair].T
+        point1 = placed.centre[rows, a] + s[rows, pair, None] * placed.axis[rows, a]
+        point2 = placed.centre[rows, b] + t[rows, pair, None] * placed.axis[rows, b]
+        apart = point2 - point1  # of segments, which have a direction even where capsules overlap
+        for i in np.flatnonzero(~self._exact[pair] & (lack[rows, pair] > 0)):
             self._place(q_rad[i])
-            gradient[i] = self._way_out(int(pair[i]), float(lack[i, pair[i]] - self._margin_m[pair[i]] - aim_m))
-        return lack[np.arange(len(pair)), pair], gradient
+            overlap = self._measured(int(pair[i])) < 0
+            point1[i], point2[i] = self._points[:3], self._points[3:]
+            apart[i] = (point1[i] - point2[i]) if overlap else (point2[i] - point1[i])
+        normal = apart / np.maximum(np.linalg.norm(apart, axis=1, keepdims=True), 1e-9)
+        lever = ((point1 + point2) / 2)[:, None] - placed.anchor
+        turned = np.einsum("tji,ti->tj", cross(placed.joint_axis, lever), normal)
+        body = self._model.geom_bodyid
+        return lack[rows, pair], turned * (self._above[body[b]] - self._above[body[a]])
 
-    def _way_out(self, pair: int, overlap_m: float) -> Array:
-        """(J,) how the distance of a pair in the pose set grows with each joint."""
-        point1, point2 = self._nearest_points(pair)
-        apart = point2 - point1
-        if overlap_m > 0 and not self._exact[pair]:
-            apart = -apart  # MuJoCo's points have passed each other where shapes overlap
-        normal = apart / max(math.sqrt(float(apart @ apart)), 1e-9)
-        a, b = self._model.geom_bodyid[self._pairs[pair]]
-        lever = (point1 + point2) / 2 - self._data.xanchor[self._joint_ids]
-        turned = cross(self._data.xaxis[self._joint_ids], lever) @ normal
-        return np.asarray(turned * (self._above[b] - self._above[a]), np.float64)
+    def _distances(self, q_rad: Array, placed: _Placed) -> tuple[Array, Array, Array]:
+        """Distances (T, P), and for capsules where along each axis they are taken."""
+        a, b = self._pairs.T
+        offset = placed.centre[:, a] - placed.centre[:, b]
+        squared, s, t = nearest_along(offset, placed.axis[:, a], placed.axis[:, b], self._half_m[a], self._half_m[b])
+        distance = np.sqrt(squared) - self._radii_m
+        if not self._all_exact:
+            near = (distance < _MEASURED_M) & ~self._exact
+            for i in np.flatnonzero(near.any(1)):
+                self._place(q_rad[i])
+                for p in np.flatnonzero(near[i]).tolist():
+                    distance[i, p] = self._measured(p)
+        return distance, s, t
 
     def frames(self, q_rad: Array) -> NDArray[np.bool_]:
         """(T,) whether each frame of (T, J) comes closer to itself than the margin."""
-        return (self.distances_m(q_rad) < self._margin_m).any(1)
+        return np.asarray((self.distances_m(q_rad) < self._margin_m).any(1), bool)
 
     def clearance_m(self, q_rad: Array) -> Array:
         """(T,) smallest distance of each frame of (T, J)."""
@@ -123,36 +139,27 @@ class SelfContact:
         hit[segment] = True
         return hit
 
-    def _placed(self, q_rad: Array) -> tuple[Array, Array]:
-        """(T, geoms, 3) centres and axes of the capsules in poses (T, J)."""
-        place, turn = np.empty((len(q_rad), self._model.ngeom, 3)), np.empty((len(q_rad), self._model.ngeom, 9))
-        xpos, xmat = self._data.geom_xpos, self._data.geom_xmat
+    def _placed(self, q_rad: Array) -> _Placed:
+        """Capsules and joints in poses (T, J)."""
+        model, data = self._model, self._data
+        T = len(q_rad)
+        place, turn = np.empty((T, model.ngeom, 3)), np.empty((T, model.ngeom, 9))
+        axis, anchor = np.empty((T, model.njnt, 3)), np.empty((T, model.njnt, 3))
+        xpos, xmat, xaxis, xanchor = data.geom_xpos, data.geom_xmat, data.xaxis, data.xanchor
         for i, q in enumerate(q_rad):
             self._place(q)
-            place[i], turn[i] = xpos, xmat
-        return place, turn[:, self._axis_rows, self._axis_columns]
+            place[i], turn[i], axis[i], anchor[i] = xpos, xmat, xaxis, xanchor
+        ids = self._joint_ids
+        return _Placed(place, turn[:, self._axis_rows, self._axis_columns], axis[:, ids], anchor[:, ids])
 
     def _place(self, q_rad: Array) -> None:
         self._data.qpos[self._address] = q_rad
         mujoco.mj_kinematics(self._model, self._data)
 
-    def _measured(self, pair: int) -> tuple[float, Array]:
-        """MuJoCo's distance of a pair in the pose set, and the two nearest points (6,)."""
-        points = np.zeros(6)
-        a, b = (int(g) for g in self._pairs[pair])
-        return float(mujoco.mj_geomDistance(self._model, self._data, a, b, 1.0, points)), points
-
-    def _nearest_points(self, pair: int) -> tuple[Array, Array]:
-        """The nearest points of a pair in the pose set: on the segments for capsules, so that they stay apart."""
-        if not self._exact[pair]:
-            points = self._measured(pair)[1]
-            return points[:3], points[3:]
-        a, b = self._pairs[pair]
-        place, turn = self._data.geom_xpos[[a, b]], self._data.geom_xmat[[a, b]]
-        axis = turn[[[0], [1]], self._axis_columns[[a, b]]]
-        _, s, t = nearest_along(place[0] - place[1], axis[0], axis[1], self._half_m[a], self._half_m[b])
-        # Segments that do not cross have a direction even where the capsules overlap.
-        return place[0] + s * axis[0], place[1] + t * axis[1]
+    def _measured(self, pair: int) -> float:
+        """MuJoCo's distance of a pair in the pose set; the nearest points are left in `_points`."""
+        a, b = self._pair_list[pair]
+        return float(mujoco.mj_geomDistance(self._model, self._data, a, b, _FARTHEST_M, self._points))
 
     def _shapes(self) -> None:
         """A capsule for each shape: itself, or one round it."""
@@ -172,14 +179,15 @@ class SelfContact:
                 self._half_m[g] = size[g].max()
                 radius[g] = float(np.hypot(*np.delete(size[g], along[g])))
         self._radius_m, self._exact_geom = radius, exact
-        self._axis_rows = np.arange(model.ngeom)[:, None]
+        self._axis_rows: NDArray[np.int64] = np.arange(model.ngeom)[:, None]
         self._axis_columns = along[:, None] + np.array([0, 3, 6])
 
     def _take(self, pairs: NDArray[np.int64]) -> None:
         """Look at these pairs of shapes, (P, 2), from now on."""
-        self._pairs = pairs
+        self._pairs, self._pair_list = pairs, [(int(a), int(b)) for a, b in pairs]
         a, b = pairs.T
         self._exact = self._exact_geom[a] & self._exact_geom[b]
+        self._all_exact = bool(self._exact.all())
         self._radii_m = self._radius_m[a] + self._radius_m[b]
         self._margin_m = np.zeros(len(pairs))
         self._sweep_m = self._sweeps()

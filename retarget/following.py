@@ -59,14 +59,16 @@ def limit_path(
     """
     T, J = reference_rad.shape
     path = np.clip(reference_rad, limits.position_min_rad, limits.position_max_rad)
-    if _kept(path, position_rad, velocity_rad_s, limits, period_s).all():
+    kept = _kept(path, position_rad, velocity_rad_s, limits, period_s)
+    if kept.all():
         return path
     groups = (each_by_itself(T, range(J)),) if importance is None else importance()
     position, velocity = position_rad, velocity_rad_s
     for k in range(0, T, _WINDOW_FRAMES):
         n = min(_WINDOW_FRAMES, T - k)
         frames = slice(k, min(T, k + n + _AHEAD_FRAMES))
-        kept = _kept(path[frames], position, velocity, limits, period_s)
+        if k or frames.stop < T:
+            kept = _kept(path[frames], position, velocity, limits, period_s)
         if not kept.all():
             for group in groups:
                 _solve(group, frames, reference_rad, ~kept, path, position, velocity, limits, period_s)

@@ -78,8 +78,10 @@ class Kinematics:
     def _key_points(self) -> tuple[KeyPoint, ...]:
         points: list[KeyPoint] = []
         for side in ("left", "right"):
-            for part, role in (("shoulder", "shoulder_roll"), ("elbow", "elbow")):
-                joint = self.robot.joint_with_role(f"{side}_{role}")
+            parts = {"shoulder": ("shoulder_roll", "shoulder_pitch", "shoulder_yaw"), "elbow": ("elbow",)}
+            for part, roles in parts.items():
+                joints = (self.robot.joint_with_role(f"{side}_{role}") for role in roles)
+                joint = next((j for j in joints if j is not None), None)
                 if joint is not None:
                     points.append(KeyPoint(f"{side}_{part}", self.anchors[joint], self.chains[joint]))
             points += self._site_point(f"{side}_wrist")

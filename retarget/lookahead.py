@@ -21,6 +21,8 @@ _daqp: Any = importlib.import_module("daqp")  # neither has types
 _lapack: Any = importlib.import_module("scipy.linalg.lapack")
 Array = NDArray[np.float64]
 _ROUNDS = 2
+_SAME_WISH_RAD = 0.01
+"""A joint whose wish moved less than this is not solved anew."""
 _OPTIMAL = 1
 _TIGHTENED = 1e-4
 """Share of a bound kept free: the solver keeps bounds within 1e-6."""
@@ -91,16 +93,21 @@ def nearest_path(wish: Wish, first: Array, start: Array, start_step: Array, boun
     upper, lower = _sides(bounds, start, start_step, T)
     inactive = np.zeros(3 * T, np.int32)
     x = first.copy()
-    diagonal = np.arange(T)
+    diagonal: NDArray[np.int64] = np.arange(T)
+    known = np.full((G, w, T), np.inf)
     for _ in range(_ROUNDS):
         for g in range(G):
             for j in range(w):
                 weight = wish.hessian[g, :, j]  # (T, w)
-                matrix = wish.pull * pull
-                matrix[diagonal, diagonal] += weight[:, j]
+                own = weight[:, j]
                 # What the others leave to wish for.
-                linear = np.einsum("tk,tk->t", weight, x[g]) - weight[:, j] * x[g, :, j] - wish.linear[g, :, j]
-                linear[0] -= wish.pull * start[g, j]
+                linear = (weight * x[g]).sum(1) - own * x[g, :, j] - wish.linear[g, :, j]
+                if (np.abs(linear - known[g, j]) < _SAME_WISH_RAD * (own + wish.pull)).all():
+                    continue
+                known[g, j] = linear
+                matrix = wish.pull * pull
+                matrix[diagonal, diagonal] += own
+                linear[0] -= wish.pull * start[g, j]  # `known` holds a copy
                 x[g, :, j], _, status, _ = _daqp.solve(matrix, linear, rows, upper[g, j], lower[g, j], inactive)
                 if status != _OPTIMAL:
                     return None

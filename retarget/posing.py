@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from retarget.arm_chain import ArmChain, read_arm
 from retarget.arms import Arms
-from retarget.branches import choose, fill_unseen
+from retarget.branches import choose
 from retarget.following import Importance, each_by_itself
 from retarget.human import SIDES, HumanPose
 from retarget.kinematics import Kinematics
@@ -30,6 +30,8 @@ _REST_PULL = 0.004
 _REST_STEPS = 3
 _SEEN_RAD = 0.004
 """Direction error that resting may leave before it is tried again from where it came to."""
+_NEARBY = 0.01
+"""Weight of squared steps from one such trial to the next: directions are linear in angles nearby only."""
 _MOST_LOST_RAD = 0.03
 """A frame in which resting still costs more than this keeps its closed-form pose."""
 _LEAST = 1e-4
@@ -124,22 +126,18 @@ class Poser:
             every.append(each_by_itself(len(q_rad), self._others))
         return every
 
-    def _arm_angles(
-        self, arms: Arms, upper: Array, fore: Array, before: Array
-    ) -> tuple[Array, NDArray[np.bool_]]:
+    def _arm_angles(self, arms: Arms, upper: Array, fore: Array, before: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Angles of arms of one kind for directions (G, T, 3), from `before` (G, n) on, and which were cut, (G, T, n)."""
         ways, seen = arms.ways(upper, fore)
         chosen, seen = choose(ways, arms.own_cost(ways, upper, fore, seen), seen, before)
         cut = (chosen < arms.low) | (chosen > arms.high)
         closed = arms.within_limits(chosen, upper, fore) if cut.any() else chosen
         shown = arms.directions(closed)
-        x = closed.copy()
-        for g in range(len(x)):
-            fill_unseen(x[g], seen[g], before[g])
+        x = arms.rested(closed, seen, *shown, before)
         lost = np.zeros(0)
         for _ in range(_REST_STEPS):
             bones = arms.bones(x)
-            hessian = bones.hessian() + 1e-6 * np.eye(arms.n_joints)
+            hessian = bones.hessian() + _NEARBY * np.eye(arms.n_joints)
             linear = (hessian @ x[..., None])[..., 0] + bones.towards(*shown)
             x = np.minimum(np.maximum(least_moving(Wish(hessian, linear, _REST_PULL), before), arms.low), arms.high)
             found = arms.directions(x)

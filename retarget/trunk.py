@@ -51,12 +51,12 @@ class Trunk:
 
     def into_chest(self, q_rad: Array) -> Array:
         """(T, 3, 3) from the robot's base to its own chest, or (3, 3) for a robot without a waist."""
-        R: Array = np.eye(3)
+        turned: Array = np.eye(3)
         for j in self._waist_chain:
             K = self._kinematics.skews[j]
             sine, versine = np.sin(q_rad[:, j])[:, None, None], (1 - np.cos(q_rad[:, j]))[:, None, None]
-            R = R @ (np.eye(3) + sine * K + versine * (K @ K))
-        return np.swapaxes(R, -1, -2)
+            turned = turned @ (np.eye(3) + sine * K + versine * (K @ K))
+        return np.swapaxes(turned, -1, -2)
 
     @staticmethod
     def _write(joints: list[tuple[int, int, float]], R: Array, q_rad: Array) -> None:

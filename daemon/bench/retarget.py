@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import gc
 import time
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -42,10 +43,7 @@ def bench_retarget(n: int | None = None, seed: int = 0, robots: tuple[str, ...] 
     what, motions = bench_motions(n, seed)
     names = robots or tuple(list_robots())
     stderr = Console(stderr=True)
-    figures = {
-        name: _robot_figures(load_robot(name), motions, lambda ms, name=name: track(ms, name, console=stderr))
-        for name in names
-    }
+    figures = {name: _robot_figures(load_robot(name), motions, stderr) for name in names}
     total = {key: sum(f[key] for f in figures.values()) for key in ("violations", "collisions")}
     return {
         "robots": figures, **total, "motions": what, "clips": len(motions),
@@ -53,8 +51,8 @@ def bench_retarget(n: int | None = None, seed: int = 0, robots: tuple[str, ...] 
     }  # fmt: skip
 
 
-def _robot_figures(robot: RobotModel, motions: list[Motion], progress: Any) -> dict[str, Any]:
-    own = _fidelity(Retargeter(robot), progress(motions))
+def _robot_figures(robot: RobotModel, motions: list[Motion], console: Console) -> dict[str, Any]:
+    own = _fidelity(Retargeter(robot), track(motions, robot.name, console=console))
     common = _fidelity(Retargeter(_with_limits(robot)), motions)
     figures = {**common, "own_limits": own}
     for key in ("violations", "collisions"):
@@ -71,7 +69,7 @@ def _with_limits(robot: RobotModel) -> RobotModel:
     return dataclasses.replace(robot, joints=joints)
 
 
-def _fidelity(retargeter: Retargeter, motions: Any) -> dict[str, Any]:
+def _fidelity(retargeter: Retargeter, motions: Iterable[Motion]) -> dict[str, Any]:
     """Direction error, its share that no limit in time and no contact can explain, violations, collisions."""
     check = ContactCheck(retargeter.robot)
     errors: list[Array] = []

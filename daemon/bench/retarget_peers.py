@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import Motion
-from retarget.human import HumanPose, read_human
+from retarget.human import SIDES, HumanPose, read_human
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
 
@@ -31,7 +31,8 @@ def mink_figures(motions: list[Motion]) -> dict[str, Any]:
     if importlib.util.find_spec("mink") is None or importlib.util.find_spec("daqp") is None:
         return {"mink": "not installed: pip install 'mmmd[bench]'"}
     retargeter = Retargeter(load_robot(_ROBOT))
-    human, n = [], 0
+    human: list[HumanPose] = []
+    n = 0
     for motion in motions:
         human.append(read_human(motion))
         n += len(motion.joints_m)
@@ -45,9 +46,8 @@ def mink_figures(motions: list[Motion]) -> dict[str, Any]:
 
 
 def _ours(retargeter: Retargeter, human: list[HumanPose]) -> dict[str, float]:
-    ends = retargeter.limits.position_min_rad, retargeter.limits.position_max_rad
     began_s = time.thread_time()
-    solved = [np.clip(retargeter.solve(h, None), *ends) for h in human]
+    solved = [retargeter.solve(h).q_rad for h in human]
     return _figures(retargeter, human, solved, time.thread_time() - began_s)
 
 
@@ -61,13 +61,14 @@ def _mink(retargeter: Retargeter, human: list[HumanPose], steps: int, speed_rad_
         limits.append(mink.VelocityLimit(model, dict.fromkeys(robot.joint_names, speed_rad_s)))
     points = {p.name: p for p in kinematics.key_points}
     tasks: dict[str, Any] = {}
-    for side in ("left", "right"):
-        elbow_body = model.joint(robot.joint_names[retargeter.arm(side).joints[-1]]).bodyid[0]
+    for chain in retargeter.arms:
+        side = chain.side
+        elbow_body = model.joint(robot.joint_names[chain.joints[-1]]).bodyid[0]
         tasks[f"{side}_elbow"] = mink.FrameTask(model.body(elbow_body).name, "body", 1.0, 0.0)
         tasks[f"{side}_wrist"] = mink.FrameTask(f"{side}_wrist", "site", 1.0, 0.0)
     length = {
         name: float(np.linalg.norm(points[name].zero_m - points[before].zero_m))
-        for side in ("left", "right")
+        for side in SIDES
         for name, before in ((f"{side}_elbow", f"{side}_shoulder"), (f"{side}_wrist", f"{side}_elbow"))
     }
     solved: list[Array] = []
@@ -77,12 +78,12 @@ def _mink(retargeter: Retargeter, human: list[HumanPose], steps: int, speed_rad_
         rest = np.array(configuration.q)
         rest[address] = robot.rest_rad
         configuration.update(rest)
-        q = np.empty((len(h.trunk_yaw_rad), robot.n_joints))
+        q = np.empty((h.upper.shape[1], robot.n_joints))
         began_s = time.thread_time()
         for t in range(len(q)):
-            for side in ("left", "right"):
-                elbow = points[f"{side}_shoulder"].zero_m + length[f"{side}_elbow"] * h.upper[side][t]
-                wrist = elbow + length[f"{side}_wrist"] * h.fore[side][t]
+            for i, side in enumerate(SIDES):
+                elbow = points[f"{side}_shoulder"].zero_m + length[f"{side}_elbow"] * h.upper[i, t]
+                wrist = elbow + length[f"{side}_wrist"] * h.fore[i, t]
                 for part, place in (("elbow", elbow), ("wrist", wrist)):
                     tasks[f"{side}_{part}"].set_target(mink.SE3.from_translation(place))
             for _ in range(steps):
@@ -98,7 +99,7 @@ def _mink(retargeter: Retargeter, human: list[HumanPose], steps: int, speed_rad_
 
 def _figures(retargeter: Retargeter, human: list[HumanPose], solved: list[Array], took_s: float) -> dict[str, float]:
     every = np.concatenate([
-        retargeter.direction_errors_deg(h, q).ravel() for h, q in zip(human, solved, strict=True)
+        retargeter.direction_errors_deg(retargeter.solve(h), q).ravel() for h, q in zip(human, solved, strict=True)
     ])  # fmt: skip
     return {
         "ms_per_frame": round(1e3 * took_s / sum(map(len, solved)), 5),
