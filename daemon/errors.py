@@ -10,9 +10,12 @@ DaemonError
 ├── BusMismatchError(rows)         other servos than the robot file says
 ├── LinkError                      bytes lost or bad
 │   ├── LinkTimeoutError           no answer in time                                 (TimeoutError)
-│   └── LinkLostError              the device is gone
+│   ├── LinkLostError              the device is gone
+│   └── PacketError                bytes that are no whole packet                    (ValueError)
 ├── LogError(path)                 a log that cannot be read                         (ValueError)
 ├── ConfigError(key)               a setting outside what is allowed                 (ValueError)
+├── ClipError                      a gesture that cannot be read or kept             (ValueError)
+│   └── UnknownGestureError(name)  no gesture of that name
 └── RequestError(code)             a message that cannot be carried out              (ValueError)
 """
 
@@ -90,6 +93,10 @@ class LinkLostError(LinkError):
     """The device is gone: unplugged, or its other end closed."""
 
 
+class PacketError(LinkError, ValueError):
+    """A packet whose content is not what its instruction says."""
+
+
 class LogError(DaemonError, ValueError):
     """A log that cannot be read."""
 
@@ -104,3 +111,16 @@ class RequestError(DaemonError, ValueError):
     def __init__(self, code: str, message: str) -> None:
         self.code = code
         super().__init__(message)
+
+
+class ClipError(DaemonError, ValueError):
+    """A gesture that cannot be read or kept."""
+
+
+class UnknownGestureError(ClipError):
+    """No gesture of that name."""
+
+    def __init__(self, name: str, near: Sequence[str], known: int) -> None:
+        self.name, self.near = name, tuple(near)
+        like = f"; near to it: {', '.join(near)}" if near else ""
+        super().__init__(f"gesture {name!r}: not among the {known} known ones{like}; `mmmd gesture list` shows all")

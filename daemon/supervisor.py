@@ -168,7 +168,7 @@ class Supervisor:
 
     async def _watch_bus(self, front: Front, bus: Child) -> None:
         status = await bus.ended()
-        front.performer.bus_alive = False
+        front.follower.bus_alive = False
         if self._ending:
             return
         log.error("the bus process ended with status %d; servos that have a bus watchdog stop by it", status)

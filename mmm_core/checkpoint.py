@@ -33,6 +33,7 @@ FORMAT = 1
 WEIGHTS_DIR = Path(__file__).parent / "weights"
 MODEL_FILE = WEIGHTS_DIR / "mmm_compact.safetensors"
 TEXT_FILE = WEIGHTS_DIR / "minilm.safetensors"
+EVALUATOR_FILE = WEIGHTS_DIR / "evaluator.safetensors"
 WORD_PIECES_FILE = WEIGHTS_DIR / "minilm_word_pieces.json"
 
 
@@ -159,6 +160,31 @@ def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None)
     return encoder
 
 
+def save_tensors(path: Path, tensors: Mapping[str, Tensor], kind: str, metadata: dict[str, Any]) -> None:
+    """Write tensors of another kind (an evaluator, say); an older file stays whole if writing fails."""
+    plain = {name: t.detach().clone().contiguous() for name, t in tensors.items()}
+    _save(path, plain, {"format": str(FORMAT), "kind": kind, "metadata": json.dumps(metadata)})
+
+
+def load_tensors(path: Path, kind: str) -> tuple[dict[str, Tensor], dict[str, Any]]:
+    """Read what `save_tensors` wrote.
+
+    Raises:
+        CheckpointError: missing, not a safetensors file, or of another kind or format.
+    """
+    tensors, metadata = _load(path, kind)
+    return tensors, json.loads(metadata["metadata"])
+
+
+def fill_module(module: nn.Module, tensors: dict[str, Tensor], path: Path) -> None:
+    """Load `tensors` into `module`, for inference.
+
+    Raises:
+        CheckpointError: a tensor is missing, too many or of another shape.
+    """
+    _fill(module, tensors, path, "")
+
+
 def file_hash(path: Path) -> str:
     """SHA-256 of a file, hex."""
     with path.open("rb") as f:
@@ -181,6 +207,9 @@ def _save(path: Path, tensors: dict[str, Tensor], metadata: dict[str, str]) -> N
     try:
         save_file(tensors, str(partial), metadata=metadata)
         os.replace(partial, path)
+    except (SafetensorError, OSError) as error:
+        kept = "the older file is whole" if path.is_file() else "nothing was written"
+        raise CheckpointError(path, "", f"could not be written ({error}); {kept}", "room on the disk") from error
     finally:
         partial.unlink(missing_ok=True)
 

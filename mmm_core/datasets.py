@@ -7,11 +7,16 @@
     FOLDER/Mean.npy Std.npy        statistics of the features
 
 Guo et al. 2022 (CVPR, "Generating Diverse and Natural 3D Human Motions from Text") sec. 4. A motion is used when it has
-40 to 199 frames; a caption with a span cuts its own motion out.
+40 (KIT-ML: 24) to 199 frames; a caption with a span cuts its own motion out.
+
+A HumanML3D folder made by its own notebooks lists a few motions that they cannot make (009707 and 011059 have one frame) or
+that hold NaN (007975), each also mirrored. So up to one in a hundred of a split may be missing or not finite: they are left
+out and named in the log. More than that is a broken folder.
 """
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,8 +30,11 @@ from mmm_core.features import HUMANML3D, FeatureLayout, features_from_joints, fe
 from mmm_core.kit import KIT, KIT_FPS, kit_facing_yaw_rad
 from mmm_core.motion import FPS
 
-SHORTEST_FRAMES, LONGEST_FRAMES = 40, 200
-"""Motions shorter than the first, or as long as the second, are left out, as in the published protocol."""
+log = logging.getLogger(__name__)
+SHORTEST_FRAMES, SHORTEST_KIT_FRAMES, LONGEST_FRAMES = 40, 24, 200
+"""Motions shorter than the first (KIT-ML: the second), or as long as the third, are left out, as in the published protocol."""
+UNUSABLE_SHARE = 0.01
+_MISSING, _NOT_FINITE = "no motion", "NaN or infinite values"
 Split = Literal["train", "val", "test"]
 
 
@@ -64,6 +72,11 @@ class MotionFolder:
         """Values in a frame."""
         return self.layout.n_features
 
+    @property
+    def shortest_frames(self) -> int:
+        """Frames that a motion must have at least."""
+        return SHORTEST_FRAMES if self.layout is HUMANML3D else SHORTEST_KIT_FRAMES
+
     def ids(self, split: Split) -> list[str]:
         """Names in a split.
 
@@ -83,11 +96,19 @@ class MotionFolder:
         """Motions of a split with the captions of the whole; a caption with a span gives an example of its own.
 
         Raises:
-            TrainingDataError: a listed file is missing or broken, or a span lies outside its motion.
+            TrainingDataError: a listed file is broken, more than one in a hundred is missing or not finite, or a span lies
+                outside its motion.
         """
-        for name in self.ids(split):
-            features = self.features(name)
-            if not SHORTEST_FRAMES <= len(features) < LONGEST_FRAMES:
+        names, unusable = self.ids(split), list[str]()
+        for name in names:
+            try:
+                features = self.features(name)
+            except TrainingDataError as error:
+                unusable.append(name)
+                if error.found not in (_MISSING, _NOT_FINITE) or len(unusable) > UNUSABLE_SHARE * len(names):
+                    raise
+                continue
+            if not self.shortest_frames <= len(features) < LONGEST_FRAMES:
                 continue
             whole: list[Caption] = []
             for number, caption in enumerate(read_captions(self.path / "texts" / f"{name}.txt")):
@@ -100,10 +121,13 @@ class MotionFolder:
                     raise TrainingDataError(self.path / "texts" / f"{name}.txt", f"line {number + 1}", found,
                                             f"a span within the motion's {len(features) / self.fps:.2f} s")  # fmt: skip
                 part = features[start:end]
-                if SHORTEST_FRAMES <= len(part) < LONGEST_FRAMES:
+                if self.shortest_frames <= len(part) < LONGEST_FRAMES:
                     yield Example(f"{name}_{number}", part, (caption,))
             if whole:
                 yield Example(name, features, tuple(whole))
+        if unusable:
+            log.warning("%s: %d of %d motions of '%s' are missing or not finite and are left out: %s",
+                        self.path, len(unusable), len(names), split, " ".join(unusable))  # fmt: skip
 
     def features(self, name: str) -> NDArray[np.float32]:
         """(T, F) features of a motion: as stored, else made from its joints.
@@ -117,7 +141,7 @@ class MotionFolder:
             return features.astype(np.float32)
         path = self.path / "new_joints" / f"{name}.npy"
         if not path.is_file():
-            raise TrainingDataError(self.path, name, "no motion", f"new_joint_vecs/{name}.npy or new_joints/{name}.npy")
+            raise TrainingDataError(self.path, name, _MISSING, f"new_joint_vecs/{name}.npy or new_joints/{name}.npy")
         joints = _array(path, (None, self.layout.n_joints, 3)).astype(np.float64)
         if self.layout is HUMANML3D:
             return features_from_joints(joints)
@@ -195,5 +219,5 @@ def _array(path: Path, shape: tuple[int | None, ...] | None = None) -> NDArray[n
     if not fits or (shape is None and array.ndim < 2) or not len(array):
         raise TrainingDataError(path, "", f"shape {array.shape}", str(shape or "(T, ...)").replace("None", "T"))
     if not np.isfinite(array).all():
-        raise TrainingDataError(path, "", "NaN or infinite values", "finite numbers")
+        raise TrainingDataError(path, "", _NOT_FINITE, "finite numbers")
     return array

@@ -184,9 +184,12 @@ class Engine:
         """(L, C) ids of a motion: its own if they fit its frames, else those its features are encoded to.
 
         Raises:
-            GenerationError: the motion has neither.
+            GenerationError: the motion has neither, or another frame rate or other features than the model.
         """
         tokenizer = self.model.tokenizer
+        if motion.fps != FPS or motion.features.shape[1] != len(tokenizer.mean):
+            asked = f"a motion of {motion.fps:g} fps and {motion.features.shape[1]} features was given"
+            raise GenerationError(asked, f"{FPS:g} fps and {len(tokenizer.mean)} features, as this model's")
         if len(motion.tokens) and len(motion.tokens) == tokens_for_frames(len(motion.features)):
             return torch.from_numpy(unpack_ids(motion.tokens, tokenizer.config.n_codes, tokenizer.n_codebooks))
         n_frames = len(motion.features) // FRAMES_PER_TOKEN * FRAMES_PER_TOKEN

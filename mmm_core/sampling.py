@@ -15,7 +15,7 @@ from torch import Tensor
 
 from mmm_core.decode import DecodeSettings, NoiseFn, decode
 from mmm_core.errors import GenerationError
-from mmm_core.schedule import Schedule, official_counts
+from mmm_core.schedule import Schedule, masked_counts, official_counts
 from mmm_core.text import TextStates
 from mmm_core.transformer import MotionTransformer
 
@@ -104,15 +104,20 @@ def fill(
 
     n_predicted = transformer.config.n_out
     n_open = [int((row[:, :n_predicted] == ids.mask).any(-1).sum()) for row in rows]
-    counts = None
-    if settings.official:
-        max_steps = settings.most_steps
-        early = len(rows) == 1 and transformer.config.n_predicted is None
-        counts = [official_counts(n, len(r), max_steps=max_steps, early_exit=early) if n else []
-                  for n, r in zip(n_open, rows, strict=True)]  # fmt: skip
-    how = DecodeSettings(settings.n_steps(max(n_open)), settings.schedule, settings.temperature)
+    counts = [_counts(n, len(row), settings, early_exit=len(rows) == 1 and n_predicted == transformer.config.n_codebooks)
+              for n, row in zip(n_open, rows, strict=True)]  # fmt: skip
+    how = DecodeSettings(settings.most_steps, settings.schedule, settings.temperature)
     filled = decode(batch, logits_fn, ids.mask, how, list(seeds), n_predicted=n_predicted, counts=counts, noise=noise)
     return [filled[i, : len(row)] for i, row in enumerate(rows)]
+
+
+def _counts(n_open: int, n_tokens: int, settings: SamplingSettings, *, early_exit: bool) -> list[int]:
+    """Masked positions before each step of a row, whatever its neighbours are."""
+    if not settings.official:
+        return masked_counts(n_open, settings.n_steps(n_open), settings.schedule)
+    if not n_open:
+        return []
+    return official_counts(n_open, n_tokens, max_steps=settings.most_steps, early_exit=early_exit)
 
 
 def pseudo_log_likelihood(transformer: MotionTransformer, text: TextStates, rows: Sequence[Tensor]) -> Tensor:

@@ -34,7 +34,7 @@ def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tu
     known = np.concatenate([np.broadcast_to(previous_rad[:, None, None], (G, 1, C, n)), ways], 1)
     hidden = seen < UNSEEN
     if hidden.any():
-        frames: NDArray[np.int64] = np.arange(1, T + 1)[:, None, None]
+        frames = np.arange(1, T + 1, dtype=np.int64)[:, None, None]
         last_seen = np.maximum.accumulate(np.where(hidden, 0, frames), 1)
         known[:, 1:] = np.take_along_axis(known, last_seen, 1)
     move = np.abs(known[:, 1:, :, None] - known[:, :-1, None]).sum(-1)  # (G, T, C to, C from)

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.capsules import nearest_along
-from retarget.kinematics import cross, description_spec, mujoco
+from retarget.description import description_spec, mujoco
+from retarget.kinematics import cross
 from retarget.robot import RobotModel
 
 Array = NDArray[np.float64]

@@ -93,7 +93,7 @@ def nearest_path(wish: Wish, first: Array, start: Array, start_step: Array, boun
     upper, lower = _sides(bounds, start, start_step, T)
     inactive = np.zeros(3 * T, np.int32)
     x = first.copy()
-    diagonal: NDArray[np.int64] = np.arange(T)
+    diagonal = np.arange(T, dtype=np.int64)
     known = np.full((G, w, T), np.inf)
     for _ in range(_ROUNDS):
         for g in range(G):

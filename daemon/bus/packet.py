@@ -2,7 +2,8 @@
 
 ROBOTIS e-manual, "DYNAMIXEL Protocol 2.0": header FF FF FD 00, id, length (low, high), instruction, parameters, CRC-16
 (low, high). A status packet has instruction 0x55 and an error byte before its parameters. Inside a packet FF FF FD is
-sent as FF FF FD FD ("byte stuffing"), so a header never occurs in it.
+sent as FF FF FD FD ("byte stuffing"), so a header never occurs in it; only the common answer to a fast read, a status
+of the broadcast id, is sent as it is.
 """
 
 from __future__ import annotations
@@ -12,16 +13,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
-import numpy as np
-from numpy.typing import NDArray
+from daemon.bus.crc import crc16
+from daemon.errors import PacketError
 
 HEADER = b"\xff\xff\xfd\x00"
 STUFFED = b"\xff\xff\xfd"
 BROADCAST_ID = 0xFE
-MAX_LENGTH = 1024
-"""Longest length field taken for real: sixty servos' goals are 312 bytes."""
+MAX_ID = 252
+MAX_LENGTH = 4096
+"""Longest length field taken for real: 252 servos' goals are 1,300 bytes, a fast reply of 252 with 10 each 3,600."""
 ALERT_BIT = 0x80
 """In the error byte of a status packet: the servo's hardware error register is not zero."""
+CLEAR_MULTI_TURN = b"\x01DXL\x22"
+BACKUP_STORE, BACKUP_RESTORE = b"\x01CTRL", b"\x02CTRL"
 
 
 class Instruction(IntEnum):
@@ -30,10 +34,27 @@ class Instruction(IntEnum):
     PING = 0x01
     READ = 0x02
     WRITE = 0x03
+    REG_WRITE = 0x04
+    ACTION = 0x05
+    FACTORY_RESET = 0x06
     REBOOT = 0x08
+    CLEAR = 0x10
+    CONTROL_TABLE_BACKUP = 0x20
     STATUS = 0x55
     SYNC_READ = 0x82
     SYNC_WRITE = 0x83
+    FAST_SYNC_READ = 0x8A
+    BULK_READ = 0x92
+    BULK_WRITE = 0x93
+    FAST_BULK_READ = 0x9A
+
+
+class FactoryReset(IntEnum):
+    """What a factory reset keeps."""
+
+    ALL = 0xFF
+    EXCEPT_ID = 0x01
+    EXCEPT_ID_AND_BAUD = 0x02
 
 
 class ErrorCode(IntEnum):
@@ -65,33 +86,17 @@ class Packet:
     error: int = 0
 
 
-def _crc_table() -> list[int]:
-    table: list[int] = []
-    for byte in range(256):
-        crc = byte << 8
-        for _ in range(8):
-            crc = ((crc << 1) ^ 0x8005 if crc & 0x8000 else crc << 1) & 0xFFFF
-        table.append(crc)
-    return table
-
-
-_CRC_TABLE = _crc_table()
-
-
-def crc16(data: bytes | bytearray | memoryview) -> int:
-    """CRC-16 of the protocol: polynomial 0x8005, start 0, high bit first."""
-    crc = 0
-    for byte in data:
-        crc = ((crc << 8) ^ _CRC_TABLE[((crc >> 8) ^ byte) & 0xFF]) & 0xFFFF
-    return crc
-
-
 def encode(packet: Packet) -> bytes:
-    """Bytes of a packet, stuffed and with its checksum."""
-    error = bytes([packet.error]) if packet.instruction == Instruction.STATUS else b""
-    body = (bytes([packet.instruction]) + error + packet.parameters).replace(STUFFED, STUFFED + b"\xfd")
+    """Bytes of a packet, stuffed (but for fast replies) and with its checksum."""
+    status = packet.instruction == Instruction.STATUS
+    body = bytes([packet.instruction, packet.error] if status else [packet.instruction]) + packet.parameters
+    if not (status and packet.servo_id == BROADCAST_ID):
+        body = body.replace(STUFFED, STUFFED + b"\xfd")
     framed = HEADER + struct.pack("<BH", packet.servo_id, len(body) + 2) + body
     return framed + struct.pack("<H", crc16(framed))
+
+
+# Requests: the controller's role.
 
 
 def ping(servo_id: int) -> bytes:
@@ -109,20 +114,160 @@ def write(servo_id: int, address: int, data: bytes) -> bytes:
     return encode(Packet(servo_id, Instruction.WRITE, struct.pack("<H", address) + data))
 
 
+def reg_write(servo_id: int, address: int, data: bytes) -> bytes:
+    """Write bytes at `address` once `action` is sent."""
+    return encode(Packet(servo_id, Instruction.REG_WRITE, struct.pack("<H", address) + data))
+
+
+def action(servo_id: int = BROADCAST_ID) -> bytes:
+    """Carry out what `reg_write` registered."""
+    return encode(Packet(servo_id, Instruction.ACTION))
+
+
 def reboot(servo_id: int) -> bytes:
     """Restart a servo: clears latched errors, drops torque and RAM."""
     return encode(Packet(servo_id, Instruction.REBOOT))
 
 
-def sync_read(address: int, length: int, servo_ids: Sequence[int]) -> bytes:
-    """Ask several servos for the same bytes; they answer one after another in this order."""
-    return encode(Packet(BROADCAST_ID, Instruction.SYNC_READ, struct.pack("<HH", address, length) + bytes(servo_ids)))
+def factory_reset(servo_id: int, keep: FactoryReset) -> bytes:
+    """Set a servo's table to the factory's values."""
+    return encode(Packet(servo_id, Instruction.FACTORY_RESET, bytes([keep])))
+
+
+def clear_multi_turn(servo_id: int) -> bytes:
+    """Bring present_position back within one turn; the servo must stand still."""
+    return encode(Packet(servo_id, Instruction.CLEAR, CLEAR_MULTI_TURN))
+
+
+def backup(servo_id: int) -> bytes:
+    """Store the servo's table in its backup area; torque must be off."""
+    return encode(Packet(servo_id, Instruction.CONTROL_TABLE_BACKUP, BACKUP_STORE))
+
+
+def restore(servo_id: int) -> bytes:
+    """Bring the EEPROM back from the backup area; the servo then reboots."""
+    return encode(Packet(servo_id, Instruction.CONTROL_TABLE_BACKUP, BACKUP_RESTORE))
+
+
+def sync_read(address: int, length: int, servo_ids: Sequence[int], *, fast: bool = False) -> bytes:
+    """Ask several servos for the same bytes; they answer in this order, with `fast` in one common packet."""
+    instruction = Instruction.FAST_SYNC_READ if fast else Instruction.SYNC_READ
+    return encode(Packet(BROADCAST_ID, instruction, struct.pack("<HH", address, length) + bytes(servo_ids)))
 
 
 def sync_write(address: int, length: int, rows: Sequence[tuple[int, bytes]]) -> bytes:
     """Write `length` bytes at `address` of several servos at once; nobody answers."""
     data = b"".join(bytes([servo_id]) + value for servo_id, value in rows)
     return encode(Packet(BROADCAST_ID, Instruction.SYNC_WRITE, struct.pack("<HH", address, length) + data))
+
+
+def bulk_read(rows: Sequence[tuple[int, int, int]], *, fast: bool = False) -> bytes:
+    """Ask each servo (id, address, length) for its own bytes; they answer in this order."""
+    instruction = Instruction.FAST_BULK_READ if fast else Instruction.BULK_READ
+    return encode(Packet(BROADCAST_ID, instruction, b"".join(struct.pack("<BHH", *row) for row in rows)))
+
+
+def bulk_write(rows: Sequence[tuple[int, int, bytes]]) -> bytes:
+    """Write to each servo (id, address, bytes) its own; nobody answers."""
+    data = b"".join(struct.pack("<BHH", servo_id, address, len(value)) + value for servo_id, address, value in rows)
+    return encode(Packet(BROADCAST_ID, Instruction.BULK_WRITE, data))
+
+
+# What requests say, and the answers: the servo's role.
+
+
+@dataclass(frozen=True)
+class Access:
+    """One servo's part of a request: `length` bytes at `address`, and the bytes when they are to be written."""
+
+    servo_id: int
+    address: int
+    length: int
+    data: bytes = b""
+
+
+def accesses(request: Packet) -> list[Access]:
+    """What a read or write of any kind asks of each servo, in the order of their answers.
+
+    Raises:
+        PacketError: its parameters are cut short.
+    """
+    p, kind = request.parameters, request.instruction
+    if kind == Instruction.READ and len(p) == 4:
+        return [Access(request.servo_id, *struct.unpack("<HH", p))]
+    if kind in (Instruction.WRITE, Instruction.REG_WRITE) and len(p) >= 3:
+        return [Access(request.servo_id, struct.unpack_from("<H", p)[0], len(p) - 2, p[2:])]
+    if kind in (Instruction.SYNC_READ, Instruction.FAST_SYNC_READ) and len(p) >= 4:
+        address, length = struct.unpack_from("<HH", p)
+        return [Access(servo_id, address, length) for servo_id in p[4:]]
+    if kind == Instruction.SYNC_WRITE and len(p) >= 4:
+        address, length = struct.unpack_from("<HH", p)
+        if length and (len(p) - 4) % (length + 1) == 0:
+            starts = range(4, len(p), length + 1)
+            return [Access(p[at], address, length, p[at + 1 : at + 1 + length]) for at in starts]
+    if kind in (Instruction.BULK_READ, Instruction.FAST_BULK_READ) and len(p) % 5 == 0:
+        return [Access(*row) for row in struct.iter_unpack("<BHH", p)]
+    if kind == Instruction.BULK_WRITE:
+        return _bulk_write_rows(p)
+    raise PacketError(f"instruction {kind:#04x} with {len(p)} parameters is no whole read or write")
+
+
+def _bulk_write_rows(p: bytes) -> list[Access]:
+    rows: list[Access] = []
+    at = 0
+    while at < len(p):
+        if at + 5 > len(p):
+            raise PacketError(f"bulk write ends within the head of its row {len(rows)}")
+        servo_id, address, length = struct.unpack_from("<BHH", p, at)
+        at += 5 + length
+        if not length or at > len(p):
+            raise PacketError(f"bulk write: row of servo {servo_id} says {length} bytes, {len(p)} in all")
+        rows.append(Access(servo_id, address, length, p[at - length : at]))
+    return rows
+
+
+def status(servo_id: int, error: int = 0, parameters: bytes = b"") -> bytes:
+    """A servo's answer."""
+    return encode(Packet(servo_id, Instruction.STATUS, parameters, error))
+
+
+@dataclass(frozen=True)
+class Part:
+    """One servo's part of a fast reply."""
+
+    servo_id: int
+    error: int
+    data: bytes
+
+
+def fast_status(parts: Sequence[Part]) -> bytes:
+    """The common answer of all servos to a fast read.
+
+    Each servo's part ends in the CRC of everything before it, the parts of the others and their CRCs included.
+    """
+    length = 1 + sum(4 + len(part.data) for part in parts)
+    out = HEADER + struct.pack("<BHB", BROADCAST_ID, length, Instruction.STATUS)
+    for part in parts:
+        out += bytes([part.error, part.servo_id]) + part.data
+        out += struct.pack("<H", crc16(out))
+    return out
+
+
+def fast_parts(reply: Packet, lengths: Sequence[int]) -> list[Part]:
+    """The parts of a whole fast reply; `lengths` are the bytes asked of each servo.
+
+    Raises:
+        PacketError: the packet has another length.
+    """
+    p, parts, error, at = reply.parameters, list[Part](), reply.error, 0
+    if len(p) != sum(lengths) + 4 * len(lengths) - 3:
+        raise PacketError(f"fast reply of {len(p)} bytes for {len(lengths)} servos that were asked {sum(lengths)}")
+    for length in lengths:
+        parts.append(Part(p[at], error, p[at + 1 : at + 1 + length]))
+        at += 3 + length
+        error = p[at] if at < len(p) else 0
+        at += 1
+    return parts
 
 
 class PacketDecoder:
@@ -191,47 +336,9 @@ class PacketDecoder:
 
 
 def _parse(raw: bytes) -> Packet:
-    body = raw[7:-2].replace(STUFFED + b"\xfd", STUFFED)
-    if body[0] == Instruction.STATUS:
+    body, is_status = raw[7:-2], raw[7] == Instruction.STATUS
+    if not (is_status and raw[4] == BROADCAST_ID):
+        body = body.replace(STUFFED + b"\xfd", STUFFED)
+    if is_status:
         return Packet(raw[4], body[0], body[2:], body[1])
     return Packet(raw[4], body[0], body[1:])
-
-
-class GroupReply:
-    """Fast parser of a sync read's answers: all frames at once, when they are the ones asked for, in order and whole.
-
-    The checksum is linear: with start 0 it is the XOR over positions of a table by position and byte, so one gather and
-    one XOR-reduce check every frame. Anything else is left to `PacketDecoder`.
-    """
-
-    def __init__(self, servo_ids: Sequence[int], length: int) -> None:
-        self.frame_bytes = 11 + length
-        self.n_bytes = self.frame_bytes * len(servo_ids)
-        frames = [encode(Packet(i, Instruction.STATUS, bytes(length))) for i in servo_ids]
-        template = np.frombuffer(b"".join(frames), np.uint8).reshape(len(servo_ids), -1)
-        self._fixed = template[:, :8].copy()
-        self._table = _position_table(self.frame_bytes - 2)
-        self._columns = np.arange(self.frame_bytes - 2)
-
-    def parse(self, raw: bytes) -> tuple[NDArray[np.uint8], NDArray[np.uint8]] | None:
-        """(N,) error bytes and (N, length) parameters; None when `raw` is not exactly the expected frames."""
-        if len(raw) != self.n_bytes:
-            return None
-        frames = np.frombuffer(raw, np.uint8).reshape(-1, self.frame_bytes)
-        if not np.array_equal(frames[:, :8], self._fixed):
-            return None
-        crc = np.bitwise_xor.reduce(self._table[self._columns, frames[:, :-2]], axis=1)
-        if not np.array_equal(crc, frames[:, -2].astype(np.uint16) | frames[:, -1].astype(np.uint16) << 8):
-            return None
-        return frames[:, 8], frames[:, 9:-2]  # a stuffed frame would have had another length
-
-
-def _position_table(n: int) -> NDArray[np.uint16]:
-    """(n, 256) contribution of each byte at each position to the checksum of n bytes."""
-    table = np.zeros((n, 256), np.uint16)
-    row = np.array(_CRC_TABLE, np.uint16)
-    base = row
-    for position in range(n - 1, -1, -1):
-        table[position] = row
-        row = ((row << 8) & 0xFFFF) ^ base[row >> 8]
-    return table

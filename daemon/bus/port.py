@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 
 class Port(Protocol):
@@ -31,4 +31,17 @@ class Port(Protocol):
 
     def close(self) -> None:
         """Release the device; may be called twice."""
+        ...
+
+
+@runtime_checkable
+class Reopenable(Port, Protocol):
+    """A port that can come back after its device was lost."""
+
+    def reopen(self) -> None:
+        """Open the device again, by the path it was opened with or where the same adapter is now.
+
+        Raises:
+            LinkLostError: it is not back.
+        """
         ...

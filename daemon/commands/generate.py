@@ -6,13 +6,13 @@ import json as json_module
 import re
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
 import msgspec
 import tyro
 
 from daemon.errors import CommandError
-from daemon.wire import LONGEST_S, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S
+from daemon.requests import LONGEST_S, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S
 
 if TYPE_CHECKING:
     from mmm_core.engine import Engine, Generation
@@ -36,6 +36,7 @@ class SceneLine(msgspec.Struct, forbid_unknown_fields=True):
     seconds: float | None = None
 
 
+Precision = Literal["fp32", "bf16", "auto"]
 Line = TypeVar("Line", bound=msgspec.Struct)
 
 
@@ -50,6 +51,7 @@ def generate(
     candidates: int = 1,
     model: Path | None = None,
     threads: int = 1,
+    precision: Precision = "fp32",
     json: bool = False,
 ) -> int:
     """Turn a text into the motion of 22 joints at 20 fps, in an .npz file, and a .bvh for Blender on request.
@@ -73,6 +75,7 @@ def generate(
         candidates: motions made at once, of which the model's likeliest is kept.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
+        precision: of matrix products; auto times both here. bf16 may choose another token now and then.
         json: print one JSON object for each motion.
     """
     if sum(source is not None for source in (text, batch, story)) != 1:
@@ -83,9 +86,9 @@ def generate(
     if batch is not None and bvh is not None:
         raise CommandError("generate: --bvh goes with one text; with --batch leave it out")
     if batch is not None:
-        return _generate_batch(_prompts(batch), out, model, threads, json)
+        return _generate_batch(_prompts(batch), out, _load(model, threads, precision), json)
     if story is not None:
-        return _tell(story, out, bvh, seed, _load(model, threads))
+        return _tell(story, out, bvh, seed, _load(model, threads, precision))
     prompt = Prompt("", text or "", seed, seconds)
     problem = _problem(prompt)
     if problem:
@@ -93,7 +96,7 @@ def generate(
     for path in filter(None, (out, bvh)):
         if not path.parent.is_dir():
             raise CommandError(f"generate: {path}: no folder '{path.parent}'; make it, or choose another")
-    made = _load(model, threads).generate(prompt.text, seed=seed, seconds=seconds, candidates=candidates)
+    made = _load(model, threads, precision).generate(prompt.text, seed=seed, seconds=seconds, candidates=candidates)
     made.motion.save_npz(out)
     if made.status == "rejected":
         _say(_summary(prompt, made, out), json)
@@ -108,12 +111,11 @@ def generate(
     return 0
 
 
-def _generate_batch(prompts: list[Prompt], folder: Path, model: Path | None, threads: int, json: bool) -> int:
+def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, json: bool) -> int:
     from rich.console import Console
     from rich.progress import track
 
     folder.mkdir(parents=True, exist_ok=True)
-    engine = _load(model, threads)
     rejected = 0
     console = Console(stderr=True)
     for prompt in track(prompts, "generating", console=console, disable=not console.is_terminal):
@@ -148,10 +150,10 @@ def _tell(path: Path, out: Path, bvh: Path | None, seed: int, engine: Engine) ->
     return 0 if len(whole.joints_m) else 1
 
 
-def _load(model: Path | None, threads: int) -> Engine:
+def _load(model: Path | None, threads: int, precision: Precision) -> Engine:
     from mmm_core.engine import Engine
 
-    return Engine.load(model, threads=threads)
+    return Engine.load(model, threads=threads, precision=precision)
 
 
 def _prompts(path: Path) -> list[Prompt]:

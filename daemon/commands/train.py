@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-Stage = Literal["all", "tokenizer", "transformer", "length"]
+Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator"]
 
 
 def train(
@@ -69,7 +69,7 @@ def train(
     else:
         stages = Stages(recipe, where, data)
         getattr(stages, stage)
-        written = folder / f"{stage}.pt"
+        written = folder / ("evaluator.safetensors" if stage == "evaluator" else f"{stage}.pt")
     if distributed.rank() == 0:
         sys.stdout.write(f"{written}\n")
     return 0

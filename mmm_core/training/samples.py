@@ -18,8 +18,9 @@ def draw_rows(path: Path, motions: dict[str, NDArray[np.floating]]) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(1.3 * INSTANTS, 1.6 * len(motions)))
+    figure = Figure(figsize=(1.5 * INSTANTS, 1.75 * len(motions)))
     FigureCanvasAgg(figure)
+    figure.subplots_adjust(left=0.01, right=0.99, bottom=0.01, top=1 - 0.15 / len(motions), wspace=0, hspace=0.12)
     axes = figure.subplots(len(motions), INSTANTS, squeeze=False)
     for row, (title, joints) in zip(axes, motions.items(), strict=True):
         for axis, t in zip(row, np.linspace(0, len(joints) - 1, INSTANTS).round().astype(int), strict=True):

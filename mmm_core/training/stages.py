@@ -26,6 +26,7 @@ from mmm_core.corpus.outside import OUTSIDE
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.datasets import MotionFolder, open_folder
 from mmm_core.errors import TrainingDataError
+from mmm_core.evaluation.extractors import OURS, Evaluator, save_evaluator
 from mmm_core.features import joints_from_positions, recover
 from mmm_core.kit import joints_from_kit
 from mmm_core.length import LengthPredictor
@@ -43,6 +44,7 @@ from mmm_core.training.batches import (
     load_clips,
     save_clips,
 )
+from mmm_core.training.evaluator_training import train_evaluator
 from mmm_core.training.recipe import Recipe
 from mmm_core.training.run import Run
 from mmm_core.training.samples import draw_rows
@@ -129,13 +131,17 @@ class Stages:
         """Ids and caption states of the clips; caption states are kept in the run's folder."""
         captions = sorted({c for clip in self.clips for c in clip.captions})
         row = {caption: i for i, caption in enumerate(captions)}
-        path = self.run.folder / "captions.pt"
-        if not path.is_file() and distributed.rank() == 0:
-            CaptionStates.encode(captions, self.text).save(path)
-        distributed.wait()
         rows = [[row[c] for c in clip.captions] for clip in self.clips]
         is_real = np.array([c.is_real for c in self.clips])
-        return TokenCorpus(encode_clips(self.clips, self.tokenizer), rows, CaptionStates.load(path), is_real)
+        states = self._caption_states(captions, self.text, "captions.pt")
+        return TokenCorpus(encode_clips(self.clips, self.tokenizer), rows, states, is_real)
+
+    def _caption_states(self, captions: list[str], encoder: TextEncoder, name: str) -> CaptionStates:
+        path = self.run.folder / name
+        if not path.is_file() and distributed.rank() == 0:
+            CaptionStates.encode(captions, encoder).save(path)
+        distributed.wait()
+        return CaptionStates.load(path)
 
     @cached_property
     def length(self) -> LengthPredictor:
@@ -153,6 +159,26 @@ class Stages:
         return train_transformer(
             self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch
         )
+
+    @cached_property
+    def evaluator(self) -> Evaluator:
+        """The extractors that evaluation uses; written beside the run's states when it is done.
+
+        It reads MiniLM's states whatever the model reads, so that models with other text encoders can be compared.
+        """
+        captions = sorted({c for clip in self.clips for c in clip.captions})
+        row = {caption: i for i, caption in enumerate(captions)}
+        rows = [[row[c] for c in clip.captions] for clip in self.clips]
+        shared = self.recipe.text.encoder == "minilm"
+        encoder, name = (self.text, "captions.pt") if shared else (load_text_encoder(), "captions_minilm.pt")
+        states = self._caption_states(captions, encoder, name)
+        width, words = self.clips[0].features.shape[1], states.words.shape[1]
+        pose = "mmmd" if self.folder is None else "humanml3d"
+        config = replace(OURS, n_features=width, word=words, rest_pose=pose)
+        evaluator = train_evaluator(self.clips, states, rows, self.recipe.evaluator, self.run, config)
+        if distributed.rank() == 0:
+            save_evaluator(self.run.folder / "evaluator.safetensors", evaluator, self.provenance())
+        return evaluator
 
     def model(self) -> Model:
         """All stages, as a model to be saved."""

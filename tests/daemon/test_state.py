@@ -76,7 +76,7 @@ def test_latches_open_only_by_reset():
 
 
 def test_every_bus_state_has_a_report():
-    assert {T[f"BUS_{state.name}"] for state in BusState} | {T.BUS_LOST, T.BUS_STOPPED} == set(REPORTS)
+    assert {T[f"BUS_{state.name}"] for state in BusState} | {T.BUS_LOST, T.BUS_STOPPED, T.BUS_IDLING} == set(REPORTS)
 
 
 def test_every_state_is_reached():

@@ -81,6 +81,32 @@ def test_what_is_broken_is_named(tmp_path: Path, breaking: object, message: str)
         list(open_folder(path).examples("train"))
 
 
+def test_the_few_that_humanml3ds_notebooks_cannot_make_are_left_out(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Its lists name motions that are never made and some with NaN; a loader that refused them refused every real folder."""
+    path = make_folder(tmp_path / "data")
+    names = ["009707", "000002", *["000001"] * 198]
+    (path / "train.txt").write_text("\n".join(names))
+    np.save(path / "new_joint_vecs" / "000002.npy", np.full((60, 263), np.nan))
+    examples = list(open_folder(path).examples("train"))
+    assert {e.name for e in examples} == {"000001", "000001_1"}
+    assert "2 of 200 motions of 'train'" in caplog.text
+    assert "009707 000002" in caplog.text
+    (path / "train.txt").write_text("\n".join(["011059", *names]))
+    with pytest.raises(TrainingDataError, match="NaN"):
+        list(open_folder(path).examples("train"))
+
+
+@pytest.mark.parametrize(("kind", "used"), [("humanml3d", False), ("kit", True)])
+def test_kit_motions_may_be_shorter(tmp_path: Path, kind: str, used: bool) -> None:
+    """24 frames at 12.5 a second are as long as 40 at 20."""
+    path = make_folder(tmp_path / "data", kind)
+    np.save(path / "new_joint_vecs" / "000001.npy", np.zeros((24, 263 if kind == "humanml3d" else 251)))
+    (path / "texts" / "000001.txt").write_text("a person waves.#a/DET#0.0#0.0\n")
+    assert any(e.name == "000001" for e in open_folder(path).examples("train")) == used
+
+
 def test_no_folder_and_an_empty_one(tmp_path: Path) -> None:
     with pytest.raises(TrainingDataError, match="no such folder"):
         open_folder(tmp_path / "none")

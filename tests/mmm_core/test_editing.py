@@ -14,6 +14,7 @@ from mmm_core.editing import Edit, edit, extend, in_between, part_names
 from mmm_core.engine import Engine
 from mmm_core.errors import GenerationError
 from mmm_core.features import Root, joints_from_positions, recover, root_after
+from mmm_core.sampling import empty_row, fill
 from mmm_core.story import Scene, check_scenes, tell
 from mmm_core.streaming import StreamingDecoder
 from mmm_core.vqvae import VqVae, VqVaeConfig
@@ -174,6 +175,25 @@ class TestStory:
         texts = [p.text for p in tell(engine, self.SCENES, seed=4)]
         assert all(a == b or [s.text for s in self.SCENES].index(a) < [s.text for s in self.SCENES].index(b)
                    for a, b in pairwise(texts))  # fmt: skip
+
+
+def test_rows_of_different_length_in_a_batch_get_what_they_get_alone(engine: Engine) -> None:
+    """The released code gives other tokens in a batch than alone; here the seed decides, not the neighbours."""
+    transformer = engine.model.transformer
+    texts = ["wave with your right hand", "clap your hands three times", "bow"]
+    states = engine.encoder.encode(texts)
+    rows = [empty_row(transformer, n) for n in (12, 49, 20)]
+    together = fill(transformer, states, rows, [5, 6, 7], engine.settings)
+    for i, row in enumerate(rows):
+        alone = fill(transformer, states.row(i), [row], [5 + i], engine.settings)[0]
+        assert torch.equal(alone, together[i])
+
+
+def test_a_motion_of_another_rate_is_refused(engine: Engine) -> None:
+    motion = engine.generate("nod", seed=1, seconds=3).motion
+    slow = type(motion)(**{**vars(motion), "fps": 12.5})
+    with pytest.raises(GenerationError, match=r"12\.5 fps"):
+        edit(engine, slow, Edit(), "nod")
 
 
 class TestCandidates:

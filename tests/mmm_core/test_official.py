@@ -21,11 +21,10 @@ from mmm_core.features import joints_from_positions, root_path
 from mmm_core.official import (
     read_pickle,
     read_statistics,
-    rename_tokenizer,
-    rename_transformer,
     tokenizer_from_official,
     transformer_from_official,
 )
+from mmm_core.official_names import rename_tokenizer, rename_transformer
 from mmm_core.quantizer import OfficialRuleQuantizer, perplexity
 from mmm_core.sampling import OFFICIAL_SAMPLING, empty_row, fill
 from mmm_core.schedule import official_counts

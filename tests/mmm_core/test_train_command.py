@@ -19,6 +19,7 @@ from daemon.cli import main
 from mmm_core.checkpoint import load_model
 from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, TrainingDataError
+from mmm_core.evaluation.extractors import load_evaluator
 from mmm_core.training.recipe import known_recipes, read_recipe
 from mmm_core.training.run import Run, Schedule
 from mmm_core.training.run import train as run_stage
@@ -54,6 +55,8 @@ part_share = 0.5
 {schedule}
 [length]
 {schedule}
+[evaluator]
+{schedule}
 """
 
 
@@ -87,6 +90,14 @@ def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path
     engine = Engine.load(out, threads=None)
     if layout != "halves":
         assert engine.generate("wave with your right hand", seed=1, seconds=1).motion.joints_m.shape == (20, 22, 3)
+
+
+def test_an_evaluator_is_trained_and_written(tmp_path: Path) -> None:
+    config, run = small(tmp_path / "small.toml"), tmp_path / "run"
+    assert main(["train", "evaluator", "--config", str(config), "--run", str(run)]) == 0
+    evaluator, provenance = load_evaluator(run / "evaluator.safetensors")
+    assert evaluator.config.n_features == 263
+    assert provenance["clips"] == 12
 
 
 @pytest.mark.parametrize("kind", ["humanml3d", "kit"])

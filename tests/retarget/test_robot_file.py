@@ -10,14 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 
 from retarget.errors import RobotFileError, UnknownRobotError
 from retarget.pipeline import Retargeter
 from retarget.robot import ROBOTS_DIR, list_robots, load_robot
 from retarget.ticks import JointServoMap
+from tests.retarget.robot_files import joint, write_robot
 
 
 def test_an_unknown_name_lists_the_known_ones() -> None:
@@ -48,6 +46,27 @@ CHANGES = [
     ("newer format", "format = 1", "format = 9", ["format", "9", "1"]),
     ("direction", "direction = 1 }", "direction = 2 }", ["direction", "2", "1 or -1"]),
     ("rate", "rate_hz = 100", "rate_hz = 0", ["bus.rate_hz", "1 to 1000"]),
+    ("not a number", "rest_deg = 0", "rest_deg = nan", ["rest_deg", "nan", "a finite number"]),
+    ("infinite", "acceleration_limit_deg_s2 = 2300", "acceleration_limit_deg_s2 = inf", ["motion.acceleration", "inf"]),
+    ("speed not positive", "rest_deg = 0", "rest_deg = 0\nvelocity_limit_deg_s = 0", ["head_yaw", "not positive"]),
+    ("margin", "velocity_margin = 0.9", "velocity_margin = 1.2", ["velocity_margin", "1.2", "at most 1"]),
+    ("no servo", "servo = { id = 1, ", "# servo = { id = 1, ", ["head_yaw", "no servo", "[[differential]]"]),
+    ("gear against", "direction = 1 }", "gear_ratio = -2 }", ["gear_ratio", "-2", "the sign is `direction`"]),
+    ("id beyond", "{ id = 1,", "{ id = 253,", ["servo.id", "253", "0 to 252"]),
+    ("id as text", "{ id = 1,", '{ id = "one",', ["servo.id", "'one'", "0 to 252"]),
+    ("blank", "{ id = 1,", '{ id = "?",', ["servo.id", "blank, one of 1", "mmmd robot check"]),
+    ("blank model", '"XL330-M288"', '"?"', ["servo.model", "blank", "a servo model's name"]),
+    ("protocol of a servo", '"XL330-M288"', '"MX-28"', ["MX-28 speaks protocol 1.0", "the bus 2.0", "'-2'"]),
+    ("protocol", "protocol = 2.0", "protocol = 3.0", ["bus.protocol", "3.0", "1.0 or 2.0"]),
+    ("forward is up", "[motion]", '[frame]\nforward = "z"\n[motion]', ["frame", "'z'", "two different axes"]),
+    ("no direction", "[motion]", '[frame]\nforward = "north"\n[motion]', ["frame.forward", "north", "-x"]),
+    ("unknown point", "[motion]", '[points.tail]\nbody = "x"\n[motion]', ["points", "tail", "left_wrist"]),
+    (
+        "servo's own range",
+        "direction = 1 }",
+        "position_limit_deg = [-70, 70] }",
+        ["head_yaw", "reaches", "1252 to 2844"],
+    ),
     ("no TOML", "format = 1", "format = = 1", ["not TOML"]),
 ]
 
@@ -78,27 +97,11 @@ def test_a_description_that_mujoco_cannot_read_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", list_robots())
 def test_packaged_robots_are_slower_than_their_servos_and_park_without_touching(name: str) -> None:
     robot = load_robot(name)
-    for joint, servo in zip(robot.joints, robot.servos, strict=True):
-        assert joint.velocity_limit_rad_s * servo.gear_ratio <= servo.model.no_load_speed_rad_s
+    for tick_s, servo in zip(JointServoMap(robot).velocity_limit_tick_s, robot.servos, strict=True):
+        assert tick_s * 2 * math.pi / servo.model.ticks_per_turn <= servo.model.no_load_speed_rad_s
     contact = Retargeter(robot).contact
     assert contact.pairs(robot.park_rad) == []
     assert contact.pairs(robot.rest_rad) == []
-
-
-@pytest.mark.parametrize("name", list_robots())
-@given(data=st.data())
-def test_ticks_and_angles_are_each_others_inverse(name: str, data: st.DataObject) -> None:
-    robot = load_robot(name)
-    ticks = JointServoMap(robot)
-    share = data.draw(arrays(np.float64, robot.n_joints, elements=st.floats(0, 1)))
-    q = robot.position_min_rad + share * (robot.position_max_rad - robot.position_min_rad)
-    found = ticks.rad_to_tick(q)
-    assert (found >= ticks.position_min_tick).all()
-    assert (found <= ticks.position_max_tick).all()
-    back = ticks.tick_to_rad(found)
-    whole_tick = 1.0 / np.abs(ticks.ticks_per_rad)
-    assert (np.abs(back - q) <= whole_tick + 1e-12).all(), "half a tick, a whole one only at the end of a range"
-    assert np.array_equal(ticks.rad_to_tick(back), found)
 
 
 def test_directions_and_zero_are_as_the_file_says() -> None:
@@ -113,3 +116,64 @@ def test_directions_and_zero_are_as_the_file_says() -> None:
 def test_retargeting_loads_no_torch() -> None:
     code = "import sys, retarget.pipeline, daemon.streamer, daemon.front; sys.exit('torch' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], timeout=60, check=False).returncode == 0
+
+
+DIFFERENTIAL = (
+    joint("waist_roll", "waist_roll", "[-30, 30]")
+    + joint("waist_yaw", "waist_yaw", "[-60, 60]")
+    + """[[differential]]
+joints = ["waist_roll", "waist_yaw"]
+joint_per_servo = [[-0.5, 0.5], [0.5, 0.5]]
+servos = [{ id = 2, model = "XL430-W250" }, { id = 3, model = "XL430-W250" }]
+"""
+)
+LINKAGE = joint(
+    "nod", "head_pitch", "[-40, 30]",
+    '{ id = 1, model = "XL430-W250", linkage = { joint_deg = [-45, 0, 30], servo_deg = [-70, 0, 37] } }',
+)  # fmt: skip
+DRIVES = [
+    ("singular", DIFFERENTIAL, "[0.5, 0.5]]", "[-0.5, 0.5]]", ["joint_per_servo", "with an inverse"]),
+    ("not square", DIFFERENTIAL, "[0.5, 0.5]]", "[0.5]]", ["joint_per_servo", "a row for each joint"]),
+    ("a servo short", DIFFERENTIAL, ', { id = 3, model = "XL430-W250" }]', "]", ["2 joints and 1 servos"]),
+    ("no such joint", DIFFERENTIAL, '["waist_roll", "waist_yaw"]', '["waist_roll", "hip"]', ["'hip'", "waist_yaw"]),
+    ("twice", DIFFERENTIAL, '["waist_roll", "waist_yaw"]', '["waist_yaw", "waist_yaw"]', ["'waist_yaw' twice"]),
+    ("same id", DIFFERENTIAL, "{ id = 3,", "{ id = 2,", ["servo.id", "'2'", "each once"]),
+    (
+        "a corner out of reach", DIFFERENTIAL, "[-60, 60]", "[-160, 160]",
+        ["waist_roll", "waist_yaw", "reaches servo ticks -114 to 4210", "0 to 4095"],
+    ),
+    (
+        "both too fast", DIFFERENTIAL.replace('"waist_yaw"\n', '"waist_yaw"\nvelocity_limit_deg_s = 200\n', 1),
+        '"waist_roll"\n', '"waist_roll"\nvelocity_limit_deg_s = 200\n', ["velocity_limit_deg_s", "400 deg/s", "308 deg/s"],
+    ),
+    ("and a servo", DIFFERENTIAL, "[-30, 30]\n", '[-30, 30]\nservo = { id = 9, model = "XL430-W250" }\n', ["one of them"]),
+    ("short table", LINKAGE, "[-45, 0, 30]", "[-30, 0, 30]", ["linkage", "from -30 to 30", "[-40, 30]"]),
+    ("falling table", LINKAGE, "[-45, 0, 30]", "[-45, 40, 30]", ["linkage", "joint_deg rising"]),
+    ("turning table", LINKAGE, "[-70, 0, 37]", "[-70, 50, 37]", ["linkage", "rising or falling"]),
+    ("uneven table", LINKAGE, "[-70, 0, 37]", "[-70, 0]", ["3 joint and 2 servo angles"]),
+    ("in radians", LINKAGE, "[-40, 30]", "[-0.7, 0.5]", ["position_limit_deg", "look like radians"]),
+    ("MX in extended mode", LINKAGE, 'model = "XL430-W250"', 'model = "MX-28", extended = true', ["MX-28", "protocol"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("body", "old", "new", "said"), [pytest.param(*c[1:], id=c[0]) for c in DRIVES])
+def test_each_mistake_in_a_drive_is_named(tmp_path: Path, body: str, old: str, new: str, said: list[str]) -> None:
+    load_robot(str(write_robot(tmp_path, body if "200" not in body else DIFFERENTIAL)))
+    assert old in body
+    with pytest.raises(RobotFileError) as caught:
+        load_robot(str(write_robot(tmp_path, body.replace(old, new, 1))))
+    for part in ("robot.toml", *said):
+        assert part in str(caught.value), str(caught.value)
+
+
+def test_a_servo_of_protocol_1_has_no_extended_mode(tmp_path: Path) -> None:
+    body = joint("nod", "head_pitch", "[-40, 30]", '{ id = 1, model = "MX-28", extended = true }')
+    with pytest.raises(RobotFileError, match="MX-28 has no extended position mode"):
+        load_robot(str(write_robot(tmp_path, body, protocol=1.0)))
+
+
+def test_a_file_with_blanks_can_be_looked_at(tmp_path: Path) -> None:
+    body = joint("nod", "head_pitch", "[-40, 30]", '{ id = "?", model = "?" }')
+    robot = load_robot(str(write_robot(tmp_path, body)), blanks=True)
+    assert len(robot.blanks) == 2
+    assert robot.servos[0].servo_id < 0

@@ -1,0 +1,239 @@
+"""Steps of a cycle: one request, the answers of its servos, and where their numbers go.
+
+A whole group of Protocol 2.0 servos is one step (sync read, or fast sync read); MX on protocol 1.0 are one step (bulk
+read); an AX knows no group read and is a step of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus import packet, packet1
+from daemon.bus.dialect import DIALECTS
+from daemon.bus.group import FastGroupReply, GroupReply
+from daemon.bus.models import BusModel
+from daemon.bus.packet import Instruction, Packet
+from daemon.bus.reading import BusReading
+from daemon.bus.registers import FEEDBACK_ADDRESS, FEEDBACK_LENGTH, Item
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where position, velocity and effort stand in the bytes that are read.
+
+    Attributes:
+        address, length: what is read.
+        position, velocity, effort: offset of each in it.
+    """
+
+    address: int
+    length: int
+    position: int
+    velocity: int
+    effort: int
+
+
+DIRECT = Layout(FEEDBACK_ADDRESS, FEEDBACK_LENGTH, 6, 2, 0)
+"""Protocol 2.0: effort 126, velocity 128, position 132 stand side by side."""
+PROTOCOL_1_ADDRESS, PROTOCOL_1_LENGTH = 36, 6
+"""Protocol 1.0: position 36, speed 38, load 40."""
+
+
+class Step(Protocol):
+    """One request and its answers."""
+
+    rows: NDArray[np.intp]
+    request: bytes
+    reply_bytes: int
+    answers: int
+
+    def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
+        """Store the answers in `raw`; (rows,) who gave one. False where `raw` needs the byte parser."""
+        ...
+
+    def ends(self, raw: bytearray) -> bool:
+        """Whether the last servo has answered, so that nobody else will."""
+        ...
+
+    def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
+        """Keep one answer found by the byte parser; False when it is no answer to this."""
+        ...
+
+
+class SyncStep:
+    """Sync read of a group: vectorised when all answers came whole, else byte by byte.
+
+    Args:
+        rows: of the servos in the reading.
+        servo_ids: of the same.
+        layout: what is read.
+    """
+
+    def __init__(self, rows: Sequence[int], servo_ids: Sequence[int], layout: Layout = DIRECT) -> None:
+        self.rows, self._layout = np.array(rows, np.intp), layout
+        self.request = packet.sync_read(layout.address, layout.length, servo_ids)
+        self._reply = GroupReply(servo_ids, layout.length)
+        self.reply_bytes, self.answers = self._reply.n_bytes, len(rows)
+        self._columns = _Columns(self._reply, layout)
+        self._all = np.ones(len(rows), bool)
+        self._none = np.zeros(len(rows), bool)
+
+    def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
+        """All answers at once, or none."""
+        if not self._reply.parse(raw):
+            return self._none
+        self._columns.store(self.rows, self._reply.errors, reading)
+        return self._all
+
+    def ends(self, raw: bytearray) -> bool:
+        """The last servo's frame is there."""
+        return self._reply.ends(raw)
+
+    def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
+        """One servo's status packet."""
+        if len(answer.parameters) != self._layout.length:
+            return False
+        layout, data = self._layout, answer.parameters
+        reading.error[row] = answer.error
+        reading.position_tick[row] = _number(data, layout.position, 4)
+        reading.velocity_raw[row] = _number(data, layout.velocity, 4)
+        reading.current_raw[row] = _number(data, layout.effort, 2)
+        return True
+
+
+class FastSyncStep:
+    """Fast sync read of a group: one common packet, each servo's part judged by itself."""
+
+    def __init__(self, rows: Sequence[int], servo_ids: Sequence[int], layout: Layout = DIRECT) -> None:
+        self.rows = np.array(rows, np.intp)
+        self.request = packet.sync_read(layout.address, layout.length, servo_ids, fast=True)
+        self._reply = FastGroupReply(servo_ids, layout.length)
+        self.reply_bytes, self.answers = self._reply.n_bytes, 1
+        self._columns = _Columns(self._reply, layout)
+
+    def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
+        """The parts that are whole."""
+        whole = self._reply.parse(raw)
+        if whole.all():
+            self._columns.store(self.rows, self._reply.errors, reading)
+        elif whole.any():
+            self._columns.store(self.rows, self._reply.errors, reading, whole)
+        return whole
+
+    def ends(self, raw: bytearray) -> bool:
+        """Behind a silent servo nobody goes on: only a full packet is an end."""
+        return len(raw) >= self.reply_bytes
+
+    def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
+        """No single answers here."""
+        return False
+
+
+class _Columns:
+    """Views of the numbers in a group's buffer, and their way into the reading."""
+
+    def __init__(self, reply: GroupReply | FastGroupReply, layout: Layout) -> None:
+        self._position = reply.column(layout.position, "<i4")
+        self._velocity = reply.column(layout.velocity, "<i4")
+        self._effort = reply.column(layout.effort, "<i2")
+
+    def store(
+        self,
+        rows: NDArray[np.intp],
+        errors: NDArray[np.uint8],
+        reading: BusReading,
+        whole: NDArray[np.bool_] | None = None,
+    ) -> None:
+        pick = slice(None) if whole is None else whole
+        rows = rows[pick]
+        reading.error[rows] = errors[pick]
+        reading.position_tick[rows] = self._position[pick]
+        reading.velocity_raw[rows] = self._velocity[pick]
+        reading.current_raw[rows] = self._effort[pick]
+
+
+class Protocol1Step:
+    """Bulk read of MX servos, or the read of a single AX; few bytes, taken byte by byte.
+
+    Args:
+        rows: of the servos in the reading.
+        servo_ids: of the same.
+        models: of the same, all with the same items.
+    """
+
+    def __init__(self, rows: Sequence[int], servo_ids: Sequence[int], models: Sequence[BusModel]) -> None:
+        self.rows = np.array(rows, np.intp)
+        if len(rows) > 1:
+            self.request = packet1.bulk_read([(i, PROTOCOL_1_ADDRESS, PROTOCOL_1_LENGTH) for i in servo_ids])
+        else:
+            self.request = packet1.read(servo_ids[0], PROTOCOL_1_ADDRESS, PROTOCOL_1_LENGTH)
+        self.reply_bytes, self.answers = len(rows) * (6 + PROTOCOL_1_LENGTH), len(rows)
+        names = ("present_position", "present_speed", "present_load")
+        self._items = {row: tuple(m.table[name] for name in names) for row, m in zip(rows, models, strict=True)}
+        self._none = np.zeros(len(rows), bool)
+
+    def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
+        """Everything is left to the byte parser."""
+        return self._none
+
+    def ends(self, raw: bytearray) -> bool:
+        """All bytes are there."""
+        return len(raw) >= self.reply_bytes
+
+    def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
+        """One servo's status packet."""
+        if len(answer.parameters) != PROTOCOL_1_LENGTH:
+            return False
+        position, speed, load = (_decoded(item, answer.parameters) for item in self._items[row])
+        reading.error[row] = DIALECTS[1.0].alert(answer.error)
+        reading.hardware_error[row] = answer.error & packet1.ALERT_BITS  # the same bits as on protocol 2.0
+        reading.position_tick[row], reading.velocity_raw[row], reading.current_raw[row] = position, speed, load
+        return True
+
+
+def _decoded(item: Item, data: bytes) -> int:
+    at = item.address - PROTOCOL_1_ADDRESS
+    return item.decode(data[at : at + item.size])
+
+
+def _number(data: bytes, offset: int, size: int) -> int:
+    return int.from_bytes(data[offset : offset + size], "little", signed=True)
+
+
+def steps_for(
+    rows: Sequence[int], servo_ids: Sequence[int], models: Sequence[BusModel], fast: Sequence[bool], *, chained: bool
+) -> list[Step]:
+    """The steps that read these servos: those with `fast` in one fast sync read, the others as their protocol can.
+
+    Args:
+        rows: of the servos in the reading.
+        servo_ids: of the same.
+        models: of the same.
+        fast: which of them answer fast sync reads.
+        chained: whether to use requests in which a silent servo silences those behind it (fast sync read, bulk read of
+            protocol 1.0). Without them every servo's silence is its own.
+    """
+    of = dict(zip(rows, zip(servo_ids, models, fast, strict=True), strict=True))
+    modern = [r for r in rows if of[r][1].protocol == 2.0]
+    steps: list[Step] = []
+    for group, kind in (
+        ([r for r in modern if chained and of[r][2]], FastSyncStep),
+        ([r for r in modern if not (chained and of[r][2])], SyncStep),
+    ):
+        if group:
+            steps.append(kind(group, [of[r][0] for r in group]))
+    mx = [r for r in rows if of[r][1].family == "mx1"]
+    single = [[r] for r in rows if of[r][1].family == "ax"] + ([] if chained else [[r] for r in mx])
+    for group in ([mx] if mx and chained else []) + single:
+        steps.append(Protocol1Step(group, [of[r][0] for r in group], [of[r][1] for r in group]))
+    return steps
+
+
+def is_status(answer: Packet) -> bool:
+    """Whether this is an answer, not a request of somebody else."""
+    return answer.instruction == Instruction.STATUS

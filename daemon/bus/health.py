@@ -1,0 +1,109 @@
+"""Health of each servo: ok, late, missing, faulted or quarantined, and what was counted on the way there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.packet import ALERT_BIT
+
+QUARANTINE_AFTER = 10
+"""Cycles in a row without an answer after which a servo is asked no more but once a second: at 100 Hz a tenth of a second."""
+PROBE_EVERY_S = 1.0
+
+
+class Health(IntEnum):
+    """What can be said of a servo."""
+
+    OK = 0
+    LATE = 1
+    """Its last answer came after its deadline."""
+    MISSING = 2
+    """It did not answer in the last cycle."""
+    FAULTED = 3
+    """It answers, and reports a hardware error or came back without its torque or settings."""
+    QUARANTINED = 4
+    """It has been missing for long and is left out of the cycle; asked once a second."""
+
+
+@dataclass
+class Counters:
+    """(S,) events of each servo since the start."""
+
+    timeouts: NDArray[np.int64]
+    crc: NDArray[np.int64]
+    late: NDArray[np.int64]
+    retries: NDArray[np.int64]
+    alerts: NDArray[np.int64]
+
+
+class HealthTracker:
+    """Health of the servos of a bus, kept from what each cycle brought.
+
+    Args:
+        n: servos.
+    """
+
+    def __init__(self, n: int) -> None:
+        self.state = np.zeros(n, np.uint8)
+        self.counters = Counters(*(np.zeros(n, np.int64) for _ in range(5)))
+        self._missed = np.zeros(n, np.int32)
+        self._alerted = np.zeros(n, bool)
+        self._probe_due_s = np.zeros(n)
+        self.asked = np.ones(n, bool)
+        """(S,) servos that take part in the cycle."""
+        self.faulted = np.zeros(n, bool)
+        """(S,) servos that came back changed; cleared by `cleared`."""
+
+    def after_cycle(self, valid: NDArray[np.bool_], error: NDArray[np.uint8], now_s: float) -> bool:
+        """Judge a cycle: who answered with which error byte. True when somebody was just quarantined."""
+        missing = self.asked & ~valid
+        alert = valid & ((error & ALERT_BIT) != 0)
+        if not (missing.any() or alert.any() or self._alerted.any() or self._missed.any() or self.faulted.any()):
+            self.state[self.asked] = Health.OK
+            return False
+        self._missed[valid] = 0
+        self._missed[missing] += 1
+        self.counters.timeouts += missing
+        self.counters.alerts += alert & ~self._alerted
+        self._alerted[valid] = alert[valid]
+        self.state[valid] = np.where(alert[valid] | self.faulted[valid], Health.FAULTED, Health.OK)
+        self.state[missing] = Health.MISSING
+        gone = self.asked & (self._missed >= QUARANTINE_AFTER)
+        # Half of them silent at once is no matter of single servos (power, cable): all are asked on.
+        if not gone.any() or 2 * int(missing.sum()) >= int(self.asked.sum()) > 1:
+            return False
+        self.asked &= ~gone
+        self.state[gone] = Health.QUARANTINED
+        self._probe_due_s[gone] = now_s + PROBE_EVERY_S
+        return True
+
+    def came_late(self, row: int) -> None:
+        """An answer of this servo arrived after its deadline."""
+        self.counters.late[row] += 1
+        if self.state[row] == Health.MISSING:
+            self.state[row] = Health.LATE
+            self._missed[row] = 0
+
+    def probe_due(self, now_s: float) -> int | None:
+        """A quarantined servo that should be asked again now."""
+        rows = np.flatnonzero(~self.asked)
+        if not len(rows):
+            return None
+        row = int(rows[np.argmin(self._probe_due_s[rows])])
+        return row if now_s >= self._probe_due_s[row] else None
+
+    def probed(self, row: int, *, answered: bool, now_s: float) -> None:
+        """A quarantined servo was asked; one that answered takes part again."""
+        if answered:
+            self.asked[row], self._missed[row] = True, 0
+            self.state[row] = Health.FAULTED if self.faulted[row] else Health.OK
+        self._probe_due_s[row] = now_s + PROBE_EVERY_S
+
+    def cleared(self) -> None:
+        """Everything was verified anew: no servo is taken for changed, all take part."""
+        self.faulted[:], self.asked[:], self._missed[:], self._alerted[:] = False, True, 0, False
+        self.state[:] = Health.OK

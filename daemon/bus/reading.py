@@ -1,0 +1,60 @@
+"""What the servos said last, with age and validity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+NEVER_CYCLES = 1 << 20
+UNKNOWN = -1
+"""In the slow registers: not read yet."""
+
+
+@dataclass
+class BusReading:
+    """What the servos said last; rows follow the servos of the bus.
+
+    Attributes:
+        position_tick, velocity_raw, current_raw: (S,) int32 in register units; the last known values. `current_raw`
+            is the load in 0.1 % where a servo measures no current.
+        valid: (S,) whether those are from this cycle.
+        age_cycles: (S,) cycles since they were.
+        read_s: (S,) clock time at which they were asked for; -inf before the first.
+        error: (S,) error byte of the last answer; bit 7 is the hardware alert, in both protocols.
+        torque, hardware_error, voltage_raw, temperature_c: (S,) slow registers, read in turn; UNKNOWN before the first.
+        slow_read_s: (S,) clock time at which the slow registers were asked for.
+    """
+
+    position_tick: NDArray[np.int32]
+    velocity_raw: NDArray[np.int32]
+    current_raw: NDArray[np.int32]
+    valid: NDArray[np.bool_]
+    age_cycles: NDArray[np.int32]
+    read_s: NDArray[np.float64]
+    error: NDArray[np.uint8]
+    torque: NDArray[np.int32]
+    hardware_error: NDArray[np.int32]
+    voltage_raw: NDArray[np.int32]
+    temperature_c: NDArray[np.int32]
+    slow_read_s: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, n: int) -> BusReading:
+        """Nothing known of `n` servos."""
+
+        def numbers(value: int) -> NDArray[np.int32]:
+            return np.full(n, value, np.int32)
+
+        def never() -> NDArray[np.float64]:
+            return np.full(n, -np.inf)
+
+        return cls(
+            numbers(0), numbers(0), numbers(0), np.zeros(n, bool), numbers(NEVER_CYCLES), never(), np.zeros(n, np.uint8),
+            numbers(UNKNOWN), numbers(UNKNOWN), numbers(UNKNOWN), numbers(UNKNOWN), never(),
+        )  # fmt: skip
+
+    def age_s(self, now_s: float) -> NDArray[np.float64]:
+        """(S,) seconds since each servo's values were asked for."""
+        return now_s - self.read_s

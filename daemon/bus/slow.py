@@ -1,0 +1,123 @@
+"""Registers that change slowly (torque, hardware error, voltage, temperature), read of one servo at a time, in turn.
+
+On Protocol 2.0 they stand far apart; a window of indirect addresses brings them in one read. The window is RAM: after a
+reboot it shows zeros that look like values, so a register that is never zero (status_return_level) is read along.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.dialect import DIALECTS
+from daemon.bus.models import BusModel
+from daemon.bus.packet import Packet
+from daemon.bus.reading import BusReading
+from daemon.bus.registers import Table
+
+_WITNESS = "status_return_level"
+_WINDOW = ("torque_enable", _WITNESS, "hardware_error_status", "present_input_voltage", "present_temperature")
+
+
+@dataclass(frozen=True)
+class Span:
+    """Bytes to read, and where each item stands in them."""
+
+    address: int
+    length: int
+    offsets: dict[str, tuple[int, int]]
+    witness: bool = False
+
+    @classmethod
+    def of(cls, table: Table, *names: str) -> Span:
+        """From the first to the last byte of these items."""
+        items = [table[name] for name in names]
+        start, end = min(i.address for i in items), max(i.end for i in items)
+        return cls(start, end - start, {i.name: (i.address - start, i.size) for i in items})
+
+
+class SlowReader:
+    """Whose slow registers come next, how they are asked for, and what an answer says.
+
+    Args:
+        models: of the servos, in the order of the reading.
+    """
+
+    def __init__(self, models: Sequence[BusModel]) -> None:
+        self._models = tuple(models)
+        self._spans: list[list[Span]] = [_direct(m) for m in models]
+        self._turn = [0] * len(models)
+        self._next = 0
+
+    def map_window(
+        self, row: int, firmware: int, write: Callable[[int, bytes], None], read: Callable[[int, int], bytes]
+    ) -> bool:
+        """Point a servo's indirect addresses at the slow registers; False when it has none or they are not kept.
+
+        Args:
+            row: of the servo.
+            firmware: on which the place of the window depends.
+            write: writes bytes at an address of that servo.
+            read: reads bytes at an address of that servo.
+        """
+        model = self._models[row]
+        addresses: list[int] = []
+        offsets: dict[str, tuple[int, int]] = {}
+        for item in (model.table[name] for name in _WINDOW if name in model.table):
+            offsets[item.name] = (len(addresses), item.size)
+            addresses += range(item.address, item.end)
+        window = next((w for w in model.indirect_windows(firmware) if w.count >= len(addresses)), None)
+        if window is None:
+            return False
+        data = struct.pack(f"<{len(addresses)}H", *addresses)
+        write(window.address, data)
+        if read(window.address, len(data)) != data:
+            return False
+        self._spans[row] = [Span(window.data, len(addresses), offsets, witness=True)]
+        self._turn[row] = 0
+        return True
+
+    def next_row(self, asked: NDArray[np.bool_]) -> int | None:
+        """The next servo in turn of those that take part."""
+        for _ in self._models:
+            row, self._next = self._next, (self._next + 1) % len(self._models)
+            if asked[row]:
+                return row
+        return None
+
+    def request(self, row: int, servo_id: int) -> tuple[bytes, int]:
+        """What to ask, and how many bytes come back."""
+        span = self._spans[row][self._turn[row]]
+        return DIALECTS[self._models[row].protocol].read(servo_id, span.address, span.length), span.length
+
+    def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
+        """Keep what an answer says; False when the window has lost its addresses (the servo has rebooted)."""
+        span = self._spans[row][self._turn[row]]
+        self._turn[row] = (self._turn[row] + 1) % len(self._spans[row])
+        values = {
+            name: int.from_bytes(answer.parameters[at : at + size], "little")
+            for name, (at, size) in span.offsets.items()
+        }
+        if span.witness and not values[_WITNESS]:
+            self._spans[row] = _direct(self._models[row])
+            self._turn[row] = 0
+            return False
+        for name, column in (
+            ("torque_enable", reading.torque),
+            ("hardware_error_status", reading.hardware_error),
+            ("present_input_voltage", reading.voltage_raw),
+            ("present_temperature", reading.temperature_c),
+        ):
+            if name in values:
+                column[row] = values[name]
+        return True
+
+
+def _direct(model: BusModel) -> list[Span]:
+    """Spans of neighbouring items, asked in turn, where nothing is mapped."""
+    near = ("torque_enable", "hardware_error_status") if model.protocol == 2.0 else ("torque_enable",)
+    return [Span.of(model.table, *near), Span.of(model.table, "present_input_voltage", "present_temperature")]

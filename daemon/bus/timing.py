@@ -1,0 +1,46 @@
+"""How long an exchange may take: bytes on the wire, what the servos and the adapter add, and a margin.
+
+dynamixel-sdk waits a fixed 34 ms for a servo that is silent; here a silent servo costs what its answer would have taken,
+and the margin.
+"""
+
+from __future__ import annotations
+
+BITS_PER_BYTE = 10  # 8 data bits, start, stop
+MARGIN_S = 0.004
+"""On top of everything computed and measured: scheduling on a shared machine."""
+SETUP_MARGIN_S = 0.03
+"""For single questions outside the cycle: nothing waits for them, and a busy machine may answer late."""
+_GAIN = 0.05
+
+
+class Timing:
+    """Wire time of a port, and the turnaround measured on it.
+
+    Attributes:
+        return_delay_s: of each answer; the longest of the servos, once it was read from them.
+        turnaround_s: what an exchange took beyond its wire time and return delays; a running mean, 0 until measured.
+    """
+
+    def __init__(self, baud: int, margin_s: float = MARGIN_S) -> None:
+        self._byte_s = BITS_PER_BYTE / baud
+        self.margin_s = margin_s
+        self.return_delay_s = 0.0005
+        self.turnaround_s = 0.0
+
+    def wire_s(self, n_bytes: int) -> float:
+        """Time of `n_bytes` on the wire."""
+        return n_bytes * self._byte_s
+
+    def expected_s(self, n_bytes: int, answers: int) -> float:
+        """Shortest time of an exchange of `n_bytes` in both directions with so many answers."""
+        return n_bytes * self._byte_s + answers * self.return_delay_s
+
+    def longest_s(self, n_bytes: int, answers: int) -> float:
+        """Time after which nothing will come any more."""
+        return self.expected_s(n_bytes, answers) + self.turnaround_s + self.margin_s
+
+    def measured(self, n_bytes: int, answers: int, took_s: float) -> None:
+        """A whole exchange took so long."""
+        extra_s = max(0.0, took_s - self.expected_s(n_bytes, answers))
+        self.turnaround_s += _GAIN * (min(extra_s, 0.02) - self.turnaround_s)
