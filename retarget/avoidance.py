@@ -35,7 +35,7 @@ class Avoidance:
     def lead_round(self, wanted_rad: Array, before_rad: Array) -> tuple[Array, int]:
         """Poses (T, J) clear of the robot, each near the wanted one; how many stretches of them were changed."""
         clear = wanted_rad.copy()
-        touching = self._contact.frames(clear)
+        touching = self._contact.frames(clear, 1.0)
         some = np.flatnonzero(touching)
         if len(some):
             clear[some], free = self._pushed_out(clear[some], _AIM_M)

@@ -28,7 +28,9 @@ def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tu
     """
     G, T, C, n = ways.shape
     free, costly = own_cost.max(1) == 0, own_cost.min(1) > _OUT_OF_QUESTION_RAD  # (G, C)
-    if (free.any(1) & ((free | costly).all(1))).all():  # one way lies within the limits all along, the others never
+    if (
+        (free.sum(1) == 1) & (free | costly).all(1)
+    ).all():  # one way lies within the limits all along, the others never
         way = free.argmax(1)[:, None, None, None]
         return np.take_along_axis(ways, way, 2)[:, :, 0], np.take_along_axis(seen, way, 2)[:, :, 0]
     known = np.concatenate([np.broadcast_to(previous_rad[:, None, None], (G, 1, C, n)), ways], 1)

@@ -22,8 +22,8 @@ from retarget.robot import RobotModel
 Array = NDArray[np.float64]
 MARGIN_M = 0.010
 """Poses nearer to themselves than this count as touching; pairs that rest nearer may come half as near as they rest."""
-_SURE_M = 0.001
-"""Least distance proved for the time between two poses."""
+_KEPT = 0.8
+"""Share of the margin that is proved for every instant of a path."""
 _FARTHEST_M = 1.0
 _MEASURED_M = 0.025
 """Other shapes are measured exactly when their bounds come so near."""
@@ -103,9 +103,9 @@ class SelfContact:
                     distance[i, p] = self._measured(p)
         return distance, s, t
 
-    def frames(self, q_rad: Array) -> NDArray[np.bool_]:
-        """(T,) whether each frame of (T, J) comes closer to itself than the margin."""
-        return np.asarray((self.distances_m(q_rad) < self._margin_m).any(1), bool)
+    def frames(self, q_rad: Array, share: float = _KEPT) -> NDArray[np.bool_]:
+        """(T,) whether each frame of (T, J) comes closer to itself than a share of the margin, what paths keep of it."""
+        return np.asarray((self.distances_m(q_rad) < share * self._margin_m).any(1), bool)
 
     def clearance_m(self, q_rad: Array) -> Array:
         """(T,) smallest distance of each frame of (T, J)."""
@@ -128,7 +128,7 @@ class SelfContact:
         first, last = border[:-1], border[1:]
         for _ in range(_DEEPEST):
             hit[segment] |= (np.minimum(first, last) < self._margin_m).any(1)
-            unsure = ((first + last - moved) / 2 < _SURE_M).any(1) & ~hit[segment]
+            unsure = ((first + last - moved) / 2 < _KEPT * self._margin_m).any(1) & ~hit[segment]
             if not unsure.any():
                 return hit
             segment, u, first, last, moved = segment[unsure], u[unsure], first[unsure], last[unsure], moved[unsure] / 2

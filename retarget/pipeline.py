@@ -59,7 +59,7 @@ class Retargeter:
         Raises:
             MotionError: the motion is empty or has bones that no human has.
         """
-        poses = self.solve(read_human(motion), start)
+        poses = self.poses(read_human(motion), start)
         period = 1.0 / motion.fps
         begin = self._begin(poses.q_rad, start)
         eased, interventions = poses.q_rad, 0
@@ -79,9 +79,13 @@ class Retargeter:
         comparison = self._compare(poses, path, motion.fps, interventions)
         return JointPath(path, self.robot.joint_names, motion.fps, comparison, ends)
 
-    def solve(self, human: HumanPose, start: JointState | None = None) -> Poses:
+    def poses(self, human: HumanPose, start: JointState | None = None) -> Poses:
         """The poses for each frame within the position limits, before limits in time and contacts."""
         return self._poser.solve(human, None if start is None else start.position_rad)
+
+    def solve(self, human: HumanPose, start: JointState | None = None) -> Array:
+        """(T, J) angles of `poses`."""
+        return self.poses(human, start).q_rad
 
     def direction_errors_deg(self, poses: Poses, q_rad: Array) -> Array:
         """(4, T) angle between human and robot bone in poses (T, J), in the order of `report.BONES`."""

@@ -77,7 +77,7 @@ def _fidelity(retargeter: Retargeter, motions: Iterable[Motion]) -> dict[str, An
     violations = collisions = interventions = 0
     for motion in motions:
         path = retargeter.retarget(motion)
-        poses = retargeter.solve(read_human(motion))
+        poses = retargeter.poses(read_human(motion))
         errors.append(retargeter.direction_errors_deg(poses, path.q_rad[: len(motion.joints_m)]))
         reach.append(retargeter.direction_errors_deg(poses, poses.q_rad))
         violations += sum(_violations(path, retargeter, rate_hz) for rate_hz in _CHECKED_HZ)

@@ -47,7 +47,7 @@ def mink_figures(motions: list[Motion]) -> dict[str, Any]:
 
 def _ours(retargeter: Retargeter, human: list[HumanPose]) -> dict[str, float]:
     began_s = time.thread_time()
-    solved = [retargeter.solve(h).q_rad for h in human]
+    solved = [retargeter.solve(h) for h in human]
     return _figures(retargeter, human, solved, time.thread_time() - began_s)
 
 
@@ -99,7 +99,7 @@ def _mink(retargeter: Retargeter, human: list[HumanPose], steps: int, speed_rad_
 
 def _figures(retargeter: Retargeter, human: list[HumanPose], solved: list[Array], took_s: float) -> dict[str, float]:
     every = np.concatenate([
-        retargeter.direction_errors_deg(retargeter.solve(h), q).ravel() for h, q in zip(human, solved, strict=True)
+        retargeter.direction_errors_deg(retargeter.poses(h), q).ravel() for h, q in zip(human, solved, strict=True)
     ])  # fmt: skip
     return {
         "ms_per_frame": round(1e3 * took_s / sum(map(len, solved)), 5),

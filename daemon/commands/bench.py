@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-BenchName = Literal["generate", "official", "story", "first-motion", "audit"]
+BenchName = Literal["generate", "official", "story", "first-motion", "retarget", "audit"]
 
 
 def bench(
@@ -17,7 +17,7 @@ def bench(
 
     generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten steps.
     story: ten minutes of motion from 59 texts on two threads. first-motion: text to first moving servo frame, warm, through the
-    daemon. audit: many texts through the daemon's bus side on two robots, every goal checked against the limits.
+    daemon. retarget: time of all its stages and direction error per robot, bounds and contacts checked again. audit: many texts through the daemon's bus side on two robots, every goal checked against the limits.
 
     Example: mmmd bench first-motion --json
 
@@ -25,7 +25,7 @@ def bench(
         name: what to measure.
         json: print one JSON object instead of lines.
         seed: seed of the texts and of generation.
-        n: number of texts, where the figure has any.
+        n: number of texts or clips, where the figure has any.
     """
     from rich.console import Console
 
@@ -45,6 +45,10 @@ def bench(
         from daemon.bench.first_motion import bench_first_motion
 
         figures = bench_first_motion(n or 50, seed)
+    elif name == "retarget":
+        from daemon.bench.retarget import bench_retarget
+
+        figures = bench_retarget(n, seed)
     else:
         from daemon.bench.audit import bench_audit
 

@@ -134,7 +134,7 @@ def test_a_motion_is_retargeted_on_every_family(family, tmp_path):
     assert (path.control_rad >= limits.position_min_rad - 1e-12).all()
     assert (path.control_rad <= limits.position_max_rad + 1e-12).all()
     assert np.isfinite(path.q_rad).all()
-    poses = r.solve(read_human(random_motion(3, 60, "smooth")))
+    poses = r.poses(read_human(random_motion(3, 60, "smooth")))
     reach = r.direction_errors_deg(poses, poses.q_rad)
     assert (np.percentile(reach, 90) < 1.0) == (family in REACHES_ALL)
 
@@ -193,6 +193,13 @@ def test_the_row_of_ways_is_the_cheapest_of_all_rows(seed):
 
     best = min((np.array(r) for r in np.ndindex(*[C] * T)), key=cost)
     np.testing.assert_allclose(q[0], ways[0, np.arange(T), best])
+
+
+def test_of_two_ways_that_cost_nothing_the_near_one_is_taken():
+    """Both ways of an arm with wide limits lie within them: it once swung half round to reach the first."""
+    ways = np.broadcast_to(np.array([[3.0, 3.0], [0.1, 0.1]]), (1, 5, 2, 2))
+    q, _ = choose(ways, np.zeros((1, 5, 2)), np.ones(ways.shape), np.zeros((1, 2)))
+    np.testing.assert_allclose(q, 0.1)
 
 
 def test_an_unseen_joint_is_filled_in_from_the_frames_around():
