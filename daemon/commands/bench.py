@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-BenchName = Literal["generate", "official", "story", "first-motion", "audit"]
+BenchName = Literal["generate", "official", "story", "first-motion", "barge-in", "seams", "estop", "audit"]
 
 
 def bench(
@@ -16,8 +16,10 @@ def bench(
     """Measure one figure and print it.
 
     generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten steps.
-    story: ten minutes of motion from 59 texts on two threads. first-motion: text to first moving servo frame, warm, through the
-    daemon. audit: many texts through the daemon's bus side on two robots, every goal checked against the limits.
+    story: ten minutes of motion from 59 texts on two threads. first-motion: text to first moving servo frame, warm, through
+    the daemon. barge-in: overlapping commands and stops at random instants. seams: jerk and steps where motions meet, and
+    closure of loops. estop: e-stop to torque-off bytes with busy cores. audit: many texts through the
+    daemon's bus side on two robots, every goal checked against the limits.
 
     Example: mmmd bench first-motion --json
 
@@ -45,6 +47,18 @@ def bench(
         from daemon.bench.first_motion import bench_first_motion
 
         figures = bench_first_motion(n or 50, seed)
+    elif name == "barge-in":
+        from daemon.bench.barge_in import bench_barge_in
+
+        figures = bench_barge_in(n or 1000, seed)
+    elif name == "seams":
+        from daemon.bench.seams import bench_seams
+
+        figures = bench_seams(n or 60, seed)
+    elif name == "estop":
+        from daemon.bench.estop import bench_estop
+
+        figures = bench_estop(n or 30, seed)
     else:
         from daemon.bench.audit import bench_audit
 
