@@ -39,6 +39,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "reset": CommandEntry("daemon.commands.control:reset", "leave e-stop or fault; the robot stays limp"),
     "arm": CommandEntry("daemon.commands.control:arm", "torque on, slow move to the rest pose"),
     "park": CommandEntry("daemon.commands.control:park", "slow move to the park pose, torque off"),
+    "keys": CommandEntry("daemon.commands.keys:keys", "who may talk to whom over the network"),
     "sim": CommandEntry("daemon.commands.sim:sim", "simulated servos behind a real tty"),
     "robot": CommandEntry("daemon.commands.robot:robot", "list, check and show robots"),
     "generate": CommandEntry("daemon.commands.generate:generate", "text to human motion: .npz and .bvh"),
