@@ -35,6 +35,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="the bus process of mmmd; started by `mmmd run`")
     for name in ("--robot", "--bus", "--link"):
         parser.add_argument(name, required=True)
+    parser.add_argument("--after-loss", action="store_true")
     arguments = parser.parse_args()
     logging.basicConfig(level=logging.INFO, format="bus: %(levelname)s %(message)s")
     robot = load_robot(arguments.robot)
@@ -45,7 +46,7 @@ def main() -> int:
         port = open_port(arguments.bus, PortContext(robot, clock))
         return ServoBus(port, robot.servos, clock, slow_every=SLOW_EVERY)
 
-    streamer = start(robot, open_bus, link, clock)
+    streamer = start(robot, open_bus, link, clock, after_loss=arguments.after_loss)
     if streamer is None:
         return 1
     link.set_realtime(*_take_rights())

@@ -31,6 +31,8 @@ log = logging.getLogger(__name__)
 HEARTBEAT_LOST_S = 0.5
 PARK_AFTER_S = 5.0
 """A silent front: after the first time decelerate and hold, after the second park and go limp."""
+FAULT_LIMP_S = 10.0
+"""A fault in which torque was kept, and a front so long silent: nobody will come, the servos go limp."""
 WATCHDOG_UNITS = 10
 """Servo bus watchdog, 20 ms each: 200 ms without any packet on the bus and the servos stop by themselves."""
 TORQUE_OFF_REPEATS = 5
@@ -258,14 +260,15 @@ class Streamer:
     # Judgement.
 
     def _watch_heartbeat(self) -> None:
-        if (
-            not self._watch_front
-            or not self._torque
-            or self.state in (BusState.PARKING, BusState.FAULT, BusState.ESTOP)
-        ):
+        if not self._watch_front or not self._torque or self.state in (BusState.PARKING, BusState.ESTOP):
             self._front_lost_s = None
             return
         age_s = self._link.heartbeat_age_s
+        if self.state is BusState.FAULT:
+            if age_s > FAULT_LIMP_S:
+                log.warning("in fault and the front silent for %.1f s: torque off", age_s)
+                self._cut_torque()
+            return
         if age_s < HEARTBEAT_LOST_S:
             self._front_lost_s = None
         elif age_s > PARK_AFTER_S:
@@ -353,8 +356,16 @@ class Streamer:
 Opener = Callable[[], ServoBus]
 
 
-def start(robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock) -> Streamer | None:
-    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link."""
+AFTER_LOSS = "the bus process was lost and is back; servos may still hold: `mmmd reset` makes them limp"
+
+
+def start(
+    robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock, *, after_loss: bool = False
+) -> Streamer | None:
+    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link.
+
+    `after_loss` starts it in a latched fault: what the servos do now nobody knows, and nothing may move by itself.
+    """
     try:
         bus = open_bus()
     except DaemonError as error:
@@ -383,5 +394,9 @@ def start(robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock) -> S
         bus.port.close()
         link.set_ready(Readiness.FAILED, str(error))
         return None
-    link.set_ready(Readiness.READY)
-    return Streamer(robot, bus, link, clock)
+    streamer = Streamer(robot, bus, link, clock)
+    link.drop_queued()
+    if after_loss:
+        streamer.state = BusState.FAULT
+    link.set_ready(Readiness.READY, AFTER_LOSS if after_loss else "")
+    return streamer

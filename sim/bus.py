@@ -9,8 +9,11 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable
 
+import numpy as np
+
 from daemon.bus.packet import BROADCAST_ID, Instruction, Packet, PacketDecoder, encode
 from retarget.robot import RobotModel
+from retarget.ticks import JointServoMap
 from sim.audit import Audit
 from sim.faults import FaultSchedule
 from sim.servo import SimServo
@@ -29,7 +32,9 @@ class SimBus:
     ) -> None:
         pose = start_rad if start_rad is not None else robot.park_rad.tolist()
         self.robot = robot
-        self.servos = {s.servo_id: SimServo(s, q) for s, q in zip(robot.servos, pose, strict=True)}
+        ticks = JointServoMap(robot)
+        angles = ((ticks.to_ticks(np.array(pose, np.float64)) - ticks.zero_tick) / ticks.ticks_per_rad).tolist()
+        self.servos = {s.servo_id: SimServo(s, a) for s, a in zip(robot.servos, angles, strict=True)}
         self.faults = faults or FaultSchedule()
         self.audit = Audit(robot)
         self.on_goal: Callable[[float, int, int], None] | None = None

@@ -29,7 +29,10 @@ _GOALS = ("goal_position", "goal_velocity", "goal_pwm", "goal_current")
 
 
 class SimServo:
-    """Registers and motion of one servo; time is handed in, never read."""
+    """Registers and motion of one servo; time is handed in, never read.
+
+    It starts at `position_rad`: of its joint, or what its joints and linkage come to (`ServoSpec`).
+    """
 
     def __init__(self, spec: ServoSpec, position_rad: float) -> None:
         self.spec = spec
@@ -45,14 +48,14 @@ class SimServo:
         self._set("firmware_version", _FIRMWARE)
         self._set("id", spec.servo_id)
         self._set("baud_rate", 3)
-        self._set("operating_mode", 3)
+        self._set("operating_mode", 4 if spec.extended else 3)
         self._set("protocol_type", 2)
         self._set("status_return_level", 2)
         self._set("temperature_limit", 80)
         self._set("max_voltage_limit", 160)
         self._set("min_voltage_limit", 55)
         self._set("velocity_limit", 1023)
-        self._set("max_position_limit", spec.model.ticks_per_turn - 1)
+        self._set("max_position_limit", spec.model.max_tick)
         self._set("shutdown", 52)
         self._set("present_input_voltage", 120)
         self._set("present_temperature", 32)
@@ -145,6 +148,8 @@ class SimServo:
         if item.name in _GOALS and self.get("bus_watchdog") == WATCHDOG_TRIPPED:
             return ErrorCode.DATA_RANGE
         limits = (self.get("min_position_limit"), self.get("max_position_limit"))
+        if self.get("operating_mode") == 4:  # extended: position limits do not count
+            limits = self.spec.model.tick_range(extended=True)
         if item.name == "goal_position" and not limits[0] <= value <= limits[1]:
             return ErrorCode.DATA_LIMIT
         return ErrorCode.NONE

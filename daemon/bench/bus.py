@@ -15,7 +15,7 @@ from rich.console import Console
 
 from daemon.bench.bus_peers import PEERS, c_client_us, installed, sdk_codec_us
 from daemon.bench.report import context
-from daemon.bench.wire_emulator import CURRENT_RAW, MODEL_NUMBER, POSITION_TICK, VELOCITY_RAW
+from daemon.bench.wire_emulator import CURRENT_RAW, POSITION_TICK, VELOCITY_RAW
 from daemon.bus.feedback import FastSyncStep, SyncStep
 from daemon.bus.group import GroupWrite
 from daemon.bus.packet import Part, fast_status, status
@@ -24,7 +24,7 @@ from daemon.bus.serial_port import SerialPort
 from daemon.bus.servo_bus import ServoBus
 from daemon.clock import RealClock
 from retarget.robot import ServoSpec
-from retarget.servos import ServoModel
+from retarget.servos import servo_models
 
 N_SERVOS = 20
 IDS = list(range(1, N_SERVOS + 1))
@@ -115,8 +115,11 @@ def _emulator(baud: int, *, fast: bool = True, loss: float = 0.0, dead: int = 0)
 
 @contextmanager
 def _bus(device: str, baud: int, *, verify: bool = True) -> Generator[ServoBus]:
-    model = ServoModel("XM430-W350", MODEL_NUMBER, 2.0, 4096, 4.817, True)
-    servos = [ServoSpec(i, f"joint_{i}", model, 1, 1.0, 2048) for i in IDS]
+    model = servo_models()["XM430-W350"]
+    servos = [
+        ServoSpec(i, f"joint_{i}", model, 1, 1.0, model.zero_tick, ((n, 1.0),), model.min_tick, model.max_tick)
+        for n, i in enumerate(IDS)
+    ]
     port = SerialPort(device, baud)
     try:
         bus = ServoBus(port, servos, RealClock())

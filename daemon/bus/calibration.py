@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from daemon.bus.servo_bus import ServoBus
 from daemon.errors import CommandError
 from retarget.errors import RobotFileError
-from retarget.robot import RobotModel, load_robot
+from retarget.robot import RobotModel, ServoSpec, load_robot
 
 MOVED_TICKS = 100
 """A joint moved by less than this (9 degrees) was not moved on purpose: its range in the file stays."""
@@ -50,15 +50,17 @@ class Ranges:
 
 @dataclass(frozen=True)
 class Calibrated:
-    """What was found for one joint.
+    """What was found for one servo.
 
     Attributes:
-        joint_name: of the joint.
-        zero_tick: servo position in the zero pose.
-        low_deg, high_deg: range in joint angles; None when the joint was not moved.
-        problem: why the range cannot be used as it is; empty when it can.
+        servo_id: of the servo.
+        joint_name: its joint, or its joints joined by "+".
+        zero_tick: its position in the zero pose.
+        low_deg, high_deg: range in joint angles; None when the joint was not moved, or is moved by several servos.
+        problem: why what was found cannot be used as it is; empty when it can.
     """
 
+    servo_id: int
     joint_name: str
     zero_tick: int
     low_deg: float | None
@@ -91,7 +93,7 @@ def calibrate(
     if not reading.valid.all():
         silent = ", ".join(str(i) for i, ok in zip(bus.ids, reading.valid, strict=True) if not ok)
         raise CommandError(f"servo {silent} does not answer; check cable and power")
-    turns = np.array([_wrap_turn(s.model.ticks_per_turn, s.model.protocol) for s in robot.servos], np.int32)
+    turns = np.array([_wrap_ticks(s) for s in robot.servos], np.int32)
     ranges = Ranges(reading.position_tick, turns)
 
     def follow() -> Ranges:
@@ -103,32 +105,42 @@ def calibrate(
     zero = follow().tick.copy()
     ranges.low[:], ranges.high[:] = zero, zero
     wait_range(follow)
-    return [_of_joint(robot, i, int(zero[i]), ranges, margin_deg) for i in range(robot.n_joints)]
+    return [_of_servo(robot, i, int(zero[i]), ranges, margin_deg) for i in range(len(robot.servos))]
 
 
-def _wrap_turn(ticks_per_turn: int, protocol: float) -> int:
-    """Ticks after which a reading starts again; an AX ends at 300 degrees and never does."""
-    return ticks_per_turn if protocol == 2.0 or ticks_per_turn == 4096 else 1 << 30
+def _wrap_ticks(servo: ServoSpec) -> int:
+    """Ticks after which a reading starts again; never in extended position mode, and on an AX, which ends at 300 degrees."""
+    turn = round(servo.model.ticks_per_turn)
+    return turn if not servo.extended and servo.model.max_tick - servo.model.min_tick + 1 >= turn else 1 << 30
 
 
-def _of_joint(robot: RobotModel, i: int, zero: int, ranges: Ranges, margin_deg: float) -> Calibrated:
-    servo, joint = robot.servos[i], robot.joints[i]
-    turn = servo.model.ticks_per_turn
-    offset = zero // turn * turn  # the zero pose in the servo's own turn
+def _of_servo(robot: RobotModel, i: int, zero: int, ranges: Ranges, margin_deg: float) -> Calibrated:
+    servo = robot.servos[i]
+    name, wrap = servo.joint_name, _wrap_ticks(servo)
+    offset = zero // wrap * wrap  # the zero pose in the servo's own turn
     low, high, zero = int(ranges.low[i]) - offset, int(ranges.high[i]) - offset, zero - offset
-    if high - low < MOVED_TICKS:
-        return Calibrated(joint.name, zero, None, None)
-    deg_per_tick = 360 / turn / servo.gear_ratio * servo.direction
+    if servo.linkage is not None:
+        return Calibrated(servo.servo_id, name, servo.zero_tick, None, None, "moved through rods: set its zero by hand")
+    if high - low < MOVED_TICKS or not _alone(robot, servo):
+        return Calibrated(servo.servo_id, name, zero, None, None)
+    deg_per_tick = math.degrees(1 / servo.ticks_per_rad) / servo.couplings[0][1]
     ends = sorted(((low - zero) * deg_per_tick, (high - zero) * deg_per_tick))
-    low_deg, high_deg = ends[0] + margin_deg, ends[1] - margin_deg
+    first, last = servo.model.tick_range(servo.extended)
     problem = ""
-    if low < 0 or high > turn - 1:
-        shift = round(turn / 2 - (low + high) / 2)
+    if low < first or high > last:
+        shift = round((first + last) / 2 - (low + high) / 2)
         problem = (
             f"its range crosses the end of the servo's turn (ticks {low} to {high}): turn the horn, or"
             f" mmmd servo set {servo.servo_id} homing_offset {shift:+d} added to what is there, and calibrate again"
         )
-    return Calibrated(joint.name, zero, round(low_deg, 1), round(high_deg, 1), problem)
+    low_deg, high_deg = round(ends[0] + margin_deg, 1), round(ends[1] - margin_deg, 1)
+    return Calibrated(servo.servo_id, name, zero, low_deg, high_deg, problem)
+
+
+def _alone(robot: RobotModel, servo: ServoSpec) -> bool:
+    """Whether this servo moves one joint, and nobody else moves that."""
+    joints = {j for j, _ in servo.couplings}
+    return len(joints) == 1 and sum(bool(joints & {j for j, _ in s.couplings}) for s in robot.servos) == 1
 
 
 def write_robot_file(robot: RobotModel, found: list[Calibrated], out: Path) -> None:
@@ -137,12 +149,15 @@ def write_robot_file(robot: RobotModel, found: list[Calibrated], out: Path) -> N
     Raises:
         CommandError: the result is no valid robot file (it is not kept).
     """
-    blocks = re.split(r"(?m)^(?=\[\[joint\]\])", robot.path.read_text("utf-8"))
-    by_name = {c.joint_name: c for c in found}
+    text = robot.path.read_text("utf-8")
+    for c in found:
+        text = _with_zero(text, c)
+    blocks = re.split(r"(?m)^(?=\[\[joint\]\])", text)
+    ranges = {c.joint_name: c for c in found if c.low_deg is not None and not c.problem}
     for i, block in enumerate(blocks):
         name = re.search(r'(?m)^name\s*=\s*"([^"]*)"', block)
-        if block.startswith("[[joint]]") and name is not None and name[1] in by_name:
-            blocks[i] = _with_values(block, by_name[name[1]])
+        if block.startswith("[[joint]]") and name is not None and name[1] in ranges:
+            blocks[i] = _with_range(block, ranges[name[1]])
     existed = out.exists()
     before = out.read_text("utf-8") if existed else ""
     out.write_text("".join(blocks), "utf-8")
@@ -156,15 +171,23 @@ def write_robot_file(robot: RobotModel, found: list[Calibrated], out: Path) -> N
         raise CommandError(f"{out} would be no valid robot file: {error}") from error
 
 
-def _with_values(block: str, c: Calibrated) -> str:
-    if re.search(r"zero_tick\s*=", block):
-        block = re.sub(r"(zero_tick\s*=\s*)-?\d+", rf"\g<1>{c.zero_tick}", block, count=1)
+def _with_zero(text: str, c: Calibrated) -> str:
+    """The text with the zero tick in the inline table of this servo."""
+    table = re.search(rf"\{{[^{{}}]*\bid\s*=\s*{c.servo_id}\b[^{{}}]*\}}", text)
+    if table is None:
+        raise CommandError(f"servo {c.servo_id} is not in one inline table {{ id = {c.servo_id}, ... }}: write it so")
+    inner = table[0]
+    if re.search(r"\bzero_tick\s*=", inner):
+        inner = re.sub(r"(\bzero_tick\s*=\s*)-?\d+", rf"\g<1>{c.zero_tick}", inner)
     else:
-        block = re.sub(r"(?m)^(servo\s*=\s*\{.*?)\s*\}", rf"\1, zero_tick = {c.zero_tick} }}", block, count=1)
-    if c.low_deg is not None and c.high_deg is not None and not c.problem:
-        numbers = f"[{_inward(c.low_deg, math.ceil)}, {_inward(c.high_deg, math.floor)}]"
-        block = re.sub(r"(position_limit_deg\s*=\s*)\[[^\]]*\]", rf"\g<1>{numbers}", block, count=1)
-    return block
+        inner = re.sub(r"\s*\}$", f", zero_tick = {c.zero_tick} }}", inner)
+    return text[: table.start()] + inner + text[table.end() :]
+
+
+def _with_range(block: str, c: Calibrated) -> str:
+    assert c.low_deg is not None and c.high_deg is not None
+    numbers = f"[{_inward(c.low_deg, math.ceil)}, {_inward(c.high_deg, math.floor)}]"
+    return re.sub(r"(position_limit_deg\s*=\s*)\[[^\]]*\]", rf"\g<1>{numbers}", block, count=1)
 
 
 def _inward(deg: float, towards: Callable[[float], int]) -> float:

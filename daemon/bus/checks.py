@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,9 +9,10 @@ from daemon.bus.models import BusModel
 from daemon.bus.registers import hardware_error_text
 from daemon.bus.servo_bus import ServoBus
 from daemon.errors import BusMismatchError, CommandError, MismatchRow
-from retarget.robot import JointSpec, RobotModel, ServoSpec
+from retarget.robot import RobotModel, ServoSpec
+from retarget.ticks import JointServoMap
 
-_POSITION_MODE = 3
+_POSITION_MODE, _EXTENDED_MODE = 3, 4
 _REVERSED, _TIME_BASED = 0b001, 0b100
 _SHUTDOWN_ON = 0b100100  # overheating, overload: the same bits in both protocols
 _ITEMS = (
@@ -52,10 +52,14 @@ class Finding:
 def check_servos(bus: ServoBus, robot: RobotModel) -> list[Finding]:
     """What is not as it should be, servo by servo; reads only."""
     findings: list[Finding] = []
-    joints = {j.name: j for j in robot.joints}
+    ticks = JointServoMap(robot)
+    ends = {
+        s.servo_id: (int(low), int(high))
+        for s, low, high in zip(robot.servos, ticks.position_min_tick, ticks.position_max_tick, strict=True)
+    }
     for servo, model, firmware in zip(bus.servos, bus.models, bus.firmware, strict=True):
         values = bus.read_items(servo.servo_id, _ITEMS)
-        findings += _of_servo(servo, joints[servo.joint_name], model, firmware, values)
+        findings += _of_servo(servo, ends[servo.servo_id], model, firmware, values)
     return findings
 
 
@@ -95,7 +99,7 @@ def fix(bus: ServoBus, findings: Sequence[Finding]) -> list[Finding]:
 
 
 def _of_servo(
-    servo: ServoSpec, joint: JointSpec, model: BusModel, firmware: int, values: dict[str, int]
+    servo: ServoSpec, ends_tick: tuple[int, int], model: BusModel, firmware: int, values: dict[str, int]
 ) -> list[Finding]:
     out: list[Finding] = []
 
@@ -112,9 +116,10 @@ def _of_servo(
     if v["status_return_level"] != 2:
         found = str(v["status_return_level"])
         note("status_return_level", found, "2 (answers all)", NEEDED, set_("status_return_level", 2), 2)
-    if v.get("operating_mode", _POSITION_MODE) != _POSITION_MODE:
-        found, expected = str(v["operating_mode"]), f"{_POSITION_MODE} (position)"
-        note("operating_mode", found, expected, NEEDED, set_("operating_mode", _POSITION_MODE), _POSITION_MODE)
+    mode, meaning = (_EXTENDED_MODE, "extended position") if servo.extended else (_POSITION_MODE, "position")
+    if v.get("operating_mode", mode) != mode:
+        expected = f"{mode} ({meaning})"
+        note("operating_mode", str(v["operating_mode"]), expected, NEEDED, set_("operating_mode", mode), mode)
     drive = v.get("drive_mode", 0)
     if drive & (_REVERSED | _TIME_BASED):
         right = drive & ~(_REVERSED | _TIME_BASED)
@@ -124,7 +129,7 @@ def _of_servo(
         right = v["shutdown"] | _SHUTDOWN_ON
         expected = f"{right} (overheating and overload cut the torque)"
         note("shutdown", str(v["shutdown"]), expected, ADVISED, set_("shutdown", right), right)
-    for item, found, needed, outside in _limits(servo, joint, v):
+    for item, found, needed, outside in () if servo.extended else _limits(ends_tick, v):
         severity = NEEDED if outside else ADVISED
         note(item, str(found), f"{needed} (the joint's limit)", severity, set_(item, needed), needed)
     if v.get("hardware_error_status"):
@@ -142,15 +147,12 @@ def _of_servo(
     return out
 
 
-def _limits(servo: ServoSpec, joint: JointSpec, v: dict[str, int]) -> list[tuple[str, int, int, bool]]:
+def _limits(ends_tick: tuple[int, int], v: dict[str, int]) -> list[tuple[str, int, int, bool]]:
     """Position limits that are not the joint's: (item, found, needed, whether goals would be refused)."""
-    scale = servo.direction * servo.gear_ratio * servo.model.ticks_per_turn / (2 * math.pi)
-    ends = sorted(servo.zero_tick + scale * q for q in (joint.position_min_rad, joint.position_max_rad))
-    low, high = max(0, math.floor(ends[0])), min(servo.model.ticks_per_turn - 1, math.ceil(ends[1]))
-    found_low, found_high = v["min_position_limit"], v["max_position_limit"]
+    (low, high), found_low, found_high = ends_tick, v["min_position_limit"], v["max_position_limit"]
     out: list[tuple[str, int, int, bool]] = []
     if found_low != low:
-        out.append(("min_position_limit", found_low, low, found_low > round(ends[0])))
+        out.append(("min_position_limit", found_low, low, found_low > low))
     if found_high != high:
-        out.append(("max_position_limit", found_high, high, found_high < round(ends[1])))
+        out.append(("max_position_limit", found_high, high, found_high < high))
     return out

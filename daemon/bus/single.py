@@ -11,7 +11,7 @@ from daemon.bus.servo_bus import ServoBus
 from daemon.clock import Clock
 from daemon.errors import CommandError, LinkTimeoutError
 from retarget.robot import ServoSpec
-from retarget.servos import ServoModel
+from retarget.servos import servo_models
 
 MOVES = ("goal_position", "goal_velocity", "goal_pwm", "goal_current", "moving_speed", "goal_torque", "torque_enable")
 """Items that can set a joint in motion: the daemon's alone, behind its gate."""
@@ -128,5 +128,6 @@ def find(port: Port, clock: Clock, servo_id: int, protocol: float | None = None)
 
 
 def _bus(port: Port, clock: Clock, servo_id: int, model: BusModel) -> ServoBus:
-    facts = ServoModel(model.name, model.model_number, model.protocol, model.ticks_per_turn, 1.0, model.has_current)
-    return ServoBus(port, [ServoSpec(servo_id, "servo", facts, 1, 1.0, model.zero_tick)], clock)
+    facts = servo_models()[model.name]
+    ends = facts.min_tick, facts.max_tick
+    return ServoBus(port, [ServoSpec(servo_id, "servo", facts, 1, 1.0, facts.zero_tick, ((0, 1.0),), *ends)], clock)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import select
 import sys
 from collections.abc import Callable
@@ -86,8 +87,10 @@ def _table(model: RobotModel, ranges: Ranges) -> Table:
     table = Table()
     for column in ("joint", "servo", "tick", "lowest", "highest", "range deg"):
         table.add_column(column, justify="left" if column == "joint" else "right")
-    for i, (joint, servo) in enumerate(zip(model.joints, model.servos, strict=True)):
+    for i, servo in enumerate(model.servos):
         low, high = int(ranges.low[i]), int(ranges.high[i])
-        degrees = (high - low) * 360 / servo.model.ticks_per_turn / servo.gear_ratio
-        table.add_row(joint.name, str(servo.servo_id), str(int(ranges.tick[i])), str(low), str(high), f"{degrees:.0f}")
+        degrees = math.degrees((high - low) / abs(servo.ticks_per_rad))
+        table.add_row(
+            servo.joint_name, str(servo.servo_id), str(int(ranges.tick[i])), str(low), str(high), f"{degrees:.0f}"
+        )
     return table

@@ -15,7 +15,7 @@ from daemon.bus.packet import BROADCAST_ID, ErrorCode, Instruction, Packet, Part
 from daemon.bus.registers import WATCHDOG_TRIPPED
 from daemon.errors import LinkLostError, PacketError
 from retarget.robot import ServoSpec
-from retarget.servos import ServoModel
+from retarget.servos import servo_models
 from sim.clock import VirtualClock
 
 
@@ -194,9 +194,10 @@ class FakePort:
 
 def spec(name: str, servo_id: int) -> ServoSpec:
     """A servo of a robot file."""
-    m = MODELS[MODEL_NUMBERS[name]]
-    model = ServoModel(name, m.model_number, m.protocol, m.ticks_per_turn, 5.0, m.has_current)
-    return ServoSpec(servo_id, f"joint_{servo_id}", model, 1, 1.0, m.zero_tick)
+    model = servo_models()[name]
+    return ServoSpec(
+        servo_id, f"joint_{servo_id}", model, 1, 1.0, model.zero_tick, ((servo_id - 1, 1.0),), model.min_tick, model.max_tick
+    )  # fmt: skip
 
 
 def fake(*names: str, **port: object) -> tuple[FakePort, list[ServoSpec], VirtualClock]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from emulator import FakePort, fake
@@ -360,8 +362,8 @@ def test_what_is_not_there_is_named() -> None:
 
 def test_a_servo_without_a_control_table_is_refused() -> None:
     far, servos, clock = fake("XM430-W350")
-    strange = servos[0].model.__class__("XQ-1", 9999, 2.0, 4096, 1.0, True)
-    odd = servos[0].__class__(1, "arm", strange, 1, 1.0, 2048)
+    strange = replace(servos[0].model, name="XQ-1", model_number=9999)
+    odd = replace(servos[0], joint_name="arm", model=strange)
     with pytest.raises(ConfigError, match=r"XQ-1.*known: XH430-W350"):
         ServoBus(far, [odd], clock)
 
