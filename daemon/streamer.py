@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.approach import Approach
+from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.bus.packet import ALERT_BIT
 from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.bus.servo_bus import BusReading, ServoBus
@@ -41,6 +42,7 @@ MISSING_CYCLES = 20
 TORQUE_CHECK_CYCLES = 5
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
 """Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
+_LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
 _ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
 
 
@@ -371,6 +373,19 @@ def start(
         return None
     try:
         bus.verify()
+        findings = check_servos(bus, robot)
+        for f in findings:
+            log.log(
+                _LEVELS[f.severity],
+                "servo %d (%s): %s %s, should be %s; %s",
+                f.servo_id,
+                f.joint_name,
+                f.item,
+                f.found,
+                f.expected,
+                f.remedy,
+            )
+        require_needed(findings)
         plan = bus.plan()
         if not plan.require(robot.bus.rate_hz):
             log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))
