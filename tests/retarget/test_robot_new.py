@@ -189,6 +189,41 @@ def test_a_mesh_that_is_there_keeps_its_shape(tmp_path: Path) -> None:
     assert not any("mesh" in doubt for doubt in inspect_robot(robot).doubts)
 
 
+FAMILIES = [
+    # joints of the left arm: (name, axis, place, role)
+    ("pitch, elbow", [("a", "0 1 0", "0 .2 1", "shoulder_pitch"), ("b", "0 1 0", "0 0 -.2", "elbow")]),
+    ("pitch, roll, stiff", [("a", "0 1 0", "0 .2 1", "shoulder_pitch"), ("b", "1 0 0", "0 .02 0", "shoulder_roll")]),
+    (
+        "roll, pitch, elbow",
+        [("a", "1 0 0", "0 .2 1", "shoulder_roll"), ("b", "0 1 0", "0 0 -.02", "shoulder_pitch"),
+         ("c", "0 1 0", "0 0 -.2", "elbow")],
+    ),
+    (
+        "yaw last, T-pose",
+        [("a", "0 1 0", "0 .2 1", "shoulder_pitch"), ("b", "1 0 0", "0 .03 0", "shoulder_roll"),
+         ("c", "0 1 0", "0 .1 0", "shoulder_yaw"), ("d", "1 0 0", "0 .1 0", "elbow"), ("e", "0 1 0", "0 .05 0", "forearm_yaw"),
+         ("f", "1 0 0", "0 .15 0", "wrist")],
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("joints"), [pytest.param(j, id=name) for name, j in FAMILIES])
+def test_roles_of_each_family_of_arms(tmp_path: Path, joints: list[tuple[str, str, str, str]]) -> None:
+    def arm(side: str, mirror: float) -> str:
+        out = [float(v) for v in joints[-1][2].split()] if len(joints) > 3 else [0.0, 0.0, -0.2]
+        bodies = ""
+        for name, axis, place, _ in joints:
+            x, y, z = (float(v) for v in place.split())
+            bodies += f'<body pos="{x} {mirror * y} {z}"><joint name="{side}_{name}" axis="{axis}"/><geom size=".02"/>'
+        hand = f'<geom size=".01" pos="{out[0]} {mirror * out[1]} {out[2]}"/>'
+        return bodies + hand + "</body>" * len(joints)
+
+    path = tmp_path / "mine.xml"
+    path.write_text(f"<mujoco><worldbody>{arm('left', 1.0)}{arm('right', -1.0)}</worldbody></mujoco>")
+    found = {j.name: j.role for j in find_anatomy(path).joints}
+    assert found == {f"{s}_{name}": f"{s}_{role}" for s in ("left", "right") for name, _, _, role in joints}
+
+
 MIMIC = '<equality><joint joint1="left_elbow" joint2="left_roll" polycoef="0 1 0 0 0"/></equality>'
 LOOP = '<equality><connect body1="left_fore" body2="right_fore" anchor="0 0 0"/></equality>'
 
