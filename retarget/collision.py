@@ -1,152 +1,222 @@
-"""Self-contact: whether the robot touches itself, along a whole path, and the nearest pose in which it does not.
+"""Self-contact: how near a robot comes to itself, along a whole path, and which way leads out.
 
-Distances are MuJoCo's, between the description's own shapes. Pairs joined by one or two joints, and pairs that touch
-in the rest pose, cannot be told apart by shapes this coarse and are left out. Between two poses no distance changes by
-more than what the shapes move, which bounds it from below: a path found free is free at every instant, not at samples.
+Capsules and spheres are measured exactly by closed form, all pairs of all poses at once; another shape is first bounded
+by a capsule round it and, when that comes near, measured by MuJoCo. Pairs joined by one or two joints, and pairs that
+touch in the rest pose, cannot be told apart by shapes this coarse and are left out. Between two poses no distance changes
+by more than what the shapes move, which bounds it from below: a path found free is free at every instant, not at samples.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from retarget.capsules import nearest_along
 from retarget.description import description_spec, mujoco
 from retarget.kinematics import cross
 from retarget.robot import RobotModel
 
 Array = NDArray[np.float64]
-MARGIN_M = 0.004
-"""Poses nearer to themselves than this count as touching."""
-_SURE_M = 0.001
-"""Least distance proved for the time between two poses."""
-_SEEN_M = 0.05
-"""Distances above this are not told apart."""
-_MOST_PUSHED_RAD = 0.15
-_ROUNDS, _PUSHES = 4, 3
+MARGIN_M = 0.010
+"""Poses nearer to themselves than this count as touching; pairs that rest nearer may come half as near as they rest."""
+_KEPT = 0.8
+"""Share of the margin that is proved for every instant of a path."""
+_FARTHEST_M = 1.0
+_MEASURED_M = 0.025
+"""Other shapes are measured exactly when their bounds come so near."""
+_DEEPEST = 8
+"""Halvings of a segment after which it counts as touching; distances that near and movements that small do not occur."""
+_CAPSULE_TYPES = (2, 3)  # mjGEOM_SPHERE, mjGEOM_CAPSULE
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """Capsules, (T, geoms, 3) centres and axes, and joints, (T, J, 3) axes and anchors, in T poses."""
+
+    centre: Array
+    axis: Array
+    joint_axis: Array
+    anchor: Array
 
 
 class SelfContact:
     """Distances of one robot to itself."""
 
     def __init__(self, robot: RobotModel, margin_m: float = MARGIN_M) -> None:
-        self._margin_m = margin_m
-        self._load(robot, [])
-        near = self._near_pairs() | {self._names(a, b) for a, b in self._touching(robot.rest_rad, margin_m)}
-        self._load(robot, sorted(near))
-        self._above = self._joints_above()
-        self._sweep_m = self._sweeps()
-
-    def _load(self, robot: RobotModel, ignored: list[tuple[str, str]]) -> None:
-        spec = description_spec(robot)
-        for a, b in ignored:
-            spec.add_exclude(bodyname1=a, bodyname2=b)
-        self._model: Any = spec.compile()
+        self._model: Any = description_spec(robot).compile()
         self._data: Any = mujoco.MjData(self._model)
-        self._model.geom_margin[:] = _SEEN_M
+        self._points = np.zeros(6)
         joints = [self._model.joint(name) for name in robot.joint_names]
         self._address = np.array([j.qposadr[0] for j in joints])
         self._joint_ids = np.array([j.id for j in joints])
+        self._shapes()
+        self._above = self._joints_above()
+        self._take(self._pairs_that_can_meet())
+        resting = self.distances_m(robot.rest_rad[None])[0]
+        self._take(self._pairs[resting > 0])
+        # A pair that rests within the margin may stay there.
+        self._margin_m = np.minimum(margin_m, resting[resting > 0] / 2)
+        self._margin_m[resting[resting > 0] > margin_m] = margin_m
 
-    def frames(self, q_rad: Array) -> NDArray[np.bool_]:
-        """(T,) whether each frame of (T, J) comes closer to itself than the margin."""
-        return self.clearance_m(q_rad) < self._margin_m
+    def distances_m(self, q_rad: Array) -> Array:
+        """(T, P) distance of each pair in each pose (T, J): exact where small, else not more than the true one."""
+        return self._distances(q_rad, self._placed(q_rad))[0]
+
+    def worst(self, q_rad: Array, aim_m: float) -> tuple[Array, Array]:
+        """What the worst pair of each pose (T, J) lacks of its margin and `aim_m` more, (T,), and the way out, (T, J).
+
+        The way out is how its distance grows with each joint.
+        """
+        placed = self._placed(q_rad)
+        distance, s, t = self._distances(q_rad, placed)
+        lack = self._margin_m + aim_m - distance
+        rows, pair = np.arange(len(q_rad)), lack.argmax(1)
+        a, b = self._pairs[pair].T
+        point1 = placed.centre[rows, a] + s[rows, pair, None] * placed.axis[rows, a]
+        point2 = placed.centre[rows, b] + t[rows, pair, None] * placed.axis[rows, b]
+        apart = point2 - point1  # of segments, which have a direction even where capsules overlap
+        for i in np.flatnonzero(~self._exact[pair] & (lack[rows, pair] > 0)):
+            self._place(q_rad[i])
+            overlap = self._measured(int(pair[i])) < 0
+            point1[i], point2[i] = self._points[:3], self._points[3:]
+            apart[i] = (point1[i] - point2[i]) if overlap else (point2[i] - point1[i])
+        normal = apart / np.maximum(np.linalg.norm(apart, axis=1, keepdims=True), 1e-9)
+        lever = ((point1 + point2) / 2)[:, None] - placed.anchor
+        turned = np.einsum("tji,ti->tj", cross(placed.joint_axis, lever), normal)
+        body = self._model.geom_bodyid
+        return lack[rows, pair], turned * (self._above[body[b]] - self._above[body[a]])
+
+    def _distances(self, q_rad: Array, placed: _Placed) -> tuple[Array, Array, Array]:
+        """Distances (T, P), and for capsules where along each axis they are taken."""
+        a, b = self._pairs.T
+        offset = placed.centre[:, a] - placed.centre[:, b]
+        squared, s, t = nearest_along(offset, placed.axis[:, a], placed.axis[:, b], self._half_m[a], self._half_m[b])
+        distance = np.sqrt(squared) - self._radii_m
+        if not self._all_exact:
+            near = (distance < _MEASURED_M) & ~self._exact
+            for i in np.flatnonzero(near.any(1)):
+                self._place(q_rad[i])
+                for p in np.flatnonzero(near[i]).tolist():
+                    distance[i, p] = self._measured(p)
+        return distance, s, t
+
+    def frames(self, q_rad: Array, share: float = _KEPT) -> NDArray[np.bool_]:
+        """(T,) whether each frame of (T, J) comes closer to itself than a share of the margin, what paths keep of it."""
+        return np.asarray((self.distances_m(q_rad) < share * self._margin_m).any(1), bool)
 
     def clearance_m(self, q_rad: Array) -> Array:
-        """(T,) smallest distance of each frame of (T, J), at most 0.05 m."""
-        clearance = np.full(len(q_rad), _SEEN_M)
-        for i, q in enumerate(q_rad):
-            if self._place(q):
-                clearance[i] = min(_SEEN_M, float(self._data.contact.dist.min()))
-        return clearance
+        """(T,) smallest distance of each frame of (T, J)."""
+        return self.distances_m(q_rad).min(1, initial=np.inf)
 
     def pairs(self, q_rad: Array) -> list[tuple[str, str]]:
         """Names of the bodies that touch in one pose (J,)."""
-        return sorted({self._names(a, b) for a, b in self._touching(q_rad, self._margin_m)})
+        touching = self._pairs[self.distances_m(q_rad[None])[0] < self._margin_m]
+        bodies = self._model.geom_bodyid[touching]
+        return sorted({(str(self._model.body(a).name), str(self._model.body(b).name)) for a, b in bodies})
 
     def along(self, control_rad: Array) -> NDArray[np.bool_]:
         """(N - 2,) whether the robot may touch itself in each segment of a quadratic spline of N control points."""
-        border = self.clearance_m((control_rad[:-1] + control_rad[1:]) / 2)
+        border = self.distances_m((control_rad[:-1] + control_rad[1:]) / 2)
         step = np.abs(np.diff(control_rad, axis=0))
-        moved = (np.maximum(step[:-1], step[1:]) @ self._sweep_m.T).max(1, initial=0.0)
+        moved = np.maximum(step[:-1], step[1:]) @ self._sweep_m.T  # (N - 2, P)
         hit = np.zeros(len(control_rad) - 2, bool)
         segment, u = np.arange(len(hit)), np.zeros((len(hit), 2))
         u[:, 1] = 1.0
-        d = np.stack([border[:-1], border[1:]], 1)
-        while len(segment):
-            hit[segment] |= d.min(1) < self._margin_m
-            unsure = ((d.sum(1) - moved) / 2 < _SURE_M) & ~hit[segment]
-            segment, u, d, moved = segment[unsure], u[unsure], d[unsure], moved[unsure] / 2
+        first, last = border[:-1], border[1:]
+        for _ in range(_DEEPEST):
+            hit[segment] |= (np.minimum(first, last) < self._margin_m).any(1)
+            unsure = ((first + last - moved) / 2 < _KEPT * self._margin_m).any(1) & ~hit[segment]
+            if not unsure.any():
+                return hit
+            segment, u, first, last, moved = segment[unsure], u[unsure], first[unsure], last[unsure], moved[unsure] / 2
             middle = u.mean(1)
-            between = self.clearance_m(_spline(control_rad, segment, middle))
+            between = self.distances_m(_spline(control_rad, segment, middle))
             u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
-            d = np.concatenate([np.stack([d[:, 0], between], 1), np.stack([between, d[:, 1]], 1)])
+            first, last = np.concatenate([first, between]), np.concatenate([between, last])
             segment, moved = np.concatenate([segment, segment]), np.concatenate([moved, moved])
+        hit[segment] = True
         return hit
 
-    def lead_round(
-        self, target_rad: Array, start_rad: Array, aim_m: float, mobility: Array, low: Array, high: Array
-    ) -> Array:
-        """(J,) pose near `target_rad` that keeps `aim_m`, reached from `start_rad` on its own side; best effort.
+    def _placed(self, q_rad: Array) -> _Placed:
+        """Capsules and joints in poses (T, J)."""
+        model, data = self._model, self._data
+        T = len(q_rad)
+        place, turn = np.empty((T, model.ngeom, 3)), np.empty((T, model.ngeom, 9))
+        axis, anchor = np.empty((T, model.njnt, 3)), np.empty((T, model.njnt, 3))
+        xpos, xmat, xaxis, xanchor = data.geom_xpos, data.geom_xmat, data.xaxis, data.xanchor
+        for i, q in enumerate(q_rad):
+            self._place(q)
+            place[i], turn[i], axis[i], anchor[i] = xpos, xmat, xaxis, xanchor
+        ids = self._joint_ids
+        return _Placed(place, turn[:, self._axis_rows, self._axis_columns], axis[:, ids], anchor[:, ids])
 
-        Args:
-            target_rad: (J,) the pose that touches.
-            start_rad: (J,) a pose that does not, such as the one before.
-            aim_m: distance to keep.
-            mobility: (J,) how readily each joint gives way, 0 for never.
-            low: (J,) position limits.
-            high: (J,) position limits.
-        """
-        q = start_rad
-        for _ in range(_ROUNDS):
-            q = q + np.clip(target_rad - q, -_MOST_PUSHED_RAD * 2, _MOST_PUSHED_RAD * 2)
-            for _ in range(_PUSHES):
-                if not self._place(q):
-                    break
-                lack: Array = aim_m - self._data.contact.dist
-                close = lack > 0
-                if not close.any():
-                    break
-                A: Array = self._gradients()[close] * mobility
-                push = np.asarray(np.linalg.solve(A @ A.T + 1e-5 * np.eye(len(A)), lack[close]), np.float64)
-                q = np.clip(q + np.clip(mobility * (push @ A), -_MOST_PUSHED_RAD, _MOST_PUSHED_RAD), low, high)
-        return q
-
-    def _place(self, q_rad: Array) -> int:
-        """Put the robot into a pose; the number of pairs near each other."""
+    def _place(self, q_rad: Array) -> None:
         self._data.qpos[self._address] = q_rad
         mujoco.mj_kinematics(self._model, self._data)
-        mujoco.mj_collision(self._model, self._data)
-        return int(self._data.ncon)
 
-    def _gradients(self) -> Array:
-        """(contacts, J) how each distance grows with each joint."""
-        contact = self._data.contact
-        body = self._model.geom_bodyid[contact.geom]
-        lever = contact.pos[:, None] - self._data.xanchor[self._joint_ids]
-        axis = self._data.xaxis[self._joint_ids]
-        along = np.einsum("cjk,ck->cj", cross(axis[None], lever), contact.frame[:, :3])
-        return along * (self._above[body[:, 1]] - self._above[body[:, 0]])
+    def _measured(self, pair: int) -> float:
+        """MuJoCo's distance of a pair in the pose set; the nearest points are left in `_points`."""
+        a, b = self._pair_list[pair]
+        return float(mujoco.mj_geomDistance(self._model, self._data, a, b, _FARTHEST_M, self._points))
 
-    def _touching(self, q_rad: Array, margin_m: float) -> list[tuple[int, int]]:
-        if not self._place(q_rad):
-            return []
-        bodies = self._model.geom_bodyid[self._data.contact.geom]
-        return [(int(a), int(b)) for a, b in bodies[self._data.contact.dist < margin_m]]
+    def _shapes(self) -> None:
+        """A capsule for each shape: itself, or one round it."""
+        model = self._model
+        kinds, size = model.geom_type, model.geom_size
+        self._half_m, radius = np.zeros(model.ngeom), model.geom_rbound.copy()
+        along = np.full(model.ngeom, 2)
+        exact = np.isin(kinds, _CAPSULE_TYPES)
+        for g in range(model.ngeom):
+            name = mujoco.mjtGeom(kinds[g])
+            if name in (mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_CYLINDER):
+                radius[g], self._half_m[g] = size[g, 0], size[g, 1]
+            elif name == mujoco.mjtGeom.mjGEOM_SPHERE:
+                radius[g] = size[g, 0]
+            elif name == mujoco.mjtGeom.mjGEOM_BOX:
+                along[g] = int(size[g].argmax())
+                self._half_m[g] = size[g].max()
+                radius[g] = float(np.hypot(*np.delete(size[g], along[g])))
+        self._radius_m, self._exact_geom = radius, exact
+        self._axis_rows: NDArray[np.int64] = np.arange(model.ngeom)[:, None]
+        self._axis_columns = along[:, None] + np.array([0, 3, 6])
 
-    def _names(self, a: int, b: int) -> tuple[str, str]:
-        return str(self._model.body(a).name), str(self._model.body(b).name)
+    def _take(self, pairs: NDArray[np.int64]) -> None:
+        """Look at these pairs of shapes, (P, 2), from now on."""
+        self._pairs, self._pair_list = pairs, [(int(a), int(b)) for a, b in pairs]
+        a, b = pairs.T
+        self._exact = self._exact_geom[a] & self._exact_geom[b]
+        self._all_exact = bool(self._exact.all())
+        self._radii_m = self._radius_m[a] + self._radius_m[b]
+        self._margin_m = np.zeros(len(pairs))
+        self._sweep_m = self._sweeps()
 
-    def _near_pairs(self) -> set[tuple[str, str]]:
-        """Bodies within two steps of the tree."""
-        parent = self._model.body_parentid
-        near: set[tuple[str, str]] = set()
-        for b in range(1, self._model.nbody):
-            for other in (int(o) for o in (parent[b], parent[parent[b]], *np.flatnonzero(parent == parent[b]))):
-                if other != b and self._names(other, b) not in near:
-                    near.add(self._names(b, other))
-        return near
+    def _pairs_that_can_meet(self) -> NDArray[np.int64]:
+        """(P, 2) shapes that MuJoCo would check against each other, of bodies three steps of the tree and two joints apart."""
+        model = self._model
+        parent, body = model.body_parentid, model.geom_bodyid
+        excluded = {int(s) for s in model.exclude_signature}
+        plane = model.geom_type == int(mujoco.mjtGeom.mjGEOM_PLANE)
+        found: list[tuple[int, int]] = []
+        for g in range(model.ngeom):
+            for h in range(g):
+                a, b = sorted((int(body[g]), int(body[h])))
+                touches = (
+                    model.geom_contype[g] & model.geom_conaffinity[h]
+                    or model.geom_contype[h] & model.geom_conaffinity[g]
+                )
+                beside = (
+                    a == b
+                    or parent[a] == parent[b]
+                    or a in (parent[b], parent[parent[b]])
+                    or b in (parent[a], parent[parent[a]])
+                )
+                fixed = np.abs(self._above[a] - self._above[b]).sum() <= 1
+                if touches and not (beside or fixed or plane[g] or plane[h] or (a << 16) + b in excluded):
+                    found.append((h, g))
+        return np.array(found, np.int64).reshape(-1, 2)
 
     def _joints_above(self) -> Array:
         """(bodies, J) 1 where a joint moves a body."""
@@ -157,26 +227,20 @@ class SelfContact:
         return above
 
     def _sweeps(self) -> Array:
-        """(pairs, J) metres that two bodies' shapes move against each other at most, per radian of each joint."""
+        """(P, J) metres that the shapes of each pair move against each other at most, per radian of each joint."""
         model = self._model
-        reach = np.zeros((model.nbody, len(self._joint_ids)))  # of each body's shapes from each joint above it
-        for b in range(1, model.nbody):
-            geoms = np.flatnonzero(model.geom_bodyid == b)
-            if not len(geoms):
-                continue
-            own = max(float(np.linalg.norm(model.geom_pos[g]) + model.geom_rbound[g]) for g in geoms)
-            up, far = b, own
+        reach = np.zeros((model.ngeom, len(self._joint_ids)))  # of each shape from each joint above it
+        for g in range(model.ngeom):
+            up = int(model.geom_bodyid[g])
+            far = float(np.linalg.norm(model.geom_pos[g])) + self._half_m[g] + self._radius_m[g]
             while up:
                 for j in np.flatnonzero(model.jnt_bodyid[self._joint_ids] == up):
-                    reach[b, j] = far + float(np.linalg.norm(model.jnt_pos[self._joint_ids[j]]))
+                    reach[g, j] = far + float(np.linalg.norm(model.jnt_pos[self._joint_ids[j]]))
                 far += float(np.linalg.norm(model.body_pos[up]))
                 up = int(model.body_parentid[up])
-        shaped = np.unique(model.geom_bodyid)
-        rows = [
-            np.where(self._above[a] == self._above[b], 0.0, np.maximum(reach[a], reach[b]))
-            for i, a in enumerate(shaped) for b in shaped[:i]
-        ]  # fmt: skip
-        return np.unique(np.array(rows).reshape(-1, len(self._joint_ids)), axis=0)
+        a, b = self._pairs.T
+        both = self._above[model.geom_bodyid[a]] == self._above[model.geom_bodyid[b]]
+        return np.where(both, 0.0, np.maximum(reach[a], reach[b]))
 
 
 def _spline(control: Array, segment: NDArray[np.int64], u: Array) -> Array:

@@ -18,8 +18,13 @@ from retarget.kinematics import cross
 Array = NDArray[np.float64]
 _TO_ROBOT = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])
 _L_HIP, _R_HIP, _SPINE1, _NECK = 1, 2, 3, 12
-_ARMS = {"left": (16, 18, 20), "right": (17, 19, 21)}
-_SHORTEST_BONE_M = 0.02
+_L_COLLAR, _R_COLLAR, _L_SHOULDER, _R_SHOULDER = 13, 14, 16, 17
+SIDES = ("left", "right")
+_BONE_STARTS, _BONE_ENDS = [16, 17, 18, 19], [18, 19, 20, 21]
+_BONES = ("left upper arm", "right upper arm", "left forearm", "right forearm")
+_SHORTEST_BONE_M, _LONGEST_BONE_M = 0.02, 0.6
+"""A forearm of a person of 2.7 m (Robert Wadlow) was under 0.45 m; units other than metres lie far outside."""
+_SQUARE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -27,17 +32,17 @@ class HumanPose:
     """(T, ...) what is read from a motion, in the robot's axes.
 
     Attributes:
-        upper, fore: per side, (T, 3) unit directions in the chest frame.
-        forearm_twist_rad: per side, (T,).
-        trunk_yaw_rad, trunk_pitch_rad: (T,) chest against pelvis: to the left, forward.
-        head_rotation: (T, 3, 3) head against the pelvis's facing.
+        upper: (2, T, 3) unit directions of left and right upper arm in the chest frame.
+        fore: (2, T, 3) of the forearms.
+        forearm_twist_rad: (2, T).
+        chest_rotation: (T, 3, 3) chest against where the pelvis faces, upright.
+        head_rotation: (T, 3, 3) head against the same.
     """
 
-    upper: dict[str, Array]
-    fore: dict[str, Array]
-    forearm_twist_rad: dict[str, Array]
-    trunk_yaw_rad: Array
-    trunk_pitch_rad: Array
+    upper: Array
+    fore: Array
+    forearm_twist_rad: Array
+    chest_rotation: Array
     head_rotation: Array
 
 
@@ -45,47 +50,45 @@ def read_human(motion: Motion) -> HumanPose:
     """Directions and angles of a motion.
 
     Raises:
-        MotionError: no frames, or bones without length.
+        MotionError: no frames, or bones that no human has; frame and bone are named.
     """
     joints = motion.joints_m.astype(np.float64)
     if len(joints) == 0:
         raise MotionError("joints", "no frames", "at least one frame; a rejected text has none")
-    for side, (shoulder, elbow, wrist) in _ARMS.items():
-        for a, b in ((shoulder, elbow), (elbow, wrist)):
-            shortest = float(np.linalg.norm(joints[:, b] - joints[:, a], axis=-1).min())
-            if shortest < _SHORTEST_BONE_M:
-                raise MotionError(
-                    f"{side} arm", f"a bone of {shortest:.4f} m", f"bones of at least {_SHORTEST_BONE_M} m"
-                )
-    pelvis = _frame(joints[:, _L_HIP] - joints[:, _R_HIP], np.broadcast_to([0.0, 1, 0], joints[:, 0].shape))
-    across = joints[:, 13] - joints[:, 14] + 0.5 * (joints[:, 16] - joints[:, 17])
-    chest = _frame(across, joints[:, _NECK] - joints[:, _SPINE1])
-    relative = np.swapaxes(pelvis, -1, -2) @ chest
-    forward, up = relative[..., 2], relative[..., 1]
-    yaw = np.arctan2(forward[:, 0], forward[:, 2])
-    facing = np.stack([np.sin(yaw), np.zeros_like(yaw), np.cos(yaw)], -1)
-    pitch = np.arctan2((up * facing).sum(-1), up[:, 1])
-    head = np.swapaxes(pelvis, -1, -2) @ matrix_from_quat(motion.head_quat_wxyz.astype(np.float64))
-    to_chest = np.swapaxes(chest, -1, -2)
-
-    def direction(a: int, b: int) -> Array:
-        bone = joints[:, b] - joints[:, a]
-        bone = bone / np.linalg.norm(bone, axis=-1, keepdims=True)
-        return np.einsum("ij,tjk,tk->ti", _TO_ROBOT, to_chest, bone)
-
+    bones = joints[:, _BONE_ENDS] - joints[:, _BONE_STARTS]  # (T, 4, 3)
+    length = np.sqrt(np.einsum("tbi,tbi->tb", bones, bones))
+    if length.min() < _SHORTEST_BONE_M or length.max() > _LONGEST_BONE_M:
+        _refuse_bones(length)
+    pelvis = _frame(joints[:, _L_HIP] - joints[:, _R_HIP], np.array([[0.0, 1, 0]]), "hips")
+    across = joints[:, _L_COLLAR] - joints[:, _R_COLLAR] + 0.5 * (joints[:, _L_SHOULDER] - joints[:, _R_SHOULDER])
+    chest = _frame(across, joints[:, _NECK] - joints[:, _SPINE1], "shoulders and spine")
+    to_pelvis = np.swapaxes(pelvis, -1, -2)
+    relative = to_pelvis @ chest
+    head = to_pelvis @ matrix_from_quat(motion.head_quat_wxyz.astype(np.float64))
+    in_chest = (bones / length[..., None]) @ (chest @ _TO_ROBOT.T)  # rows: left, up, forward turned to the robot's axes
+    arms = in_chest.transpose(1, 0, 2)
     return HumanPose(
-        {side: direction(shoulder, elbow) for side, (shoulder, elbow, _) in _ARMS.items()},
-        {side: direction(elbow, wrist) for side, (_, elbow, wrist) in _ARMS.items()},
-        {side: motion.forearm_twist_rad[:, i].astype(np.float64) for i, side in enumerate(_ARMS)},
-        yaw,
-        pitch,
-        _TO_ROBOT @ head @ _TO_ROBOT.T,
-    )
+        np.ascontiguousarray(arms[:2]), np.ascontiguousarray(arms[2:]), motion.forearm_twist_rad.T.astype(np.float64),
+        _TO_ROBOT @ relative @ _TO_ROBOT.T, _TO_ROBOT @ head @ _TO_ROBOT.T,
+    )  # fmt: skip
 
 
-def _frame(left: Array, up: Array) -> Array:
+def _refuse_bones(length_m: Array) -> None:
+    outside = (length_m < _SHORTEST_BONE_M) | (length_m > _LONGEST_BONE_M)
+    frame, bone = (int(i) for i in np.argwhere(outside)[0])
+    found = f"a bone of {length_m[frame, bone]:.4f} m in frame {frame}, {int(outside.any(1).sum())} such frames"
+    allowed = f"bones of {_SHORTEST_BONE_M} to {_LONGEST_BONE_M} m, joints in metres in HumanML3D's order"
+    raise MotionError(_BONES[bone], found, allowed)
+
+
+def _frame(left: Array, up: Array, key: str) -> Array:
     """(T, 3, 3) rotations whose columns are left, up, forward; `up` is made square to `left`."""
-    x: Array = left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9)
-    z: Array = cross(x, up)
-    z = z / np.maximum(np.linalg.norm(z, axis=-1, keepdims=True), 1e-9)
+    z = cross(left, up)
+    for v in (left, z):
+        flat = np.einsum("ti,ti->t", v, v) < _SQUARE**2
+        if flat.any():
+            found = f"joints on one line or point in frame {int(flat.argmax())}, {int(flat.sum())} such frames"
+            raise MotionError(key, found, "hips, shoulders and spine of a person, in HumanML3D's order")
+    x = left / np.linalg.norm(left, axis=-1, keepdims=True)
+    z = z / np.linalg.norm(z, axis=-1, keepdims=True)
     return np.stack([x, cross(z, x), z], -1)

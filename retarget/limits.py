@@ -1,4 +1,4 @@
-"""Position, velocity and acceleration limits, kept exactly, with a look at what comes next.
+"""Position, velocity and acceleration limits, kept exactly, one step at a time.
 
 Bounds are meant as finite differences at the step period: |q[k] - q[k-1]| <= v dt and |q[k] - 2 q[k-1] + q[k-2]| <=
 a dt^2, with q always inside its range. To stay inside, a joint must also always be able to brake in time: with velocity
@@ -14,13 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.lookahead import track
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
 
 Array = NDArray[np.float64]
-_WINDOW_FRAMES, _AHEAD_FRAMES = 96, 16
-"""A long reference is solved in windows, each with so many frames after it in view."""
 SLACK = 1e-9
 """Relative slack within which a step counts as inside its bounds: rounding of sums, far below a tick."""
 _ROUNDING_RAD = 1e-12
@@ -99,48 +96,8 @@ def limit_step(
     return np.where(reached, target_rad, following)
 
 
-def limit_path(
-    reference_rad: Array, position_rad: Array, velocity_rad_s: Array, limits: JointLimits, period_s: float
-) -> Array:
-    """(T, J) path near `reference_rad` (T, J) that keeps every limit, from the given position and velocity.
-
-    The reference is first followed with all of it in view (`lookahead.track`), window by window; exact causal steps
-    along that make the path keep every bound.
-    """
-    T = len(reference_rad)
-    path = np.empty_like(reference_rad)
-    ends = limits.position_min_rad, limits.position_max_rad
-    inside = np.clip(reference_rad, *ends)
-    position, velocity = position_rad, velocity_rad_s
-    for k in range(0, T, _WINDOW_FRAMES):
-        window = inside[k : k + _WINDOW_FRAMES + _AHEAD_FRAMES]
-        nearest = track(
-            window, position, velocity, *ends, limits.velocity_rad_s, limits.acceleration_rad_s2, period_s
-        )[: min(_WINDOW_FRAMES, T - k)]  # fmt: skip
-        part = path[k : k + len(nearest)]
-        part[:] = _follow(np.clip(nearest, *ends), position, velocity, limits, period_s)
-        before = path[k + len(part) - 2] if k + len(part) > 1 else position
-        position, velocity = part[-1], (part[-1] - before) / period_s
-    return path
-
-
 def brake(position_rad: Array, velocity_rad_s: Array, limits: JointLimits, period_s: float) -> Array:
     """(J,) next position when stopping as fast as the acceleration allows."""
     loss = limits.acceleration_rad_s2 * period_s
     slower = np.sign(velocity_rad_s) * np.maximum(np.abs(velocity_rad_s) - loss, 0.0)
     return limit_step(position_rad + slower * period_s, position_rad, velocity_rad_s, limits, period_s)
-
-
-def _follow(reference: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> Array:
-    """Causal following of `reference`, each step knowing the velocity of the reference after it."""
-    ahead = np.diff(reference, axis=0, append=reference[-1:]) / period_s
-    before = np.concatenate([position[None], reference[:-1]])
-    came = np.concatenate([velocity[None], np.diff(before, axis=0) / period_s])
-    if np.array_equal(limit_step(reference, before, came, limits, period_s, ahead), reference):
-        return reference  # all steps at once: nothing to change
-    path = np.empty_like(reference)
-    for k in range(len(reference)):
-        following = limit_step(reference[k], position, velocity, limits, period_s, ahead[k])
-        velocity = (following - position) / period_s
-        path[k] = position = following
-    return path

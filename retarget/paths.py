@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.report import RetargetReport
+from retarget.report import Comparison, RetargetReport
 
 Array = NDArray[np.float64]
 _ROUNDING_RAD = 1e-10
@@ -45,15 +45,20 @@ class JointPath:
             the middle of the last two.
         joint_names: J names.
         rate_hz: control points per second.
-        report: what retargeting changed.
+        comparison: what the path is to be compared with.
         ends_rad: (J,) position limits, beyond which nothing goes by rounding; a start outside them may lie beyond.
     """
 
     control_rad: Array
     joint_names: tuple[str, ...]
     rate_hz: float
-    report: RetargetReport
+    comparison: Comparison
     ends_rad: tuple[Array, Array] | None = None
+
+    @cached_property
+    def report(self) -> RetargetReport:
+        """What retargeting changed; made when first asked for."""
+        return self.comparison.report()
 
     @property
     def duration_s(self) -> float:

@@ -5,43 +5,48 @@ human -> waist -> neck -> arms -> unseen joints rest -> limits -> self-contact -
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import Motion
-from retarget.arms import Arm
+from retarget.arm_chain import ArmChain
+from retarget.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.collision import SelfContact
+from retarget.following import Importance, limit_path
 from retarget.human import HumanPose, read_human
 from retarget.kinematics import Kinematics
-from retarget.limits import JointLimits, brake, limit_path, limit_step, stopping_velocity_rad_s
+from retarget.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
 from retarget.paths import JointPath, JointState
-from retarget.report import RetargetReport
+from retarget.posing import ArmsFollow, Poser, Poses
+from retarget.report import BONES, Comparison
 from retarget.robot import RobotModel
-from retarget.trunk import solve_neck, solve_waist
 
 Array = NDArray[np.float64]
-_REST_PULL = 0.02
-"""Weight of smoothness against a fully seen joint's target: below a degree for human motion, all for an unseen one."""
-_AIM_M = 0.010
-"""Distance that a pose led round a contact keeps; the path is then checked against the smaller `collision.MARGIN_M`."""
-_YIELDS = ((0.025, 0.0), (0.04, 0.25), (0.04, 0.6), (0.04, 1.0))
-"""When the path still touches: distance to keep around the place and share drawn towards the rest pose, one by one."""
 _SETTLE_FRAMES = 16
 """Time given to reach the last pose; what then still moves, brakes."""
 _STILL_RAD = 1e-5
 
 
 class Retargeter:
-    """Turns human motions into paths of one robot."""
+    """Turns human motions into paths of one robot.
 
-    def __init__(self, robot: RobotModel) -> None:
+    Attributes:
+        robot, kinematics, limits: the robot.
+        arms: left and right.
+        contact: its distances to itself.
+    """
+
+    def __init__(self, robot: RobotModel, arms_follow: ArmsFollow = "chest") -> None:
+        """Arms keep their directions against the chest, or (`arms_follow`) against the world as the pelvis faces it."""
         self.robot = robot
         self.kinematics = Kinematics(robot)
         self.limits = JointLimits.of(robot)
-        self.arms = tuple(Arm(self.kinematics, side) for side in ("left", "right"))
+        self._poser = Poser(self.kinematics, self.limits, arms_follow)
+        self.arms: tuple[ArmChain, ...] = self._poser.chains
         self.contact = SelfContact(robot)
-        arm = [j.role.startswith(("left_", "right_")) for j in robot.joints]
-        self._mobility = np.array(arm, np.float64)  # arms give way, the head keeps looking where it looks
+        self._avoidance = Avoidance(robot, self.contact, self.limits)
 
     def retarget(self, motion: Motion, start: JointState | None = None, *, settle: bool = True) -> JointPath:
         """The robot's path for a motion.
@@ -52,65 +57,59 @@ class Retargeter:
             settle: end at rest, with a few more frames where braking needs them.
 
         Raises:
-            MotionError: the motion is empty or has bones without length.
+            MotionError: the motion is empty or has bones that no human has.
         """
-        human = read_human(motion)
-        wanted = self.solve(human, start)
+        poses = self.poses(read_human(motion), start)
         period = 1.0 / motion.fps
-        begin = self._begin(wanted, start)
-        eased, interventions = self._lead_round(wanted, begin.position_rad)
-        path = self._limited(eased, begin, period, settle)
-        for aim_m, share in _YIELDS:
-            hit = self.contact.along(path)
+        begin = self._begin(poses.q_rad, start)
+        eased, interventions = poses.q_rad, 0
+        path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+        if hit.any():
+            eased, interventions = self._avoidance.lead_round(eased, begin.position_rad)
+            path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+        for strength in STRENGTHS:
             if not hit.any():
                 break
-            interventions += _stretches(hit)
-            eased = self._yield(eased, path, hit, aim_m, share)
-            path = self._limited(eased, begin, period, settle)
-        else:
-            path = self._stop_before_contact(path, period)
-        report = self._report(human, wanted, path, motion.fps, interventions)
+            interventions += stretches(hit)
+            eased = self._avoidance.push(eased, path, hit[: len(path) - 2], strength)
+            path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+        if hit.any():
+            path = self._stop_before_contact(path, hit, period)
         ends = self.limits.position_min_rad, self.limits.position_max_rad
-        return JointPath(path, self.robot.joint_names, motion.fps, report, ends)
+        comparison = self._compare(poses, path, motion.fps, interventions)
+        return JointPath(path, self.robot.joint_names, motion.fps, comparison, ends)
+
+    def poses(self, human: HumanPose, start: JointState | None = None) -> Poses:
+        """The poses for each frame within the position limits, before limits in time and contacts."""
+        return self._poser.solve(human, None if start is None else start.position_rad)
+
+    def solve(self, human: HumanPose, start: JointState | None = None) -> Array:
+        """(T, J) angles of `poses`."""
+        return self.poses(human, start).q_rad
+
+    def direction_errors_deg(self, poses: Poses, q_rad: Array) -> Array:
+        """(4, T) angle between human and robot bone in poses (T, J), in the order of `report.BONES`."""
+        found = np.concatenate(self._poser.directions(q_rad))
+        wanted = np.concatenate([poses.upper, poses.fore])[:, : len(q_rad)]
+        # Exact for small angles too, where an arc cosine is not.
+        apart, sum_ = np.linalg.norm(found - wanted, axis=-1), np.linalg.norm(found + wanted, axis=-1)
+        errors = np.rad2deg(2 * np.arctan2(apart, sum_))
+        assert len(errors) == len(BONES)
+        return errors
 
     def _begin(self, wanted: Array, start: JointState | None) -> JointState:
         """The given start, or at rest in the first frame's pose, led round contacts."""
         if start is not None:
             return start
-        first = np.clip(wanted[:1], self.limits.position_min_rad, self.limits.position_max_rad)
-        return JointState(self._lead_round(first, self.robot.rest_rad)[0][0], np.zeros(self.robot.n_joints))
+        first, _ = self._avoidance.lead_round(wanted[:1], self.robot.rest_rad)
+        return JointState(first[0], np.zeros(self.robot.n_joints))
 
-    def _lead_round(self, wanted: Array, before: Array) -> tuple[Array, int]:
-        """Poses (T, J) clear of the robot, each near the wanted one and the one before; how many stretches changed."""
-        low, high = self.limits.position_min_rad, self.limits.position_max_rad
-        clear = np.clip(wanted, low, high)
-        touching = self.contact.clearance_m(clear) < _AIM_M
-        for t in np.flatnonzero(touching):
-            from_pose = clear[t - 1] if t else before
-            clear[t] = self.contact.lead_round(clear[t], from_pose, _AIM_M, self._mobility, low, high)
-        return clear, _stretches(touching)
-
-    def _yield(self, eased: Array, path: Array, hit: NDArray[np.bool_], aim_m: float, share: float) -> Array:
-        """Poses (T, J) changed where the path made of them touches: more distance, and a share towards rest."""
-        low, high = self.limits.position_min_rad, self.limits.position_max_rad
-        T = len(eased)
-        near = _spread(hit, T)
-        changed = eased + (share * near)[:, None] * (self.robot.rest_rad - eased)
-        for t in np.flatnonzero(near >= 1.0):
-            changed[t] = self.contact.lead_round(
-                changed[t], changed[t - 1] if t else path[1], aim_m, self._mobility, low, high
-            )
-        return changed
-
-    def _stop_before_contact(self, path: Array, period: float) -> Array:
+    def _stop_before_contact(self, path: Array, hit: NDArray[np.bool_], period: float) -> Array:
         """The path up to where it can brake before it first touches, then held; the last resort."""
-        hit = self.contact.along(path)
-        if not hit.any():
-            return path
         first = int(hit.argmax())
         back = 1
         while True:
-            kept = max(2, first + 2 - back)
+            kept = max(2, min(first + 2 - back, len(path)))
             stopped = self._held(path[:kept], period, len(path))
             if kept == 2 or not self.contact.along(stopped).any():
                 return stopped
@@ -123,39 +122,37 @@ class Retargeter:
             points.append(brake(points[-1], (points[-1] - points[-2]) / period, self.limits, period))
         return np.array(points)
 
-    def solve(self, human: HumanPose, start: JointState | None) -> Array:
-        """(T, J) joint angles for each frame, before limits in time."""
-        T = len(human.trunk_yaw_rad)
-        q = np.tile(self.robot.rest_rad, (T, 1))
-        solve_waist(self.kinematics, human, q)
-        q = np.clip(q, self.limits.position_min_rad, self.limits.position_max_rad)
-        solve_neck(self.kinematics, human, q)
-        before = self.robot.rest_rad if start is None else start.position_rad
-        for arm in self.arms:
-            columns = list(arm.joints)
-            solution = arm.solve(human.upper[arm.side], human.fore[arm.side], before[columns])
-            q[:, columns] = _let_rest(solution.q_rad, solution.seen, before[columns])
-            twist = self.robot.joint_with_role(f"{arm.side}_forearm_yaw")
-            if twist is not None:
-                along = self.kinematics.axes[twist] @ arm.fore0
-                q[:, twist] = np.sign(along) * human.forearm_twist_rad[arm.side]
-        return q
+    def _limited(
+        self, eased: Array, posed: Array, start: JointState, period: float, settle: bool
+    ) -> tuple[Array, NDArray[np.bool_]]:
+        """Control points of a path near `eased` (T, J) that keeps every limit, and which segments touch.
 
-    def _limited(self, wanted: Array, start: JointState, period: float, settle: bool) -> Array:
-        """Control points of a path that keeps every limit; when settling, the last pose is held until reached."""
+        What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
+        touches when the path brakes at its end counts too.
+        """
+        wanted, led = _controls(eased), eased - posed
         half = start.velocity_rad_s * (period / 2)
         before, position = start.position_rad - half, start.position_rad + half
         if settle:
-            wanted = np.concatenate([wanted, np.repeat(wanted[-1:], _SETTLE_FRAMES, 0)])
-        points = np.concatenate([[before], self._joined(wanted, before, position, period)])
+            wanted, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in (wanted, led))
+        points = np.concatenate([[before], self._joined(wanted, led, before, position, period)])
         if not settle:
-            return points
+            return points, self.contact.along(np.concatenate([points, self._braking(points, period)]))
         n = len(points)
         moving = np.flatnonzero((np.abs(np.diff(points, axis=0)) > _STILL_RAD).any(1))
         last = max(n - _SETTLE_FRAMES, int(moving[-1]) + 2 if len(moving) else 0)
-        return self._held(points[:last], period, last + 1)
+        points = self._held(points[:last], period, last + 1)
+        return points, self.contact.along(points)
 
-    def _joined(self, wanted: Array, before: Array, position: Array, period: float) -> Array:
+    def _braking(self, control: Array, period: float) -> Array:
+        """(n, J) control points after `control` when every joint stops as fast as its acceleration allows."""
+        step = control[-1] - control[-2]
+        loss = self.limits.acceleration_rad_s2 * period**2
+        n = int(np.ceil((np.abs(step) / loss).max()))
+        left = np.maximum(np.abs(step) - np.arange(1, n + 1)[:, None] * loss, 0.0)
+        return control[-1] + np.cumsum(np.sign(step) * left, 0)
+
+    def _joined(self, wanted: Array, led: Array, before: Array, position: Array, period: float) -> Array:
         """(T + 1, J) control points from the second, `position`, on.
 
         A joint that the start leaves just enough room to brake has its next control points at or beyond the position
@@ -171,7 +168,7 @@ class Retargeter:
             short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
             short |= toward * (points[-1] - end) > 0
             if not short.any():
-                rest = limit_path(wanted[k:], points[-1], velocity, limits, period)
+                rest = limit_path(wanted[k:], points[-1], velocity, limits, period, self._importance(wanted, led, k))
                 return np.concatenate([points[1:], rest])
             gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
             braking = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)
@@ -179,70 +176,23 @@ class Retargeter:
             points.append(np.where(short, inward, limit_step(wanted[k], points[-1], velocity, limits, period)))
         return np.array(points[1:])
 
-    def _report(
-        self, human: HumanPose, wanted: Array, path: Array, rate_hz: float, interventions: int
-    ) -> RetargetReport:
-        """Compare the path with the human, frame by frame."""
-        q = path[2 : 2 + len(wanted)]
-        angles: dict[str, Array] = {}
-        for arm in self.arms:
-            upper, fore = arm.directions(q[:, list(arm.joints)])
-            n = len(q)
-            angles[f"{arm.side}_upper_arm"] = _angle_deg(upper, human.upper[arm.side][:n])
-            angles[f"{arm.side}_forearm"] = _angle_deg(fore, human.fore[arm.side][:n])
-        every = np.concatenate(list(angles.values()))
-        outside = (wanted < self.limits.position_min_rad - 1e-9) | (wanted > self.limits.position_max_rad + 1e-9)
-        changed = np.abs(q - wanted[: len(q)]) > np.deg2rad(1.0)
-        speed = np.abs(np.diff(path, axis=0)).max(0) * rate_hz / self.limits.velocity_rad_s
-        acceleration = np.abs(np.diff(path, n=2, axis=0)).max(0) * rate_hz**2 / self.limits.acceleration_rad_s2
-        names = self.robot.joint_names
-        return RetargetReport(
-            direction_mean_deg=round(float(every.mean()), 3),
-            direction_p95_deg=round(float(np.percentile(every, 95)), 3),
-            direction_max_deg=round(float(every.max()), 3),
-            bone_mean_deg={name: round(float(a.mean()), 3) for name, a in angles.items()},
-            clipped_frames=int(outside.any(1).sum()),
-            clipped_joints={names[j]: int(n) for j, n in enumerate(changed.sum(0)) if n},
-            interventions=interventions,
-            peak_speed_share=round(float(speed.max()), 4),
-            peak_speed_joint=names[int(speed.argmax())],
-            peak_acceleration_share=round(float(acceleration.max()), 4),
-        )
+    def _importance(self, wanted: Array, led: Array, first: int) -> Callable[[], Sequence[Importance]]:
+        return lambda: self._poser.importance(wanted[first:], led[first:])
+
+    def _compare(self, poses: Poses, path: Array, rate_hz: float, interventions: int) -> Comparison:
+        """What came out against what was wanted, frame by frame."""
+        T = len(poses.q_rad)
+        q = ((path[1:-1] + path[2:]) / 2)[:T]
+        return Comparison(
+            self.robot.joint_names, lambda: self.direction_errors_deg(poses, q), poses.q_rad - q, poses.outside, path,
+            rate_hz, self.limits, interventions,
+        )  # fmt: skip
 
 
-def _let_rest(q: Array, seen: Array, before: Array) -> Array:
-    """Smooth each joint as far as its turning is unseen: least squares on targets weighted by `seen` and on steps.
+def _controls(frames: Array) -> Array:
+    """(T, J) control points whose spline passes near frames (T, J): the spline's own smoothing undone to fourth order.
 
-    (T, n) -> (T, n); the tridiagonal systems of all joints are solved together (Thomas algorithm).
+    The path is at frame t half way between two control points, so these are for the times between frames.
     """
-    T = len(q)
-    lower_pull = _REST_PULL
-    weight = seen + 1e-4
-    diagonal = weight + lower_pull * np.where((np.arange(T) < T - 1)[:, None], 2.0, 1.0)
-    right = weight * q
-    right[0] += lower_pull * before
-    gain = np.empty_like(q)
-    value = np.empty_like(q)
-    gain[0], value[0] = -lower_pull / diagonal[0], right[0] / diagonal[0]
-    for t in range(1, T):
-        pivot = diagonal[t] + lower_pull * gain[t - 1]
-        gain[t] = -lower_pull / pivot
-        value[t] = (right[t] + lower_pull * value[t - 1]) / pivot
-    for t in range(T - 2, -1, -1):
-        value[t] -= gain[t] * value[t + 1]
-    return value
-
-
-def _spread(hit: NDArray[np.bool_], n: int) -> Array:
-    """(n,) 1 at frames that touch and two around them, falling to 0 over half a second."""
-    distance = np.abs(np.arange(n)[:, None] - np.minimum(np.flatnonzero(hit), n - 1)[None]).min(1)
-    return np.clip(1 - (distance - 2) / 10, 0.0, 1.0)
-
-
-def _stretches(of: NDArray[np.bool_]) -> int:
-    """Number of separate runs of true."""
-    return int(of[0]) + int((of[1:] & ~of[:-1]).sum())
-
-
-def _angle_deg(a: Array, b: Array) -> Array:
-    return np.rad2deg(np.arccos(np.clip((a * b).sum(-1), -1, 1)))
+    more = np.concatenate([frames[:1], frames, frames[-1:], frames[-1:]])
+    return (5 * (more[1:-2] + more[2:-1]) - more[:-3] - more[3:]) / 8

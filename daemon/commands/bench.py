@@ -9,9 +9,13 @@ from typing import Annotated, Any, Literal
 
 import tyro
 
-BenchName = Literal["generate", "official", "story", "first-motion", "audit", "bus"]
-_WITH_N: dict[str, int] = {"story": 59, "first-motion": 50, "audit": 200}
-"""Figures that take a number of texts, and how many it is when none is given."""
+BenchName = Literal[
+    "generate", "official", "story", "retarget", "first-motion", "barge-in", "seams", "estop", "audit", "bus"
+]
+_WITH_N: dict[str, int | None] = {
+    "story": 59, "retarget": None, "first-motion": 50, "barge-in": 1000, "seams": 60, "estop": 30, "audit": 200,
+}  # fmt: skip
+"""Figures that take a number of texts, clips or trials, and how many it is when none is given (None: all)."""
 
 
 def bench(
@@ -20,9 +24,12 @@ def bench(
     """Measure one figure and print it.
 
     generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten steps.
-    story: ten minutes of motion from 59 texts on two threads. first-motion: text to first moving servo frame, warm,
-    through the daemon. audit: many texts through the daemon's bus side on two robots, every goal checked against the
-    limits. bus: codec and servo bus against a wire kept on a pty, beside other drivers where they are installed.
+    story: ten minutes of motion from 59 texts on two threads. retarget: time of all its stages and direction error for
+    each robot, bounds and contacts checked again. first-motion: text to first moving servo frame, warm, through the
+    daemon. barge-in: overlapping commands and stops at random instants. seams: jerk and steps where motions meet, and
+    closure of loops. estop: e-stop to torque-off bytes with busy cores. audit: many texts through the daemon's bus side
+    on two robots, every goal checked against the limits. bus: codec and servo bus against a wire kept on a pty, beside
+    other drivers where they are installed.
 
     Example: mmmd bench first-motion --json
 
@@ -30,7 +37,7 @@ def bench(
         name: what to measure.
         json: print one JSON object instead of lines.
         seed: seed of the texts and of generation.
-        n: number of texts, where the figure has any.
+        n: number of texts, clips or trials, where the figure has any.
     """
     from rich.console import Console
 

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from retarget.limits import JointLimits, brake, limit_path, limit_step
+from retarget.following import limit_path
+from retarget.limits import JointLimits, brake, limit_step
 from retarget.robot import load_robot
 
 LIMITS = JointLimits.of(load_robot("reference"))

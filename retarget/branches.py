@@ -1,0 +1,80 @@
+"""Which of an arm's ways to the same directions: dynamic programming over all frames and what was done before.
+
+Staying within the limits and moving least decide. A joint whose turning cannot be seen at a frame (the yaw of a straight
+arm, the first joint of an arm along its axis) has no say there: it counts as staying where it was last seen, so that an
+arm led through such a pose comes out the way that is near on the other side.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+UNSEEN = 0.5
+"""A joint seen less than this is filled in from the frames around."""
+_OUT_OF_QUESTION_RAD = 0.5
+"""A way that costs more in every frame is not looked at where another costs nothing."""
+
+
+def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tuple[Array, Array]:
+    """Angles of the cheapest row of ways, and how much each is seen there, both (G, T, n).
+
+    Args:
+        ways: (G, T, C, n) angles of G arms in C ways.
+        own_cost: (G, T, C) what each costs by itself, in radians of movement.
+        seen: (G, T, C, n) how much each joint shows, 0 to 1.
+        previous_rad: (G, n) angles before the first frame.
+    """
+    G, T, C, n = ways.shape
+    free, costly = own_cost.max(1) == 0, own_cost.min(1) > _OUT_OF_QUESTION_RAD  # (G, C)
+    if (
+        (free.sum(1) == 1) & (free | costly).all(1)
+    ).all():  # one way lies within the limits all along, the others never
+        way = free.argmax(1)[:, None, None, None]
+        return np.take_along_axis(ways, way, 2)[:, :, 0], np.take_along_axis(seen, way, 2)[:, :, 0]
+    known = np.concatenate([np.broadcast_to(previous_rad[:, None, None], (G, 1, C, n)), ways], 1)
+    hidden = seen < UNSEEN
+    if hidden.any():
+        frames = np.arange(1, T + 1, dtype=np.int64)[:, None, None]
+        last_seen = np.maximum.accumulate(np.where(hidden, 0, frames), 1)
+        known[:, 1:] = np.take_along_axis(known, last_seen, 1)
+    move = np.abs(known[:, 1:, :, None] - known[:, :-1, None]).sum(-1)  # (G, T, C to, C from)
+    way = np.array([_cheapest(move[g].tolist(), own_cost[g].tolist()) for g in range(G)])
+    at = way[:, :, None, None]
+    return np.take_along_axis(ways, at, 2)[:, :, 0], np.take_along_axis(seen, at, 2)[:, :, 0]
+
+
+def fill_unseen(q_rad: Array, seen: Array, previous_rad: float) -> None:
+    """Draw a line in place over the angles (T,) of one joint where it is hardly seen (T,).
+
+    Before the first seen frame the joint comes from `previous_rad`; after the last it stays.
+    """
+    hidden = seen < UNSEEN
+    if hidden.any():
+        frames = np.concatenate([[0], np.flatnonzero(~hidden) + 1])
+        known = np.concatenate([[previous_rad], q_rad[~hidden]])
+        q_rad[hidden] = np.interp(np.flatnonzero(hidden) + 1, frames, known)
+
+
+def _cheapest(move: list[list[list[float]]], own: list[list[float]]) -> list[int]:
+    """The way of each frame, for costs of going (T, C to, C from) and of being there (T, C); all start as one.
+
+    Plain numbers: with so few ways a loop is faster than arrays.
+    """
+    total = [0.0] * len(own[0])
+    came: list[list[int]] = []
+    for to_each, own_t in zip(move, own, strict=True):
+        best: list[int] = []
+        after: list[float] = []
+        for costs, own_cost in zip(to_each, own_t, strict=True):
+            via = [a + b for a, b in zip(total, costs, strict=True)]
+            least = min(via)
+            best.append(via.index(least))
+            after.append(least + own_cost)
+        came.append(best)
+        total = after
+    way = [total.index(min(total))]
+    for best in reversed(came[1:]):
+        way.append(best[way[-1]])
+    return way[::-1]
