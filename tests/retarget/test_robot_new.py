@@ -19,6 +19,7 @@ from retarget.kinematics import Kinematics
 from retarget.pipeline import Retargeter
 from retarget.proposal import propose
 from retarget.robot import list_robots, load_robot
+from retarget.standing import Direction, standing_pose
 from tests.retarget.test_pipeline import RATES_HZ, at_rest, check_bounds
 
 SHARED = Path(__file__).parents[3] / "shared" / "robots"
@@ -103,6 +104,30 @@ def test_a_description_of_strangers_works_with_no_edits_but_ids(tmp_path: Path) 
         if up:  # its ranges end where the arm is level or little above
             assert height[up] > -0.05
             assert height[up] > 0.2 + min(height.values()), (text, height)
+
+    for upper, fore in (
+        ((0.0, 0.5, 1.0), (0.0, 0.0, 1.0)),
+        ((1.0, 0.2, 0.2), (0.0, 0.0, 1.0)),
+        ((0.3, 0.3, -1.0), (1.0, 0.0, 0.5)),
+    ):
+        assert_nearest_there_is(r, upper, fore)
+
+
+def assert_nearest_there_is(r: Retargeter, upper: Direction, fore: Direction) -> None:
+    """Its ranges are narrow (yaw 45, elbow 90 degrees): not exact, but hardly worse than the best of many poses."""
+    robot, names = r.robot, [p.name for p in r.kinematics.key_points]
+    share = np.random.default_rng(0).uniform(size=(20_000, robot.n_joints))
+    anywhere = robot.position_min_rad + share * (robot.position_max_rad - robot.position_min_rad)
+    poses = np.concatenate([standing_pose(r, upper, fore)[None], anywhere])
+    places = r.kinematics.places(poses)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        error = np.zeros(len(poses))
+        for (a, b), (forward, outward, up) in ((("shoulder", "elbow"), upper), (("elbow", "wrist"), fore)):
+            bone = places[:, names.index(f"{side}_{b}")] - places[:, names.index(f"{side}_{a}")]
+            wanted = np.array([forward, sign * outward, up])
+            cosine = bone @ wanted / np.linalg.norm(bone, axis=-1) / np.linalg.norm(wanted)
+            error += np.rad2deg(np.arccos(np.clip(cosine, -1, 1)))
+        assert error[0] <= error[1:].min() + 8.0, (side, upper, fore, error[0], error[1:].min())
 
 
 def test_another_frame_gives_the_same_robot(tmp_path: Path) -> None:
