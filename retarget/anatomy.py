@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 _ALONG = 0.7
 """Cosine from which an axis counts as looking along a direction."""
 _FINGERS = re.compile(r"grip|finger|thumb|claw|jaw|hand_?joint", re.IGNORECASE)
+_ELBOW = 0.15
+"""An elbow is farther from shoulder and hand than this share of the distance between them."""
 _TO_THE_WRIST = 0.3
 """A joint nearer to the elbow than this share of forearm and hand is no wrist."""
 
@@ -147,24 +149,29 @@ class _Finder:
 
     def _name_arm(self, side: str, arm: list[int], roles: dict[int, str]) -> FoundPoint:
         """Give an arm's joints their roles; where its wrist is."""
-        shoulder = self._tree.anchor[arm[0]]
-        far = {j: self._tree.farthest(self._tree.body[arm[-1]], self._tree.anchor[j]) for j in arm}
-        across = [
-            j for j in arm[1:] if abs(self._tree.axis[j] @ _unit(self._tree.anchor[j] - shoulder)) < _ALONG
-        ]  # fmt: skip
-        elbow = max(
-            across,
-            key=lambda j: min(
-                np.linalg.norm(self._tree.anchor[j] - shoulder), np.linalg.norm(far[j] - self._tree.anchor[j])
-            ),
-            default=None,
-        )
-        if elbow is None:
-            raise RobotFileError(self._path, f"{side} arm", "no joint that can be an elbow", "an arm with an elbow")
+        tree = self._tree
+        shoulder = tree.anchor[arm[0]]
+        far = {j: tree.farthest(tree.body[arm[-1]], tree.anchor[j]) for j in arm}
+        across = {
+            j: min(_length(tree.anchor[j] - shoulder), _length(far[j] - tree.anchor[j]))
+            for j in arm[1:]
+            if abs(tree.axis[j] @ _unit(tree.anchor[j] - shoulder)) < _ALONG
+        }
+        elbow = max(across, key=lambda j: across[j], default=arm[0])
+        if across.get(elbow, 0.0) < _ELBOW * _length(far[arm[0]] - shoulder):
+            return self._name_stiff_arm(side, arm, far[arm[-1]], roles)
         at = arm.index(elbow)
-        self._name_shoulder(side, arm[:at], _unit(self._tree.anchor[elbow] - shoulder), roles)
+        self._name_shoulder(side, arm[:at], _unit(tree.anchor[elbow] - shoulder), roles)
         roles[elbow] = f"{side}_elbow"
         return self._name_forearm(side, elbow, arm[at + 1 :], (shoulder, far[elbow]), roles)
+
+    def _name_stiff_arm(self, side: str, arm: list[int], tip: Array, roles: dict[int, str]) -> FoundPoint:
+        """An arm without an elbow: shoulder joints only, the wrist is its end."""
+        tree = self._tree
+        self._tree.notes.append(f"{side} arm: no joint is an elbow, far from both shoulder and hand")
+        self._name_shoulder(side, arm[:3], _unit(tip - tree.anchor[arm[0]]), roles)
+        self._reach_m = _length(tip - tree.anchor[arm[0]])
+        return tree.point(tree.body[arm[-1]], tip)
 
     def _name_shoulder(self, side: str, joints: list[int], upper: Array, roles: dict[int, str]) -> None:
         rest = list(joints)
@@ -183,7 +190,7 @@ class _Finder:
     ) -> FoundPoint:
         """Forearm and wrist; the wrist's place is its first joint, or the farthest point where it has none."""
         (shoulder, tip), start = ends, self._tree.anchor[elbow]
-        reach = float(np.linalg.norm(tip - start))
+        reach = _length(tip - start)
         wrist, place, carrier = list[int](), tip, elbow
         for j in after:
             twist = f"{side}_forearm_yaw" not in roles.values() and not wrist
@@ -192,11 +199,11 @@ class _Finder:
                 place = self._tree.anchor[j] + self._tree.axis[j] * float(
                     self._tree.axis[j] @ (tip - self._tree.anchor[j])
                 )
-            elif np.linalg.norm(self._tree.anchor[j] - start) > _TO_THE_WRIST * reach or wrist:
+            elif _length(self._tree.anchor[j] - start) > _TO_THE_WRIST * reach or wrist:
                 wrist.append(j)
         if wrist:
             place = self._tree.nearest_on_axis(wrist[0], carrier if carrier != elbow else None)
-        self._reach_m = float(np.linalg.norm(place - start) + np.linalg.norm(start - shoulder))
+        self._reach_m = _length(place - start) + _length(start - shoulder)
         names = ["wrist"] if len(wrist) == 1 else ["wrist_pitch", "wrist_roll"]
         for j, name in zip(wrist, names, strict=False):
             roles[j] = f"{side}_{name}"
@@ -296,6 +303,10 @@ def _sign(role: str, axis: Array, range_deg: tuple[float, float] | None) -> int:
     if part == "elbow" and range_deg is not None and abs(sum(range_deg)) > 10:
         return 1 if sum(range_deg) > 0 else -1
     return 0
+
+
+def _length(v: Array) -> float:
+    return float(np.linalg.norm(v))
 
 
 def _unit(v: Array) -> Array:
