@@ -8,6 +8,7 @@ not hurry: goals that come faster than the robot's rate, more than a few in a ro
 from __future__ import annotations
 
 import math
+from array import array
 from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
@@ -25,7 +26,7 @@ FAULT_GRACE_S = 0.1
 """Goals that were under way when a servo tripped are not counted against anybody."""
 _CONTACT_EVERY = 5
 _MAX_DETAILS = 20
-_MAX_POSES = 100_000
+_MAX_POSES = 500_000
 
 
 @dataclass
@@ -67,7 +68,9 @@ class Audit:
         period = self.robot.bus.period_s
         self._tracks: dict[int, _Track] = {}
         self._pose: dict[int, int] = {}
-        self._poses: list[list[float]] = []
+        self._poses = array("f")  # poses to be checked, one after another
+        self._poses_checked, self._contacts = 0, 0
+        self._contact: SelfContact | None = None
         self._sets = 0
         for joint, servo in zip(self.robot.joints, self.robot.servos, strict=True):
             scale = servo.gear_ratio * servo.model.ticks_per_turn / (2 * math.pi)
@@ -130,21 +133,29 @@ class Audit:
 
     def report(self) -> dict[str, Any]:
         """All figures as plain values."""
-        contacts = 0
-        if self._poses:
-            contact = SelfContact(self.robot, margin_m=0.0)
-            contacts = int(contact.frames(np.array(self._poses)).sum())
+        self.check_poses()
         return {
             "robot": self.robot.name,
             "goals": self.goals,
             "violations": sum(self.violations.values()),
             "violations_by_kind": dict(self.violations),
             "writes_in_fault": self.writes_in_fault,
-            "self_contacts": contacts,
-            "poses_checked": len(self._poses),
+            "self_contacts": self._contacts,
+            "poses_checked": self._poses_checked,
             "body_contacts": self.body_contacts,
             "details": self.details,
         }
+
+    def check_poses(self) -> None:
+        """Look for self-contact in the poses collected so far, and forget them: for runs of hours."""
+        if not self._poses:
+            return
+        if self._contact is None:
+            self._contact = SelfContact(self.robot, margin_m=0.0)
+        poses = np.array(self._poses, np.float64).reshape(-1, len(self._tracks))
+        self._contacts += int(self._contact.frames(poses).sum())
+        self._poses_checked += len(poses)
+        self._poses = array("f")
 
     def _count_in_fault(self, track: _Track, t_s: float, faulted: bool) -> None:
         if not faulted:
@@ -172,8 +183,8 @@ class Audit:
         if servo_id != self.robot.servos[-1].servo_id or len(self._pose) < len(self._tracks):
             return
         self._sets += 1
-        if self._sets % _CONTACT_EVERY == 0 and len(self._poses) < _MAX_POSES:
-            self._poses.append([self._angle_rad(i) for i in range(len(self.robot.servos))])
+        if self._sets % _CONTACT_EVERY == 0 and len(self._poses) < _MAX_POSES * len(self._tracks):
+            self._poses.extend(self._angle_rad(i) for i in range(len(self.robot.servos)))
 
     def _angle_rad(self, i: int) -> float:
         servo = self.robot.servos[i]

@@ -7,9 +7,11 @@ cannot continue its checksum; a packet with a wrong checksum is not answered.
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable, Sequence
 
 from daemon.bus import packet, packet1
+from daemon.bus.crc import crc16
 from daemon.bus.packet import BROADCAST_ID, Instruction, Packet, Part
 from daemon.bus.registers import RETURN_DELAY_UNIT_S
 from retarget.robot import RobotModel
@@ -24,7 +26,6 @@ from sim.world import World
 _READS = (Instruction.SYNC_READ, Instruction.BULK_READ)
 _FAST_READS = (Instruction.FAST_SYNC_READ, Instruction.FAST_BULK_READ)
 _GROUP_WRITES = (Instruction.SYNC_WRITE, Instruction.BULK_WRITE)
-_FAST_HEAD_BYTES = 8
 
 
 class SimBus:
@@ -202,31 +203,36 @@ class SimBus:
             speakers.append(servo)
         if not parts:
             return
-        lengths = [access.length for access in accesses_of(p, 2.0)]
-        raw = _fast_bytes(parts, lengths)
         byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
-        start_s, at = t_s + self._pause_s(speakers[0]), 0
-        for i, (servo, part) in enumerate(zip(speakers, parts, strict=True)):
-            n = 4 + len(part.data) + (_FAST_HEAD_BYTES if i == 0 else 0)
-            own = raw[at : at + n]
-            pieces = spoil(self.faults, servo.servo_id, lambda _i, own=own: own, start_s, byte_s)
+        start_s = t_s + self._pause_s(speakers[0])
+        whole = 1 + sum(4 + access.length for access in accesses_of(p, 2.0))
+        for servo, own in zip(speakers, _fast_shares(parts, whole), strict=True):
+            pieces = spoil(self.faults, servo.servo_id, lambda _id, own=own: own, start_s, byte_s)
             if not pieces:
                 return
             for piece in pieces:
                 self.wire.answer(start_s + piece.after_s, piece.data, baud, alone=piece.alone)
-            start_s, at = start_s + n * byte_s, at + n
+            start_s += len(own) * byte_s
+
+
+def _fast_shares(parts: Sequence[Part], length: int) -> list[bytes]:
+    """What each servo sends of a fast reply: the first one the head, each its part and the checksum of all so far."""
+    head = packet.HEADER + struct.pack("<BHB", BROADCAST_ID, length, Instruction.STATUS)
+    shares: list[bytes] = []
+    crc = 0
+    for part in parts:
+        own = (b"" if shares else head) + bytes([part.error, part.servo_id]) + part.data
+        crc = crc16(own, crc)
+        tail = struct.pack("<H", crc)
+        crc = crc16(tail, crc)
+        shares.append(own + tail)
+    return shares
 
 
 def _answers(servo: SimServo, kind: int) -> bool:
     """Whether the status return level lets it answer."""
     level = servo.memory.get("status_return_level")
     return level == 2 or kind == Instruction.PING or (level == 1 and kind == Instruction.READ)
-
-
-def _fast_bytes(parts: Sequence[Part], lengths: Sequence[int]) -> bytes:
-    """A fast reply's bytes, its length field that of all servos asked, also when the last ones stay away."""
-    missing = [Part(0, 0, bytes(n)) for n in lengths[len(parts) :]]
-    return packet.fast_status([*parts, *missing])
 
 
 def _packet_ends(data: bytes | bytearray, *, with_1: bool) -> list[int]:

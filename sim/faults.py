@@ -139,6 +139,8 @@ class FaultSchedule:
                 raise FaultFileError("fault schedule", f"fault {i}: {problem[0]}", problem[1], problem[2])
         self.random = random.Random(self.seed)
         self.packet = 0
+        self.strikes_packets = False
+        """Whether any fault of the wire is in force: without one a packet need not be looked at."""
         self._waiting = sorted(self.faults, key=lambda f: f.start_s, reverse=True)
         self._now: dict[str, list[Fault]] = {}
         self._repeats: list[tuple[float, Fault]] = []
@@ -192,6 +194,7 @@ class FaultSchedule:
         self._repeats = [(due_s, f) for due_s, f in self._repeats if due_s < f.end_s]
         for kind, active in list(self._now.items()):
             self._now[kind] = [f for f in active if f.end_s > t_s]
+        self.strikes_packets = any(self._now.get(kind) for kind in (*PACKET_KINDS, "silent"))
         self._ends_s = min((f.end_s for active in self._now.values() for f in active), default=math.inf)
         starts = [self._waiting[-1].start_s] if self._waiting else []
         self._next_s = min(starts + [due_s for due_s, _ in self._repeats], default=math.inf)
@@ -211,11 +214,6 @@ class FaultSchedule:
     def in_force(self, kind: str) -> Sequence[Fault]:
         """Faults of a kind that lasts, as of the last `begin`."""
         return self._now.get(kind, ())
-
-    @property
-    def strikes_packets(self) -> bool:
-        """Whether any fault of the wire is in force: without one a packet need not be looked at."""
-        return any(self._now.get(kind) for kind in (*PACKET_KINDS, "silent"))
 
 
 def describe(fault: Fault) -> str:

@@ -64,3 +64,20 @@ def world_of(
         for servo in world.all:
             servo.restore_factory(keep=("id",))
     return world
+
+
+def servo_ids_of(text: str, robot: RobotModel) -> list[int]:
+    """Ids out of "1-4,7".
+
+    Raises:
+        SimSettingError: no ids, or one that the robot does not have.
+    """
+    ids: list[int] = []
+    for part in text.split(","):
+        first, _, last = part.partition("-")
+        if not (first.isdigit() and (last or first).isdigit()):
+            raise SimSettingError("servo ids", repr(text), "such as 1-4,7")
+        ids += range(int(first), int(last or first) + 1)
+    if unknown := set(ids) - set(robot.servo_ids):
+        raise SimSettingError("servo ids", ", ".join(map(str, sorted(unknown))), ", ".join(map(str, robot.servo_ids)))
+    return ids

@@ -67,6 +67,7 @@ class SimServo:
         self.firmware = firmware if firmware is not None else _FIRMWARE.get(self.model.family, _FIRMWARE_X)
         self.memory = Memory(self.model, self.firmware)
         self.rad_per_tick = float(drives.rad_per_tick[index])
+        self._tick_s_per_unit = self._speed_unit_rad_s() / self.rad_per_tick
         self.watchdog_stops = self.model.watchdog_stops
         self.silent_until_s = -math.inf
         self.powered = True
@@ -75,6 +76,7 @@ class SimServo:
         self._fed_s = 0.0
         self._watchdog_s = math.inf
         self._turn_tick = 0.0
+        self._sign, self._homing_tick, self._threshold_tick_s = 1, 0, 0.0
         self._pending: tuple[int, bytes] | None = None
         self._backup: bytes | None = None
         self._now_s = 0.0
@@ -83,6 +85,9 @@ class SimServo:
         self._set("id", spec.servo_id)
         self._set_up()
         self._power_on()
+
+    def _speed_unit_rad_s(self) -> float:
+        return VELOCITY_UNIT_RAD_S
 
     # State.
 
@@ -166,7 +171,8 @@ class SimServo:
             self._restore(ram_only=True)
         raw = float(self.drives.position_tick[self.index])
         turn = self.model.ticks_per_turn
-        self._turn_tick = math.floor(raw / turn) * turn if self.model.protocol == 2.0 else 0.0
+        self._turn_tick = math.floor(raw / turn) * turn
+        self._configure()
         self._reset_goals()
         self._configure()
         if startup & 1:
@@ -350,6 +356,9 @@ class SimServo:
     def _configure(self) -> None:
         """Hand what the registers say to the drive."""
         get, i, d = self.memory.get, self.index, self.drives
+        self._sign = -1 if get("drive_mode") & 1 else 1
+        self._homing_tick = get("homing_offset")
+        self._threshold_tick_s = get("moving_threshold") * self._tick_s_per_unit
         units = 1.0 / _PWM_FULL
         mode = get("operating_mode")
         d.mode[i] = mode
@@ -393,14 +402,6 @@ class SimServo:
     # Frames and units.
 
     @property
-    def _sign(self) -> int:
-        return -1 if self.memory.get("drive_mode") & 1 else 1
-
-    @property
-    def _tick_s_per_unit(self) -> float:
-        return VELOCITY_UNIT_RAD_S / self.rad_per_tick
-
-    @property
     def _tick_s2_per_unit(self) -> float:
         return self.items["profile_acceleration"].scale / self.rad_per_tick
 
@@ -408,10 +409,10 @@ class SimServo:
         tick = shaft_tick - self._turn_tick
         if self._sign < 0:
             tick = self.model.ticks_per_turn - tick
-        return tick + self.memory.get("homing_offset")
+        return tick + self._homing_tick
 
     def _to_shaft(self, register_tick: float) -> float:
-        tick = register_tick - self.memory.get("homing_offset")
+        tick = register_tick - self._homing_tick
         if self._sign < 0:
             tick = self.model.ticks_per_turn - tick
         return tick + self._turn_tick
@@ -471,7 +472,7 @@ class SimServo:
             v[self.index] for v in self.drives.live()
         )
         sign, per_unit = self._sign, self._tick_s_per_unit
-        moving = abs(velocity) > self.memory.get("moving_threshold") * per_unit
+        moving = abs(velocity) > self._threshold_tick_s
         here = self._to_register(position)
         arrived = abs(self.memory.get("goal_position") - here) < 10
         if self.model.has_current:

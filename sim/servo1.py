@@ -117,13 +117,8 @@ class SimServo1(SimServo):
                 d.profile_tick_s2[i] = acceleration * self.items["goal_acceleration"].scale / self.rad_per_tick
         d.touch()
 
-    @property
-    def _sign(self) -> int:
-        return 1
-
-    @property
-    def _tick_s_per_unit(self) -> float:
-        return self.items["present_speed"].scale / self.rad_per_tick
+    def _speed_unit_rad_s(self) -> float:
+        return self.items["present_speed"].scale
 
     def _to_register(self, shaft_tick: float) -> float:
         return shaft_tick
