@@ -25,6 +25,8 @@ FIFO_PRIORITY = 40
 ORPHAN_CHECK_S = 0.5
 ORPHAN_END_S = 30.0
 """Longest life without a front: holding, parking and a fault in which torque was kept are over by then."""
+SLOW_EVERY = 10
+"""Cycles between two readings of the slow registers, of one servo each."""
 _MCL_CURRENT_AND_FUTURE = 3
 
 
@@ -33,14 +35,18 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="the bus process of mmmd; started by `mmmd run`")
     for name in ("--robot", "--bus", "--link"):
         parser.add_argument(name, required=True)
+    parser.add_argument("--after-loss", action="store_true")
     arguments = parser.parse_args()
     logging.basicConfig(level=logging.INFO, format="bus: %(levelname)s %(message)s")
     robot = load_robot(arguments.robot)
     link = BusLink.attach(Path(arguments.link), robot.n_joints)
     clock = RealClock()
-    streamer = start(
-        robot, lambda: ServoBus(open_port(arguments.bus, PortContext(robot, clock)), robot.servos, clock), link, clock
-    )
+
+    def open_bus() -> ServoBus:
+        port = open_port(arguments.bus, PortContext(robot, clock))
+        return ServoBus(port, robot.servos, clock, slow_every=SLOW_EVERY)
+
+    streamer = start(robot, open_bus, link, clock, after_loss=arguments.after_loss)
     if streamer is None:
         return 1
     link.set_realtime(*_take_rights())

@@ -24,6 +24,7 @@ class BusView:
         present_rad: (J,) what they last measured.
         valid: (S,) whether each servo's last reading is from the newest cycle.
         error: (S,) error bits of the last replies.
+        at_rest: whether the last cycle moved no goal.
         index: cycles published so far, as far as they have been read.
         lost: cycles that were overwritten before they were read.
     """
@@ -32,7 +33,8 @@ class BusView:
         self._link, self._robot = link, robot
         self._servo_map = JointServoMap(robot)
         self.index = 0
-        self._last_cycle_s = time.monotonic()
+        self.at_rest = True
+        self._last_cycle_s: float | None = None
         self.state = BusState.LIMP
         self.goal_rad: Array = robot.park_rad.copy()
         self.present_rad: Array = robot.park_rad.copy()
@@ -45,6 +47,10 @@ class BusView:
         """Cycles since the last call, and how many were lost between."""
         records, self.index, lost = self._link.cycles_since(self.index)
         self.lost += lost
+        if (
+            self._last_cycle_s is None
+        ):  # the first look: the bus process has just become ready, its first cycle is to come
+            self._last_cycle_s = time.monotonic()
         if len(records):
             last = records[-1]
             self._last_cycle_s = time.monotonic()
@@ -52,13 +58,20 @@ class BusView:
             self.present_rad = self._servo_map.tick_to_rad(last["present_tick"])
             self.valid, self.error = last["valid"] != 0, np.array(last["error"])
             self.underruns += int((records["underrun"] != 0).sum())
+            self.at_rest = not np.any(last["velocity_rad_s"])
             self.state = BusState(int(last["state"]))
         return records, lost
 
+    def begin(self, state: BusState = BusState.LIMP) -> None:
+        """The bus process has just said that it is ready, in `state`: its silence counts from here."""
+        self.update()  # what one before it has published is not its own
+        self.state, self.at_rest = state, True
+        self._last_cycle_s = time.monotonic()
+
     @property
     def silent_s(self) -> float:
-        """Seconds since the newest cycle."""
-        return time.monotonic() - self._last_cycle_s
+        """Seconds since the newest cycle; before the first, since the first look for one."""
+        return 0.0 if self._last_cycle_s is None else time.monotonic() - self._last_cycle_s
 
     @property
     def message(self) -> str:

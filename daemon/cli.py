@@ -27,6 +27,11 @@ COMMANDS: dict[str, CommandEntry] = {
     "demo": CommandEntry("daemon.commands.demo:demo", "simulated robot, daemon, three texts, pictures: see it work"),
     "run": CommandEntry("daemon.commands.run:run", "the daemon: text over ZeroMQ in, servo motion out"),
     "say": CommandEntry("daemon.commands.say:say", "tell the robot what to do"),
+    "gesture": CommandEntry("daemon.commands.gesture:gesture", "play, list, record and add named gestures"),
+    "look": CommandEntry("daemon.commands.layers:look", "turn the head, whatever the body does"),
+    "idle": CommandEntry("daemon.commands.layers:idle", "small movements while there is nothing to play"),
+    "cancel": CommandEntry("daemon.commands.layers:cancel", "end a command; the robot brakes and holds"),
+    "capabilities": CommandEntry("daemon.commands.layers:capabilities", "what the robot and the daemon can do"),
     "status": CommandEntry("daemon.commands.status:status", "what the robot and the daemon are doing"),
     "watch": CommandEntry("daemon.commands.watch:watch", "follow events and state as they happen"),
     "stop": CommandEntry("daemon.commands.control:stop", "brake within the limits and hold"),
@@ -37,6 +42,10 @@ COMMANDS: dict[str, CommandEntry] = {
     "sim": CommandEntry("daemon.commands.sim:sim", "simulated servos behind a real tty"),
     "robot": CommandEntry("daemon.commands.robot:robot", "list, check and show robots"),
     "generate": CommandEntry("daemon.commands.generate:generate", "text to human motion: .npz and .bvh"),
+    "edit": CommandEntry("daemon.commands.edit:edit", "a stretch, an end or a body part of a motion made again"),
+    "import-official": CommandEntry(
+        "daemon.commands.import_official:import_official", "the MMM authors' checkpoints as one file of ours"
+    ),
     "retarget": CommandEntry("daemon.commands.retarget:retarget", "human motion to joint angles and servo ticks"),
     "replay": CommandEntry("daemon.commands.replay:replay", "a recorded run again, through the same gate"),
     "render": CommandEntry("daemon.commands.render:render", "pictures of a motion or a run"),

@@ -5,34 +5,35 @@ from __future__ import annotations
 import time
 import uuid
 from collections.abc import Iterator
-from dataclasses import dataclass
 from types import TracebackType
-from typing import Self
+from typing import Literal, Self, Unpack
 
 import zmq
 
+from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
 from daemon.config import Endpoints
-from daemon.errors import DaemonError
+from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
 from daemon.probe import PROBE_TIMEOUT_S, listening
-from daemon.wire import (
-    Ack,
-    AnyEvent,
+from daemon.requests import (
     Arm,
     Cancel,
-    Done,
+    Capabilities,
     Estop,
-    Event,
+    Gesture,
+    Idle,
+    Look,
     Park,
-    Refusal,
+    Play,
+    PlayOptions,
+    Record,
     Request,
     Reset,
     Say,
-    StateEvent,
     Status,
     Stop,
-    decode_event,
-    encode,
+    tag_of,
 )
+from daemon.wire import decode_event, encode
 
 REPLY_TIMEOUT_S = 5.0
 """For a reply that no motion has to be waited for."""
@@ -42,51 +43,7 @@ _NOT_MOVING = ("limp", "idle", "holding", "fault", "estop")
 MOTION_TIMEOUT_S = 60.0
 """For a motion to end: the longest is 10 s, before which the robot may have to be armed."""
 
-
-class NoAnswerError(DaemonError, TimeoutError):
-    """The daemon did not answer."""
-
-    def __init__(self, endpoint: str, asked: str, timeout_s: float) -> None:
-        self.endpoint, self.asked, self.timeout_s = endpoint, asked, timeout_s
-        do = "is `mmmd run` running there? Start it, or name its port with --cmd, --ctl, --pub"
-        super().__init__(f"{asked}: no answer from {endpoint} in {timeout_s:g} s; {do}")
-
-
-class RefusedError(DaemonError):
-    """The daemon rejected a request, or could not carry it out; `event` tells why."""
-
-    def __init__(self, event: Refusal) -> None:
-        self.event = event
-        self.code = event.code
-        self.exit_status = 3 if event.code == "fault" else 1
-        super().__init__(event.message)
-
-
-class CancelledByError(DaemonError):
-    """The command ended before its motion did."""
-
-    def __init__(self, by: str) -> None:
-        self.by = by
-        super().__init__(f"the command was cancelled by {by}")
-
-
-@dataclass(frozen=True)
-class Said:
-    """A command and what has been heard of it.
-
-    Attributes:
-        id: id of the command.
-        events: its events so far; the last is terminal once it has ended.
-    """
-
-    id: str
-    events: tuple[AnyEvent, ...]
-
-    @property
-    def done(self) -> Done | None:
-        """The figures of the motion, when it was played to its end."""
-        last = self.events[-1] if self.events else None
-        return last if isinstance(last, Done) else None
+__all__ = ["CancelledByError", "Client", "NoAnswerError", "RefusedError", "Said"]
 
 
 class Client:
@@ -125,6 +82,7 @@ class Client:
         wait: bool = True,
         timeout_s: float = MOTION_TIMEOUT_S,
         command_id: str = "",
+        **options: Unpack[PlayOptions],
     ) -> Said:
         """Move as the text says.
 
@@ -135,15 +93,40 @@ class Client:
             wait: return when the motion has ended; else once it is accepted.
             timeout_s: longest wait for the end.
             command_id: the same id twice is one command; empty chooses one.
+            options: tempo, amplitude, mirror, repeat, loop, hold, when, at_s, deadline_s; see `daemon.requests.Play`.
 
         Raises:
             RefusedError: rejected, failed, or no valid request.
             CancelledByError: ended by another command, with `wait`.
             NoAnswerError: not in time.
         """
-        command_id = command_id or uuid.uuid4().hex
+        request = Say(id=command_id or uuid.uuid4().hex, text=text, seed=seed, seconds=seconds, **options)
+        return self.play(request, wait=wait, timeout_s=timeout_s)
+
+    def gesture(
+        self,
+        name: str,
+        *,
+        wait: bool = True,
+        timeout_s: float = MOTION_TIMEOUT_S,
+        command_id: str = "",
+        **options: Unpack[PlayOptions],
+    ) -> Said:
+        """Play a clip of the library; options as for `say`.
+
+        Raises:
+            RefusedError, CancelledByError, NoAnswerError: as for `say`.
+        """
+        request = Gesture(id=command_id or uuid.uuid4().hex, name=name, **options)
+        return self.play(request, wait=wait, timeout_s=timeout_s)
+
+    def play(self, request: Play, *, wait: bool = True, timeout_s: float = MOTION_TIMEOUT_S) -> Said:
+        """Send a request that plays something; return when it has ended, or without `wait` once it is accepted.
+
+        Raises:
+            RefusedError, CancelledByError, NoAnswerError: as for `say`.
+        """
         heard: list[AnyEvent] = []
-        request = Say(id=command_id, text=text, seed=seed, seconds=seconds)
         for event in self.events_of(request, timeout_s):
             heard.append(event)
             if isinstance(event, Refusal):
@@ -153,9 +136,9 @@ class Client:
         last = heard[-1]
         if wait and not isinstance(last, Done):
             raise CancelledByError(str(getattr(last, "by", "the daemon")))
-        return Said(command_id, tuple(heard))
+        return Said(request.id, tuple(heard))
 
-    def events_of(self, request: Say, timeout_s: float = MOTION_TIMEOUT_S) -> Iterator[AnyEvent]:
+    def events_of(self, request: Play, timeout_s: float = MOTION_TIMEOUT_S) -> Iterator[AnyEvent]:
         """Send a text and yield its events as they come, the last one terminal.
 
         Raises:
@@ -163,7 +146,7 @@ class Client:
         """
         socket = self._cmd_socket()
         self._send(socket, request, self.endpoints.cmd)
-        began_s, asked = time.monotonic(), f"say {request.text[:60]!r}"
+        began_s, asked = time.monotonic(), f"{tag_of(request)} {request.words[:60]!r}"
         limit_s = min(timeout_s, FIRST_REPLY_TIMEOUT_S)
         while True:
             event = self._receive(socket, began_s, limit_s, self.endpoints.cmd, asked)
@@ -181,9 +164,43 @@ class Client:
             RefusedError: no such command runs.
             NoAnswerError: not in time.
         """
-        return self._acknowledged(
-            Cancel(id=uuid.uuid4().hex, command=command_id), self._cmd_socket(), self.endpoints.cmd
-        )
+        return self._command(Cancel(id=uuid.uuid4().hex, command=command_id))
+
+    def look(self, yaw_deg: float | None = None, pitch_deg: float | None = None) -> Ack:
+        """Turn the head left and down, whatever the body does; without angles it is let go again.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        return self._command(Look(id=uuid.uuid4().hex, yaw_deg=yaw_deg, pitch_deg=pitch_deg))
+
+    def idle(self, on: bool = True, style: Literal["calm", "lively"] = "calm") -> Ack:
+        """Small movements while there is nothing to play, or none.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        return self._command(Idle(id=uuid.uuid4().hex, on=on, style=style))
+
+    def record(self, name: str, command_id: str = "") -> Ack:
+        """Keep the motion of a command, the newest when no id is given, as a gesture.
+
+        Raises:
+            RefusedError: there is none, or it cannot be kept.
+            NoAnswerError: not in time.
+        """
+        return self._command(Record(id=uuid.uuid4().hex, name=name, command=command_id))
+
+    def capabilities(self) -> CapabilitiesEvent:
+        """What this robot and this daemon can do.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        event = self._ask(Capabilities(id=uuid.uuid4().hex), self._cmd_socket(), self.endpoints.cmd)
+        if not isinstance(event, CapabilitiesEvent):
+            raise unexpected(event, "capabilities")
+        return event
 
     def stop(self, *, wait: bool = True) -> Ack:
         """Brake within the limits and hold; with `wait`, return once nothing is played any more.
@@ -252,7 +269,7 @@ class Client:
         request = Status(id=uuid.uuid4().hex)
         event = self._ask(request, self._ctl_socket(), self.endpoints.ctl)
         if not isinstance(event, StateEvent):
-            raise _unexpected(event, "status")
+            raise unexpected(event, "status")
         return event
 
     def wait_for(self, *states: str, timeout_s: float) -> StateEvent:
@@ -290,17 +307,20 @@ class Client:
         finally:
             socket.close(0)
 
+    def _command(self, request: Request) -> Ack:
+        return self._acknowledged(request, self._cmd_socket(), self.endpoints.cmd)
+
     def _control(self, request: Request) -> Ack:
         return self._acknowledged(request, self._ctl_socket(), self.endpoints.ctl)
 
     def _acknowledged(self, request: Request, socket: zmq.Socket[bytes], endpoint: str) -> Ack:
         event = self._ask(request, socket, endpoint)
         if not isinstance(event, Ack):
-            raise _unexpected(event, str(type(request).__struct_config__.tag))
+            raise unexpected(event, tag_of(request))
         return event
 
     def _ask(self, request: Request, socket: zmq.Socket[bytes], endpoint: str) -> AnyEvent:
-        asked = str(type(request).__struct_config__.tag)
+        asked = tag_of(request)
         self._send(socket, request, endpoint)
         began_s = time.monotonic()
         while True:
@@ -315,7 +335,7 @@ class Client:
         try:
             socket.send(encode(request), zmq.DONTWAIT)
         except zmq.Again:
-            raise NoAnswerError(endpoint, str(type(request).__struct_config__.tag), 0.0) from None
+            raise NoAnswerError(endpoint, tag_of(request), 0.0) from None
 
     def _receive(
         self, socket: zmq.Socket[bytes], began_s: float, timeout_s: float, endpoint: str, asked: str
@@ -342,9 +362,3 @@ class Client:
         socket.setsockopt(zmq.LINGER, 200)
         socket.connect(endpoint)
         return socket
-
-
-def _unexpected(event: Event, asked: str) -> DaemonError:
-    if isinstance(event, Refusal):
-        return RefusedError(event)
-    return DaemonError(f"{asked}: the daemon answered '{type(event).__struct_config__.tag}'; is it of another version?")

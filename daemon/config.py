@@ -8,6 +8,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from daemon.errors import ConfigError
+from daemon.requests import IDLE_STYLES
 
 CMD_PORT, CTL_PORT, PUB_PORT = 5871, 5872, 5873
 
@@ -86,6 +87,8 @@ class DaemonConfig:
         generator: endpoint of a generator that runs already; None starts one.
         model: checkpoint of the generator; None takes the shipped one.
         auto_arm: whether the first text may arm the robot.
+        idle: style of the movements while there is nothing to play: off, calm or lively.
+        gestures: folder of the user's own gestures; None takes the user's data folder.
         queue_s: setpoints kept ready in the bus process.
         state_rate_hz: how often `v1/state` is published.
         generate_timeout_s: longest wait for the generator.
@@ -99,6 +102,8 @@ class DaemonConfig:
     generator: str | None = None
     model: Path | None = None
     auto_arm: bool = True
+    idle: str = "off"
+    gestures: Path | None = None
     queue_s: float = 0.1
     state_rate_hz: float = 20.0
     generate_timeout_s: float = 10.0
@@ -117,5 +122,7 @@ class DaemonConfig:
             value = getattr(self, key)
             if not low <= value <= high:
                 raise config_error(key, f"{value}", f"{low} to {high}", "choose a value in this range")
+        if self.idle not in ("off", *IDLE_STYLES):
+            raise config_error("idle", repr(self.idle), ", ".join(("off", *IDLE_STYLES)), "choose one of these")
         if self.generator is not None:
             check_local("generator", self.generator)

@@ -9,31 +9,16 @@ from typing import Protocol
 
 import zmq
 
+from daemon.events import Ack, Event, Rejected
 from daemon.ledger import split_route
-from daemon.performer import refusal
+from daemon.replies import refusal
+from daemon.requests import Arm, CtlRequest, Estop, Park, Reset, Status, Stop
 from daemon.state import CommandRefusedError
-from daemon.wire import (
-    Ack,
-    Arm,
-    CtlRequest,
-    Estop,
-    Event,
-    Park,
-    Rejected,
-    Reset,
-    Status,
-    Stop,
-    WireError,
-    decode_ctl,
-    encode,
-    error_event,
-)
+from daemon.wire import WireError, decode_ctl, encode, error_event
 
 log = logging.getLogger(__name__)
 
 POLL_MS = 100
-MAX_RECEIVE_BYTES = 1 << 20
-"""ZeroMQ drops the connection of a peer that sends more; below it the peer is told what is allowed."""
 
 
 class Controls(Protocol):

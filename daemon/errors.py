@@ -14,6 +14,8 @@ DaemonError
 │   └── PacketError                bytes that are no whole packet                    (ValueError)
 ├── LogError(path)                 a log that cannot be read                         (ValueError)
 ├── ConfigError(key)               a setting outside what is allowed                 (ValueError)
+├── ClipError                      a gesture that cannot be read or kept             (ValueError)
+│   └── UnknownGestureError(name)  no gesture of that name
 └── RequestError(code)             a message that cannot be carried out              (ValueError)
 """
 
@@ -109,3 +111,16 @@ class RequestError(DaemonError, ValueError):
     def __init__(self, code: str, message: str) -> None:
         self.code = code
         super().__init__(message)
+
+
+class ClipError(DaemonError, ValueError):
+    """A gesture that cannot be read or kept."""
+
+
+class UnknownGestureError(ClipError):
+    """No gesture of that name."""
+
+    def __init__(self, name: str, near: Sequence[str], known: int) -> None:
+        self.name, self.near = name, tuple(near)
+        like = f"; near to it: {', '.join(near)}" if near else ""
+        super().__init__(f"gesture {name!r}: not among the {known} known ones{like}; `mmmd gesture list` shows all")

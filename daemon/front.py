@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import threading
 import time
 from collections.abc import Callable
 from typing import Any, cast
@@ -19,35 +18,26 @@ import zmq
 import zmq.asyncio
 
 from daemon.bus_view import BusView
-from daemon.config import DaemonConfig, config_error
-from daemon.control import MAX_RECEIVE_BYTES, ControlThread
+from daemon.config import DaemonConfig
+from daemon.control import ControlThread
+from daemon.desk import Desk
+from daemon.events import Event, Rejected, StateEvent
+from daemon.follower import Follower
+from daemon.front_controls import FrontControls
 from daemon.generation import GeneratorClient
+from daemon.gestures.library import GestureLibrary
 from daemon.ledger import Ledger, Route, split_route
 from daemon.performer import TICK_S, Performer
 from daemon.planner import Planner
-from daemon.probe import listening
 from daemon.shared import BusLink, BusRequest
-from daemon.state import CommandRefusedError, RobotState, StateMachine, Trigger
-from daemon.wire import (
-    Ack,
-    Cancel,
-    Event,
-    Rejected,
-    Request,
-    Say,
-    StateEvent,
-    Status,
-    WireError,
-    decode_cmd,
-    encode,
-    error_event,
-)
+from daemon.sockets import bind, send_now
+from daemon.sources import Sources
+from daemon.state import RobotState, StateMachine
+from daemon.wire import WireError, decode_cmd, encode, error_event
 from retarget.robot import RobotModel
 
 log = logging.getLogger(__name__)
 
-DRAIN_TIMEOUT_S = 0.05
-"""Longest wait of a `stop` reply for the texts that came before it; the stop itself does not wait."""
 DRAIN_LIMIT = 10_000
 PARK_AGAIN_S = 1.0
 Record = Callable[[str, bytes], None]
@@ -81,10 +71,14 @@ class Front:
         self._generator, self._record = generator, record
         self.machine = StateMachine(auto_arm=config.auto_arm)
         self.view = BusView(link, robot)
-        self.planner = Planner(robot, link, self.view, config.queue_s)
+        planner = Planner(robot, link, self.view, config.queue_s)
+        self.follower = Follower(link, self.view, planner, self.machine)
         self.ledger = Ledger(self._send, self._publish_event)
-        self.performer = Performer(config, link, self.view, self.planner, self.machine, self.ledger, generator)
+        sources = Sources(config, generator, GestureLibrary(config.gestures))
+        self.performer = Performer(config, link, planner, self.follower, self.ledger, sources)
+        self._desk = Desk(robot, self.performer, sources, self.ledger, generator, self.state_event)
         self._started_s = time.monotonic()
+        self.recording = str(config.log) if config.log else ""
         self._last_values: dict[bytes, bytes] = {}
         self._tasks: list[asyncio.Task[None]] = []
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -96,7 +90,7 @@ class Front:
         sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "ctl": ctl, "pub": self._pub}
         try:
             for key, socket in sockets.items():
-                _bind(socket, key, getattr(config.endpoints, key))
+                bind(socket, key, getattr(config.endpoints, key))
         except BaseException:
             for socket in sockets.values():
                 socket.close(0)
@@ -113,6 +107,7 @@ class Front:
     def start(self) -> None:
         """Begin to serve, in the running event loop."""
         self._loop = asyncio.get_running_loop()
+        self.view.begin()
         serve = (self._serve_cmd, self._serve_subscriptions, self._tick_forever, self._publish_state_forever)
         self._tasks = [asyncio.create_task(s(), name=s.__name__) for s in serve]
         self._control.start()
@@ -131,7 +126,7 @@ class Front:
         """End all commands and park, as far as the robot's state allows; the state it is left in."""
         self.performer.end_all("shutdown")
         state = self.machine.state
-        if state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP) or not self.performer.bus_alive:
+        if state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP) or not self.follower.bus_alive:
             return state
         end_s = time.monotonic() + self._config.park_timeout_s
         asked_s = float("-inf")
@@ -174,7 +169,7 @@ class Front:
             request = decode_cmd(parts[0])
             if self._record is not None:
                 self._record("cmd", parts[0])
-            self._take(request, route, t_received_ns)
+            self._desk.take(request, route, t_received_ns)
         except WireError as error:
             event = error_event(error)
             self.ledger.reply(route, event)
@@ -183,30 +178,6 @@ class Front:
             log.exception("a request failed")
             event = Rejected(code="internal", asked="cmd", found=str(error), allowed="", do="see the daemon's log")
             self.ledger.reply(route, event)
-
-    def _take(self, request: Request, route: Route, t_received_ns: int) -> None:
-        if isinstance(request, Status):
-            event = self.state_event()
-            event.id = request.id
-            self.ledger.reply(route, event)
-        elif isinstance(request, Cancel):
-            self.ledger.reply(route, self._cancel(request))
-        elif isinstance(request, Say):
-            entry = self.ledger.open(request, route, t_received_ns)
-            if entry is not None:
-                self.performer.say(entry)
-
-    def _cancel(self, request: Cancel) -> Event:
-        running = self.performer.running_ids()
-        if not running or request.command not in ("", *running):
-            found = f"running: {', '.join(running)}" if running else "nothing is running"
-            asked, allowed = f"cancel {request.command!r}", "the id of a running command, or an empty one"
-            return Rejected(
-                id=request.id, code="not_running", asked=asked, found=found, allowed=allowed, do="see `mmmd status`"
-            )
-        state = self.machine.state.value
-        self.performer.cancel(request.command)
-        return Ack(id=request.id, verb="cancel", state=state)
 
     def drain_cmd(self) -> None:
         """Take the requests that wait in the socket."""
@@ -233,10 +204,10 @@ class Front:
             if frames and frames[0][:1] == b"\x01":
                 for topic, payload in list(self._last_values.items()):
                     if topic.startswith(frames[0][1:]):
-                        _send_now(self._pub, [topic, payload])
+                        send_now(self._pub, [topic, payload])
 
     def _send(self, route: Route, event: Event) -> None:
-        _send_now(self._cmd, [*route.frames, encode(event)])
+        send_now(self._cmd, [*route.frames, encode(event)])
 
     def publish_from_thread(self, event: Event) -> None:
         """Publish an event from another thread; dropped once the loop has ended."""
@@ -251,7 +222,7 @@ class Front:
         self._last_values[topic.encode()] = payload
         if self._record is not None:
             self._record(topic, payload)
-        _send_now(self._pub, [topic.encode(), payload])
+        send_now(self._pub, [topic.encode(), payload])
 
     def state_event(self) -> StateEvent:
         """The robot and the daemon now; may be called from any thread."""
@@ -260,7 +231,7 @@ class Front:
             bus=self._config.bus,
             state=self.machine.state.value,
             must_arm=self.machine.must_arm,
-            reason=self.performer.fault_reason,
+            reason=self.follower.fault_reason,
             command=self.performer.current_command(),
             generator=self._generator.state,
             joint_names=list(self._robot.joint_names),
@@ -268,100 +239,12 @@ class Front:
             present_rad=[round(float(q), 5) for q in self.view.present_rad],
             queued_ms=round(1e3 * self.link.queued_frames / self._robot.bus.rate_hz, 1),
             bus_info=self.view.counters(),
-            recording=str(self._config.log) if self._config.log else "",
+            recording=self.recording,
             uptime_s=round(time.monotonic() - self._started_s, 2),
+            waiting=self.performer.waiting_ids(),
+            idle=self.performer.layers.idle_style or "off",
+            gaze_deg=self.performer.layers.gaze_deg,
         )
-
-
-class FrontControls:
-    """What the `ctl` thread does: the bus process first, the event loop afterwards."""
-
-    def __init__(self, front: Front) -> None:
-        self._front = front
-
-    def stop(self) -> str:
-        """Brake within the limits and hold; returns the state before."""
-        return self._halt(Trigger.STOP)
-
-    def estop(self) -> str:
-        """Cut torque; returns the state before."""
-        return self._halt(Trigger.ESTOP)
-
-    def park(self) -> str:
-        """Park, then torque off; returns the state before."""
-        return self._halt(Trigger.PARK)
-
-    def reset(self) -> str:
-        """Leave fault or e-stop; returns the state before."""
-        machine, state = self._front.machine, self._front.machine.state
-        machine.check(Trigger.RESET)
-        if not self._front.performer.bus_alive:
-            raise CommandRefusedError(
-                state, Trigger.RESET, (), "the bus process is gone: end `mmmd run`, start it again"
-            )
-        self._front.link.request(BusRequest.RESET)
-        return state.value
-
-    def arm(self) -> str:
-        """Torque on, slow move to rest; returns the state before."""
-        machine, state = self._front.machine, self._front.machine.state
-        machine.check(Trigger.ARM)
-        machine.armed_by_person()
-        self._front.link.request(BusRequest.ARM)
-        return state.value
-
-    def status(self) -> Event:
-        """The state event."""
-        return self._front.state_event()
-
-    def sent(self, event: Event) -> Event:
-        """Number an event that is being sent, and tell the subscribers of it."""
-        self._front.ledger.stamp(event)
-        if not isinstance(event, StateEvent):
-            self._front.publish_from_thread(event)
-        return event
-
-    def _halt(self, command: Trigger) -> str:
-        front, performer, state = self._front, self._front.performer, self._front.machine.state
-        front.machine.check(command)
-        performer.halted_s, performer.halted_by = time.monotonic(), command.value
-        performer.stopped = command is Trigger.STOP
-        front.link.request(BusRequest[command.name])
-        ended = threading.Event()
-
-        async def end_commands() -> None:
-            front.drain_cmd()
-            await asyncio.sleep(0)  # a request that was already received is taken now
-            performer.end_halted()
-            ended.set()
-
-        try:
-            asyncio.run_coroutine_threadsafe(end_commands(), front.loop)
-            ended.wait(DRAIN_TIMEOUT_S)
-        except RuntimeError:  # the loop is closed: there is nothing left to end
-            pass
-        return state.value
-
-
-def _bind(socket: zmq.Socket[Any], key: str, endpoint: str) -> None:
-    socket.setsockopt(zmq.LINGER, 0)
-    socket.setsockopt(zmq.MAXMSGSIZE, MAX_RECEIVE_BYTES)
-    do = "stop the other daemon (`mmmd status` shows it), or choose another endpoint"
-    if endpoint.startswith("ipc://") and listening(endpoint):  # ZeroMQ would take the path from it
-        raise config_error(key, f"{endpoint}: Address already in use", "a free endpoint", do)
-    try:
-        socket.bind(endpoint)
-    except zmq.ZMQError as error:
-        raise config_error(key, f"{endpoint}: {error}", "a free endpoint", do) from error
-
-
-def _send_now(socket: zmq.asyncio.Socket, frames: list[bytes]) -> None:
-    """Send without waiting; a peer that never reads loses its own messages and slows nobody.
-
-    Through the asyncio socket: a send past it would swallow the edge that tells of received frames.
-    """
-    sent = cast("asyncio.Future[object]", socket.send_multipart(frames, zmq.DONTWAIT))  # pyright: ignore[reportUnknownMemberType]
-    sent.add_done_callback(lambda done: done.cancelled() or done.exception())
 
 
 def _line(event: Event) -> str:

@@ -200,6 +200,7 @@ class GeneratorClient:
 
     Attributes:
         state: what people are told about the generator; `mark_ready` and `mark_down` set it.
+        checkpoint_hash: of the weights it said it uses last, empty before.
         timeouts: requests that were not answered in time.
     """
 
@@ -215,11 +216,13 @@ class GeneratorClient:
         self._ready = asyncio.Event()
         self._down_reason = ""
         self.state = "starting"
+        self.checkpoint_hash = ""
         self.timeouts = 0
 
     def mark_ready(self, checkpoint_hash: str) -> None:
         """The generator answers."""
         self.state, self._down_reason = f"ready (checkpoint {checkpoint_hash[:12]})", ""
+        self.checkpoint_hash = checkpoint_hash
         self._ready.set()
 
     def mark_starting(self) -> None:

@@ -9,7 +9,11 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from daemon.wire import Event, Say, WireError
+import msgspec
+
+from daemon.events import Accepted, Event
+from daemon.requests import Play, tag_of
+from daemon.wire import WireError
 
 KEPT = 1024
 """Commands that are remembered, so that the same id is the same command."""
@@ -37,7 +41,7 @@ def split_route(frames: list[bytes]) -> tuple[Route, list[bytes]]:
 
 @dataclass
 class Entry:
-    """One `say`.
+    """One command that plays something.
 
     Attributes:
         id: id of the command.
@@ -49,11 +53,22 @@ class Entry:
     """
 
     id: str
-    request: Say
+    request: Play
     t_received_ns: int
     routes: list[Route]
     events: list[Event] = field(default_factory=list[Event])
     ended: bool = False
+
+    @property
+    def accepted(self) -> bool:
+        """Whether it was accepted."""
+        return any(isinstance(event, Accepted) for event in self.events)
+
+    @property
+    def deadline_s(self) -> float:
+        """When its motion has to begin at the latest, monotonic."""
+        wanted_s = self.request.deadline_s
+        return float("inf") if wanted_s is None else self.t_received_ns * 1e-9 + wanted_s
 
 
 class Ledger:
@@ -74,18 +89,18 @@ class Ledger:
         event.seq, event.t_mono = next(self._seq), time.monotonic()
         return event
 
-    def open(self, request: Say, route: Route, t_received_ns: int) -> Entry | None:
+    def open(self, request: Play, route: Route, t_received_ns: int) -> Entry | None:
         """A new command; None when the id is known, in which case the sender hears what happened so far and what comes.
 
         Raises:
-            WireError: the id stands for another text.
+            WireError: the id stands for something else.
         """
         known = self._entries.get(request.id) if request.id else None
         if known is not None:
-            asked = (known.request.text, known.request.seed, known.request.seconds)
-            if asked != (request.text, request.seed, request.seconds):
-                found = f"id {request.id!r}, which stands for {known.request.text!r}"
-                raise WireError("id_in_use", "say", found, "the same text, or a new id", "choose a new id", request.id)
+            if _without_stamp(known.request) != _without_stamp(request):
+                found = f"id {request.id!r}, which stands for {known.request.words!r}"
+                asked, allowed = tag_of(request), "the same request, or a new id"
+                raise WireError("id_in_use", asked, found, allowed, "choose a new id", request.id)
             self._catch_up(known, route)
             return None
         entry = Entry(request.id or uuid.uuid4().hex, request, t_received_ns, [route])
@@ -122,3 +137,8 @@ class Ledger:
             self._send(route, entry.events[-1])
         else:
             entry.routes.append(route)
+
+
+def _without_stamp(request: Play) -> Play:
+    """What was asked, whenever and as whichever message it was sent."""
+    return msgspec.structs.replace(request, seq=None, t_mono=None)

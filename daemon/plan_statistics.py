@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.wire import Done
+from daemon.events import Done
 from retarget.report import RetargetReport
 from retarget.robot import RobotModel
 
@@ -38,11 +38,21 @@ class PlanStatistics:
         self.gate_clipped = 0
         self.underruns = 0
         self.dropped = 0
+        self._frames = 0
+        self._direction_deg_frames = 0.0
+        self._clipped = self._interventions = 0
 
     @property
     def first_motion_ms(self) -> float | None:
         """From the arrival of the text to the first cycle in which a servo's goal changed."""
         return None if self.first_motion_ns is None else (self.first_motion_ns - self._t_received_ns) / 1e6
+
+    def take_report(self, report: RetargetReport, frames: int) -> None:
+        """Add what retargeting changed in a stretch of `frames` bus frames."""
+        self._frames += frames
+        self._direction_deg_frames += report.direction_mean_deg * frames
+        self._clipped += report.clipped_frames
+        self._interventions += report.interventions
 
     def feed(self, records: NDArray[Any], dropped: int = 0) -> None:
         """Take new records, of this plan and of others, in order."""
@@ -72,7 +82,7 @@ class PlanStatistics:
         self.gate_clipped += int(records["clipped"].any(1).sum())
         self.underruns += int((records["underrun"] != 0).sum())
 
-    def done(self, report: RetargetReport, frames: int) -> Done:
+    def done(self, frames: int) -> Done:
         """The event that ends the plan."""
         j = int(self._peak_share.argmax())
         limit = float(self._robot.velocity_limit_rad_s[j])
@@ -87,10 +97,10 @@ class PlanStatistics:
             peak_speed_joint=self._robot.joint_names[j],
             peak_speed_rad_s=round(float(self._peak_share[j]) * limit, 4),
             peak_speed_limit_rad_s=round(limit, 4),
-            clipped_frames=report.clipped_frames,
+            clipped_frames=self._clipped,
             gate_clipped_frames=self.gate_clipped,
             underruns=self.underruns,
-            direction_error_deg=report.direction_mean_deg,
-            interventions=report.interventions,
+            direction_error_deg=round(self._direction_deg_frames / max(1, self._frames), 3),
+            interventions=self._interventions,
             log_dropped=self.dropped,
         )

@@ -1,7 +1,8 @@
 """Motions to setpoints: the plan that is played, what takes over from it, and how much the bus process has in hand.
 
 A new path starts from a frame of the running plan that is not yet pushed, with its position and velocity, so that the
-joints go over without a jump. Without a running plan it starts at rest from the goal the servos hold.
+joints go over without a jump; its first frames of posture grow out of those that would have followed. Without a running
+plan it starts at rest from the goal the servos hold.
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bus_view import BusView
+from daemon.plan import Plan
 from daemon.plan_statistics import PlanStatistics
+from daemon.posture import Posture, standing
 from daemon.shared import N_SETPOINTS, BusLink
-from mmm_core.motion import Motion
 from retarget.paths import JointPath, JointState
 from retarget.pipeline import Retargeter
 from retarget.robot import RobotModel
@@ -25,46 +27,23 @@ FIRST_RETARGET_S = 0.06
 """Assumed time of the first retargeting; later ones are measured."""
 RETARGET_MARGIN = 1.5
 """The hand-over frame is so much later than retargeting is expected to take."""
+FADE_FRAMES = 8
+"""Frames of posture (0.4 s) over which a motion grows out of what came before it."""
 
 
-@dataclass
-class Plan:
-    """A path on its way to the bus.
+@dataclass(frozen=True)
+class HandOver:
+    """Where a new path begins.
 
     Attributes:
-        plan_id: number in the log.
-        command_id: the command that it carries out.
-        path: the joint path.
-        q_rad: (N, J) setpoints at bus rate.
-        epoch: the link's epoch when its text arrived; setpoints of an older epoch are thrown away.
-        statistics: what it did at the bus.
-        end: frames that may be pushed: N, or fewer once another plan takes over.
-        pushed: frames pushed so far.
+        state: of the joints.
+        before: the posture that would have followed.
+        frame: of the running plan, after which the new one comes; None at rest.
     """
 
-    plan_id: int
-    command_id: str
-    path: JointPath
-    q_rad: NDArray[np.float64]
-    epoch: int
-    statistics: PlanStatistics
-    end: int
-    pushed: int = 0
-
-    @property
-    def all_pushed(self) -> bool:
-        """Whether the bus process has the last frame."""
-        return self.pushed >= len(self.q_rad)
-
-    @property
-    def played(self) -> bool:
-        """Whether the bus process has played the last frame."""
-        return self.statistics.last_frame >= len(self.q_rad) - 1
-
-    def state_at(self, frame: int, rate_hz: float) -> JointState:
-        """Position and velocity at a frame."""
-        t_s = min((frame + 1) / rate_hz, self.path.duration_s)
-        return JointState(self.q_rad[frame].copy(), self.path.velocity_at(np.array([t_s]))[0])
+    state: JointState
+    before: Posture
+    frame: int | None
 
 
 class Planner:
@@ -80,35 +59,38 @@ class Planner:
         self._last_goal_tick: NDArray[np.int32] | None = None
         self._plans: list[Plan] = []
         self._last_id = 0
+        self._posture: Posture = standing()
+        self._raw: Posture = standing()
 
     @property
     def epoch(self) -> int:
         """Grows with each stop, e-stop and park; a plan of a text that came before is never played."""
         return self._link.epoch
 
-    def hand_over(self) -> JointState:
-        """The state from which a new path must start; `commit` or `give_up` must follow.
+    def hand_over(self) -> HandOver:
+        """Where a new path must start; `commit` or `give_up` must follow.
 
         The running plan goes on up to the frame at which the new one takes over.
         """
         plan = self.current
         if plan is None or not self.running or self._ran_dry(plan):
             self.drop()
-            return JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
+            at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
+            return HandOver(at_rest, self._posture, None)
         lead = math.ceil(RETARGET_MARGIN * self._retarget_s * self._rate_hz) - self._link.queued_frames
-        lead -= sum(p.end - p.pushed for p in self._plans[:-1])
-        frame = max(0, min(plan.pushed + max(0, lead), len(plan.q_rad)) - 1)
+        lead -= sum(p.limit - p.pushed for p in self._plans[:-1])
+        frame = max(0, min(plan.pushed + max(0, lead), plan.n_frames) - 1)
         plan.end = frame + 1
-        return plan.state_at(frame, self._rate_hz)
+        return HandOver(plan.state_at(frame), plan.posture_from(frame, FADE_FRAMES), frame)
 
-    def retarget(self, motion: Motion, start: JointState) -> JointPath:
-        """The path of a motion from `start`; may run in a worker thread.
+    def retarget(self, posture: Posture, start: JointState, *, settle: bool = True) -> JointPath:
+        """The path of a posture from `start`; may run in a worker thread, one at a time.
 
         Raises:
             MotionError: the motion cannot be retargeted.
         """
         began = time.perf_counter()
-        path = self._retargeter.retarget(motion, start, settle=True)
+        path = self._retargeter.retarget(posture.motion(), start, settle=settle)
         self._retarget_s += 0.3 * (time.perf_counter() - began - self._retarget_s)
         return path
 
@@ -123,12 +105,15 @@ class Planner:
         self._last_id += 1
         return self._last_id
 
-    def commit(self, path: JointPath, plan_id: int, command_id: str, epoch: int, t_received_ns: int) -> Plan:
+    def commit(
+        self, path: JointPath, posture: Posture, plan_id: int, command_id: str, epoch: int, t_received_ns: int,
+        *, complete: bool = True, raw: Posture | None = None,
+    ) -> Plan:  # fmt: skip
         """Make a path the current plan; its frames follow those of the plan before it."""
-        q_rad = path.at_rate(self._rate_hz)
         statistics = PlanStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
-        plan = Plan(plan_id, command_id, path, q_rad, epoch, statistics, len(q_rad))
-        self._plans = [p for p in self._plans if p.pushed < p.end]
+        plan = Plan(plan_id, command_id, epoch, self._rate_hz, statistics)
+        plan.append(path, posture, complete=complete, raw=raw)
+        self._plans = [p for p in self._plans if p.pushed < p.limit]
         self._plans.append(plan)
         self.pump()
         return plan
@@ -136,11 +121,35 @@ class Planner:
     def give_up(self) -> None:
         """Nothing takes over: the running plan plays to its end."""
         if self.current is not None:
-            self.current.end = len(self.current.q_rad)
+            self.current.end = None
 
     def drop(self) -> None:
-        """Forget what was planned; the bus process has been told to stop."""
+        """Forget what was planned; the bus process has been told to stop, or has nothing left to play."""
+        if self.current is not None:
+            self._posture, self._raw = self.posture_now, self.raw_now
         self._plans = []
+
+    @property
+    def posture_now(self) -> Posture:
+        """One frame: how the person is held that the robot shows."""
+        plan = self.current
+        return self._posture if plan is None else plan.posture_from(max(0, plan.statistics.last_frame), 1)
+
+    @property
+    def raw_now(self) -> Posture:
+        """The same without layers."""
+        plan = self.current
+        return self._raw if plan is None else plan.posture_from(max(0, plan.statistics.last_frame), 1, raw=True)
+
+    @property
+    def dry(self) -> bool:
+        """Whether the bus process has none of the plan's frames left though more were to come: it brakes."""
+        return self.current is not None and self._ran_dry(self.current)
+
+    def stand(self) -> None:
+        """The robot has been led to its rest pose: a person who stands."""
+        self.drop()
+        self._posture = self._raw = standing()
 
     @property
     def current(self) -> Plan | None:
@@ -152,14 +161,19 @@ class Planner:
         """Whether the current plan has frames that are not played yet."""
         return self.current is not None and self.current.epoch == self.epoch and not self.current.played
 
+    @property
+    def ahead_s(self) -> float:
+        """Seconds of the current plan that are made and not pushed."""
+        return 0.0 if self.current is None else (self.current.n_frames - self.current.pushed) / self._rate_hz
+
     def pump(self) -> None:
         """Push setpoints until enough are in hand."""
         for plan in self._plans:
             queued = self._link.queued_frames
-            room = min(self._queue_frames - queued, plan.end - plan.pushed, N_SETPOINTS - queued)
+            room = min(self._queue_frames - queued, plan.limit - plan.pushed, N_SETPOINTS - queued)
             if room > 0:
                 self._push(plan, room)
-            if plan.pushed < plan.end:
+            if plan.pushed < plan.limit:
                 return
 
     def read_cycles(self) -> None:
@@ -173,10 +187,10 @@ class Planner:
     def _push(self, plan: Plan, count: int) -> None:
         if plan.epoch != self._link.epoch:
             return
-        frames = plan.q_rad[plan.pushed : plan.pushed + count]
-        last = plan.pushed + len(frames) >= len(plan.q_rad)
+        frames = plan.frames(plan.pushed, plan.pushed + count)
+        last = plan.complete and plan.pushed + len(frames) >= plan.n_frames
         plan.pushed += self._link.push(frames, plan.plan_id, plan.pushed, plan.epoch, last=last)
 
     def _ran_dry(self, plan: Plan) -> bool:
         """Whether the bus process has none of the plan's frames in hand though more were to come."""
-        return 0 < plan.pushed < len(plan.q_rad) and plan.pushed >= plan.end and self._link.queued_frames == 0
+        return 0 < plan.pushed and not plan.all_pushed and plan.pushed >= plan.limit and self._link.queued_frames == 0

@@ -38,6 +38,7 @@ class Trigger(Enum):
     BUS_HOLDING = "bus holding"
     BUS_STOPPED = "bus holding after a stop"
     BUS_PLAYING = "bus playing"
+    BUS_IDLING = "bus playing idle movements"
     BUS_STOPPING = "bus stopping"
     BUS_PARKING = "bus parking"
     BUS_FAULT = "bus fault"
@@ -70,14 +71,15 @@ TRANSITIONS: dict[RobotState, dict[Trigger, RobotState]] = {
     _S.IDLE: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.IDLE, _T.PARK: _S.PARKING, _T.STOP: _S.IDLE,
         _T.RESET: _S.IDLE, _T.BUS_HOLDING: _S.IDLE, _T.BUS_STOPPED: _S.IDLE,
+        _T.BUS_IDLING: _S.IDLE,
     },
     _S.MOVING: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.MOVING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
-        _T.RESET: _S.MOVING, _T.BUS_HOLDING: _S.IDLE,
+        _T.RESET: _S.MOVING, _T.BUS_HOLDING: _S.IDLE, _T.BUS_IDLING: _S.IDLE,
     },
     _S.HOLDING: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.HOLDING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
-        _T.RESET: _S.HOLDING, _T.BUS_HOLDING: _S.HOLDING,
+        _T.RESET: _S.HOLDING, _T.BUS_HOLDING: _S.HOLDING, _T.BUS_IDLING: _S.HOLDING,
     },
     _S.PARKING: {
         **_ALWAYS, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from daemon.approach import Approach
 from daemon.bus.packet import ALERT_BIT
-from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, hardware_error_text
+from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.bus.servo_bus import BusReading, ServoBus
 from daemon.clock import Clock
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
@@ -30,6 +30,8 @@ log = logging.getLogger(__name__)
 HEARTBEAT_LOST_S = 0.5
 PARK_AFTER_S = 5.0
 """A silent front: after the first time decelerate and hold, after the second park and go limp."""
+FAULT_LIMP_S = 10.0
+"""A fault in which torque was kept, and a front so long silent: nobody will come, the servos go limp."""
 WATCHDOG_UNITS = 10
 """Servo bus watchdog, 20 ms each: 200 ms without any packet on the bus and the servos stop by themselves."""
 TORQUE_OFF_REPEATS = 5
@@ -41,7 +43,7 @@ SWING_OUT_S = 1.0
 _STILL_S, _STILL_TICK = 0.02, 2
 """Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
-"""Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all."""
+"""Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
 _ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
 
 
@@ -152,6 +154,7 @@ class Streamer:
         self._link.set_text("")
         try:
             self._bus.verify()
+            self._bus.clear_watchdog()
             reading = self._reading_at_rest()
             if not reading.valid.all():
                 silent = ", ".join(str(i) for i, ok in zip(self._bus.ids, reading.valid, strict=True) if not ok)
@@ -159,15 +162,16 @@ class Streamer:
                 return
             present = reading.position_tick.copy()
             self._refuse_hardware_errors(reading)
-            self._bus.write_all("bus_watchdog", 0)
             for servo_id, tick in zip(self._bus.ids, present, strict=True):
                 self._bus.write_item(servo_id, "goal_position", int(tick))
                 pinned = self._bus.read_item(servo_id, "goal_position")
                 if pinned != tick:
                     raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
-                self._bus.write_item(servo_id, "goal_pwm", PWM_START)
+            self._bus.set_effort(PWM_START / PWM_FULL, confirmed=True)
             self._bus.write_all("torque_enable", 1)
-            self._bus.write_all("bus_watchdog", WATCHDOG_UNITS)
+            without = self._bus.arm_watchdog(WATCHDOG_UNITS)
+            if without:
+                log.warning("no bus watchdog to rely on: servo %s", ", ".join(map(str, without)))
         except DaemonError as error:
             self._cut_torque()
             self._fault(f"cannot arm: {error}")
@@ -205,7 +209,7 @@ class Streamer:
     def _refuse_hardware_errors(self, reading: BusReading) -> None:
         for row in np.flatnonzero(reading.error & ALERT_BIT):
             servo_id = self._bus.ids[int(row)]
-            text = hardware_error_text(self._bus.read_item(servo_id, "hardware_error_status"))
+            text = self._bus.hardware_error_text(servo_id)
             raise ServoFaultError(servo_id, "hardware error status", f"{text}; reboot the servo")
 
     # Goals.
@@ -274,21 +278,22 @@ class Streamer:
     def _ramp_torque(self) -> None:
         if self._pwm is not None and self._cycle % 5 == 0:
             self._pwm = min(PWM_FULL, self._pwm + round((PWM_FULL - PWM_START) * 5 * self._period_s / PWM_RAMP_S))
-            self._bus.send_all("goal_pwm", self._pwm)
+            self._bus.set_effort(self._pwm / PWM_FULL)
             if self._pwm == PWM_FULL:
                 self._pwm = None
 
     # Judgement.
 
     def _watch_heartbeat(self) -> None:
-        if (
-            not self._watch_front
-            or not self._torque
-            or self.state in (BusState.PARKING, BusState.FAULT, BusState.ESTOP)
-        ):
+        if not self._watch_front or not self._torque or self.state in (BusState.PARKING, BusState.ESTOP):
             self._front_lost_s = None
             return
         age_s = self._link.heartbeat_age_s
+        if self.state is BusState.FAULT:
+            if age_s > FAULT_LIMP_S:
+                log.warning("in fault and the front silent for %.1f s: torque off", age_s)
+                self._cut_torque()
+            return
         if age_s < HEARTBEAT_LOST_S:
             self._front_lost_s = None
         elif age_s > PARK_AFTER_S:
@@ -304,13 +309,10 @@ class Streamer:
         pause_s, self._fed_s = self._clock.now_s() - self._fed_s, self._clock.now_s()
         if not self._torque or self._goal_tick is None or pause_s < 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S:
             return
-        for servo_id in self._bus.ids:
-            if self._bus.read_item(servo_id, "bus_watchdog") == WATCHDOG_TRIPPED:
-                self._goal_tick = None
-                self._fault(
-                    f"the bus process was held up for {pause_s:.2f} s: servo {servo_id} stopped by its watchdog"
-                )
-                return
+        tripped = self._bus.tripped_watchdogs()
+        if tripped:
+            self._goal_tick = None
+            self._fault(f"the bus process was held up for {pause_s:.2f} s: servo {tripped[0]} stopped by its watchdog")
 
     def _judge(self, reading: BusReading) -> None:
         """A tripped servo, lost torque or half of the robot silent is a fault."""
@@ -379,8 +381,16 @@ class Streamer:
 Opener = Callable[[], ServoBus]
 
 
-def start(robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock) -> Streamer | None:
-    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link."""
+AFTER_LOSS = "the bus process was lost and is back; servos may still hold: `mmmd reset` makes them limp"
+
+
+def start(
+    robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock, *, after_loss: bool = False
+) -> Streamer | None:
+    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link.
+
+    `after_loss` starts it in a latched fault: what the servos do now nobody knows, and nothing may move by itself.
+    """
     try:
         bus = open_bus()
     except DaemonError as error:
@@ -388,10 +398,17 @@ def start(robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock) -> S
         return None
     try:
         bus.verify()
+        plan = bus.plan()
+        if not plan.require(robot.bus.rate_hz):
+            log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))
         bus.exchange(None)
     except DaemonError as error:
         bus.port.close()
         link.set_ready(Readiness.FAILED, str(error))
         return None
-    link.set_ready(Readiness.READY)
-    return Streamer(robot, bus, link, clock)
+    streamer = Streamer(robot, bus, link, clock)
+    link.drop_queued()
+    if after_loss:
+        streamer.state = BusState.FAULT
+    link.set_ready(Readiness.READY, AFTER_LOSS if after_loss else "")
+    return streamer

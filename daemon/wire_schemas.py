@@ -9,7 +9,8 @@ from typing import Any
 
 import msgspec
 
-from daemon.wire import EVENTS, REQUESTS
+from daemon.events import EVENTS
+from daemon.requests import REQUESTS
 
 
 def schemas() -> dict[str, dict[str, Any]]:

@@ -1,7 +1,7 @@
 """Weights on disk: one safetensors file with its configuration, and the text encoder beside it.
 
-A model file holds tensors under `tokenizer.`, `transformer.`, `length.` and `scope.`, and in its metadata the sizes,
-the names of the reference commands and where the weights come from. Nothing is ever unpickled.
+A model file holds tensors under `tokenizer.`, `transformer.`, `length.`, `scope.` and `text.` (those it has), and in its
+metadata the sizes, the names of the reference commands and where the weights come from. Nothing is ever unpickled.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import torch
 from safetensors import SafetensorError, safe_open
@@ -20,51 +20,73 @@ from safetensors.torch import save_file
 from tokenizers import Tokenizer as WordPieces
 from torch import Tensor, nn
 
+from mmm_core.clip import ClipConfig, ClipText
 from mmm_core.errors import CheckpointError
 from mmm_core.length import LengthPredictor
 from mmm_core.scope import ScopeIndex
 from mmm_core.text import MiniLm, MiniLmConfig
 from mmm_core.tokenizer import PartConfig, Tokenizer, TokenizerConfig
 from mmm_core.transformer import MotionTransformer, TransformerConfig
+from mmm_core.vqvae import VqVae, VqVaeConfig
 
 FORMAT = 1
 WEIGHTS_DIR = Path(__file__).parent / "weights"
 MODEL_FILE = WEIGHTS_DIR / "mmm_compact.safetensors"
 TEXT_FILE = WEIGHTS_DIR / "minilm.safetensors"
+EVALUATOR_FILE = WEIGHTS_DIR / "evaluator.safetensors"
 WORD_PIECES_FILE = WEIGHTS_DIR / "minilm_word_pieces.json"
 
 
 @dataclass
 class Model:
-    """All that generation needs besides the text encoder."""
+    """All that generation needs.
 
-    tokenizer: Tokenizer
+    Attributes:
+        tokenizer: by body parts (ours) or the paper's.
+        transformer: the masked model.
+        length: seconds from text; None in imported models, which take the caller's seconds.
+        scope: what the model can do; None in imported models, which accept everything.
+        provenance: where the weights come from.
+        text: CLIP's text tower, in imported models; None means the packed MiniLM.
+        rest_pose: whose rest directions the rotation channels are relative to. "mmmd": joints come from the rotations;
+            "humanml3d": from the position channels, as the reference recovers them.
+    """
+
+    tokenizer: Tokenizer | VqVae
     transformer: MotionTransformer
-    length: LengthPredictor
-    scope: ScopeIndex
+    length: LengthPredictor | None
+    scope: ScopeIndex | None
     provenance: dict[str, Any]
+    text: ClipText | None = None
+    rest_pose: Literal["mmmd", "humanml3d"] = "mmmd"
+
+    @property
+    def modules(self) -> dict[str, nn.Module]:
+        """What has weights, by the prefix of its tensors."""
+        named = {"tokenizer": self.tokenizer, "transformer": self.transformer, "length": self.length, "text": self.text}
+        return {name: module for name, module in named.items() if module is not None}
 
 
-def save_model(path: Path, model: Model) -> None:
-    """Write `model` in half precision; an older file stays whole if writing fails."""
-    tensors = {
-        f"{part}.{name}": tensor
-        for part, module in (
-            ("tokenizer", model.tokenizer),
-            ("transformer", model.transformer),
-            ("length", model.length),
-        )
-        for name, tensor in module.state_dict().items()
+def save_model(path: Path, model: Model, *, half: bool = True) -> None:
+    """Write `model`, in half precision unless told otherwise; an older file stays whole if writing fails."""
+    tensors = {f"{part}.{name}": t for part, module in model.modules.items() for name, t in module.state_dict().items()}
+    config: dict[str, Any] = {
+        "tokenizer": asdict(model.tokenizer.config),
+        "transformer": asdict(model.transformer.config),
+        "length": model.length is not None,
+        "rest_pose": model.rest_pose,
     }
-    tensors["scope.commands"] = model.scope.vectors
-    metadata = {
-        "format": str(FORMAT),
-        "kind": "mmmd-model",
-        "config": json.dumps({"tokenizer": asdict(model.tokenizer.config), "transformer": asdict(model.transformer.config)}),
-        "scope": json.dumps({"commands": model.scope.commands, "n_known": model.scope.n_known}),
-        "provenance": json.dumps(model.provenance),
-    }  # fmt: skip
-    _save(path, {name: _compact(name, tensor) for name, tensor in tensors.items()}, metadata)
+    metadata = {"format": str(FORMAT), "kind": "mmmd-model", "provenance": json.dumps(model.provenance)}
+    if model.scope is not None:
+        tensors["scope.commands"] = model.scope.vectors
+        metadata["scope"] = json.dumps({"commands": model.scope.commands, "n_known": model.scope.n_known})
+    if model.text is not None:
+        config["text"] = asdict(model.text.config)
+        if model.text.word_pieces is not None:
+            metadata["word_pieces"] = model.text.word_pieces.to_str()
+    metadata["config"] = json.dumps(config)
+    compact = _compact if half else lambda _name, t: t.detach().clone().contiguous()
+    _save(path, {name: compact(name, tensor) for name, tensor in tensors.items()}, metadata)
 
 
 def load_model(path: Path | None = None) -> Model:
@@ -75,16 +97,33 @@ def load_model(path: Path | None = None) -> Model:
     """
     path = path or MODEL_FILE
     tensors, metadata = _load(path, "mmmd-model")
-    config = json.loads(metadata["config"])
-    parts = tuple(PartConfig(p["name"], tuple(p["channels"]), p["width"]) for p in config["tokenizer"].pop("parts"))
-    tokenizer = Tokenizer(TokenizerConfig(**config["tokenizer"], parts=parts))
-    transformer = MotionTransformer(TransformerConfig(**config["transformer"]))
-    length = LengthPredictor()
-    for name, module in (("tokenizer", tokenizer), ("transformer", transformer), ("length", length)):
+    try:
+        config = json.loads(metadata["config"])
+        word_pieces = WordPieces.from_str(metadata["word_pieces"]) if "word_pieces" in metadata else None
+        model = Model(
+            tokenizer=_tokenizer(config["tokenizer"]),
+            transformer=MotionTransformer(TransformerConfig(**config["transformer"])),
+            length=LengthPredictor(config["transformer"]["text_dim"]) if config.get("length", True) else None,
+            scope=None,
+            provenance=json.loads(metadata["provenance"]),
+            text=ClipText(ClipConfig(**config["text"]), word_pieces) if "text" in config else None,
+            rest_pose=config.get("rest_pose", "mmmd"),
+        )
+        if "scope" in metadata:
+            names = json.loads(metadata["scope"])
+            model.scope = ScopeIndex(names["commands"], tensors.pop("scope.commands").float(), names["n_known"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise CheckpointError(path, "config", f"not readable ({error})", "what `save_model` writes") from error
+    for name, module in model.modules.items():
         _fill(module, _with_prefix(tensors, name + "."), path, name + ".")
-    names = json.loads(metadata["scope"])
-    scope = ScopeIndex(names["commands"], tensors["scope.commands"].float(), names["n_known"])
-    return Model(tokenizer, transformer, length, scope, json.loads(metadata["provenance"]))
+    return model
+
+
+def _tokenizer(config: dict[str, Any]) -> Tokenizer | VqVae:
+    if "parts" not in config:
+        return VqVae(VqVaeConfig(**config))
+    parts = tuple(PartConfig(p["name"], tuple(p["channels"]), p["width"]) for p in config.pop("parts"))
+    return Tokenizer(TokenizerConfig(**config, parts=parts))
 
 
 def save_text_encoder(path: Path, encoder: MiniLm, source: str) -> None:
@@ -121,6 +160,31 @@ def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None)
     return encoder
 
 
+def save_tensors(path: Path, tensors: Mapping[str, Tensor], kind: str, metadata: dict[str, Any]) -> None:
+    """Write tensors of another kind (an evaluator, say); an older file stays whole if writing fails."""
+    plain = {name: t.detach().clone().contiguous() for name, t in tensors.items()}
+    _save(path, plain, {"format": str(FORMAT), "kind": kind, "metadata": json.dumps(metadata)})
+
+
+def load_tensors(path: Path, kind: str) -> tuple[dict[str, Tensor], dict[str, Any]]:
+    """Read what `save_tensors` wrote.
+
+    Raises:
+        CheckpointError: missing, not a safetensors file, or of another kind or format.
+    """
+    tensors, metadata = _load(path, kind)
+    return tensors, json.loads(metadata["metadata"])
+
+
+def fill_module(module: nn.Module, tensors: dict[str, Tensor], path: Path) -> None:
+    """Load `tensors` into `module`, for inference.
+
+    Raises:
+        CheckpointError: a tensor is missing, too many or of another shape.
+    """
+    _fill(module, tensors, path, "")
+
+
 def file_hash(path: Path) -> str:
     """SHA-256 of a file, hex."""
     with path.open("rb") as f:
@@ -143,6 +207,9 @@ def _save(path: Path, tensors: dict[str, Tensor], metadata: dict[str, str]) -> N
     try:
         save_file(tensors, str(partial), metadata=metadata)
         os.replace(partial, path)
+    except (SafetensorError, OSError) as error:
+        kept = "the older file is whole" if path.is_file() else "nothing was written"
+        raise CheckpointError(path, "", f"could not be written ({error}); {kept}", "room on the disk") from error
     finally:
         partial.unlink(missing_ok=True)
 

@@ -5,43 +5,26 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import torch
-import torch.nn.functional as F
 from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
-from mmm_core.decode import DecodeSettings, decode
-from mmm_core.errors import GenerationError
-from mmm_core.features import recover
+from mmm_core.errors import CheckpointError, GenerationError
+from mmm_core.features import Root, recover, recover_from_positions
 from mmm_core.motion import FPS, N_FEATURES, N_JOINTS, Motion
+from mmm_core.packed import Precision, fastest_precision, pack
+from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.scope import ScopeVerdict
-from mmm_core.text import MiniLm, TextStates
-from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames
+from mmm_core.text import TextEncoder, TextStates
+from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
 
 SHORTEST_S = 0.8
-
-
-@dataclass(frozen=True)
-class EngineSettings:
-    """How the shipped model is asked.
-
-    Attributes:
-        steps_per_token: decoding steps for each token of the motion, within `fewest_steps` and `most_steps`.
-        temperature: randomness; 0 always takes the likeliest id.
-        guidance: how much the text is stressed; 1 is the plain model, above it a second pass without text is subtracted.
-    """
-
-    fewest_steps: int = 4
-    most_steps: int = 10
-    steps_per_token: float = 0.12
-    temperature: float = 0.5
-    guidance: float = 1.0
-
-    def n_steps(self, n_tokens: int) -> int:
-        """Decoding steps for a motion of `n_tokens`."""
-        return min(self.most_steps, max(self.fewest_steps, round(self.steps_per_token * n_tokens)))
+MOST_CANDIDATES = 64
+CANDIDATE_STRIDE = 7_919_999
+"""Between the seeds of candidates, so that neighbouring seeds do not share any."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +57,7 @@ class Generation:
 class Engine:
     """The motion model, ready to be asked. Not for several threads at once."""
 
-    def __init__(self, model: Model, encoder: MiniLm, checkpoint_hash: str, settings: EngineSettings) -> None:
+    def __init__(self, model: Model, encoder: TextEncoder, checkpoint_hash: str, settings: SamplingSettings) -> None:
         self.model = model
         self.encoder = encoder
         self.checkpoint_hash = checkpoint_hash
@@ -82,11 +65,20 @@ class Engine:
 
     @classmethod
     def load(
-        cls, path: Path | None = None, *, threads: int | None = 1, settings: EngineSettings | None = None
+        cls,
+        path: Path | None = None,
+        *,
+        threads: int | None = 1,
+        settings: SamplingSettings | None = None,
+        precision: Precision | Literal["auto"] = "fp32",
     ) -> Engine:
         """The engine with the checkpoint at `path` (the shipped one when None).
 
-        `threads` sets torch's threads for the whole process; None leaves them as they are.
+        Args:
+            path: checkpoint.
+            threads: torch's threads for the whole process; None leaves them as they are.
+            settings: how the model is asked; None takes what suits the checkpoint.
+            precision: of the matrix products; bf16 is another model's choice of tokens now and then, "auto" times both.
 
         Raises:
             CheckpointError: a file is missing or does not fit.
@@ -94,77 +86,134 @@ class Engine:
         if threads is not None:
             torch.set_num_threads(threads)
         path = path or MODEL_FILE
-        return cls(load_model(path), load_text_encoder(), file_hash(path), settings or EngineSettings())
+        model = load_model(path)
+        plain = SamplingSettings() if model.rest_pose == "mmmd" else OFFICIAL_SAMPLING
+        encoder = model.text or load_text_encoder()
+        if getattr(encoder.config, "embedding", encoder.config.width) != model.transformer.config.text_dim:
+            expected = "one with CLIP's text tower in it: import it with --clip and --vocabulary"
+            raise CheckpointError(path, "text", "no text encoder of its width", expected)
+        chosen = fastest_precision() if precision == "auto" else precision
+        pack(model.transformer, chosen)
+        pack(encoder, chosen)
+        return cls(model, encoder, file_hash(path), settings or plain)
 
-    def generate(self, text: str, *, seed: int = 0, seconds: float | None = None) -> Generation:
+    def generate(self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int = 1) -> Generation:
         """The motion for `text`; the same text, seed and seconds give the same motion.
 
         Args:
             text: a command in English.
             seed: any integer from 0 to 2^31 - 1.
             seconds: length of the motion, at most 9.8; None lets the model choose.
+            candidates: motions made at once, of which the one is taken that the model itself finds likeliest.
 
         Raises:
-            GenerationError: seed or seconds out of range.
+            GenerationError: seed, seconds or candidates out of range, or no seconds for a model without lengths.
         """
-        if not 0 <= seed < 2**31:
-            raise GenerationError(f"seed {seed} was asked for", "0 to 2147483647")
+        check_seed(seed)
+        if not 1 <= candidates <= MOST_CANDIDATES:
+            raise GenerationError(f"{candidates} candidates were asked for", f"1 to {MOST_CANDIDATES}")
         n_frames = None if seconds is None else frames_for_seconds(seconds, FPS)
         clock = _Clock()
-        if not text.strip():
-            return _rejected(text, seed, ScopeVerdict("rejected", 0.0, "", "the text is empty"), clock)
+        states, verdict = self.understand(text)
+        clock.lap("text")
+        if verdict.status == "rejected":
+            return Generation(no_motion(text, seed, verdict), _understood(verdict), verdict.reason, clock.laps_ms)
         with torch.inference_mode():
-            states = self.encoder.encode([text])
-            verdict = self.model.scope.judge(text, states.sentence[0])
-            clock.lap("text")
-            if verdict.status == "rejected":
-                return _rejected(text, seed, verdict, clock)
             if n_frames is None:
                 n_frames = self.predicted_frames(states)
-            ids = self.decode_text(states, tokens_for_frames(n_frames), seed)
+            ids = self._best_ids(states, tokens_for_frames(n_frames), seed, candidates)
             clock.lap("decode")
-            features = self.model.tokenizer.decode(ids)[0, :n_frames].numpy()
-            recovered = recover(features)
+            motion = self.motion(ids, text, seed, verdict, n_frames)
             clock.lap("motion")
-        motion = Motion(
+        return Generation(motion, _understood(verdict), verdict.reason, clock.laps_ms)
+
+    def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
+        """States of a text, and how far it lies from what the model can do."""
+        return self.understand_all([text])[0]
+
+    def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
+        """The same of several texts, read together."""
+        states = self.encoder.encode([text if text.strip() else "." for text in texts])
+        verdicts: list[ScopeVerdict] = []
+        for text, sentence in zip(texts, states.sentence, strict=True):
+            if not text.strip():
+                verdicts.append(ScopeVerdict("rejected", 0.0, "", "the text is empty"))
+            elif self.model.scope is None:
+                verdicts.append(ScopeVerdict("accepted", 1.0, "", ""))
+            else:
+                verdicts.append(self.model.scope.judge(text, sentence))
+        return [(states.row(i), verdict) for i, verdict in enumerate(verdicts)]
+
+    def predicted_frames(self, states: TextStates) -> int:
+        """Number of frames the length predictor gives for the first text, whole tokens.
+
+        Raises:
+            GenerationError: the model has no length predictor.
+        """
+        if self.model.length is None:
+            raise GenerationError("no length was asked for", "seconds: this model was not trained to choose a length")
+        longest_s = MAX_TOKENS * FRAMES_PER_TOKEN / FPS
+        seconds = min(longest_s, max(SHORTEST_S, self.model.length.seconds(states)[0]))
+        return tokens_for_frames(round(seconds * FPS)) * FRAMES_PER_TOKEN
+
+    def motion(self, ids: Tensor, text: str, seed: int, verdict: ScopeVerdict, n_frames: int | None = None) -> Motion:
+        """The motion of a row of ids (L, C), cut to `n_frames`."""
+        with torch.inference_mode():
+            features = self.model.tokenizer.decode(ids[None])[0, :n_frames].numpy()
+        return self.motion_of_features(features, ids, text, seed, verdict)
+
+    def motion_of_features(
+        self, features: np.ndarray, ids: Tensor, text: str, seed: int, verdict: ScopeVerdict, start: Root | None = None
+    ) -> Motion:
+        """The record of decoded features (T, 263) and their ids; `start` is where the first frame stands."""
+        recovered = (recover if self.model.rest_pose == "mmmd" else recover_from_positions)(features, start)
+        return Motion(
             joints_m=recovered.joints_m.astype(np.float32),
             fps=FPS,
             head_quat_wxyz=recovered.head_quat_wxyz.astype(np.float32),
             forearm_twist_rad=recovered.forearm_twist_rad.astype(np.float32),
             features=features,
-            tokens=pack_ids(ids[0].numpy(), self.model.tokenizer.config.n_codes),
+            tokens=pack_ids(ids.numpy(), self.model.tokenizer.config.n_codes),
             text=text,
             seed=seed,
             status=verdict.status,
             scope_score=verdict.score,
         )
-        return Generation(motion, f"{verdict.nearest} ({verdict.score:.2f})", verdict.reason, clock.laps_ms)
 
-    def predicted_frames(self, states: TextStates) -> int:
-        """Number of frames the length predictor gives, whole tokens."""
-        longest_s = MAX_TOKENS * FRAMES_PER_TOKEN / FPS
-        seconds = min(longest_s, max(SHORTEST_S, self.model.length.seconds(states)[0]))
-        return tokens_for_frames(round(seconds * FPS)) * FRAMES_PER_TOKEN
+    def ids_of(self, motion: Motion) -> Tensor:
+        """(L, C) ids of a motion: its own if they fit its frames, else those its features are encoded to.
 
-    def decode_text(self, states: TextStates, n_tokens: int, seed: int) -> Tensor:
-        """(1, n_tokens, C) ids for a text."""
+        Raises:
+            GenerationError: the motion has neither, or another frame rate or other features than the model.
+        """
+        tokenizer = self.model.tokenizer
+        if motion.fps != FPS or motion.features.shape[1] != len(tokenizer.mean):
+            asked = f"a motion of {motion.fps:g} fps and {motion.features.shape[1]} features was given"
+            raise GenerationError(asked, f"{FPS:g} fps and {len(tokenizer.mean)} features, as this model's")
+        if len(motion.tokens) and len(motion.tokens) == tokens_for_frames(len(motion.features)):
+            return torch.from_numpy(unpack_ids(motion.tokens, tokenizer.config.n_codes, tokenizer.n_codebooks))
+        n_frames = len(motion.features) // FRAMES_PER_TOKEN * FRAMES_PER_TOKEN
+        if not n_frames or not motion.features.any():
+            raise GenerationError("a motion without features or tokens was given", "one written by `mmmd generate`")
+        with torch.inference_mode():
+            return tokenizer.encode(torch.from_numpy(motion.features[None, :n_frames]))[0]
+
+    def _best_ids(self, states: TextStates, n_tokens: int, seed: int, candidates: int) -> Tensor:
+        """(n_tokens, C) ids for a text, the likeliest of `candidates`; the first has the seed itself."""
         transformer = self.model.transformer
-        guidance = self.settings.guidance
-        guided = guidance != 1.0
-        context = transformer.read_text(_with_no_text(states, transformer.no_text(1)) if guided else states)
-        C = self.model.tokenizer.n_codebooks
-        end = torch.full((1, 1, C), transformer.ids.end)
+        rows = [empty_row(transformer, n_tokens)] * candidates
+        seeds = [seed + i * CANDIDATE_STRIDE for i in range(candidates)]
+        several = states if candidates == 1 else states.repeated(candidates)
+        filled = fill(transformer, several, rows, seeds, self.settings)
+        if candidates == 1:
+            return filled[0]
+        return filled[int(pseudo_log_likelihood(transformer, several, filled).argmax())]
 
-        def logits_fn(ids: Tensor) -> Tensor:
-            closed = torch.cat([ids, end], 1)
-            if not guided:
-                return transformer(closed, context)[:, :-1]
-            with_text, without = transformer(closed.expand(2, -1, -1), context)[:, :-1].chunk(2)
-            return without + guidance * (with_text - without)
 
-        settings = DecodeSettings(self.settings.n_steps(n_tokens), "cosine", self.settings.temperature)
-        masked = torch.full((1, n_tokens, C), transformer.ids.mask)
-        return decode(masked, logits_fn, transformer.ids.mask, settings, [seed])
+def check_seed(seed: int) -> None:
+    """Raises GenerationError for a seed outside 0 to 2^31 - 1."""
+    if not 0 <= seed < 2**31:
+        raise GenerationError(f"seed {seed} was asked for", "0 to 2147483647")
 
 
 class _Clock:
@@ -180,20 +229,9 @@ class _Clock:
         self._last = now
 
 
-def _with_no_text(states: TextStates, empty: TextStates) -> TextStates:
-    """Two rows: the text, and "no text" padded to its width."""
-    width = states.words.shape[1]
-    words = F.pad(empty.words, (0, 0, 0, width - 1))
-    mask = F.pad(empty.word_mask, (0, width - 1))
-    return TextStates(
-        torch.cat([states.words, words]),
-        torch.cat([states.word_mask, mask]),
-        torch.cat([states.sentence, empty.sentence]),
-    )
-
-
-def _rejected(text: str, seed: int, verdict: ScopeVerdict, clock: _Clock) -> Generation:
-    motion = Motion(
+def no_motion(text: str, seed: int, verdict: ScopeVerdict) -> Motion:
+    """The record of a rejected text: no frames."""
+    return Motion(
         joints_m=np.zeros((0, N_JOINTS, 3), np.float32),
         fps=FPS,
         head_quat_wxyz=np.zeros((0, 4), np.float32),
@@ -205,5 +243,7 @@ def _rejected(text: str, seed: int, verdict: ScopeVerdict, clock: _Clock) -> Gen
         status="rejected",
         scope_score=verdict.score,
     )
-    understood = f"{verdict.nearest} ({verdict.score:.2f})" if verdict.nearest else ""
-    return Generation(motion, understood, verdict.reason, clock.laps_ms)
+
+
+def _understood(verdict: ScopeVerdict) -> str:
+    return f"{verdict.nearest} ({verdict.score:.2f})" if verdict.nearest else ""

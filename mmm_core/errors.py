@@ -4,7 +4,8 @@ MmmError
 ├── MotionFileError(path, key, found, allowed)   a motion or caption file that cannot be used   (ValueError)
 ├── CheckpointError(path, key, found, expected)  weights that do not fit this code              (ValueError)
 ├── GenerationError(asked, allowed)              a request outside what the model can be asked   (ValueError)
-└── TrainingDataError(path, key, found, allowed) a training corpus that cannot be read           (ValueError)
+├── TrainingDataError(path, key, found, allowed) a training corpus that cannot be read           (ValueError)
+└── EvaluationError(found, allowed)              things that cannot be measured together         (ValueError)
 """
 
 from __future__ import annotations
@@ -43,3 +44,11 @@ class GenerationError(MmmError, ValueError):
     def __init__(self, asked: str, allowed: str) -> None:
         self.asked, self.allowed = asked, allowed
         super().__init__(f"{asked}; allowed: {allowed}")
+
+
+class EvaluationError(MmmError, ValueError):
+    """Motions, texts, model and evaluator that cannot be measured together."""
+
+    def __init__(self, found: str, allowed: str) -> None:
+        self.found, self.allowed = found, allowed
+        super().__init__(f"{found}; expected {allowed}")

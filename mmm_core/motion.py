@@ -6,6 +6,7 @@ Frame: metres, y up, z forward, x to the person's left; see `mmm_core.skeleton` 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -103,6 +104,33 @@ class Motion:
             os.replace(partial, path)
         finally:
             partial.unlink(missing_ok=True)
+
+
+def joined(pieces: Sequence[Motion]) -> Motion:
+    """Consecutive pieces of one motion as one; texts are joined by "; ", the seed is the first piece's.
+
+    Raises:
+        ValueError: no pieces, or pieces of different fps.
+    """
+    if not pieces or len({p.fps for p in pieces}) != 1:
+        raise ValueError(
+            f"{len(pieces)} pieces of {sorted({p.fps for p in pieces})} fps; expected one or more, of one fps"
+        )
+    shown = [p for p in pieces if len(p.joints_m)]
+    texts = [p.text for i, p in enumerate(shown) if i == 0 or p.text != shown[i - 1].text]
+    worst = _STATUSES[max((_STATUSES.index(p.status) for p in shown), default=_STATUSES.index("rejected"))]
+    return Motion(
+        joints_m=np.concatenate([p.joints_m for p in pieces]),
+        fps=pieces[0].fps,
+        head_quat_wxyz=np.concatenate([p.head_quat_wxyz for p in pieces]),
+        forearm_twist_rad=np.concatenate([p.forearm_twist_rad for p in pieces]),
+        features=np.concatenate([p.features for p in pieces]),
+        tokens=np.concatenate([p.tokens for p in pieces]),
+        text="; ".join(texts),
+        seed=pieces[0].seed,
+        status=worst,
+        scope_score=min((p.scope_score for p in shown), default=0.0),
+    )
 
 
 def load_npz(path: Path | str) -> Motion:

@@ -10,6 +10,8 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mmm_core import distributed
+
 DECAY = 0.99
 DEAD_BELOW = 0.3
 """A code whose moving average of uses falls below this is moved to a random latent of the batch."""
@@ -36,27 +38,26 @@ class Quantizer(nn.Module):
 
     def encode(self, latents: Tensor) -> Tensor:
         """Nearest code of each latent: (..., D) -> (...) int64."""
-        flat = latents.reshape(-1, latents.shape[-1])
-        distance = (
-            self.codebook.square().sum(1) - 2 * flat @ self.codebook.T
-        )  # |c|^2 - 2 x.c; |x|^2 is the same for all
+        flat = latents.reshape(-1, latents.shape[-1]).float()
+        with torch.autocast(flat.device.type, enabled=False):
+            distance = self.codebook.square().sum(1) - 2 * flat @ self.codebook.T  # |x|^2 is the same for all
         return distance.argmin(1).reshape(latents.shape[:-1])
 
     def forward(self, latents: Tensor) -> tuple[Tensor, Tensor]:
         """Quantised latents with straight-through gradient, and the commitment loss.
 
-        In training mode the codebook is updated from this batch first.
+        In training mode the codebook is updated from this batch first, of all processes.
         """
-        flat = latents.detach().reshape(-1, latents.shape[-1])
+        latents = latents.float()
         if self.training:
-            self._update(flat)
+            self._update(distributed.gathered(latents.detach()).flatten(0, -2))
         quantised = F.embedding(self.encode(latents.detach()), self.codebook)
         commitment = F.mse_loss(latents, quantised)
         return latents + (quantised - latents).detach(), commitment
 
     @torch.no_grad()
     def _update(self, flat: Tensor) -> None:
-        """One EMA step; the first call takes codes from the batch; dead codes are reset."""
+        """One EMA step; the first call takes codes from the batch; dead codes are reset, each time they die."""
         n_codes = len(self.codebook)
         if int(self.n_updates) == 0:
             self.codebook.copy_(_pick(flat, n_codes))
@@ -74,9 +75,69 @@ class Quantizer(nn.Module):
             self.uses[dead] = 1.0
             self.sums[dead] = replacement
         self.codebook.copy_(self.sums / self.uses.clamp_min(1e-6)[:, None])
+        distributed.from_first([self.codebook, self.uses, self.sums])
+
+
+class OfficialRuleQuantizer(Quantizer):
+    """The released training's rule, kept for comparison (an option of `VqVaeConfig`).
+
+    It differs in three ways: codes are chosen before the codebook moves; the first batch's rows become the first codes
+    in their order; and a code that was used once (`ever_used`) is never reset again, however dead it is.
+    """
+
+    ever_used: Tensor
+
+    def __init__(self, n_codes: int, code_dim: int) -> None:
+        super().__init__(n_codes, code_dim)
+        self.register_buffer("ever_used", torch.zeros(n_codes, dtype=torch.bool))
+
+    def forward(self, latents: Tensor) -> tuple[Tensor, Tensor]:
+        """As `Quantizer.forward`; the update comes after the codes are chosen."""
+        latents = latents.float()
+        whole = distributed.gathered(latents.detach()).flatten(0, -2) if self.training else latents
+        if self.training and int(self.n_updates) == 0:
+            self.codebook.copy_(_fill(whole, len(self.codebook)))
+            self.sums.copy_(self.codebook)
+            self.uses.fill_(1.0)
+        quantised = F.embedding(self.encode(latents.detach()), self.codebook)
+        if self.training:
+            self._move(whole, self.encode(whole))
+        return latents + (quantised - latents).detach(), F.mse_loss(latents, quantised)
+
+    @torch.no_grad()
+    def _move(self, flat: Tensor, ids: Tensor) -> None:
+        n_codes = len(self.codebook)
+        self.uses.mul_(DECAY).add_(torch.bincount(ids, minlength=n_codes).to(flat.dtype), alpha=1 - DECAY)
+        self.sums.mul_(DECAY).add_(torch.zeros_like(self.sums).index_add_(0, ids, flat), alpha=1 - DECAY)
+        used = self.uses >= 1
+        candidate = self.sums / self.uses[:, None]
+        self.n_updates += 1
+        if int(self.n_updates) % (RESET_EVERY + 1) == 0:
+            dead = ~(self.ever_used | used)
+            shuffled = flat[torch.randperm(len(flat)).to(flat.device)]
+            candidate = torch.where(dead[:, None], _fill(shuffled, n_codes), candidate)
+        else:
+            self.ever_used |= used
+        self.codebook.copy_(candidate)
+        distributed.from_first([self.codebook, self.uses, self.sums])
+
+
+def perplexity(ids: Tensor, n_codes: int) -> Tensor:
+    """How many codes a batch uses evenly: exp of the entropy of the code frequencies."""
+    share = torch.bincount(ids.reshape(-1), minlength=n_codes).float()
+    share = share / share.sum()
+    return torch.exp(-(share * (share + 1e-7).log()).sum())
+
+
+def _fill(flat: Tensor, n: int) -> Tensor:
+    """The first n rows; tiled with a little noise when there are too few."""
+    if len(flat) >= n:
+        return flat[:n]
+    tiled = flat.repeat(-(-n // len(flat)), 1)[:n]
+    return tiled + 0.01 / flat.shape[1] ** 0.5 * torch.randn(tiled.shape).to(tiled)
 
 
 def _pick(flat: Tensor, n: int) -> Tensor:
     """N random rows of `flat`, repeated with a little noise when there are too few."""
-    index = torch.randint(len(flat), (n,))
-    return flat[index] + 1e-3 * torch.randn(n, flat.shape[1])
+    index = torch.randint(len(flat), (n,)).to(flat.device)
+    return flat[index] + 1e-3 * torch.randn(n, flat.shape[1]).to(flat)

@@ -32,3 +32,29 @@ def masked_counts(n_positions: int, n_steps: int, schedule: Schedule = "cosine")
             break
         counts.append(count)
     return counts
+
+
+def official_counts(
+    n_open: int, n_tokens: int, *, max_steps: int = 10, longest: int = 49, early_exit: bool = False
+) -> list[int]:
+    """Masked positions before each forward pass of the released sampler.
+
+    Differs from `masked_counts`: the number of steps S shrinks with the motion's length, yet `max_steps` passes are
+    made, the surplus re-sampling one position each; with `early_exit`, which the released code takes for a batch of
+    one only, and by a slip of parentheses, it ends after S passes, and after a single one for 8 to 12 tokens.
+
+    Args:
+        n_open: positions to fill; fewer than `n_tokens` in an edit.
+        n_tokens: length of the motion.
+        max_steps: passes for the longest motion.
+        longest: tokens of the longest motion.
+        early_exit: as a batch of one.
+    """
+    steps = round(max_steps * n_tokens / longest) + 1e-8
+    counts: list[int] = []
+    for k in range(max_steps):
+        progress = min(k / steps, 1.0)
+        if early_exit and abs(min(k - 1 / steps, 1.0) - progress) < 1e-6:
+            break
+        counts.append(max(1, math.floor(masked_share(progress) * n_open)))
+    return counts

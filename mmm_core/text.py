@@ -33,6 +33,34 @@ class TextStates:
     word_mask: Tensor
     sentence: Tensor
 
+    def repeated(self, times: int) -> TextStates:
+        """All texts, `times` times after one another."""
+        return TextStates(
+            self.words.repeat(times, 1, 1), self.word_mask.repeat(times, 1), self.sentence.repeat(times, 1)
+        )
+
+    def part(self, rows: slice) -> TextStates:
+        """Some of the texts."""
+        return TextStates(self.words[rows], self.word_mask[rows], self.sentence[rows])
+
+    def to(self, device: torch.device) -> TextStates:
+        """The same on a device."""
+        return TextStates(self.words.to(device), self.word_mask.to(device), self.sentence.to(device))
+
+    @staticmethod
+    def stacked(several: list[TextStates]) -> TextStates:
+        """The texts of `several` after one another, padded to the longest."""
+        width = max(s.words.shape[1] for s in several)
+        return TextStates(
+            torch.cat([F.pad(s.words, (0, 0, 0, width - s.words.shape[1])) for s in several]),
+            torch.cat([F.pad(s.word_mask, (0, width - s.word_mask.shape[1])) for s in several]),
+            torch.cat([s.sentence for s in several]),
+        )
+
+    def row(self, i: int) -> TextStates:
+        """Text `i` alone."""
+        return TextStates(self.words[i : i + 1], self.word_mask[i : i + 1], self.sentence[i : i + 1])
+
 
 class TextEncoder(Protocol):
     """Anything that turns texts into states."""

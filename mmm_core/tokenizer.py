@@ -9,15 +9,18 @@ and a linear layer, which a CPU runs faster than conv1d.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mmm_core.features import joints_of
 from mmm_core.motion import N_FEATURES
 from mmm_core.quantizer import Quantizer
 from mmm_core.tokens import FRAMES_PER_TOKEN
+
+TIME_DILATIONS = (3, 1)
+"""Dilations of each pair of residual blocks."""
 
 
 def rotation_channels(joints: tuple[int, ...]) -> tuple[int, ...]:
@@ -80,7 +83,7 @@ class PartEncoder(nn.Module):
     def __init__(self, part: PartConfig, code_dim: int) -> None:
         super().__init__()
         self.stem = nn.Linear(FRAMES_PER_TOKEN * len(part.channels), part.width)
-        self.blocks = nn.Sequential(TimeBlock(part.width, 3), TimeBlock(part.width, 1))
+        self.blocks = nn.Sequential(*(TimeBlock(part.width, d) for d in TIME_DILATIONS))
         self.out = nn.Linear(part.width, code_dim)
 
     def forward(self, x: Tensor) -> Tensor:
@@ -95,9 +98,9 @@ class Decoder(nn.Module):
         super().__init__()
         fine = width * 3 // 4
         self.stem = nn.Linear(latent_dim, width)
-        self.coarse = nn.Sequential(TimeBlock(width, 3), TimeBlock(width, 1))
+        self.coarse = nn.Sequential(*(TimeBlock(width, d) for d in TIME_DILATIONS))
         self.up = nn.Linear(width, 2 * fine)
-        self.fine = nn.Sequential(TimeBlock(fine, 3), TimeBlock(fine, 1))
+        self.fine = nn.Sequential(*(TimeBlock(fine, d) for d in TIME_DILATIONS))
         self.out = nn.Linear(fine, 2 * N_FEATURES)
 
     def forward(self, latents: Tensor) -> Tensor:
@@ -127,6 +130,15 @@ class Tokenizer(nn.Module):
         """Ids per position."""
         return len(self.config.parts)
 
+    @property
+    def part_names(self) -> tuple[str, ...]:
+        """Body part of each codebook."""
+        return tuple(p.name for p in self.config.parts)
+
+    def normalise(self, features: Tensor) -> Tensor:
+        """Features in their own units -> what the encoders see."""
+        return (features - self.mean) / self.std
+
     def _latents(self, normalised: Tensor) -> list[Tensor]:
         return [
             encoder(normalised[..., list(part.channels)])
@@ -135,8 +147,8 @@ class Tokenizer(nn.Module):
 
     def encode(self, features: Tensor) -> Tensor:
         """(B, T, 263) features, T a multiple of four -> (B, T/4, C) ids."""
-        latents = self._latents((features - self.mean) / self.std)
-        return torch.stack([q.encode(z) for q, z in zip(self._books(), latents, strict=True)], -1)
+        latents = self._latents(self.normalise(features))
+        return torch.stack([q.encode(z) for q, z in zip(self.books, latents, strict=True)], -1)
 
     def decode(self, ids: Tensor) -> Tensor:
         """(B, L, C) ids -> (B, 4 L, 263) features."""
@@ -144,25 +156,27 @@ class Tokenizer(nn.Module):
 
     def embed(self, ids: Tensor) -> Tensor:
         """(B, L, C) ids -> (B, L, C * D) code vectors, side by side."""
-        return torch.cat([F.embedding(ids[..., c], q.codebook) for c, q in enumerate(self._books())], -1)
+        return torch.cat([F.embedding(ids[..., c], q.codebook) for c, q in enumerate(self.books)], -1)
 
     def forward(self, normalised: Tensor) -> tuple[Tensor, Tensor]:
         """Training pass on normalised features: (reconstruction, commitment loss)."""
         quantised: list[Tensor] = []
         commitment = normalised.new_zeros(())
-        for quantizer, z in zip(self._books(), self._latents(normalised), strict=True):
+        for quantizer, z in zip(self.books, self._latents(normalised), strict=True):
             straight_through, loss = quantizer(z)
             quantised.append(straight_through)
             commitment = commitment + loss
         return self.decoder(torch.cat(quantised, -1)), commitment
 
-    def _books(self) -> list[Quantizer]:
+    def halo_tokens(self) -> int:
+        """Tokens on each side that can change a decoded frame: 4 at 5 a second, and 4 at 10, which are 2."""
+        reach = sum(TIME_DILATIONS)
+        return reach + -(-reach // 2)
+
+    @property
+    def books(self) -> list[Quantizer]:
+        """The quantisers, in the order of the parts."""
         return [q for q in self.quantizers if isinstance(q, Quantizer)]
-
-
-def halo_tokens() -> int:
-    """Tokens on each side that can change a decoded frame: 4 from the coarse blocks, 2 from the fine ones (4 at 10 Hz)."""
-    return sum((3, 1)) + -(-sum((3, 1)) // 2)
 
 
 def feature_std(features: Tensor) -> Tensor:
@@ -172,11 +186,13 @@ def feature_std(features: Tensor) -> Tensor:
     blown up: groups have floors.
     """
     std = features.std(0)
-    borders = [0, 1, 3, 4, *range(67, 194, 6), 259, 263]
-    groups = [*pairwise(borders[:3]), (3, 4), (4, 67), *pairwise(borders[4:-2]), (193, 259), (259, 263)]
-    floors = {(0, 1): 2e-3, (1, 3): 3e-3, (3, 4): 2e-2, (4, 67): 5e-2, (193, 259): 8e-3, (259, 263): 0.3}
+    n_joints = joints_of(len(std))
+    rotations = 4 + 3 * (n_joints - 1)
+    velocities = rotations + 6 * (n_joints - 1)
+    contacts = velocities + 3 * n_joints
+    groups = [(0, 1, 2e-3), (1, 3, 3e-3), (3, 4, 2e-2), (4, rotations, 5e-2), (velocities, contacts, 8e-3),
+              (contacts, contacts + 4, 0.3), *((j, j + 6, 0.06) for j in range(rotations, velocities, 6))]  # fmt: skip
     out = std.clone()
-    for lo, hi in groups:
-        floor = floors.get((lo, hi), 0.06)
+    for lo, hi, floor in groups:
         out[lo:hi] = max(float(std[lo:hi].square().mean().sqrt()), floor)
     return out

@@ -22,7 +22,11 @@ MASKED_KEY = -1e9
 
 @dataclass(frozen=True)
 class TransformerConfig:
-    """Sizes; `n_codebooks` ids stand at each position and are embedded by the tokenizer's frozen code vectors."""
+    """Sizes; `n_codebooks` ids stand at each position and are embedded by the tokenizer's frozen code vectors.
+
+    The first `n_predicted` of them are predicted (None: all), the others only seen: the paper's upper-body editing
+    predicts the upper half given the lower (MMM eq. 3).
+    """
 
     n_codes: int = 512
     n_codebooks: int = 3
@@ -33,6 +37,18 @@ class TransformerConfig:
     n_self: int = 6
     text_dim: int = 384
     dropout: float = 0.1
+    n_predicted: int | None = None
+
+    @property
+    def n_out(self) -> int:
+        """Codebooks that the head predicts."""
+        return self.n_codebooks if self.n_predicted is None else self.n_predicted
+
+
+OFFICIAL = TransformerConfig(
+    n_codes=8192, n_codebooks=1, code_dim=32, width=1024, n_heads=16, n_cross=2, n_self=16, text_dim=512
+)
+"""Sizes of the released model: nine layers counted as two cross, seven base and nine head blocks, 236 M parameters."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +58,11 @@ class TextContext:
     sentence: Tensor  # (B, W)
     keys_values: list[tuple[Tensor, Tensor]]  # (B, heads, words, head_dim) each
     word_bias: Tensor  # (B, 1, 1, words)
+
+    def row(self, i: int) -> TextContext:
+        """The context of text `i` alone."""
+        keys_values = [(k[i : i + 1], v[i : i + 1]) for k, v in self.keys_values]
+        return TextContext(self.sentence[i : i + 1], keys_values, self.word_bias[i : i + 1])
 
 
 def sinusoids(length: int, width: int) -> Tensor:
@@ -109,10 +130,13 @@ class SelfBlock(nn.Module):
         self.attention = Attention(config)
         self.mlp = Mlp(config)
 
-    def forward(self, x: Tensor, bias: Tensor) -> Tensor:
-        """(B, L, W) -> (B, L, W)."""
+    def forward(self, x: Tensor, bias: Tensor, rows: Tensor | None = None) -> Tensor:
+        """(B, L, W) -> (B, L, W), or at `rows` (L,) bool only: (B, n, W). Keys and values come from all rows."""
         normed = self.norm_x(x)
-        x = x + self.attention(normed, self.attention.keys_values(normed), bias)
+        keys_values = self.attention.keys_values(normed)
+        if rows is not None:
+            x, normed = x[:, rows], normed[:, rows]
+        x = x + self.attention(normed, keys_values, bias)
         return x + self.mlp(self.norm_mlp(x))
 
 
@@ -140,7 +164,7 @@ class MotionTransformer(nn.Module):
         self.cross = nn.ModuleList(CrossBlock(config) for _ in range(config.n_cross))
         self.blocks = nn.ModuleList(SelfBlock(config) for _ in range(config.n_self))
         self.norm_out = nn.LayerNorm(config.width)
-        self.head = nn.Linear(config.width, config.n_codebooks * config.n_codes, bias=False)
+        self.head = nn.Linear(config.width, config.n_out * config.n_codes, bias=False)
         self.apply(_initialise)
 
     def set_codebooks(self, codebooks: list[Tensor]) -> None:
@@ -158,31 +182,43 @@ class MotionTransformer(nn.Module):
     def no_text(self, batch: int) -> TextStates:
         """The states that stand for "no text" (text dropout, guidance)."""
         empty = self.no_words.expand(batch, 1, -1)
-        return TextStates(empty, torch.ones(batch, 1, dtype=torch.bool), self.no_words.expand(batch, -1))
+        return TextStates(
+            empty, torch.ones(batch, 1, dtype=torch.bool, device=empty.device), self.no_words.expand(batch, -1)
+        )
 
-    def forward(self, ids: Tensor, context: TextContext) -> Tensor:
-        """Logits (B, L, C, K) of `ids` (B, L, C).
+    def forward(self, ids: Tensor, context: TextContext, wanted: Tensor | None = None) -> Tensor:
+        """Logits of `ids` (B, L, C): (B, L, C, K), or (N, C, K) at the N positions of `wanted` (B, L), row by row.
 
-        An [END] closes each motion and [PAD] fills the rest of the row; both are in `ids`.
+        An [END] closes each motion and [PAD] fills the rest of the row; both are in `ids`. With `wanted`, the head and,
+        for a batch of one, the last block are computed at those positions alone.
         """
-        B, L, C = ids.shape
+        B, L, _ = ids.shape
         is_pad = ids[..., 0] == self.ids.pad  # (B, L)
-        x = self.embed(self._vectors(ids)) + self.positions[:L]
+        x = self.embed(self._vectors(ids))
+        if len(self.cross):
+            x = x + self.positions[:L]
         for block, keys_values in zip(self.cross, context.keys_values, strict=True):
             x = block(x, keys_values, context.word_bias)
         x = torch.cat([context.sentence[:, None], x], 1) + self.positions[: L + 1]
-        bias = F.pad(torch.zeros(B, L, dtype=x.dtype).masked_fill(is_pad, MASKED_KEY), (1, 0))[:, None, None, :]
-        for block in self.blocks:
+        bias = F.pad(x.new_zeros(B, L).masked_fill(is_pad, MASKED_KEY), (1, 0))[:, None, None, :]
+        *blocks, last = self.blocks
+        for block in blocks:
             x = block(x, bias)
-        return self.head(self.norm_out(x[:, 1:])).reshape(B, L, C, -1)
+        if wanted is None:
+            x = last(x, bias)[:, 1:]
+            return self.head(self.norm_out(x)).reshape(B, L, self.config.n_out, -1)
+        if B == 1:
+            x = last(x, bias, F.pad(wanted[0], (1, 0)))[0]
+        else:
+            x = last(x, bias)[:, 1:][wanted]
+        return self.head(self.norm_out(x)).reshape(len(x), self.config.n_out, -1)
 
     def _vectors(self, ids: Tensor) -> Tensor:
-        """(B, L, C) ids, specials included -> (B, L, C * D) vectors."""
-        K = self.config.n_codes
-        codes = ids.clamp_max(K - 1)
-        vectors = torch.cat([F.embedding(codes[..., c], self.codebooks[c]) for c in range(ids.shape[-1])], -1)
-        special = F.embedding((ids[..., 0] - K).clamp_min(0), self.specials)
-        return torch.where((ids[..., :1] >= K), special, vectors)
+        """(B, L, C) ids, specials included -> (B, L, C * D) vectors; each codebook has its part of the specials."""
+        C, _, D = self.codebooks.shape
+        specials = self.specials.reshape(3, C, D)
+        tables = torch.cat([self.codebooks, specials.transpose(0, 1)], 1)  # (C, K + 3, D)
+        return torch.cat([F.embedding(ids[..., c], tables[c]) for c in range(C)], -1)
 
 
 def _initialise(module: nn.Module) -> None:

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.kinematics import cross, description_spec, mujoco
+from retarget.description import description_spec, mujoco
+from retarget.kinematics import cross
 from retarget.robot import RobotModel
 
 Array = NDArray[np.float64]

@@ -7,17 +7,16 @@ the nearest first.
 
 from __future__ import annotations
 
-import importlib
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from retarget.description import load_description, mujoco
 from retarget.errors import RobotFileError
 from retarget.robot import RobotModel
 
-mujoco: Any = importlib.import_module("mujoco")  # it has no types: declared here, once, instead of at each use
 Array = NDArray[np.float64]
 
 
@@ -110,40 +109,6 @@ class Kinematics:
     def places(self, q_rad: Array) -> Array:
         """(T, K, 3) places of all key points."""
         return np.stack([self.place(point, q_rad) for point in self.key_points], 1)
-
-
-def description_spec(robot: RobotModel) -> Any:
-    """The robot's description as an editable MuJoCo specification in which every body has a name.
-
-    Raises:
-        RobotFileError: MuJoCo cannot read it.
-    """
-    try:
-        spec = mujoco.MjSpec.from_file(str(robot.description_path))
-    except ValueError as error:
-        message = str(error).splitlines()[0]
-        raise RobotFileError(
-            robot.description_path, "description", message, "MJCF or URDF that MuJoCo reads"
-        ) from error
-    for i, body in enumerate(spec.bodies):
-        body.name = body.name or f"body_{i}"
-    return spec
-
-
-def load_description(robot: RobotModel) -> Any:
-    """The robot's description as a MuJoCo model.
-
-    Raises:
-        RobotFileError: MuJoCo cannot read it.
-    """
-    spec = description_spec(robot)
-    try:
-        return spec.compile()
-    except ValueError as error:
-        message = str(error).splitlines()[0]
-        raise RobotFileError(
-            robot.description_path, "description", message, "MJCF or URDF that MuJoCo reads"
-        ) from error
 
 
 def _joint_id(robot: RobotModel, model: Any, name: str) -> int:

@@ -39,9 +39,8 @@ class JointLimits:
     @classmethod
     def of(cls, robot: RobotModel) -> JointLimits:
         """The limits of a robot."""
-        ticks = JointServoMap(robot)
-        ends = np.stack([ticks.tick_to_rad(ticks.position_min_tick), ticks.tick_to_rad(ticks.position_max_tick)])
-        return cls(ends.min(0), ends.max(0), robot.velocity_limit_rad_s, robot.acceleration_limit_rad_s2)
+        low, high = JointServoMap(robot).position_range_rad
+        return cls(low, high, robot.velocity_limit_rad_s, robot.acceleration_limit_rad_s2)
 
 
 def stopping_velocity_rad_s(gap_rad: Array, acceleration_rad_s2: Array, period_s: float) -> Array:

@@ -1,4 +1,4 @@
-"""Facts of servo models: resolution, speed, model number."""
+"""Facts of servo models: resolution, range, speed, model number."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from functools import cache
 from pathlib import Path
 
 _FILE = Path(__file__).parent / "servos.toml"
+EXTENDED_TURNS = 256
+"""In extended position mode a goal may be up to 256 turns from zero (e-manual, Operating Mode 4)."""
 
 
 @dataclass(frozen=True)
@@ -18,17 +20,31 @@ class ServoModel:
         name: the maker's name, e.g. "XM430-W350".
         model_number: what the servo answers to a ping.
         protocol: 1.0 or 2.0.
-        ticks_per_turn: position resolution.
+        ticks_per_turn: position resolution, of a full turn even where the servo cannot make one.
+        zero_tick: middle of its range.
+        min_tick, max_tick: goals it takes in position mode.
         no_load_speed_rad_s: upper bound of its speed, at the rated voltage.
         has_current: whether it measures current (else load).
+        has_extended: whether it has the extended position mode, of many turns.
     """
 
     name: str
     model_number: int
     protocol: float
-    ticks_per_turn: int
+    ticks_per_turn: float
+    zero_tick: int
+    min_tick: int
+    max_tick: int
     no_load_speed_rad_s: float
     has_current: bool
+    has_extended: bool
+
+    def tick_range(self, extended: bool) -> tuple[int, int]:
+        """First and last goal the servo takes, in position mode or in extended position mode."""
+        if not extended:
+            return self.min_tick, self.max_tick
+        reach = round(EXTENDED_TURNS * self.ticks_per_turn) - 1
+        return -reach, reach
 
 
 @cache

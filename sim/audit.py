@@ -1,13 +1,12 @@
 """The audit: every goal the servos receive, checked against the robot's limits, apart from the daemon's own gate.
 
-Written from the robot file alone, in ticks. A goal is one step of one bus period; rounding to ticks adds at most one
+Written from the robot file alone, in ticks of each servo. A goal is one step of one bus period; rounding to ticks adds at most one
 tick to a step and two to the difference of two steps. Between two goals the bus may pause (a skipped cycle), but may
 not hurry: goals that come faster than the robot's rate, more than a few in a row, are a violation of their own.
 """
 
 from __future__ import annotations
 
-import math
 from array import array
 from collections import Counter
 from dataclasses import dataclass, field
@@ -17,6 +16,7 @@ import numpy as np
 
 from retarget.collision import SelfContact
 from retarget.robot import RobotModel
+from retarget.ticks import JointServoMap
 
 PIN_TOLERANCE_TICK = 12
 """About one degree: torque may come on over a goal no further from where the servo stands."""
@@ -68,21 +68,17 @@ class Audit:
         period = self.robot.bus.period_s
         self._tracks: dict[int, _Track] = {}
         self._pose: dict[int, int] = {}
-        self._poses = array("f")  # poses to be checked, one after another
+        self._poses = array("i")  # ticks of poses to be checked, one after another
         self._poses_checked, self._contacts = 0, 0
         self._contact: SelfContact | None = None
         self._sets = 0
-        for joint, servo in zip(self.robot.joints, self.robot.servos, strict=True):
-            scale = servo.gear_ratio * servo.model.ticks_per_turn / (2 * math.pi)
-            ends = [
-                servo.zero_tick + servo.direction * scale * q for q in (joint.position_min_rad, joint.position_max_rad)
-            ]
-            self._tracks[servo.servo_id] = _Track(
-                math.floor(min(ends)),
-                math.ceil(max(ends)),
-                joint.velocity_limit_rad_s * scale * period + 1.0,
-                joint.acceleration_limit_rad_s2 * scale * period**2 + 2.0,
-            )
+        ticks = self._ticks = JointServoMap(self.robot)
+        bounds = zip(
+            ticks.position_min_tick.tolist(), ticks.position_max_tick.tolist(), ticks.velocity_limit_tick_s.tolist(),
+            ticks.acceleration_limit_tick_s2.tolist(), strict=True,
+        )  # fmt: skip
+        for servo_id, (low, high, velocity, acceleration) in zip(self.robot.servo_ids, bounds, strict=True):
+            self._tracks[servo_id] = _Track(low, high, velocity * period + 1.0, acceleration * period**2 + 2.0)
 
     def torque(self, t_s: float, servo_id: int, on: bool, goal_tick: int, present_tick: int) -> None:
         """Torque was switched."""
@@ -152,10 +148,11 @@ class Audit:
             return
         if self._contact is None:
             self._contact = SelfContact(self.robot, margin_m=0.0)
-        poses = np.array(self._poses, np.float64).reshape(-1, len(self._tracks))
+        ticks = np.array(self._poses, np.int32).reshape(-1, len(self._tracks))
+        poses = self._ticks.tick_to_rad(ticks)
         self._contacts += int(self._contact.frames(poses).sum())
         self._poses_checked += len(poses)
-        self._poses = array("f")
+        self._poses = array("i")
 
     def _count_in_fault(self, track: _Track, t_s: float, faulted: bool) -> None:
         if not faulted:
@@ -184,12 +181,7 @@ class Audit:
             return
         self._sets += 1
         if self._sets % _CONTACT_EVERY == 0 and len(self._poses) < _MAX_POSES * len(self._tracks):
-            self._poses.extend(self._angle_rad(i) for i in range(len(self.robot.servos)))
-
-    def _angle_rad(self, i: int) -> float:
-        servo = self.robot.servos[i]
-        turn = servo.direction * servo.gear_ratio * servo.model.ticks_per_turn
-        return (self._pose[servo.servo_id] - servo.zero_tick) * 2 * math.pi / turn
+            self._poses.extend(self._pose[servo_id] for servo_id in self.robot.servo_ids)
 
     def _violate(self, t_s: float, servo_id: int, kind: str, text: str) -> None:
         self.violations[kind] += 1

@@ -79,6 +79,10 @@ class SimBus:
         """What goes wrong."""
         return self.world.faults
 
+    @faults.setter
+    def faults(self, schedule: FaultSchedule) -> None:
+        self.world.faults = schedule
+
     @property
     def audit(self) -> Audit:
         """What was received."""

@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.kinematics import description_spec, mujoco
+from retarget.description import description_spec, mujoco
 from retarget.robot import RobotModel
+from retarget.ticks import JointServoMap
 from sim.errors import SimSettingError
 from sim.motors import Motor
 
@@ -24,24 +25,29 @@ Array = NDArray[np.float64]
 STOP_MARGIN_RAD = 0.1
 """Stops stand this far outside the position limits where the description says nothing."""
 _NEAR_REST_M = 0.004
+_SMALL_RAD, _HELD_NM = 1e-4, 1e3
 
 
 class MujocoBody:
-    """A `Body` with one joint behind each servo.
+    """A `Body` in which servos turn joints: one each, or several through gears, differentials and linkages.
 
     Args:
-        robot: whose description is loaded; joint j is turned by servo j.
-        motors: of the servos; more than the robot has joints is refused.
+        robot: whose description is loaded.
+        motors: of the servos; more than the robot has is refused.
         position_rad: (S,) start angles of the shafts.
     """
 
     def __init__(self, robot: RobotModel, motors: Sequence[Motor], position_rad: Array) -> None:
-        if len(motors) != robot.n_joints:
-            raise SimSettingError("servos without a joint", str(len(motors) - robot.n_joints), "0 with the MuJoCo body")
-        ratio = [s.direction * s.gear_ratio for s in robot.servos]
-        self._ratio: Array = np.array(ratio)
-        self._zero_rad: Array = np.array([s.zero_tick * 2 * np.pi / s.model.ticks_per_turn for s in robot.servos])
-        self._model = _compile(robot, motors, self._ratio)
+        if len(motors) != len(robot.servos):
+            raise SimSettingError(
+                "servos without a joint", str(len(motors) - len(robot.servos)), "0 with the MuJoCo body"
+            )
+        self._map = JointServoMap(robot)
+        self._rad_per_tick: Array = np.array([2 * np.pi / s.model.ticks_per_turn for s in robot.servos])
+        self._bent = any(s.linkage is not None for s in robot.servos)
+        q = self._map.tick_to_rad(np.rint(position_rad / self._rad_per_tick).astype(np.int64))
+        self._gears = self._gears_at(q)
+        self._model = _compile(robot, motors, self._gears)
         self._data: Any = mujoco.MjData(self._model)
         joints = [self._model.joint(name) for name in robot.joint_names]
         self._q = np.array([j.qposadr[0] for j in joints])
@@ -50,10 +56,16 @@ class MujocoBody:
         self._blocked = np.zeros(len(motors), bool)
         self._push_nm: Array = np.zeros(len(motors))
         self.self_contacts = 0
-        self._data.qpos[self._q] = (position_rad - self._zero_rad) / self._ratio
+        self._data.qpos[self._q] = q
         mujoco.mj_forward(self._model, self._data)
         self.position_rad: Array = np.array(position_rad, np.float64)
         self.velocity_rad_s: Array = np.zeros(len(motors))
+
+    def _gears_at(self, q: Array) -> Array:
+        """(S, J) how far each shaft turns with each joint."""
+        ends = q + np.concatenate([np.eye(len(q)), -np.eye(len(q))]) * _SMALL_RAD
+        shafts = self._map.to_ticks(ends) * self._rad_per_tick
+        return (shafts[: len(q)] - shafts[len(q) :]).T / (2 * _SMALL_RAD)
 
     @property
     def at_rest(self) -> bool:
@@ -69,49 +81,57 @@ class MujocoBody:
         """One step of MuJoCo under the servos' torques."""
         if (blocked != self._blocked).any():
             self._blocked = blocked.copy()
-            self._model.dof_frictionloss[self._v] = np.where(blocked, 1e3, self._free_friction)
+            held = (self._gears[blocked] != 0).any(0)
+            self._model.dof_frictionloss[self._v] = np.where(held, _HELD_NM, self._free_friction)
+        if self._bent:
+            self._gears = self._gears_at(self._data.qpos[self._q])
         self._model.opt.timestep = step_s
-        self._data.qfrc_applied[self._v] = (torque_nm + self._push_nm) * self._ratio
+        self._data.qfrc_applied[self._v] = (torque_nm + self._push_nm) @ self._gears
         mujoco.mj_step(self._model, self._data)
-        self.position_rad = self._data.qpos[self._q] * self._ratio + self._zero_rad
-        self.velocity_rad_s = self._data.qvel[self._v] * self._ratio
+        self.position_rad = self._map.to_ticks(self._data.qpos[self._q]) * self._rad_per_tick
+        self.velocity_rad_s = self._gears @ self._data.qvel[self._v]
         if self._data.ncon:
             self.self_contacts += bool((self._data.contact.dist < 0).any())
 
     def place(self, shaft: int, position_rad: float) -> None:
-        """Put one shaft somewhere, at rest."""
-        self._data.qpos[self._q[shaft]] = (position_rad - self._zero_rad[shaft]) / self._ratio[shaft]
-        self._data.qvel[self._v[shaft]] = 0.0
+        """Put one shaft somewhere, at rest; the joints it moves go with it."""
+        turn = np.zeros(len(self.position_rad))
+        turn[shaft] = position_rad - self.position_rad[shaft]
+        self._data.qpos[self._q] += np.linalg.pinv(self._gears) @ turn
+        self._data.qvel[self._v[self._gears[shaft] != 0]] = 0.0
         mujoco.mj_forward(self._model, self._data)
-        self.position_rad[shaft], self.velocity_rad_s[shaft] = position_rad, 0.0
+        self.position_rad = self._map.to_ticks(self._data.qpos[self._q]) * self._rad_per_tick
+        self.velocity_rad_s[shaft] = 0.0
 
     def push(self, joint: int | None, amount: float) -> None:
         """An external torque in N m, felt at the shaft."""
         self._push_nm[slice(None) if joint is None else joint] = amount
 
 
-def _compile(robot: RobotModel, motors: Sequence[Motor], ratio: Array) -> Any:
-    """The description with the servos' own dynamics at its joints."""
+def _compile(robot: RobotModel, motors: Sequence[Motor], gears: Array) -> Any:
+    """The description with the servos' own dynamics at its joints; between joints of a differential none are coupled."""
     spec = _with_stops(robot)
     for a, b in sorted(_never_touching(robot, _with_stops(robot).compile())):
         spec.add_exclude(bodyname1=a, bodyname2=b)
     model = spec.compile()
     dof = np.array([model.joint(name).dofadr[0] for name in robot.joint_names])
-    model.dof_damping[dof] = [m.damping_nm_s_per_rad for m in motors] * ratio**2
-    model.dof_armature[dof] = [m.inertia_kg_m2 for m in motors] * ratio**2
-    model.dof_frictionloss[dof] = [m.friction_nm for m in motors] * np.abs(ratio)
+    model.dof_damping[dof] = np.array([m.damping_nm_s_per_rad for m in motors]) @ gears**2
+    model.dof_armature[dof] = np.array([m.inertia_kg_m2 for m in motors]) @ gears**2
+    model.dof_frictionloss[:] = _HELD_NM  # joints without a servo of the robot file stay as they are
+    model.dof_frictionloss[dof] = np.array([m.friction_nm for m in motors]) @ np.abs(gears)
     mujoco.mj_setConst(model, mujoco.MjData(model))
     return model
 
 
 def _with_stops(robot: RobotModel) -> Any:
-    """The description, every joint of the robot with a stop; a thousandth of friction so that MuJoCo keeps a row for it."""
+    """The description with a stop for every joint of the robot; MuJoCo keeps friction only where some is given."""
     spec = description_spec(robot)
     for joint in robot.joints:
         described = spec.joint(joint.name)
         if not described.range[0] < described.range[1]:
             described.range = [joint.position_min_rad - STOP_MARGIN_RAD, joint.position_max_rad + STOP_MARGIN_RAD]
         described.limited = True
+    for described in spec.joints:
         described.frictionloss = 1e-3
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     return spec

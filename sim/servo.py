@@ -84,7 +84,7 @@ class SimServo:
         self._set("firmware_version", self.firmware)
         self._set("id", spec.servo_id)
         self._set_up()
-        self._power_on()
+        self._power_on(was_on=True)
 
     def _speed_unit_rad_s(self) -> float:
         return VELOCITY_UNIT_RAD_S
@@ -132,6 +132,7 @@ class SimServo:
     def _set_up(self) -> None:
         """How somebody who knows sets a servo up for streaming; `restore_factory` undoes it."""
         self._set("return_delay_time", 0)
+        self._set("operating_mode", Mode.EXTENDED_POSITION if self.spec.extended else Mode.POSITION)
 
     def set_baud(self, baud: int) -> None:
         """Set the baud as a tool would have.
@@ -163,7 +164,8 @@ class SimServo:
         self.silent_until_s = self._now_s + BOOT_S
         self._power_on()
 
-    def _power_on(self) -> None:
+    def _power_on(self, *, was_on: bool = False) -> None:
+        """RAM is fresh; whole turns are forgotten, unless power `was_on` all the time."""
         self._pending = None
         self._set_torque(False)
         startup = self.memory.get("startup_configuration") if "startup_configuration" in self.items else 0
@@ -171,7 +173,7 @@ class SimServo:
             self._restore(ram_only=True)
         raw = float(self.drives.position_tick[self.index])
         turn = self.model.ticks_per_turn
-        self._turn_tick = math.floor(raw / turn) * turn
+        self._turn_tick = 0.0 if was_on else math.floor(raw / turn) * turn
         self._configure()
         self._reset_goals()
         self._configure()

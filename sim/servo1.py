@@ -49,7 +49,7 @@ class SimServo1(SimServo):
         """The alarm's bits for a status packet."""
         return self._alarm
 
-    def _power_on(self) -> None:
+    def _power_on(self, *, was_on: bool = False) -> None:
         self._alarm, self._pending, self._turn_tick = 0, None, 0.0
         self._set_torque(False)
         self._set("torque_limit", self.memory.get("max_torque"))

@@ -10,6 +10,7 @@ import numpy as np
 
 from daemon.bus.models import MODELS
 from retarget.robot import RobotModel, ServoSpec
+from retarget.ticks import JointServoMap
 from sim.audit import Audit
 from sim.body import Body, PlainBody
 from sim.drive import STEP_S, Drives
@@ -47,16 +48,13 @@ class World:
         firmware: Mapping[int, int] | None = None,
         extra: Sequence[ServoSpec] = (),
     ) -> None:
-        pose = list(start_rad) if start_rad is not None else robot.park_rad.tolist()
-        pose += [0.0] * len(extra)
+        pose = np.array(start_rad, np.float64) if start_rad is not None else robot.park_rad
         specs = (*robot.servos, *extra)
         self.robot, self.faults, self.audit = robot, faults or FaultSchedule(), Audit(robot)
         motors = [motor_of(s.model.model_number) for s in specs]
         rad_per_tick = [2 * np.pi / s.model.ticks_per_turn for s in specs]
-        ticks = [
-            s.zero_tick + s.direction * s.gear_ratio * q / r for s, q, r in zip(specs, pose, rad_per_tick, strict=True)
-        ]
-        shaft_rad = np.array(ticks) * rad_per_tick
+        ticks = [*JointServoMap(robot).to_ticks(pose).tolist(), *(s.zero_tick for s in extra)]
+        shaft_rad = np.array(ticks, np.float64) * rad_per_tick
         self.body: Body = PlainBody(motors, shaft_rad) if body is None else body(robot, motors, shaft_rad)
         families = [MODELS[s.model.model_number].family for s in specs]
         backlash = [BACKLASH_RAD.get(f, _BACKLASH_OTHER_RAD) / r for f, r in zip(families, rad_per_tick, strict=True)]

@@ -11,7 +11,8 @@ from daemon.bench.report import context, percentiles_ms
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
 from daemon.demo import child, free_endpoints, wait_until_ready
-from daemon.wire import Done, Failed, Progress, Rejected, Say
+from daemon.events import Done, Failed, Progress, Rejected
+from daemon.requests import Say
 
 N_WARM = 5
 REST_S = 0.3

@@ -24,14 +24,11 @@ def bench_generate(seed: int = 0) -> dict[str, Any]:
 
     from mmm_core.engine import Engine
     from mmm_core.text import TextStates
-    from mmm_core.transformer import MotionTransformer, TransformerConfig
+    from mmm_core.transformer import OFFICIAL, MotionTransformer
 
     torch.set_num_threads(1)
     engine = Engine.load(threads=1)
-    official = TransformerConfig(
-        n_codes=8192, n_codebooks=1, code_dim=32, width=1024, n_heads=16, n_cross=2, n_self=16, text_dim=512
-    )
-    reference = MotionTransformer(official).eval()
+    reference = MotionTransformer(OFFICIAL).eval()
     words = torch.randn(1, 77, 512)
     text = TextStates(words, torch.ones(1, 77, dtype=torch.bool), words.mean(1))
     ids = torch.full((1, 50, 1), reference.ids.mask)

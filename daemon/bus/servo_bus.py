@@ -16,7 +16,8 @@ from daemon.bus.health import HealthTracker
 from daemon.bus.models import MODELS, BusModel
 from daemon.bus.packet import Packet
 from daemon.bus.port import Port, Reopenable
-from daemon.bus.reading import BusReading
+from daemon.bus.rate_plan import RatePlan, plan_of
+from daemon.bus.reading import UNKNOWN, BusReading
 from daemon.bus.registers import RETURN_DELAY_UNIT_S, WATCHDOG_TRIPPED, Item, hardware_error_text
 from daemon.bus.slow import SlowReader
 from daemon.bus.timing import MARGIN_S, SETUP_MARGIN_S, Timing
@@ -40,6 +41,8 @@ _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
 _CAREFUL_CYCLES = 25
 """After a chained read that broke off: so long each servo answers for itself, until the silent one is quarantined."""
 _REOPEN_EVERY_S = 0.5
+_SLOW_BYTES = 14 + 11 + 7
+"""Question and answer of the slow registers of one servo."""
 _ECHO_BYTES = 8
 """So many bytes of a request come back only by echo: no answer begins like one."""
 _FULL_EFFORT = {"goal_pwm": 885, "torque_limit": 1023}
@@ -200,8 +203,8 @@ class ServoBus:
         whole = step.take(self._raw, self.reading)
         rows = step.rows
         if whole.all():
-            valid[rows] = True
-            self.reading.read_s[rows] = sent_s
+            valid[step.index] = True
+            self.reading.read_s[step.index] = sent_s
             return
         valid[rows[whole]] = True
         if not isinstance(step, FastSyncStep):
@@ -270,6 +273,9 @@ class ServoBus:
     def _judge(self, valid: NDArray[np.bool_]) -> None:
         """Ages, health, quarantine."""
         reading, now_s = self.reading, self._clock.now_s()
+        if valid.all() and self.health.all_well(reading.error) and not self._careful:
+            reading.age_cycles[:] = 0
+            return
         reading.age_cycles += 1
         reading.age_cycles[valid] = 0
         silent_before = self.health.asked.copy()
@@ -313,8 +319,12 @@ class ServoBus:
     def _note_reboot(self, row: int) -> None:
         self.health.faulted[row] = True
         name = f"servo {self.ids[row]} ({self.servos[row].joint_name})"
+        now_s, n_lost = self._clock.now_s(), int(self.health.faulted.sum())
         text = f"{name} has lost torque and settings; to be armed anew"
-        self.events.add(BusEventKind.REBOOTED, self._clock.now_s(), text, self.ids[row])
+        self.events.add(BusEventKind.REBOOTED, now_s, text, self.ids[row])
+        if 2 * n_lost >= len(self.ids) > 2:
+            text = f"{n_lost} of {len(self.ids)} servos have lost their torque: the supply voltage broke down"
+            self.events.add(BusEventKind.BROWN_OUT, now_s, text)
 
     def _read_slow(self) -> None:
         """Slow registers of the next servo in turn; what they reveal is an event."""
@@ -335,9 +345,6 @@ class ServoBus:
         self.reading.slow_read_s[row] = asked_s
         if self._torque_expected and self.reading.torque[row] == 0 and not self.health.faulted[row]:
             self._note_reboot(row)
-            if self.health.faulted.sum() * 2 >= len(self.ids) > 2:
-                text = f"{int(self.health.faulted.sum())} servos lost their torque: the supply voltage broke down"
-                self.events.add(BusEventKind.BROWN_OUT, asked_s, text)
 
     # Who is there.
 
@@ -381,18 +388,40 @@ class ServoBus:
                     " (?baud=...; mmmd scan tries all)"
                 )
             raise BusMismatchError(rows, hint)
-        self.firmware = [found[i][1] for i in self.ids]
-        delays = [self.read_item(i, "return_delay_time") for i in self.ids]
-        self.timing.return_delay_s = max(delays) * RETURN_DELAY_UNIT_S
-        self.health.cleared()
-        self._careful = 0
-        self._find_fast_sync()
-        self._build_steps()
+        known, self.firmware = self.firmware, [found[i][1] for i in self.ids]
+        if known != self.firmware:  # found out once
+            self._measure_turnaround()
+            self._find_fast_sync()
         if self._slow_every:
             self._map_windows()
+        self.health.cleared()
+        self._careful = 0
+        self._build_steps()
+
+    def _measure_turnaround(self) -> None:
+        """Read each servo's return delay; what the quickest question took beyond it and its bytes is the turnaround."""
+        delays: list[int] = []
+        took: list[float] = []
+        for row, servo_id in enumerate(self.ids):
+            start_s = self._clock.now_s()
+            delays.append(self.read_item(servo_id, "return_delay_time"))
+            dialect = self._of(row)
+            n_bytes = len(dialect.read(servo_id, 0, 1)) + dialect.status_bytes + 1
+            took.append(self._clock.now_s() - start_s - self.timing.wire_s(n_bytes) - delays[-1] * RETURN_DELAY_UNIT_S)
+        self.timing.return_delay_s = max(delays) * RETURN_DELAY_UNIT_S
+        self.timing.turnaround_s = max(0.0, min(took))
+
+    def plan(self) -> RatePlan:
+        """The budget of a cycle on this bus as it was found."""
+        goal_bytes = sum(write.n_bytes for _, write in self._goal_writes)
+        extra = _SLOW_BYTES if self._slow_every else 0
+        return plan_of(
+            self._steps, goal_bytes, len(self.ids), self.port.baud, return_delay_s=self.timing.return_delay_s,
+            turnaround_s=self.timing.turnaround_s, extra_bytes=extra,
+        )  # fmt: skip
 
     def _map_windows(self) -> None:
-        """Indirect addresses for the slow registers, where a servo takes them."""
+        """Indirect addresses for the slow registers of servos that have lost them, where a servo takes them."""
         for row, (servo_id, firmware) in enumerate(zip(self.ids, self.firmware, strict=True)):
             dialect = self._of(row)
 
@@ -402,12 +431,13 @@ class ServoBus:
             def read(address: int, length: int, row: int = row, servo_id: int = servo_id) -> bytes:
                 return self._ask(self._of(row).read(servo_id, address, length), row, length).parameters
 
-            try:
-                mapped = dialect.version == 2.0 and self._slow.map_window(row, firmware, write, read)
-            except ServoFaultError as error:
-                mapped = False
-                log.info("%s; its slow registers are read directly", error)
-            log.debug("servo %d: slow registers %s", servo_id, "indirect" if mapped else "direct")
+            if dialect.version == 2.0 and self._slow.wants_window(row):
+                try:
+                    self._slow.map_window(row, firmware, write, read)
+                except ServoFaultError as error:
+                    self._slow.no_window(row)
+                    log.debug("%s; its slow registers are read directly", error)
+        log.info("slow registers by indirect address: %d of %d servos", self._slow.n_windows, len(self.ids))
 
     def _find_fast_sync(self) -> None:
         """Try fast sync reads where the manual says that model and firmware know them; for good, both ways."""
@@ -470,7 +500,7 @@ class ServoBus:
         for servo_id in self.ids:
             self.write_item(servo_id, name, value)
         if name == "torque_enable":
-            self._torque_expected = bool(value)
+            self._expect_torque(on=bool(value))
 
     def send_all(self, name: str, value: int) -> None:
         """Set one item of every servo that has it, with packets that nobody answers."""
@@ -481,14 +511,28 @@ class ServoBus:
 
     def send_torque_off(self) -> None:
         """Cut the torque of every servo with packets that nobody has to answer."""
-        self._torque_expected = False
+        self._expect_torque(on=False)
         self.send_all("torque_enable", 0)
 
-    def set_effort(self, share: float) -> None:
-        """Limit what every servo may exert, as a share of all: goal PWM, or torque limit on protocol 1.0."""
+    def _expect_torque(self, *, on: bool) -> None:
+        """From now on torque should be so; what was read before says nothing about it."""
+        self._torque_expected = on
+        self.reading.torque[:] = UNKNOWN
+
+    def set_effort(self, share: float, *, confirmed: bool = False) -> None:
+        """Limit what every servo may exert, as a share of all: goal PWM, or torque limit on protocol 1.0.
+
+        Args:
+            share: 0 to 1.
+            confirmed: each servo is told by itself and has to answer; else all at once, unanswered.
+        """
         for name, full in _FULL_EFFORT.items():
-            if any(name in m.table for m in self.models):
-                self.send_all(name, round(full * min(1.0, max(0.0, share))))
+            able = [i for i, m in zip(self.ids, self.models, strict=True) if name in m.table]
+            value = round(full * min(1.0, max(0.0, share)))
+            if able and not confirmed:
+                self.send_all(name, value)
+            for servo_id in able if confirmed else ():
+                self.write_item(servo_id, name, value)
 
     def arm_watchdog(self, units: int) -> tuple[int, ...]:
         """Arm the bus watchdog (20 ms units) of every servo that has one; the ids of those without, or of no use.
@@ -508,13 +552,17 @@ class ServoBus:
 
         Cleared under torque it would go on to the goal it was stopped on the way to.
         """
+        for servo_id in self.tripped_watchdogs():
+            self.events.add(BusEventKind.WATCHDOG_TRIPPED, self._clock.now_s(), f"servo {servo_id}", servo_id)
+            self.write_item(servo_id, "torque_enable", 0)
         for servo_id, model in zip(self.ids, self.models, strict=True):
-            if "bus_watchdog" not in model.table:
-                continue
-            if self.read_item(servo_id, "bus_watchdog") == WATCHDOG_TRIPPED:
-                self.events.add(BusEventKind.WATCHDOG_TRIPPED, self._clock.now_s(), f"servo {servo_id}", servo_id)
-                self.write_item(servo_id, "torque_enable", 0)
-            self.write_item(servo_id, "bus_watchdog", 0)
+            if "bus_watchdog" in model.table:
+                self.write_item(servo_id, "bus_watchdog", 0)
+
+    def tripped_watchdogs(self) -> list[int]:
+        """Ids of the servos that have stopped by their bus watchdog."""
+        able = [i for i, m in zip(self.ids, self.models, strict=True) if "bus_watchdog" in m.table]
+        return [i for i in able if self.read_item(i, "bus_watchdog") == WATCHDOG_TRIPPED]
 
     def hardware_error_text(self, servo_id: int) -> str:
         """What a servo with the alert bit set complains of."""
@@ -599,7 +647,7 @@ class ServoBus:
             self.port.reopen()
             text = f"{self.port.name} is back after {now_s - (self._lost_since_s or now_s):.1f} s; nothing moves until armed anew"
             self.events.add(BusEventKind.REPLUGGED, now_s, text)
-            self._torque_expected = False
+            self._expect_torque(on=False)
         elif isinstance(self.port, Reopenable):
             raise LinkLostError(f"{self.port.name}: lost; looked for again every {_REOPEN_EVERY_S} s")
         self._lost_since_s = None

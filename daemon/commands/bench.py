@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import importlib
 import json as json_module
-from typing import Annotated, Literal
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
 
 import tyro
 
-BenchName = Literal["generate", "first-motion", "audit"]
+BenchName = Literal["generate", "official", "story", "first-motion", "audit", "bus"]
+_WITH_N: dict[str, int] = {"story": 59, "first-motion": 50, "audit": 200}
+"""Figures that take a number of texts, and how many it is when none is given."""
 
 
 def bench(
@@ -15,8 +19,10 @@ def bench(
 ) -> int:
     """Measure one figure and print it.
 
-    generate: a whole 196-frame motion on one thread. first-motion: text to first moving servo frame, warm, through the
-    daemon. audit: many texts through the daemon's bus side on two robots, every goal checked against the limits.
+    generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten steps.
+    story: ten minutes of motion from 59 texts on two threads. first-motion: text to first moving servo frame, warm,
+    through the daemon. audit: many texts through the daemon's bus side on two robots, every goal checked against the
+    limits. bus: codec and servo bus against a wire kept on a pty, beside other drivers where they are installed.
 
     Example: mmmd bench first-motion --json
 
@@ -28,18 +34,9 @@ def bench(
     """
     from rich.console import Console
 
-    if name == "generate":
-        from daemon.bench.generate import bench_generate
-
-        figures = bench_generate(seed)
-    elif name == "first-motion":
-        from daemon.bench.first_motion import bench_first_motion
-
-        figures = bench_first_motion(n or 50, seed)
-    else:
-        from daemon.bench.audit import bench_audit
-
-        figures = bench_audit(n or 200, seed)
+    file = name.replace("-", "_")
+    measure: Callable[..., dict[str, Any]] = getattr(importlib.import_module(f"daemon.bench.{file}"), f"bench_{file}")
+    figures = measure(n or _WITH_N[name], seed=seed) if name in _WITH_N else measure(seed=seed)
     console = Console()
     if json:
         console.out(json_module.dumps(figures))

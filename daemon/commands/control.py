@@ -11,7 +11,7 @@ from daemon.commands.connection import Connection
 
 if TYPE_CHECKING:
     from daemon.client import Client
-    from daemon.wire import Ack
+    from daemon.events import Ack
 
 
 def stop(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008

@@ -1,32 +1,101 @@
-"""`mmmd eval`: how well the model does what it is told."""
+"""`mmmd eval`: how well the model does what it is told, and how near it comes to real motion."""
 
 from __future__ import annotations
 
 import json as json_module
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import tyro
 
+from daemon.errors import CommandError
+
+if TYPE_CHECKING:
+    from mmm_core.motion import Motion
+
+PROBE_ROBOTS = ("reference", "op3")
+EvalName = Literal["probes", "real", "paper"]
+MOST_REPEATS = 1000
+TABLE_WIDTH = 150
+"""Characters a line, where no terminal says otherwise: a table in a file is not cut."""
+
 
 def eval(
-    name: Annotated[Literal["probes"], tyro.conf.Positional],
+    name: Annotated[EvalName, tyro.conf.Positional],
     json: bool = False,
     seeds: int = 5,
-    model: Path | None = None,
+    repeats: int = 20,
+    data: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None,
+    split: tuple[Literal["train", "val", "test"], ...] = (),
+    model: tuple[Path, ...] = (),
+    tables: tuple[int, ...] = (),
+    temperature: float | None = None,
+    motions_per_text: int = 30,
+    evaluator: Path | None = None,
+    glove: Path | None = None,
+    evaluator_mean: Path | None = None,
+    evaluator_std: Path | None = None,
 ) -> int:
-    """Measure the model on commands in words it was not trained on.
+    """Measure the model.
 
-    probes: side, limb, count (within one) and direction of generated motions, checked on joints and head.
+    probes: side, limb, count (within one) and direction of motions for commands in words it was not trained on, as
+    generated and as two robots' paths show them.
+
+    real: against held-out motion of people with the evaluator of this repository: R-precision of generated against real,
+    FID of generated against the tokenizer's own. --data is the folder of docs/DATA.md.
+
+    paper: the tables of the paper's section 5 for the data and checkpoints given: 1 or 2 comparison, 3 speed, 4 editing in
+    time, 5 upper body, 6 ablations (over steps, and over several --model). docs/evaluation.md says how all is measured.
 
     Example: mmmd eval probes --json
+
+    Example: mmmd eval real --data ../shared/data --json
+
+    Example: mmmd eval paper --data HumanML3D --model official.safetensors --evaluator finest.tar --glove glove
+    --evaluator-mean meta/mean.npy --evaluator-std meta/std.npy --tables 1 4
 
     Args:
         name: what to evaluate.
         json: print one JSON object instead of lines.
         seeds: motions for each probe.
-        model: checkpoint; the shipped one when it is not given.
+        repeats: of the whole measurement, for 95 % intervals.
+        data: data folder (real, paper).
+        split: splits to take; val and test of a clips.jsonl folder, else test.
+        model: checkpoint; the shipped one when it is not given; several for table 6.
+        tables: of the paper; all when none is given.
+        temperature: of sampling; 1 for imported models, else the model's own when it is not given.
+        motions_per_text: motions for each of at most 100 texts, for MModality.
+        evaluator: an evaluator of `mmmd train evaluator`, or the published finest.tar; ours when it is not given.
+        glove: folder of the published word vectors, with finest.tar.
+        evaluator_mean: statistics finest.tar was trained with.
+        evaluator_std: the same.
     """
+    from rich.console import Console
+
+    if name == "probes":
+        figures, shown = _probes(model[0] if model else None, seeds)
+    else:
+        figures = shown = _measured(
+            name, _data_folder(name, data), split, model, (evaluator, glove, evaluator_mean, evaluator_std),
+            _checked(name, repeats, motions_per_text, tables, temperature),
+        )  # fmt: skip
+    console = Console() if sys.stdout.isatty() else Console(width=TABLE_WIDTH)
+    if json:
+        console.out(json_module.dumps(figures))
+    elif name == "paper":
+        _print_tables(console, figures["tables"])
+        console.print(f"n {figures['n']} motions; {figures['caveat']}", highlight=False)
+    else:
+        for key, value in shown.items():
+            console.print(f"{key}: {value}", highlight=False)
+    return 0
+
+
+def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Every probe generated once for each seed; the same motions are then checked on each robot."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -34,23 +103,133 @@ def eval(
     from mmm_core.corpus.heldout import PROBES
     from mmm_core.engine import Engine
     from mmm_core.evaluation.probes import evaluate
+    from retarget.as_human import shown_on_a_person
+    from retarget.pipeline import Retargeter
+    from retarget.robot import load_robot
 
     engine = Engine.load(model)
+    motions: dict[tuple[str, int], Motion] = {}
+
+    def generated(text: str, seed: int) -> Motion:
+        motions[text, seed] = engine.generate(text, seed=seed).motion
+        return motions[text, seed]
+
+    figures: dict[str, Any] = {}
     with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(name, total=len(PROBES) * seeds)
-        generated = evaluate(
-            lambda text, seed: engine.generate(text, seed=seed).motion,
-            range(seeds),
-            lambda n: bar.update(task, completed=n),
-        )
+        task = bar.add_task("generated", total=len(PROBES) * seeds)
+        figures["generated"] = evaluate(generated, range(seeds), lambda n: bar.update(task, completed=n))
+        for name in PROBE_ROBOTS:
+            retargeter = Retargeter(load_robot(name))
+
+            def on_robot(text: str, seed: int, retargeter: Retargeter = retargeter) -> Motion:
+                return shown_on_a_person(retargeter, motions[text, seed])
+
+            bar.reset(task, description=name, total=len(PROBES) * seeds)
+            found = evaluate(on_robot, range(seeds), lambda n: bar.update(task, completed=n))
+            figures.setdefault("retargeted", {})[name] = found
     method = (
-        "held-out probes (mmm_core/corpus/heldout.py), kinematic checks on generated joints; refused counts as wrong"
+        "held-out probes (mmm_core/corpus/heldout.py), kinematic checks on generated joints, and on the joints that a robot's "
+        "path shows (retarget/as_human.py); refused counts as wrong"
     )
-    figures = {"generated": generated, "n": generated["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
-    console = Console()
-    if json:
-        console.out(json_module.dumps(figures))
-    else:
-        for key, value in generated.items():
-            console.print(f"{key}: {value}", highlight=False)
-    return 0
+    figures |= {"n": figures["generated"]["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
+    return figures, {"generated": figures["generated"], **figures["retargeted"]}
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """How much is measured."""
+
+    repeats: int
+    each: int
+    tables: tuple[int, ...]
+    temperature: float | None
+
+
+def _checked(name: str, repeats: int, each: int, tables: tuple[int, ...], temperature: float | None) -> _Asked:
+    if not 1 <= repeats <= MOST_REPEATS:
+        raise CommandError(f"eval {name}: --repeats {repeats}; allowed: 1 to {MOST_REPEATS}")
+    if not 2 <= each <= MOST_REPEATS:
+        raise CommandError(f"eval {name}: --motions-per-text {each}; allowed: 2 to {MOST_REPEATS}")
+    if not set(tables) <= {1, 2, 3, 4, 5, 6}:
+        raise CommandError(f"eval {name}: --tables {' '.join(map(str, tables))}; allowed: 1 to 6")
+    if temperature is not None and not 0 <= temperature <= 10:
+        raise CommandError(f"eval {name}: --temperature {temperature}; allowed: 0 to 10")
+    return _Asked(repeats, each, tables, temperature)
+
+
+def _data_folder(name: str, data: Path | None) -> Path:
+    if data is None:
+        raise CommandError(f"eval {name}: --data is missing; example: mmmd eval {name} --data ../shared/data")
+    return data
+
+
+def _measured(
+    name: str,
+    data: Path,
+    split: Sequence[Any],
+    models: Sequence[Path],
+    evaluator: tuple[Path | None, Path | None, Path | None, Path | None],
+    asked: _Asked,
+) -> dict[str, Any]:
+    from daemon.bench.report import context
+    from mmm_core.engine import Engine
+    from mmm_core.evaluation import paper, report
+
+    if evaluator[1] is not None and None in evaluator:
+        raise CommandError("eval: --glove goes with --evaluator finest.tar, --evaluator-mean and --evaluator-std")
+    splits = split or report.default_splits(data)
+    reader, evaluator_hash = report.load_reader(*evaluator)
+    loaded: dict[str, Engine] = {str(path): Engine.load(path) for path in models} or {"shipped": Engine.load()}
+    engines = {key: paper.for_evaluation(engine, asked.temperature) for key, engine in loaded.items()}
+    engine = next(iter(engines.values()))
+    pairs = report.measured_pairs(reader, list(engines.values()), data, splits)
+    with _Bar() as bar:
+        if name == "real":
+            figures = report.real_figures(reader, engine, pairs, asked.repeats, asked.each, bar.titled("real"))
+        else:
+            figures = report.paper_figures(
+                reader, engines, pairs, asked.repeats, asked.each, asked.tables, bar.titled
+            )  # fmt: skip
+    method = (
+        f"{asked.repeats} repeats, splits {', '.join(splits)}, one caption of each motion a repeat, lengths of the real "
+        f"motions, temperature {engine.settings.temperature}, {asked.each} motions a text for MModality; docs/evaluation.md"
+    )
+    return {
+        **figures, "splits": list(splits), "checkpoint": engine.checkpoint_hash, "evaluator": evaluator_hash,
+        **context(0, method),
+    }  # fmt: skip
+
+
+class _Bar:
+    """A line on stderr that says how far a table is."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+
+        self._status = Console(stderr=True).status("reading")
+
+    def __enter__(self) -> _Bar:
+        self._status.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._status.stop()
+
+    def titled(self, title: str) -> Callable[[str], None]:
+        """A function that takes how far it is."""
+        return lambda text: self._status.update(f"{title}, repeat {text}")
+
+
+def _print_tables(console: Any, tables: dict[str, Any]) -> None:
+    from rich.table import Table
+
+    from mmm_core.evaluation.report import COLUMNS
+
+    for title, lines in tables.items():
+        found = {key for row in lines.values() for key in row}
+        columns = [c for c in COLUMNS if c in found] + sorted(found - set(COLUMNS))
+        shown = Table("", *columns, title=f"Table {title}", title_justify="left")
+        for name, row in lines.items():
+            cells = [row.get(c, "") for c in columns]
+            shown.add_row(name, *(f"{c[0]:.3f}±{c[1]:.3f}" if isinstance(c, list) else str(c) for c in cells))
+        console.print(shown if lines else f"Table {title}: nothing to show, the model has no body parts")

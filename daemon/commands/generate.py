@@ -6,13 +6,13 @@ import json as json_module
 import re
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
 import msgspec
 import tyro
 
 from daemon.errors import CommandError
-from daemon.wire import LONGEST_S, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S
+from daemon.requests import LONGEST_S, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S
 
 if TYPE_CHECKING:
     from mmm_core.engine import Engine, Generation
@@ -29,6 +29,17 @@ class Prompt(msgspec.Struct, forbid_unknown_fields=True):
     seconds: float | None = None
 
 
+class SceneLine(msgspec.Struct, forbid_unknown_fields=True):
+    """One line of a story."""
+
+    text: str
+    seconds: float | None = None
+
+
+Precision = Literal["fp32", "bf16", "auto"]
+Line = TypeVar("Line", bound=msgspec.Struct)
+
+
 def generate(
     text: Annotated[str | None, tyro.conf.Positional] = None,
     out: Path | None = None,
@@ -36,8 +47,11 @@ def generate(
     seconds: float | None = None,
     bvh: Path | None = None,
     batch: Path | None = None,
+    story: Path | None = None,
+    candidates: int = 1,
     model: Path | None = None,
     threads: int = 1,
+    precision: Precision = "fp32",
     json: bool = False,
 ) -> int:
     """Turn a text into the motion of 22 joints at 20 fps, in an .npz file, and a .bvh for Blender on request.
@@ -48,6 +62,8 @@ def generate(
 
     Example for many: mmmd generate --batch prompts.jsonl --out motions
 
+    Example for one long motion: mmmd generate --story scenes.jsonl --out story.npz
+
     Args:
         text: what to do, in English.
         out: .npz file to write; with --batch a folder.
@@ -55,18 +71,24 @@ def generate(
         seconds: length of the motion; the model chooses when it is not given.
         bvh: BVH file to write as well.
         batch: JSON lines of {"id", "text", "seed", "seconds"}: one .npz named by its id for each.
+        story: JSON lines of {"text", "seconds"}: one motion with generated transitions, of any length.
+        candidates: motions made at once, of which the model's likeliest is kept.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
+        precision: of matrix products; auto times both here. bf16 may choose another token now and then.
         json: print one JSON object for each motion.
     """
-    if (text is None) == (batch is None):
-        raise CommandError('generate: give either a text or --batch; example: mmmd generate "nod twice" --out nod.npz')
+    if sum(source is not None for source in (text, batch, story)) != 1:
+        example = 'mmmd generate "nod twice" --out nod.npz'
+        raise CommandError(f"generate: give one of a text, --batch and --story; example: {example}")
     if out is None:
         raise CommandError("generate: --out is missing; name the .npz file (with --batch the folder) to write")
     if batch is not None and bvh is not None:
         raise CommandError("generate: --bvh goes with one text; with --batch leave it out")
     if batch is not None:
-        return _generate_batch(_prompts(batch), out, model, threads, json)
+        return _generate_batch(_prompts(batch), out, _load(model, threads, precision), json)
+    if story is not None:
+        return _tell(story, out, bvh, seed, _load(model, threads, precision))
     prompt = Prompt("", text or "", seed, seconds)
     problem = _problem(prompt)
     if problem:
@@ -74,7 +96,7 @@ def generate(
     for path in filter(None, (out, bvh)):
         if not path.parent.is_dir():
             raise CommandError(f"generate: {path}: no folder '{path.parent}'; make it, or choose another")
-    made = _load(model, threads).generate(prompt.text, seed=seed, seconds=seconds)
+    made = _load(model, threads, precision).generate(prompt.text, seed=seed, seconds=seconds, candidates=candidates)
     made.motion.save_npz(out)
     if made.status == "rejected":
         _say(_summary(prompt, made, out), json)
@@ -89,12 +111,11 @@ def generate(
     return 0
 
 
-def _generate_batch(prompts: list[Prompt], folder: Path, model: Path | None, threads: int, json: bool) -> int:
+def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, json: bool) -> int:
     from rich.console import Console
     from rich.progress import track
 
     folder.mkdir(parents=True, exist_ok=True)
-    engine = _load(model, threads)
     rejected = 0
     console = Console(stderr=True)
     for prompt in track(prompts, "generating", console=console, disable=not console.is_terminal):
@@ -109,30 +130,37 @@ def _generate_batch(prompts: list[Prompt], folder: Path, model: Path | None, thr
     return 0
 
 
-def _load(model: Path | None, threads: int) -> Engine:
+def _tell(path: Path, out: Path, bvh: Path | None, seed: int, engine: Engine) -> int:
+    """Write a story as one motion; the parts that were rejected are said."""
+    from mmm_core.bvh import save_bvh
+    from mmm_core.motion import joined
+    from mmm_core.story import Scene, check_scenes, tell
+
+    scenes = [Scene(line.text, line.seconds) for _, line in _lines(path, "--story", SceneLine)]
+    check_scenes(scenes)
+    pieces = list(tell(engine, scenes, seed=seed))
+    for piece in pieces:
+        if piece.status == "rejected":
+            sys.stderr.write(f"mmmd: left out: {piece.text!r} is out of scope ({piece.scope_score:.2f})\n")
+    whole = joined(pieces)
+    whole.save_npz(out)
+    if bvh is not None:
+        save_bvh(whole, bvh)
+    sys.stdout.write(f"{out}: {len(whole.joints_m)} frames at {whole.fps:g} fps from {len(scenes)} texts\n")
+    return 0 if len(whole.joints_m) else 1
+
+
+def _load(model: Path | None, threads: int, precision: Precision) -> Engine:
     from mmm_core.engine import Engine
 
-    return Engine.load(model, threads=threads)
+    return Engine.load(model, threads=threads, precision=precision)
 
 
 def _prompts(path: Path) -> list[Prompt]:
     """The lines of a batch file, all checked before the first is generated."""
-    try:
-        lines = path.read_text("utf-8").splitlines()
-    except UnicodeDecodeError as error:
-        raise CommandError(f"--batch {path}: not UTF-8 ({error})") from None
-    except OSError as error:
-        raise CommandError(f"--batch {path}: {error.strerror}") from None
-    prompts: list[Prompt] = []
     seen: set[str] = set()
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            continue
-        try:
-            prompt = msgspec.json.decode(line, type=Prompt)
-        except msgspec.DecodeError as error:
-            allowed = 'allowed: {"id", "text", "seed", "seconds"}'
-            raise CommandError(f"--batch {path}: line {number}: {error}; {allowed}") from None
+    lines = _lines(path, "--batch", Prompt)
+    for number, prompt in lines:
         problem = _problem(prompt)
         if not problem and not _FILE_ID.fullmatch(prompt.id):
             problem = f"id {prompt.id!r} is no file name; allowed: letters, digits, '.', '_', '-', at most 120"
@@ -141,10 +169,29 @@ def _prompts(path: Path) -> list[Prompt]:
         if problem:
             raise CommandError(f"--batch {path}: line {number}: {problem}")
         seen.add(prompt.id)
-        prompts.append(prompt)
-    if not prompts:
-        raise CommandError(f"--batch {path}: no lines; one JSON object a line is expected")
-    return prompts
+    return [prompt for _, prompt in lines]
+
+
+def _lines(path: Path, option: str, kind: type[Line]) -> list[tuple[int, Line]]:
+    """The JSON lines of a file with their numbers; blank ones are passed over."""
+    try:
+        lines = path.read_text("utf-8").splitlines()
+    except UnicodeDecodeError as error:
+        raise CommandError(f"{option} {path}: not UTF-8 ({error})") from None
+    except OSError as error:
+        raise CommandError(f"{option} {path}: {error.strerror}") from None
+    found: list[tuple[int, Line]] = []
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            found.append((number, msgspec.json.decode(line, type=kind)))
+        except msgspec.DecodeError as error:
+            allowed = ", ".join(f'"{field}"' for field in kind.__struct_fields__)
+            raise CommandError(f"{option} {path}: line {number}: {error}; allowed: {{{allowed}}}") from None
+    if not found:
+        raise CommandError(f"{option} {path}: no lines; one JSON object a line is expected")
+    return found
 
 
 def _problem(prompt: Prompt) -> str:

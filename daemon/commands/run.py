@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import sys
 from pathlib import Path
+from typing import Literal
 
 from daemon.config import Endpoints
 
@@ -18,6 +19,8 @@ def run(
     generator: str | None = None,
     model: Path | None = None,
     auto_arm: bool = True,
+    idle: Literal["off", "calm", "lively"] = "off",
+    gestures: Path | None = None,
     cmd: str = _DEFAULT.cmd,
     ctl: str = _DEFAULT.ctl,
     pub: str = _DEFAULT.pub,
@@ -36,6 +39,8 @@ def run(
         generator: endpoint of a generator that runs already (`mmmd generator`); one is started when it is not given.
         model: checkpoint of the generator; the shipped one when it is not given.
         auto_arm: the first text arms the robot; --no-auto-arm waits for `mmmd arm`.
+        idle: small movements while there is nothing to play.
+        gestures: folder of your own gestures; your data folder when it is not given.
         cmd: endpoint of requests.
         ctl: endpoint of stop, estop, reset, arm, park, status.
         pub: endpoint of state and events.
@@ -52,4 +57,16 @@ def run(
         sys.stderr.write(f"mmmd: {problem}\n")
         return 2
     endpoints = Endpoints(cmd, ctl, pub)
-    return run_daemon(DaemonConfig(robot, bus, endpoints, log, generator=generator, model=model, auto_arm=auto_arm))
+    return run_daemon(
+        DaemonConfig(
+            robot,
+            bus,
+            endpoints,
+            log,
+            generator=generator,
+            model=model,
+            auto_arm=auto_arm,
+            idle=idle,
+            gestures=gestures,
+        )
+    )

@@ -4,57 +4,72 @@ from __future__ import annotations
 
 import logging
 import os
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
+Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator"]
+
 
 def train(
+    stage: Annotated[Stage, tyro.conf.Positional] = "all",
+    config: str = "compact",
     data: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None,
-    run: Path = Path("runs/compact"),
-    out: Path = Path("runs/compact/model.safetensors"),
-    clips: int = 14_000,
-    tokenizer_steps: int = 2600,
-    transformer_steps: int = 6200,
-    length_steps: int = 2500,
+    run_dir: Annotated[Path | None, tyro.conf.arg(aliases=["--run"])] = None,
+    out: Path | None = None,
+    device: str = "cpu",
+    precision: Literal["fp32", "bf16"] = "fp32",
     threads: int = 1,
-    seed: int = 0,
+    sample_every: int = 500,
+    tensorboard: bool = False,
 ) -> int:
-    """Train the compact model: corpus, tokenizer, length predictor, transformer, checkpoint.
+    """Train a model, or one stage of it with what it needs, from one TOML recipe.
 
-    An interrupted run goes on where it was: give the same --run. About two hours on one CPU core with the defaults.
-    Start it with OMP_WAIT_POLICY=passive when the machine does other work as well.
+    An interrupted run, even a killed one, goes on where it was with the same result: give the same --run. Recipes that
+    ship: compact (the model in this package, about two hours on one CPU core) and paper (MMM as published; a GPU and
+    HumanML3D). Several GPUs or machines: start it with torchrun. OMP_WAIT_POLICY=passive helps on a busy machine.
 
     Example: mmmd train --data ../shared/data --run runs/compact --out model.safetensors
 
-    Args:
-        data: folder with clips.jsonl and motions_*.npz (docs/DATA.md); without it only synthesised gestures are used.
-        run: folder of the run: corpus, states, CSV logs.
-        out: the checkpoint to write.
-        clips: number of synthesised motions.
-        tokenizer_steps: steps of the tokenizer, 0.2 s each on one core.
-        transformer_steps: steps of the transformer, 0.5 s each on one core.
-        length_steps: steps of the length predictor.
-        threads: CPU threads.
-        seed: of the corpus and of every stage.
-    """
-    import dataclasses
+    Example, the paper's tokenizer: mmmd train tokenizer --config paper --data HumanML3D --device cuda --precision bf16
 
+    Example, two processes: torchrun --nproc-per-node 2 -m daemon.cli train --config my.toml --run-dir runs/my
+
+    Args:
+        stage: all of them and a checkpoint, or one.
+        config: name of a recipe that ships, or a TOML file (docs/training.md).
+        data: folder with clips.jsonl, or a HumanML3D or KIT-ML folder; stands for the recipe's data.folder.
+        run_dir: folder of the run: corpus, states, CSV logs, samples; runs/NAME when it is not given.
+        out: checkpoint to write after all stages; model.safetensors in the run's folder when it is not given.
+        device: cpu, cuda or cuda:N.
+        precision: of matrix products.
+        threads: CPU threads.
+        sample_every: steps between pictures in the run's samples/; 0 for none.
+        tensorboard: write TensorBoard events as well (extra `train`).
+    """
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     import torch
 
-    from mmm_core.training.compact import Recipe, make_model
+    from mmm_core import distributed
+    from mmm_core.training.recipe import read_recipe
+    from mmm_core.training.run import Run
+    from mmm_core.training.stages import Stages, make_model
 
     logging.basicConfig(level=logging.INFO, format="%(message)s")
-    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     torch.set_num_threads(threads)
-    plain = Recipe()
-    recipe = Recipe(
-        n_synthesised=clips,
-        tokenizer=dataclasses.replace(plain.tokenizer, steps=tokenizer_steps, seed=seed),
-        transformer=dataclasses.replace(plain.transformer, steps=transformer_steps, seed=seed),
-        length=dataclasses.replace(plain.length, steps=length_steps, seed=seed),
-        seed=seed,
-    )
-    make_model(recipe, data, run, out)
+    recipe = read_recipe(config)
+    folder = run_dir or Path("runs") / Path(config).stem
+    where = Run(folder, device, precision, sample_every, tensorboard)
+    distributed.start(where.torch_device)
+    if stage == "all":
+        written = out or folder / "model.safetensors"
+        make_model(recipe, where, data, written)
+    else:
+        stages = Stages(recipe, where, data)
+        getattr(stages, stage)
+        written = folder / ("evaluator.safetensors" if stage == "evaluator" else f"{stage}.pt")
+    if distributed.rank() == 0:
+        sys.stdout.write(f"{written}\n")
     return 0

@@ -23,7 +23,8 @@ def watch(
         json: print every message as one JSON object a line, all states included.
         n: end after so many lines.
     """
-    from daemon.wire import StateEvent, encode
+    from daemon.events import StateEvent
+    from daemon.wire import encode
 
     shown, last_state = 0, ""
     with at.client() as robot:
@@ -36,7 +37,7 @@ def watch(
                 last_state = event.state
                 line = f"{event.t_mono:.3f} state {event.state}" + (f": {event.reason}" if event.reason else "")
             else:
-                from daemon.commands.say import describe
+                from daemon.commands.playing import describe
 
                 line = f"{event.t_mono:.3f} {topic} {event.id[:8]} {describe(event)}"
             sys.stdout.write(line + "\n")

@@ -60,7 +60,7 @@ PROBES: tuple[Probe, ...] = (
     Probe("your gaze goes left", "look", "head", "", None, "left"),
     Probe("incline the head towards the left shoulder", "tilt_head", "head", "", None, "left"),
     Probe("tip the head over to the right side", "tilt_head", "head", "", None, "right"),
-    Probe("tip your torso to the left", "lean", "trunk", "", None, "left"),
+    Probe("dip your torso to the left", "lean", "trunk", "", None, "left"),
     Probe("sway your upper body over to the right", "lean", "trunk", "", None, "right"),
     Probe("twist your trunk leftwards", "twist", "trunk", "", None, "left"),
     Probe("rotate the shoulders to the right", "twist", "trunk", "", None, "right"),

@@ -2,34 +2,36 @@
 
 Channels: `left` and `right` arm (upper arm direction, forearm direction, forearm twist), `head` and `trunk` (yaw, pitch,
 roll), `shrug`. Directions are given in the chest frame as (outward, up, forward), so that one pose serves both arms.
+Bones travel on the sphere: along the great circle when the way is short, by a via point in front of the body or beside
+it when it is long, so that an arm raised from hanging swings its shoulder through an arc at the speed of an arm.
 Minimum jerk: Flash and Hogan 1985.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.features import features_from_joints
-from mmm_core.motion import FPS
-from mmm_core.skeleton import (
-    BONE_LENGTHS_M,
-    REST_DIRECTIONS,
-    Array,
-    forward_kinematics,
-    normalise,
-    rotation_about,
-    rotation_y,
-)
+from mmm_core.skeleton import Array, normalise
 
 Vector = tuple[float, float, float]
+FRONT: Vector = (0.45, 0.0, 0.9)
+SIDE: Vector = (1.0, 0.0, 0.15)
+_FORE_VIA = np.array([0.12, 0.05, 1.0])
+"""Where a forearm passes when it turns far: folded forward, clear of the chest."""
+_NEAR_RAD, _FAR_RAD = np.deg2rad(75.0), np.deg2rad(150.0)
+"""Below the first the great circle is used, above the second the via point alone bends the way."""
+TRACE_STEP_S = 0.05
+At = tuple[NDArray[np.intp], Array]
+"""Segment (T,) and share of it (T,)."""
 
 
 @dataclass(frozen=True)
 class ArmPose:
-    """Directions (outward, up, forward) of upper arm and forearm, and the forearm's twist in radians."""
+    """Directions (outward, up, forward) of upper arm and forearm, and the forearm's twist in radians (palm up positive)."""
 
     upper: Vector
     fore: Vector
@@ -37,35 +39,83 @@ class ArmPose:
 
     def vector(self) -> Array:
         """(7,) channel value: unit directions and the twist."""
-        return np.concatenate([normalise(np.array(self.upper)), normalise(np.array(self.fore)), [self.twist_rad]])
+        out = np.empty(7)
+        for at, v in ((0, self.upper), (3, self.fore)):
+            length = max((v[0] ** 2 + v[1] ** 2 + v[2] ** 2) ** 0.5, 1e-9)
+            out[at], out[at + 1], out[at + 2] = v[0] / length, v[1] / length, v[2] / length
+        out[6] = self.twist_rad
+        return out
 
 
 REST_ARM = ArmPose((0.2, -0.97, 0.02), (0.1, -0.93, 0.3))
 
 
+@dataclass(frozen=True)
+class Segment:
+    """A channel's way from one value to the next; `is_steady` ones run at an even pace, others start and stop."""
+
+    start_s: float
+    end_s: float
+    start: Array
+    end: Array
+    via: Vector = FRONT
+    is_steady: bool = False
+
+
 @dataclass
 class Score:
-    """Key poses in time; `move` and `hold` write it from left to right."""
+    """Ways in time; `move`, `trace` and `hold` write it from left to right.
+
+    Attributes:
+        follow_through: share of a way by which a stopping limb runs past its end before it settles.
+    """
 
     rng: np.random.Generator
     rest: dict[str, Array]
     time_s: float = 0.0
-    keys: dict[str, list[tuple[float, Array]]] = field(default_factory=dict)
+    follow_through: float = 0.0
+    ways: dict[str, list[Segment]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Every channel starts at rest."""
         for name, value in self.rest.items():
-            self.keys[name] = [(0.0, value)]
+            self.start_at(name, value)
+
+    def start_at(self, channel: str, value: Array) -> None:
+        """Let `channel` begin the clip at `value`, and forget what it did."""
+        self.ways[channel] = [Segment(-1.0, -1.0, value, value)]
 
     def now(self, channel: str) -> Array:
         """The value that `channel` holds at the current time."""
-        return self.keys[channel][-1][1]
+        return self.ways[channel][-1].end
 
-    def move(self, duration_s: float, **targets: Array | ArmPose | Vector | float) -> None:
-        """Move the named channels to their targets; others hold. Time advances."""
+    def move(
+        self, duration_s: float, via: Vector = FRONT, /, **targets: Array | ArmPose | Vector | float | list[float]
+    ) -> None:
+        """Move the named channels to their targets; others hold. Long ways of an arm pass `via`. Time advances."""
         for name, target in targets.items():
             value = target.vector() if isinstance(target, ArmPose) else np.atleast_1d(np.asarray(target, float))
-            self.keys[name] += [(self.time_s, self.now(name)), (self.time_s + duration_s, value)]
+            end_s = self.time_s + duration_s
+            self.ways[name].append(Segment(self.time_s, end_s, self.now(name), value, via))
+        self.time_s += duration_s
+
+    def trace(self, duration_s: float, **paths: Callable[[float], ArmPose | Array]) -> None:
+        """Lead the named channels along paths of a phase from 0 to 1, started and ended gently. Time advances.
+
+        A path should start where its channel is.
+        """
+        n = max(4, int(np.ceil(duration_s / TRACE_STEP_S)))
+        ease = min(0.3, 0.35 / duration_s)
+        u = np.linspace(0, 1, n + 1)[1:]
+        phase = _trapezoid(u, ease)
+        for name, path in paths.items():
+            for i in range(n):
+                target = path(float(phase[i]))
+                value = target.vector() if isinstance(target, ArmPose) else target
+                start_s = self.time_s + duration_s * i / n
+                self.ways[name].append(
+                    Segment(start_s, start_s + duration_s / n, self.now(name), value, is_steady=True)
+                )
         self.time_s += duration_s
 
     def hold(self, duration_s: float) -> None:
@@ -74,94 +124,65 @@ class Score:
 
     def relax(self, duration_s: float) -> None:
         """Bring every channel back to rest."""
-        away = {name: self.rest[name] for name in self.keys if not np.allclose(self.now(name), self.rest[name])}
+        away = {name: self.rest[name] for name in self.ways if np.abs(self.now(name) - self.rest[name]).max() > 1e-3}
         self.move(duration_s, **away)
 
-    def sample(self, channel: str, times_s: Array) -> Array:
-        """(T, D) values of `channel`."""
-        at = np.array([t for t, _ in self.keys[channel]])
-        values = np.array([v for _, v in self.keys[channel]])
-        segment = np.clip(np.searchsorted(at, times_s, side="right") - 1, 0, len(at) - 1)
-        following = np.minimum(segment + 1, len(at) - 1)
-        span = np.maximum(at[following] - at[segment], 1e-6)
-        u = np.clip((times_s - at[segment]) / span, 0, 1)
-        s = u**3 * (10 - 15 * u + 6 * u**2)
-        return values[segment] + (values[following] - values[segment]) * s[:, None]
+    def sample(self, channel: str, times_s: Array, fore_lag_s: float = 0.0) -> Array:
+        """(T, D) values of `channel`; of an arm's, forearm and twist come `fore_lag_s` later than the upper arm."""
+        ways = self.ways[channel]
+        if channel not in ("left", "right"):
+            return self._between(ways, times_s)[0]
+        values, upper = self._between(ways, times_s)
+        later, fore = self._between(ways, times_s - fore_lag_s) if fore_lag_s else (values, upper)
+        values[:, :3] = _on_sphere(ways, upper, slice(0, 3), np.array([w.via for w in ways]))
+        values[:, 3:6] = _on_sphere(ways, fore, slice(3, 6), np.broadcast_to(_FORE_VIA, (len(ways), 3)))
+        values[:, 6] = later[:, 6]
+        return values
+
+    def _between(self, ways: list[Segment], times_s: Array) -> tuple[Array, At]:
+        """Values on straight ways, and the segment (T,) and share of it (T,) that each is read at."""
+        start_s = np.array([w.start_s for w in ways])
+        end_s = np.array([w.end_s for w in ways])
+        row = np.searchsorted(start_s, times_s, side="right") - 1
+        u = np.clip((times_s - start_s[row]) / np.maximum(end_s - start_s, 1e-6)[row], 0, 1)
+        share = np.where(np.array([w.is_steady for w in ways])[row], u, minimum_jerk(u))
+        if self.follow_through:
+            until_s = np.append(start_s[1:], np.inf)
+            settle_s = np.minimum(0.4, until_s - end_s)
+            bumps = (settle_s > 0.2) & ~np.array([w.is_steady for w in ways])
+            x = np.clip((times_s - end_s[row]) / np.maximum(settle_s, 1e-6)[row], 0, 1)
+            share = share + np.where(bumps[row], self.follow_through * 16 * np.square(x * (1 - x)), 0.0)
+        starts, ends = np.array([w.start for w in ways]), np.array([w.end for w in ways])
+        return starts[row] + (ends - starts)[row] * share[:, None], (row, share)
 
 
-@dataclass(frozen=True)
-class Body:
-    """A motion of the common body before it becomes features."""
-
-    joints_m: Array
-    head_R_world: Array
-    forearm_twist_rad: Array
-
-    def features(self) -> NDArray[np.float32]:
-        """(T, 263) features."""
-        return features_from_joints(self.joints_m, self.head_R_world, self.forearm_twist_rad)
+def minimum_jerk(u: Array) -> Array:
+    """Share of the way at share `u` of the time."""
+    return u**3 * (10 - 15 * u + 6 * u**2)
 
 
-def euler(yaw_pitch_roll: Array) -> Array:
-    """(T, 3) yaw (to the left), pitch (forward), roll (to the left), radians -> (T, 3, 3)."""
-    yaw, pitch, roll = yaw_pitch_roll.T
-    x, z = np.array([1.0, 0, 0]), np.array([0.0, 0, 1])
-    return rotation_y(yaw) @ rotation_about(x, pitch) @ rotation_about(z, -roll)
+def _trapezoid(u: Array, ease: float) -> Array:
+    """Share of the way when speed rises over `ease` of the time, is even, and falls again."""
+    speed_up = np.minimum(u, ease) ** 2 / (2 * ease)
+    even = np.clip(u - ease, 0, 1 - 2 * ease)
+    slow = np.clip(u - (1 - ease), 0, ease)
+    return (speed_up + even + slow - slow**2 / (2 * ease)) / (1 - ease)
 
 
-def _smooth(values: Array, sigma_frames: float) -> Array:
-    """Gaussian filter along time with held ends: rounds the corners where keys follow each other without a stop."""
-    radius = int(np.ceil(3 * sigma_frames))
-    kernel = np.exp(-0.5 * (np.arange(-radius, radius + 1) / sigma_frames) ** 2)
-    kernel /= kernel.sum()
-    padded = np.pad(values, ((radius, radius), (0, 0)), mode="edge")
-    return np.stack([np.convolve(padded[:, d], kernel, mode="valid") for d in range(values.shape[1])], -1)
+def _on_sphere(ways: list[Segment], at: At, part: slice, via: Array) -> Array:
+    """(T, 3) unit directions: a quadratic curve on the sphere with one control point a segment."""
+    row, share = at
+    a = np.array([w.start[part] for w in ways])
+    b = np.array([w.end[part] for w in ways])
+    angle = np.arccos(np.clip((a * b).sum(-1), -1, 1))
+    bend = np.clip((angle - _NEAR_RAD) / (_FAR_RAD - _NEAR_RAD), 0, 1)[:, None]
+    control = normalise((1 - bend) * normalise(a + b) + bend * via)
+    s = share[:, None]
+    a, b, control = a[row], b[row], control[row]
+    return _slerp(_slerp(a, control, s), _slerp(control, b, s), s)
 
 
-def perform(score: Score, n_frames: int) -> Body:
-    """The score on the common body: arms, head and trunk from the channels, legs standing, a little sway and breath."""
-    rng = score.rng
-    times = np.arange(n_frames) / FPS
-    lag = rng.uniform(0.0, 0.06)  # the forearm follows the upper arm, the trunk starts first
-    sigma = rng.uniform(0.7, 1.2)
-    trunk = _smooth(score.sample("trunk", times), 1.5)
-    head = _smooth(score.sample("head", times), 0.8)
-    shrug = _smooth(score.sample("shrug", times), 1.0)
-    trunk += np.deg2rad(rng.uniform(0.1, 0.4)) * np.sin(
-        2 * np.pi * (times[:, None] * rng.uniform(0.15, 0.35, 3) + rng.random(3))
-    )
-    breath = 0.004 * np.sin(2 * np.pi * (times * rng.uniform(0.2, 0.3) + rng.random()))
-    joints, chest = _trunk(trunk, shrug[:, 0] + breath, rng)
-    twists = np.zeros((n_frames, 2))
-    for row, (name, sign, shoulder, elbow, wrist) in enumerate((("left", 1, 16, 18, 20), ("right", -1, 17, 19, 21))):
-        upper = _smooth(score.sample(name, times)[:, :3], sigma)
-        fore = _smooth(score.sample(name, times - lag)[:, 3:6], sigma)
-        out = np.array([sign, 1, 1])
-        for joint, parent, direction in ((elbow, shoulder, upper), (wrist, elbow, fore)):
-            bone = np.einsum("tij,tj->ti", chest, normalise(direction) * out)
-            joints[:, joint] = joints[:, parent] + BONE_LENGTHS_M[joint] * bone
-        twists[:, row] = sign * _smooth(score.sample(name, times - lag)[:, 6:], sigma)[:, 0]
-    head_R = chest @ euler(head)
-    joints[:, 15] = joints[:, 12] + BONE_LENGTHS_M[15] * (head_R @ REST_DIRECTIONS[15])
-    return Body(joints, head_R, twists)
-
-
-def _trunk(trunk: Array, shrug: Array, rng: np.random.Generator) -> tuple[Array, Array]:
-    """Joints (T, 22, 3) of legs, spine, neck and shoulders, and the chest's world rotation (T, 3, 3)."""
-    T = len(trunk)
-    local = np.tile(np.eye(3), (T, 22, 1, 1))
-    spread = rng.uniform(-0.02, 0.08)
-    for knee, side in ((4, 1.0), (5, -1.0)):
-        local[:, knee] = rotation_about(np.array([0.0, 0, 1]), np.full(T, side * spread))
-    third = euler(trunk / 3)
-    for joint in (3, 6, 9):
-        local[:, joint] = third
-    root = np.zeros((T, 3))
-    root[:, 1] = 0.93
-    joints, world = forward_kinematics(local, root)
-    joints[:, :, 1] -= joints[0, [10, 11], 1].min()
-    chest = world[:, 9]
-    lift = np.einsum("tij,j->ti", chest, np.array([0.0, 1.0, 0.0])) * (0.06 * shrug)[:, None]
-    for joint in (16, 17):
-        joints[:, joint] += lift
-    return joints, chest
+def _slerp(a: Array, b: Array, s: Array) -> Array:
+    """Great circle between unit vectors (T, 3)."""
+    angle = np.maximum(np.arccos(np.clip((a * b).sum(-1, keepdims=True), -1, 1)), 1e-4)
+    return (np.sin((1 - s) * angle) * a + np.sin(s * angle) * b) / np.sin(angle)

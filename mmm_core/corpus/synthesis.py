@@ -2,29 +2,39 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mmm_core.corpus.body import Body, perform
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.grammar import caption, usual_counts
-from mmm_core.corpus.score import REST_ARM, ArmPose, Body, Score, perform
+from mmm_core.corpus.score import REST_ARM, ArmPose, Score
+from mmm_core.corpus.styles import STYLES
 from mmm_core.motion import FPS
 from mmm_core.skeleton import Array
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 
 N_CAPTIONS = 6
 LONGEST_S = MAX_TOKENS * FRAMES_PER_TOKEN / FPS
-_COUNT_WEIGHTS = np.array([0.19, 0.25, 0.25, 0.15, 0.10, 0.06])
-"""Probability of one to six repetitions."""
-_WEIGHTS = {"wave": 3.0, "point": 3.0, "look": 2.5, "raise": 2.0, "clap": 1.8, "nod": 1.8, "shake_head": 1.5, "bow": 1.5, "punch": 1.5, "stand": 0.8, "lean": 1.5, "twist": 1.3, "beckon": 1.3, "arms_down": 1.2, "hands_up": 1.3, "stop": 1.3}  # fmt: skip
+_COUNT_WEIGHTS = np.array([0.16, 0.21, 0.21, 0.16, 0.12, 0.07, 0.04, 0.03])
+"""Probability of one to eight repetitions."""
+_WEIGHTS = {
+    "wave": 4.0, "point": 6.0, "look": 4.0, "raise": 3.0, "clap": 2.2, "nod": 2.4, "shake_head": 2.0, "bow": 2.0, "punch": 1.8, "lean": 2.2,
+    "twist": 1.8, "tilt_head": 1.6, "beckon": 1.5, "arms_down": 1.5, "hands_up": 1.6, "stop": 1.6, "arm_forward": 1.6, "arm_side": 1.6,
+    "t_pose": 1.3, "cross_arms": 1.3, "hands_on_hips": 1.3, "salute": 1.3, "shrug": 1.2, "arm_circle": 1.6, "stand": 1.2, "think": 1.2, "heart": 1.2,
+}  # fmt: skip
 _NAMES = list(FAMILIES)
-_P = np.array([_WEIGHTS.get(name, 1.0) for name in _NAMES])
+_P = np.array([_WEIGHTS.get(name, 0.8) for name in _NAMES])
 _P /= _P.sum()
-_SIZED = ("wave", "punch", "clap", "bow", "nod", "shake_head", "tilt_head", "lean", "twist", "shrug", "arm_circle", "flap")  # fmt: skip
 _HEAD_ONLY = ("nod", "shake_head", "look", "tilt_head")
-_ARM_ONLY = ("wave", "raise", "arm_forward", "arm_side", "t_pose", "hands_up", "cross_arms", "hands_on_hips", "stop", "heart", "clap", "beckon", "salute", "phone", "push")  # fmt: skip
+_USES_HEAD = ("zombie", "stretch", "think", "shade_eyes", "facepalm", "listen", "yawn", "drink", "watch_time", "lift", "robot", "dab", "violin", "archery", "celebrate", "shrug", "present", "point")  # fmt: skip
+_ONE_ARMED = tuple(n for n, f in FAMILIES.items() if f.limb == "arm" and "right" in f.sides and not f.starts_away)
+_ARM_ONLY = tuple(n for n, f in FAMILIES.items() if f.limb == "arm" and not f.starts_away and n not in _USES_HEAD)
+_USES_BOTH_ARMS = ("superhero", "archery", "disco", "dab", "saw", "guitar", "violin", "flute", "traffic", "throw", "throw_low", "tennis")  # fmt: skip
+_FREE_HAND = tuple(n for n in _ONE_ARMED if n not in _USES_BOTH_ARMS and n not in ("punch", "hook", "uppercut"))
+_TRUNK_ONLY = ("lean", "twist")
 
 
 @dataclass(frozen=True)
@@ -52,14 +62,12 @@ class SynthClip:
     body: Body
 
 
-def draw_gesture(rng: np.random.Generator, names: tuple[str, ...] | None = None) -> Gesture:
-    """One gesture, of the families in `names` where given."""
-    name = str(rng.choice(names)) if names else _NAMES[int(rng.choice(len(_NAMES), p=_P))]
+def draw_gesture(rng: np.random.Generator, names: tuple[str, ...] = (), side: str = "") -> Gesture:
+    """One gesture, of the families in `names` and with `side` where given."""
+    name = names[int(rng.integers(len(names)))] if names else _NAMES[int(rng.choice(len(_NAMES), p=_P))]
     family = FAMILIES[name]
-    side = ""
-    if family.sides:
-        one_sided = family.sides != ("both",)
-        weights = np.array([0.25 if s == "both" and one_sided else 1.0 for s in family.sides])
+    if family.sides and not side:
+        weights = np.array([{"both": 0.4, "alternating": 0.3}.get(s, 1.0) for s in family.sides])
         side = str(rng.choice(family.sides, p=weights / weights.sum()))
     direction = str(rng.choice(family.directions)) if family.directions else ""
     if name in ("clap", "hug") and rng.random() < 0.4:
@@ -67,26 +75,57 @@ def draw_gesture(rng: np.random.Generator, names: tuple[str, ...] | None = None)
     count = 1
     if family.counts:
         said = rng.random() < 0.7
-        count = 1 + int(rng.choice(6, p=_COUNT_WEIGHTS)) if said else int(rng.choice(usual_counts(name)))
-    tempo, size = 1.0, 1.0
-    if rng.random() < 0.22:
-        tempo = float(rng.choice([0.65, 1.4]))
-    elif name in _SIZED and rng.random() < 0.2:
-        size = float(rng.choice([0.65, 1.25]))
-    return Gesture(name, side, count, direction, tempo, size)
+        count = 1 + int(rng.choice(8, p=_COUNT_WEIGHTS)) if said else int(rng.choice(usual_counts(name)))
+    g = Gesture(name, side if family.sides else "", count, direction)
+    height = str(rng.choice(["low", "high"])) if family.heights and rng.random() < 0.3 else ""
+    return replace(_in_a_manner(g, rng), height=height)
+
+
+def _in_a_manner(g: Gesture, rng: np.random.Generator) -> Gesture:
+    """The gesture with a tempo, size, hold or style of its own, now and then."""
+    family, kind = FAMILIES[g.family], rng.random()
+    if kind < 0.2:
+        return replace(g, tempo=float(rng.choice([0.65, 1.4])))
+    if kind < 0.32 and (family.counts or family.limb in ("head", "trunk")):
+        return replace(g, size=float(rng.choice([0.65, 1.25])))
+    if kind < 0.42 and family.holds:
+        return replace(g, hold_s=float(rng.choice([1, 2, 3, 4, 5], p=[0.1, 0.3, 0.3, 0.2, 0.1])))
+    if kind < 0.5 and family.limb == "arm" and not family.starts_away:
+        name = str(rng.choice(list(STYLES)))
+        return replace(g, style=name, tempo=STYLES[name].tempo, size=STYLES[name].size if family.counts else 1.0)
+    return g
 
 
 def draw_spec(rng: np.random.Generator) -> ClipSpec:
-    """One gesture, two in a row, or a head gesture during an arm gesture."""
+    """One gesture, two or three in a row, or two at once where the limbs are free."""
     kind = rng.random()
-    if kind < 0.66:
+    if kind < 0.62:
         return ClipSpec((draw_gesture(rng),))
     if kind < 0.74:
-        return ClipSpec((draw_gesture(rng, _ARM_ONLY), draw_gesture(rng, _HEAD_ONLY)), parallel=True)
-    first, second = draw_gesture(rng), draw_gesture(rng)
-    while "stand" in (first.family, second.family) or second.family in (first.family, "arms_down"):
-        first, second = draw_gesture(rng), draw_gesture(rng)
-    return ClipSpec((first, second))
+        return ClipSpec(_pair_at_once(rng), parallel=True)
+    gestures = [draw_gesture(rng)]
+    while len(gestures) < (2 if kind < 0.95 else 3):
+        following = draw_gesture(rng)
+        family = FAMILIES[following.family]
+        if following.family != gestures[-1].family and family.limb and not family.starts_away:
+            gestures.append(replace(following, style=""))
+    return ClipSpec((replace(gestures[0], style=""), *gestures[1:]))
+
+
+def _pair_at_once(rng: np.random.Generator) -> tuple[Gesture, Gesture]:
+    kind = rng.random()
+    if kind < 0.5:
+        pair = draw_gesture(rng, _ARM_ONLY), draw_gesture(rng, _HEAD_ONLY)
+    elif kind < 0.65:
+        pair = draw_gesture(rng, _ARM_ONLY), draw_gesture(rng, _TRUNK_ONLY)
+    else:
+        side = str(rng.choice(["left", "right"]))
+        first = draw_gesture(rng, _FREE_HAND, side)
+        second = draw_gesture(rng, _FREE_HAND, "right" if side == "left" else "left")
+        while second.family == first.family:
+            second = draw_gesture(rng, _FREE_HAND, second.side)
+        pair = first, second
+    return replace(pair[0], style=""), replace(pair[1], style="")
 
 
 def synthesise(rng: np.random.Generator) -> SynthClip:
@@ -99,18 +138,20 @@ def synthesise(rng: np.random.Generator) -> SynthClip:
 
 def synthesise_spec(spec: ClipSpec, rng: np.random.Generator) -> SynthClip | None:
     """A clip that shows `spec`; None when it would be longer than 9.8 s."""
-    score = Score(rng, _rest(rng))
-    if rng.random() < 0.35:
-        score.hold(rng.uniform(0.05, 0.35))
+    score = Score(rng, rest_pose(rng), follow_through=float(rng.uniform(0.0, 0.05)))
+    if rng.random() < 0.45:
+        score.hold(rng.choice([rng.uniform(0.05, 0.35), rng.uniform(0.3, 1.5)]))
     _write(score, spec)
     last = FAMILIES[spec.gestures[-1].family]
     if rng.random() < (0.55 if last.holds else 0.93):
-        score.relax(rng.uniform(0.5, 0.85))
+        score.relax(rng.uniform(0.65, 0.95))
     score.hold(rng.choice([0.1, rng.uniform(0.1, 0.6), rng.uniform(0.3, 2.0)]))
     n_tokens = int(np.ceil(score.time_s * FPS / FRAMES_PER_TOKEN))
     if n_tokens > MAX_TOKENS:
         return None
-    body = perform(score, n_tokens * FRAMES_PER_TOKEN)
+    style = STYLES.get(spec.gestures[0].style)
+    posture = (style.trunk_pitch_rad, style.head_pitch_rad) if style else (0.0, 0.0)
+    body = perform(score, n_tokens * FRAMES_PER_TOKEN, style.stiffness if style else 0.0, posture)
     captions = [caption(list(spec.gestures), spec.parallel, rng) for _ in range(N_CAPTIONS)]
     return SynthClip(body.features(), captions, spec, body)
 
@@ -121,13 +162,13 @@ def _write(score: Score, spec: ClipSpec) -> None:
         if i and spec.parallel:
             score.time_s = start_s + score.rng.uniform(0.0, 0.3)
         elif i and not (score.rng.random() < 0.3 and gesture.side and gesture.side == spec.gestures[i - 1].side):
-            score.relax(score.rng.uniform(0.4, 0.65))
+            score.relax(score.rng.uniform(0.5, 0.75))
         FAMILIES[gesture.family].perform(score, gesture)
         ends.append(score.time_s)
     score.time_s = max(ends)
 
 
-def _rest(rng: np.random.Generator) -> dict[str, Array]:
+def rest_pose(rng: np.random.Generator) -> dict[str, Array]:
     """A relaxed stance: arms hang, a little different for everybody."""
 
     def arm() -> Array:

@@ -18,6 +18,9 @@ Array = NDArray[np.floating]
 ARM_MOVED_DEG = 24.0
 HEAD_MOVED_DEG = 11.0
 TRUNK_MOVED_DEG = 6.0
+PALM_M = 0.08
+"""From the wrist joint to the middle of the palm."""
+_STERNUM_M = np.array([0.0, -0.13, 0.13])
 _ARMS = {"left": (16, 18, 20), "right": (17, 19, 21)}
 
 
@@ -100,7 +103,8 @@ def direction(s: Shown, family: str) -> str:
     """Where a gesture with a direction goes, "" when nowhere."""
     if family == "look":
         yaw, pitch = s.head_yaw_deg, s.head_pitch_deg
-        return _largest({"left": yaw.max(), "right": -yaw.min(), "down": pitch.max(), "up": -pitch.min()}, 15)
+        t = int(np.argmax(np.abs(yaw) + np.abs(pitch)))
+        return _aim(float(yaw[t]) / 40, -float(pitch[t]) / 30, 0.4)
     if family == "tilt_head":
         return _largest({"left": s.head_roll_deg.max(), "right": -s.head_roll_deg.min()}, 10)
     if family == "lean":
@@ -110,16 +114,22 @@ def direction(s: Shown, family: str) -> str:
         return _largest({"left": s.trunk_yaw_deg.max(), "right": -s.trunk_yaw_deg.min()}, 9)
     if family == "point":
         side = s.arms if s.arms in ("left", "right") else "right"
-        towards = s.fore[side][_held(s, side)].mean(0)
-        x, y, z = (float(v) for v in towards)  # pointing at the floor is half forward: down counts more
-        return _largest({"left": x, "right": -x, "up": y, "down": -1.5 * y, "forward": z}, 0.4)
+        held = _held(s, side)
+        x, y, z = (float(v) for v in s.fore[side][held].mean(0))
+        palm = (s.wrists_m[side][held] + PALM_M * s.fore[side][held]).mean(0)
+        if np.linalg.norm(palm - _STERNUM_M) < 0.2:
+            return "self"
+        if z < -0.45:
+            return "back"
+        aim = _aim(x / 0.7, (y if y > 0 else 1.3 * y) / 0.8, 0.55)
+        return "forward" if z > 0.75 or not aim else aim  # pointing at the floor is half forward
     return ""
 
 
 def _arm_strokes(s: Shown, family: str, side: str) -> int:
     fore, wrist = s.fore[side], s.wrists_m[side]
     if family == "wave":
-        up = fore[:, 1] > 0.3
+        up = fore[:, 1] > 0.55
         outward = fore[:, 0] * (1 if side == "left" else -1)
         return _strokes(outward[up], 0.25) if up.sum() > 3 else 0
     if family == "punch":
@@ -159,6 +169,15 @@ def _strokes(signal: Array, least: float) -> int:
             if value > valley + turn:
                 strokes, rising, peak = strokes + 1, True, float(value)
     return strokes
+
+
+def _aim(left: float, up: float, least: float) -> str:
+    """left, right, up, down or two of them; "" when both shares are below `least`."""
+    height = "up" if up > least else "down" if up < -least else ""
+    side = "left" if left > least else "right" if left < -least else ""
+    if height and side and min(abs(up), abs(left)) < 0.5 * max(abs(up), abs(left)):
+        return height if abs(up) > abs(left) else side
+    return f"{height} {side}".strip()
 
 
 def _largest(values: dict[str, float], least: float) -> str:

@@ -12,16 +12,17 @@ from numpy.typing import NDArray
 from rich.progress import track
 from torch import Tensor
 
-from mmm_core.text import MiniLm, TextStates
+from mmm_core.text import TextEncoder, TextStates
 from mmm_core.tokenizer import Tokenizer
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.vqvae import VqVae
 
 ENCODE_BATCH = 64
 
 
 @dataclass(frozen=True)
 class Clip:
-    """One training motion: (T, 263) features, its sentences, and whether a person made it."""
+    """One training motion: (T, F) features, its sentences, and whether a person made it."""
 
     features: NDArray[np.float32]
     captions: list[str]
@@ -44,12 +45,12 @@ class CaptionStates:
         self.offsets = np.concatenate([[0], np.cumsum(n_words)])
 
     @classmethod
-    def encode(cls, captions: Sequence[str], encoder: MiniLm) -> CaptionStates:
+    def encode(cls, captions: Sequence[str], encoder: TextEncoder) -> CaptionStates:
         """Encode `captions`, of like length together."""
         order = sorted(range(len(captions)), key=lambda i: len(captions[i]))
         n_words = np.zeros(len(captions), np.int64)
-        sentences = torch.zeros(len(captions), encoder.config.width, dtype=torch.float16)
-        words: list[Tensor] = [sentences] * len(captions)
+        words: list[Tensor] = [torch.empty(0)] * len(captions)
+        sentences: list[Tensor] = [torch.empty(0)] * len(captions)
         for start in track(range(0, len(order), ENCODE_BATCH), description="captions"):
             rows = order[start : start + ENCODE_BATCH]
             states = encoder.encode([captions[i] for i in rows])
@@ -57,7 +58,7 @@ class CaptionStates:
                 n_words[i] = int(states.word_mask[row].sum())
                 words[i] = states.words[row, : n_words[i]].half()
                 sentences[i] = states.sentence[row].half()
-        return cls(torch.cat(words), n_words, sentences)
+        return cls(torch.cat(words), n_words, torch.stack(sentences))
 
     def save(self, path: Path) -> None:
         """Keep the states on disk."""
@@ -98,7 +99,7 @@ class TokenCorpus:
     is_real: NDArray[np.bool_]
 
 
-def encode_clips(clips: Sequence[Clip], tokenizer: Tokenizer) -> list[Tensor]:
+def encode_clips(clips: Sequence[Clip], tokenizer: Tokenizer | VqVae) -> list[Tensor]:
     """Ids (L, C) of each clip."""
     with torch.inference_mode():
         return [

@@ -1,6 +1,7 @@
 """A training run: a folder with its state, resumable at any step, a progress bar and a CSV log.
 
-Every step draws from its own random seed, so a run that was cut and goes on gives the same result as one that was not.
+Every step draws from its own random seed, so a run that was cut, even killed, and goes on gives the same result as one
+that was not. On the GPU this holds but for the order of its sums.
 """
 
 from __future__ import annotations
@@ -10,24 +11,44 @@ import math
 import os
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any, Literal
 
 import torch
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from torch import Tensor, nn
 
+from mmm_core import distributed
+from mmm_core.errors import CheckpointError, TrainingDataError
+
 LossFn = Callable[[int, torch.Generator], dict[str, Tensor]]
-"""(step, generator) -> losses; the one called "loss" is minimised."""
+"""(step, generator) -> losses of this process's share; the one called "loss" is minimised."""
+LOG_EVERY = 20
 
 
 @dataclass(frozen=True)
 class Schedule:
-    """How long and how fast to train."""
+    """How long and how fast to train.
+
+    Attributes:
+        steps: optimiser steps.
+        learning_rate: at its highest.
+        warmup_steps: steps of linear rise.
+        shape: "cosine" falls to `final_share`; "drop" stays and falls to it at once after two thirds (MMM's own).
+        final_share: of the learning rate, at the end.
+        weight_decay: AdamW's.
+        betas: AdamW's.
+        clip_norm: longest gradient; 0 does not clip.
+        ema_decay: of the averaged weights, which the model ends with; 0 keeps the last weights.
+        save_every: steps between saved states.
+        seed: of everything random in this stage.
+    """
 
     steps: int
     learning_rate: float = 8e-4
     warmup_steps: int = 100
+    shape: Literal["cosine", "drop"] = "cosine"
     final_share: float = 0.05
     weight_decay: float = 0.01
     betas: tuple[float, float] = (0.9, 0.98)
@@ -37,21 +58,64 @@ class Schedule:
     seed: int = 0
 
     def rate(self, step: int) -> float:
-        """Learning rate at `step`: linear warm-up, then a cosine down to `final_share`."""
+        """Learning rate at `step`."""
         if step < self.warmup_steps:
             return self.learning_rate * (step + 1) / self.warmup_steps
+        if self.shape == "drop":
+            return self.learning_rate * (self.final_share if 3 * step >= 2 * self.steps else 1.0)
         progress = min(1.0, (step - self.warmup_steps) / max(1, self.steps - self.warmup_steps))
         return self.learning_rate * (self.final_share + (1 - self.final_share) * (1 + math.cos(math.pi * progress)) / 2)
 
 
-def train(module: nn.Module, loss_fn: LossFn, schedule: Schedule, run_dir: Path, name: str) -> nn.Module:
-    """Train `module` in place and leave it with its averaged weights, in evaluation mode.
+@dataclass(frozen=True)
+class Run:
+    """Where and how a stage runs.
 
-    State is kept in `run_dir/name.pt` (weights, averages, optimiser, step) and `run_dir/name.csv`; an interrupted run
-    goes on from there, a finished one is only loaded.
+    Attributes:
+        folder: states, CSV logs, samples.
+        device: "cpu", "cuda" or "cuda:N".
+        precision: of matrix products; weights and averages stay fp32.
+        sample_every: steps between samples; 0 for none.
+        tensorboard: write TensorBoard events beside the CSV (extra `train`).
     """
-    run_dir.mkdir(parents=True, exist_ok=True)
-    state_file = run_dir / f"{name}.pt"
+
+    folder: Path
+    device: str = "cpu"
+    precision: Literal["fp32", "bf16"] = "fp32"
+    sample_every: int = 0
+    tensorboard: bool = False
+    sampler: Callable[[nn.Module, Path], None] | None = field(default=None, compare=False)
+
+    @property
+    def torch_device(self) -> torch.device:
+        """The device, checked.
+
+        Raises:
+            TrainingDataError: there is no such device.
+        """
+        if self.device.startswith("cuda") and not torch.cuda.is_available():
+            raise TrainingDataError(self.folder, "run.device", f"'{self.device}', but no CUDA device is here", "cpu")
+        try:
+            return torch.device(self.device)
+        except RuntimeError:
+            raise TrainingDataError(self.folder, "run.device", repr(self.device), "cpu, cuda, cuda:N") from None
+
+
+def train(module: nn.Module, loss_fn: LossFn, schedule: Schedule, run: Run, name: str) -> nn.Module:
+    """Train `module` in place and leave it on the CPU with its averaged weights, in evaluation mode.
+
+    State is kept in `folder/name.pt` (weights, averages, optimiser, step) and `folder/name.csv`; an interrupted run
+    goes on from there, a finished one is only loaded.
+
+    Raises:
+        CheckpointError: the state cannot be read, or cannot be written (the older one stays whole).
+    """
+    run.folder.mkdir(parents=True, exist_ok=True)
+    device = run.torch_device
+    distributed.start(device)
+    module.to(device)
+    distributed.from_first(module.state_dict().values())
+    state_file = run.folder / f"{name}.pt"
     parameters = [p for p in module.parameters() if p.requires_grad]
     optimiser = torch.optim.AdamW(
         parameters, schedule.learning_rate, schedule.betas, weight_decay=schedule.weight_decay
@@ -59,47 +123,117 @@ def train(module: nn.Module, loss_fn: LossFn, schedule: Schedule, run_dir: Path,
     averages = [p.detach().clone() for p in parameters]
     first = 0
     if state_file.is_file():
-        state = torch.load(state_file, weights_only=True)
+        state = _read(state_file, device)
         module.load_state_dict(state["module"])
         optimiser.load_state_dict(state["optimiser"])
         averages, first = state["averages"], state["step"]
-
-    def save(step: int) -> None:
-        partial = state_file.with_suffix(".part")
-        state = {"module": module.state_dict(), "optimiser": optimiser.state_dict(), "averages": averages, "step": step}
-        torch.save(state, partial)
-        os.replace(partial, state_file)
-
+    log = _Log(run, name, first, schedule.steps)
     module.train()
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns) as progress, (run_dir / f"{name}.csv").open("a", newline="") as log_file:
-        log = csv.writer(log_file)
-        task = progress.add_task(name, total=schedule.steps, completed=first)
-        started = time.monotonic()
+    with log:
         for step in range(first, schedule.steps):
             torch.manual_seed(schedule.seed * 1_000_003 + step)
             generator = torch.Generator().manual_seed(schedule.seed * 1_000_003 + step + 1)
             for group in optimiser.param_groups:
                 group["lr"] = schedule.rate(step)
-            losses = loss_fn(step, generator)
+            with torch.autocast(device.type, torch.bfloat16, enabled=run.precision == "bf16"):
+                losses = loss_fn(step, generator)
             optimiser.zero_grad(set_to_none=True)
             losses["loss"].backward()  # type: ignore[no-untyped-call]
-            nn.utils.clip_grad_norm_(parameters, schedule.clip_norm)
+            distributed.average(p.grad for p in parameters if p.grad is not None)
+            if schedule.clip_norm:
+                nn.utils.clip_grad_norm_(parameters, schedule.clip_norm)
             optimiser.step()
             decay = min(schedule.ema_decay, (step + 1) / (step + 10))
             with torch.no_grad():
                 for average, parameter in zip(averages, parameters, strict=True):
                     average.lerp_(parameter, 1 - decay)
-            if step % 20 == 0 or step + 1 == schedule.steps:
-                values = {key: float(value.detach()) for key, value in losses.items()}
-                log.writerow([step, f"{time.monotonic() - started:.1f}", *(f"{v:.5f}" for v in values.values())])
-                log_file.flush()
-                text = " ".join(f"{key} {value:.3f}" for key, value in values.items())
-                progress.update(task, description=f"{name} {text}")
-            progress.update(task, advance=1)
-            if (step + 1) % schedule.save_every == 0 or step + 1 == schedule.steps:
-                save(step + 1)
+            last = step + 1 == schedule.steps
+            log.step(step, losses, always=last)
+            if (step + 1) % schedule.save_every == 0 or last:
+                _save(state_file, {"module": module.state_dict(), "optimiser": optimiser.state_dict(),
+                                   "averages": averages, "step": step + 1})  # fmt: skip
+            if run.sampler and run.sample_every and (step + 1) % run.sample_every == 0 and distributed.rank() == 0:
+                module.eval()
+                run.sampler(module, run.folder / "samples" / f"{name}_{step + 1:06d}.png")
+                module.train()
     with torch.no_grad():
         for parameter, average in zip(parameters, averages, strict=True):
             parameter.copy_(average)
-    return module.eval()
+    return module.cpu().eval()
+
+
+class _Log:
+    """Progress bar, CSV and, if asked for, TensorBoard; only in the first process."""
+
+    def __init__(self, run: Run, name: str, first: int, steps: int) -> None:
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+        self._quiet = distributed.rank() != 0
+        self._progress = Progress(*columns, disable=self._quiet)
+        self._task = self._progress.add_task(name, total=steps, completed=first)
+        self._name, self._path, self._first = name, run.folder / f"{name}.csv", first
+        self._board = _board(run, name) if run.tensorboard and not self._quiet else None
+        self._started = time.monotonic()
+
+    def __enter__(self) -> _Log:
+        self._progress.start()
+        self._file = Path(os.devnull if self._quiet else self._path).open("a", newline="")
+        self._csv = csv.writer(self._file)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._progress.stop()
+        self._file.close()
+        if self._board is not None:
+            self._board.close()
+
+    def step(self, step: int, losses: dict[str, Tensor], *, always: bool) -> None:
+        """Note a step; values are written now and then, the mean over all processes."""
+        if step % LOG_EVERY == 0 or always:
+            means = torch.stack([v.detach().float() for v in losses.values()])
+            distributed.average([means])
+            values = dict(zip(losses, means.tolist(), strict=True))
+            seconds = time.monotonic() - self._started
+            if step == 0:
+                self._csv.writerow(["step", "seconds", *values])
+            self._csv.writerow([step, f"{seconds:.1f}", *(f"{v:.6f}" for v in values.values())])
+            self._file.flush()
+            for key, value in values.items() if self._board is not None else ():
+                self._board.add_scalar(f"{self._name}/{key}", value, step)  # type: ignore[union-attr]
+            speed = (step + 1 - self._first) / max(seconds, 1e-9)
+            text = " ".join(f"{key} {value:.3f}" for key, value in values.items())
+            self._progress.update(self._task, description=f"{self._name} {text}, {speed:.1f} steps/s")
+        self._progress.update(self._task, advance=1)
+
+
+def _board(run: Run, name: str) -> Any:
+    try:
+        from torch.utils.tensorboard import SummaryWriter
+    except ImportError:
+        found = "tensorboard is not installed"
+        raise TrainingDataError(run.folder, "run.tensorboard", found, "pip install 'mmmd[train]', or false") from None
+    return SummaryWriter(str(run.folder / "tensorboard" / name))  # type: ignore[no-untyped-call]
+
+
+def _save(path: Path, state: dict[str, Any]) -> None:
+    """Replace the state file at once; while it is written the older one stays."""
+    if distributed.rank() == 0:
+        partial = path.with_suffix(".part")
+        try:
+            torch.save(state, partial)
+            os.replace(partial, path)
+        except (OSError, RuntimeError) as error:
+            partial.unlink(missing_ok=True)
+            kept = "the state of an earlier step is whole" if path.is_file() else "there is no earlier state"
+            first = str(error).split("\n", 1)[0]
+            raise CheckpointError(path, "", f"could not be written ({first}); {kept}", "room on the disk") from error
+    distributed.wait()
+
+
+def _read(path: Path, device: torch.device) -> dict[str, Any]:
+    try:
+        return torch.load(path, map_location=device, weights_only=True)
+    except Exception as error:
+        first = str(error).split("\n", 1)[0]
+        raise CheckpointError(
+            path, "", f"not a readable state ({first})", "a run's own; delete it to begin anew"
+        ) from error

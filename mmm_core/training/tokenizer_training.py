@@ -7,6 +7,7 @@ turn or forearm twist, whose channels are few and small (docs/model.md).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +16,13 @@ import torch.nn.functional as F
 from numpy.typing import NDArray
 from torch import Tensor
 
+from mmm_core import distributed
+from mmm_core.errors import TrainingDataError
+from mmm_core.features import joints_of
 from mmm_core.tokenizer import Tokenizer, TokenizerConfig, feature_std, rotation_channels
 from mmm_core.training.batches import Clip
-from mmm_core.training.run import Schedule, train
+from mmm_core.training.run import Run, Schedule, train
+from mmm_core.vqvae import HEIGHT_CHANNELS, ROOT_HEIGHT, VqVae, VqVaeConfig
 
 WINDOW_FRAMES = 40
 BATCH = 128
@@ -40,45 +45,94 @@ def channel_weights() -> Tensor:
     return weight / weight.mean()
 
 
+@dataclass(frozen=True)
+class PaperLoss:
+    """MMM's tokenizer loss: SmoothL1 of all features, once more of the positions, and the commitment."""
+
+    positions: float = 0.5
+    commitment: float = 0.02
+
+
 def train_tokenizer(
-    clips: Sequence[Clip], config: TokenizerConfig, schedule: Schedule, run_dir: Path, real_share: float = 0.12
-) -> Tokenizer:
-    """A tokenizer trained on windows of `clips`, of which `real_share` come from real motion."""
-    tokenizer = Tokenizer(config)
-    synth = [c.features for c in clips if not c.is_real and len(c.features) >= WINDOW_FRAMES]
-    real = [c.features for c in clips if c.is_real and len(c.features) >= WINDOW_FRAMES]
-    sample = torch.from_numpy(np.concatenate([*synth[:3000], *real[:300]]))
-    tokenizer.mean.copy_(sample.mean(0))
-    tokenizer.std.copy_(feature_std(sample))
-    weights, draw = channel_weights(), _window_draw(clips, real_share)
+    clips: Sequence[Clip],
+    config: TokenizerConfig | VqVaeConfig,
+    schedule: Schedule,
+    run: Run,
+    *,
+    statistics: tuple[Tensor, Tensor] | None = None,
+    batch: int = BATCH,
+    window_frames: int = WINDOW_FRAMES,
+    real_share: float = 0.12,
+) -> Tokenizer | VqVae:
+    """A tokenizer trained on windows of `clips`, of which `real_share` come from real motion.
+
+    Args:
+        clips: motions; those shorter than a window are left out.
+        config: by parts (our loss), or the paper's layouts (its own loss).
+        schedule: how long.
+        run: where.
+        statistics: mean and spread of the features; None takes them from the clips.
+        batch: windows in a step, of all processes.
+        window_frames: frames in a window.
+        real_share: share of windows from people, where there are both kinds.
+    """
+    torch.manual_seed(schedule.seed)
+    tokenizer = Tokenizer(config) if isinstance(config, TokenizerConfig) else VqVae(config)
+    _set_statistics(tokenizer, clips, statistics)
+    draw = _window_draw(clips, real_share, batch, window_frames)
+    device = run.torch_device
+    weights = channel_weights().to(device)
 
     def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
-        x = (draw(generator) - tokenizer.mean) / tokenizer.std
+        x = tokenizer.normalise(draw(generator)[distributed.share(batch)].to(device))
         reconstruction, commitment = tokenizer(x)
+        reconstruction = reconstruction.float()
+        if isinstance(tokenizer, VqVae):
+            how, end = PaperLoss(), 4 + 3 * (joints_of(x.shape[-1]) - 1)
+            frames = F.smooth_l1_loss(reconstruction, x)
+            positions = F.smooth_l1_loss(reconstruction[..., 4:end], x[..., 4:end])
+            loss = frames + how.positions * positions + how.commitment * commitment
+            return {"loss": loss, "frames": frames, "positions": positions, "commitment": commitment}
         frames, differences = _errors(reconstruction, x, weights)
         loss = frames + DIFFERENCE_WEIGHT * differences + COMMITMENT * commitment
         return {"loss": loss, "frames": frames, "differences": differences, "commitment": commitment}
 
-    train(tokenizer, loss_fn, schedule, run_dir, "tokenizer")
+    train(tokenizer, loss_fn, schedule, run, "tokenizer")
     return tokenizer
 
 
 def tune_decoder(
-    tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run_dir: Path, real_share: float = 0.12
+    tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run: Run, real_share: float = 0.12
 ) -> None:
     """Train the decoder alone, in place: encoders and codebooks stay, so ids already made stay valid."""
-    weights, draw = channel_weights(), _window_draw(clips, real_share)
-    tokenizer.decoder.requires_grad_(True)
+    device = run.torch_device
+    weights, draw = channel_weights().to(device), _window_draw(clips, real_share, BATCH, WINDOW_FRAMES)
+    tokenizer.to(device).decoder.requires_grad_(True)
 
     def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
-        features = draw(generator)
+        features = draw(generator)[distributed.share(BATCH)].to(device)
         with torch.no_grad():
             vectors = tokenizer.embed(tokenizer.encode(features))
-        x = (features - tokenizer.mean) / tokenizer.std
-        frames, differences = _errors(tokenizer.decoder(vectors), x, weights)
+        frames, differences = _errors(tokenizer.decoder(vectors).float(), tokenizer.normalise(features), weights)
         return {"loss": frames + DECODER_DIFFERENCE_WEIGHT * differences, "frames": frames, "differences": differences}
 
-    train(tokenizer.decoder, loss_fn, schedule, run_dir, "decoder")
+    train(tokenizer.decoder, loss_fn, schedule, run, "decoder")
+    tokenizer.cpu()
+
+
+def _set_statistics(
+    tokenizer: Tokenizer | VqVae, clips: Sequence[Clip], statistics: tuple[Tensor, Tensor] | None
+) -> None:
+    synth = [c.features for c in clips if not c.is_real][:3000]
+    real = [c.features for c in clips if c.is_real][: 300 if synth else 3000]
+    sample = torch.from_numpy(np.concatenate([*synth, *real]))
+    mean, std = statistics or (sample.mean(0), feature_std(sample))
+    tokenizer.mean.copy_(mean)
+    tokenizer.std.copy_(std)
+    if isinstance(tokenizer, VqVae) and tokenizer.config.layout == "halves":
+        heights = sample[:, HEIGHT_CHANNELS] - sample[:, ROOT_HEIGHT, None]
+        tokenizer.height_mean.copy_(heights.mean(0))
+        tokenizer.height_std.copy_(heights.std(0).clamp_min(0.02))
 
 
 def _errors(reconstruction: Tensor, x: Tensor, weights: Tensor) -> tuple[Tensor, Tensor]:
@@ -89,18 +143,24 @@ def _errors(reconstruction: Tensor, x: Tensor, weights: Tensor) -> tuple[Tensor,
     return frames, (steps * weights).mean()
 
 
-def _window_draw(clips: Sequence[Clip], real_share: float) -> Callable[[torch.Generator], Tensor]:
-    """Draws (BATCH, WINDOW_FRAMES, 263) windows, `real_share` of them from real motion."""
-    synth = [c.features for c in clips if not c.is_real and len(c.features) >= WINDOW_FRAMES]
-    real = [c.features for c in clips if c.is_real and len(c.features) >= WINDOW_FRAMES]
-    n_real = round(BATCH * real_share) if real else 0
+def _window_draw(
+    clips: Sequence[Clip], real_share: float, batch: int, window: int
+) -> Callable[[torch.Generator], Tensor]:
+    """Draws (batch, window, F) windows, `real_share` of them from real motion where there are both kinds."""
+    synth = [c.features for c in clips if not c.is_real and len(c.features) >= window]
+    real = [c.features for c in clips if c.is_real and len(c.features) >= window]
+    if not synth and not real:
+        longest = max((len(c.features) for c in clips), default=0)
+        raise TrainingDataError(Path(), "window_frames", f"{window}, the longest motion has {longest} frames",
+                                "at most a motion's length")  # fmt: skip
+    n_real = round(batch * real_share) if real and synth else batch * bool(real)
 
     def draw(generator: torch.Generator) -> Tensor:
         windows: list[NDArray[np.float32]] = []
-        for source, count in ((synth, BATCH - n_real), (real, n_real)):
+        for source, count in ((synth, batch - n_real), (real, n_real)):
             for i in torch.randint(len(source), (count,), generator=generator).tolist() if count else []:
-                start = int(torch.randint(len(source[i]) - WINDOW_FRAMES + 1, (1,), generator=generator))
-                windows.append(source[i][start : start + WINDOW_FRAMES])
+                start = int(torch.randint(len(source[i]) - window + 1, (1,), generator=generator))
+                windows.append(source[i][start : start + window])
         return torch.from_numpy(np.stack(windows))
 
     return draw

@@ -7,19 +7,20 @@ the cross-entropy at every motion position. Text dropout (ours) makes guidance p
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import torch
 import torch.nn.functional as F
 from torch import Tensor
 
+from mmm_core import distributed
 from mmm_core.length import LengthPredictor
 from mmm_core.text import TextStates
 from mmm_core.tokenizer import Tokenizer
 from mmm_core.training.batches import TokenCorpus, length_buckets
-from mmm_core.training.run import Schedule, train
+from mmm_core.training.run import Run, Schedule, train
 from mmm_core.transformer import MotionTransformer, TransformerConfig
+from mmm_core.vqvae import VqVae
 
 TOKENS_PER_BATCH = 1100
 """Rows per batch follow from the length, so that every step costs about the same."""
@@ -34,50 +35,78 @@ class Corruption:
         masked_share: the least share of positions masked; drawn from U(masked_share, 1).
         kept_share: the least probability that a visible id is kept and not replaced; U(kept_share, 1) for each motion.
         no_text_share: share of motions trained without their text.
-        real_share: share of motions made by a person.
+        real_share: share of motions made by a person, where there are both kinds.
+        part_share: share of motions of which single body parts are masked, so that parts can be edited alone.
+        context_share: share of the ids of codebooks that are only seen (the lower body of eq. 3) which are replaced.
     """
 
     masked_share: float = 0.4
     kept_share: float = 0.5
     no_text_share: float = 0.1
     real_share: float = 0.12
+    part_share: float = 0.0
+    context_share: float = 0.1
 
 
-def corrupt(ids: Tensor, n_tokens: Tensor, n_codes: int, how: Corruption, generator: torch.Generator) -> Tensor:
-    """Replace some visible ids by random ones, then mask positions; (B, L, C) -> (B, L, C), [END] and [PAD] untouched."""
-    B, L, _ = ids.shape
+def corrupt(
+    ids: Tensor,
+    n_tokens: Tensor,
+    n_codes: int,
+    how: Corruption,
+    generator: torch.Generator,
+    n_predicted: int | None = None,
+) -> Tensor:
+    """Replace some visible ids by random ones, then mask positions; (B, L, C) -> (B, L, C), [END] and [PAD] untouched.
+
+    Codebooks from `n_predicted` on are never masked, only lightly replaced (MMM eq. 3).
+    """
+    B, L, C = ids.shape
+    P = C if n_predicted is None else n_predicted
     motion = torch.arange(L)[None] < n_tokens[:, None]  # (B, L)
     keep = how.kept_share + (1 - how.kept_share) * torch.rand(B, 1, generator=generator)
     replaced = motion & (torch.rand(B, L, generator=generator) > keep)
     random_ids = torch.randint(n_codes, ids.shape, generator=generator)
-    ids = torch.where(replaced[..., None], random_ids, ids)
     share = how.masked_share + (1 - how.masked_share) * torch.rand(B, generator=generator)
     n_masked = (share * n_tokens).round().clamp_min(1)
     order = torch.rand(B, L, generator=generator).masked_fill(~motion, 2.0).argsort(dim=1).argsort(dim=1)
-    masked = order < n_masked[:, None]
-    return torch.where(masked[..., None], torch.full_like(ids, n_codes + 2), ids)
+    masked = (order < n_masked[:, None])[..., None].expand(B, L, P)
+    hidden = replaced[..., None].expand(B, L, P)
+    if how.part_share and P > 1:
+        parts = torch.rand(B, 1, P, generator=generator) < 0.5
+        parts[:, :, 0] |= ~parts.any(-1)  # at least one
+        by_part = torch.rand(B, 1, 1, generator=generator) < how.part_share
+        masked = masked & (parts | ~by_part)
+    if P < C:
+        context = motion & (torch.rand(B, L, generator=generator) < how.context_share)
+        never = torch.zeros(B, L, C - P, dtype=torch.bool)
+        hidden, masked = torch.cat([hidden, context[..., None] | never], -1), torch.cat([masked, never], -1)
+    ids = torch.where(hidden, random_ids, ids)
+    return torch.where(masked, torch.full_like(ids, n_codes + 2), ids)
 
 
 def train_transformer(
     corpus: TokenCorpus,
-    tokenizer: Tokenizer,
+    tokenizer: Tokenizer | VqVae,
     config: TransformerConfig,
     schedule: Schedule,
-    run_dir: Path,
+    run: Run,
     how: Corruption | None = None,
+    tokens_per_batch: int = TOKENS_PER_BATCH,
 ) -> MotionTransformer:
-    """A transformer trained on `corpus`."""
+    """A transformer trained on `corpus`: eq. 2, or eq. 3 where `config` predicts the first codebooks only."""
     how = how or Corruption()
+    torch.manual_seed(schedule.seed)
     model = MotionTransformer(config)
-    model.set_codebooks([q.codebook for q in tokenizer._books()])  # noqa: SLF001 - the codes are shared by design
+    model.set_codebooks([q.codebook for q in tokenizer.books])
     buckets = length_buckets(corpus.ids)
     weight = np.array([_drawing_weight(rows, corpus.is_real, how.real_share) for rows in buckets.values()])
-    lengths, K = list(buckets), config.n_codes
+    lengths, K, P = list(buckets), config.n_codes, config.n_out
+    device = run.torch_device
 
     def batch(generator: torch.Generator) -> tuple[Tensor, Tensor, TextStates]:
         rng = np.random.default_rng(int(torch.randint(2**62, (1,), generator=generator)))
         length = lengths[rng.choice(len(lengths), p=weight / weight.sum())]
-        rows, B = buckets[length], max(8, TOKENS_PER_BATCH // length)
+        rows, B = buckets[length], max(8, tokens_per_batch // length)
         p = np.where(corpus.is_real[rows], *_shares(corpus.is_real[rows], how.real_share))
         picked = rng.choice(rows, B, p=p / p.sum())
         ids = torch.full((B, length + 1, config.n_codebooks), K + 1)
@@ -91,34 +120,45 @@ def train_transformer(
 
     def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
         ids, n_tokens, text = batch(generator)
+        dropped = torch.rand(len(ids), generator=generator) < how.no_text_share
+        seen = corrupt(ids, n_tokens, K, how, generator, P)
+        mine = distributed.share(len(ids))
+        ids, seen, n_tokens, dropped = (t[mine].to(device) for t in (ids, seen, n_tokens, dropped))
+        context = model.read_text(_drop(text.part(mine).to(device), dropped, model))
         B, L = ids.shape[:2]
-        dropped = torch.rand(B, generator=generator) < how.no_text_share
-        logits = model(corrupt(ids, n_tokens, K, how, generator), model.read_text(_drop(text, dropped, model)))
-        motion = torch.arange(L)[None] < n_tokens[:, None]
-        target = ids[motion]  # (N, C)
+        logits = model(seen, context).float()
+        motion = torch.arange(L, device=device)[None] < n_tokens[:, None]
+        target = ids[motion][:, :P]  # (N, P)
         entropy = F.cross_entropy(logits[motion].reshape(-1, K), target.reshape(-1), reduction="none")
         share = (1.0 / n_tokens)[:, None].expand(B, L)[motion]
         loss = (entropy.reshape(target.shape).mean(1) * share).sum() / B
         right = (logits[motion].argmax(-1) == target).float().mean()
         return {"loss": loss, "right": right}
 
-    train(model, loss_fn, schedule, run_dir, "transformer")
+    train(model, loss_fn, schedule, run, "transformer")
     return model
 
 
-def train_length(corpus: TokenCorpus, seconds: list[float], schedule: Schedule, run_dir: Path) -> LengthPredictor:
-    """A length predictor trained by maximum likelihood on each caption and its clip's length."""
-    predictor = LengthPredictor()
-    pairs = [(row, seconds[i]) for i, rows in enumerate(corpus.caption_rows) if not corpus.is_real[i] for row in rows]
+def train_length(corpus: TokenCorpus, seconds: list[float], schedule: Schedule, run: Run) -> LengthPredictor:
+    """A length predictor trained by maximum likelihood on each caption and its clip's length.
+
+    People's clips are cut from recordings, so their length says little; they count only where there is nothing else.
+    """
+    torch.manual_seed(schedule.seed)
+    predictor = LengthPredictor(corpus.captions.words.shape[1])
+    taken = corpus.is_real if corpus.is_real.all() else ~corpus.is_real
+    pairs = [(row, seconds[i]) for i, rows in enumerate(corpus.caption_rows) if taken[i] for row in rows]
+    device = run.torch_device
 
     def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
-        picked = [pairs[i] for i in torch.randint(len(pairs), (LENGTH_BATCH,), generator=generator).tolist()]
-        mean, log_std = predictor(corpus.captions.gather([row for row, _ in picked]))
-        error = (torch.tensor([s for _, s in picked]).log() - mean) / log_std.exp()
+        drawn = torch.randint(len(pairs), (LENGTH_BATCH,), generator=generator)[distributed.share(LENGTH_BATCH)]
+        picked = [pairs[i] for i in drawn.tolist()]
+        mean, log_std = predictor(corpus.captions.gather([row for row, _ in picked]).to(device))
+        error = (torch.tensor([s for _, s in picked], device=device).log() - mean) / log_std.exp()
         loss = (0.5 * error.square() + log_std).mean()
         return {"loss": loss, "spread": log_std.exp().mean()}
 
-    train(predictor, loss_fn, schedule, run_dir, "length")
+    train(predictor, loss_fn, schedule, run, "length")
     return predictor
 
 
@@ -137,7 +177,7 @@ def _drawing_weight(rows: np.ndarray, is_real: np.ndarray, real_share: float) ->
 
 def _drop(text: TextStates, dropped: Tensor, model: MotionTransformer) -> TextStates:
     """Replace the text of the rows in `dropped` by "no text"."""
-    empty = model.no_text(len(dropped))
+    empty = model.no_text(len(dropped))  # on the model's device
     words = torch.where(dropped[:, None, None], empty.words, text.words)
     only_first = torch.zeros_like(text.word_mask)
     only_first[:, 0] = True

@@ -9,7 +9,7 @@ import time
 import pytest
 import zmq
 
-from daemon import wire
+from daemon import events, wire
 from daemon.client import Client, NoAnswerError, RefusedError
 from daemon.config import Endpoints
 from daemon.errors import ConfigError
@@ -78,7 +78,7 @@ def test_a_peer_that_is_no_daemon_is_named(endpoints):
 def test_answers_to_older_requests_are_passed_over(endpoints):
     def answer(frame):
         request = wire.decode_ctl(frame)
-        return [wire.encode(wire.Ack(id=i, verb="stop", state="idle")) for i in ("older", request.id)]
+        return [wire.encode(events.Ack(id=i, verb="stop", state="idle")) for i in ("older", request.id)]
 
     with talking(endpoints.ctl, answer), Client(endpoints) as client:
         assert client.stop(wait=False).id != "older"
@@ -86,7 +86,7 @@ def test_answers_to_older_requests_are_passed_over(endpoints):
 
 def test_a_refusal_is_an_error_with_its_event(endpoints):
     def answer(frame):
-        return [wire.encode(wire.Rejected(id=wire.decode_ctl(frame).id, code="wrong_state", asked="arm", found="in estop",
+        return [wire.encode(events.Rejected(id=wire.decode_ctl(frame).id, code="wrong_state", asked="arm", found="in estop",
                                           allowed="reset", do="reset first"))]  # fmt: skip
 
     with talking(endpoints.ctl, answer), Client(endpoints) as client:

@@ -10,7 +10,8 @@ import time
 import pytest
 import zmq
 
-from daemon import wire
+from daemon import events as ev
+from daemon import requests, wire
 from daemon.client import CancelledByError, Client, RefusedError
 from tests.end_to_end.harness import RunningDaemon
 
@@ -76,7 +77,7 @@ def test_say_is_accepted_moves_and_is_done(robot):
 def test_plain_text_from_a_dealer(robot, running, context):
     socket = dealer(context, running.endpoints.cmd)
     socket.send(b"wave with your right hand")
-    events = hear(socket, wire.Done)
+    events = hear(socket, ev.Done)
     assert kinds(events) == ["accepted", "progress", "done"]
     assert len({e.id for e in events}) == 1 and [e.seq for e in events] == sorted(e.seq for e in events)
 
@@ -96,10 +97,10 @@ def test_a_req_socket_gets_exactly_one_reply_for_each_request(robot, running, co
 def test_a_text_during_a_motion_takes_over(robot, running, context):
     socket = dealer(context, running.endpoints.cmd)
     socket.send(json.dumps({"type": "say", "id": "one", "text": "wave", "seconds": 3.0}).encode())
-    while not isinstance(event := wire.decode_event(socket.recv()), wire.Progress):
+    while not isinstance(event := wire.decode_event(socket.recv()), ev.Progress):
         assert event.id == "one"
     socket.send(json.dumps({"type": "say", "id": "two", "text": "left wave"}).encode())
-    events = hear(socket, wire.Done)
+    events = hear(socket, ev.Done)
     assert [(e.id, k) for e, k in zip(events, kinds(events), strict=True)] == [
         ("two", "accepted"), ("one", "cancelled"), ("two", "progress"), ("two", "done")
     ]  # fmt: skip
@@ -124,9 +125,9 @@ def test_the_same_id_twice_is_one_motion(robot, running, context):
     first, second = dealer(context, running.endpoints.cmd), dealer(context, running.endpoints.cmd)
     frame = json.dumps({"type": "say", "id": "once", "text": "wave"}).encode()
     first.send(frame)
-    assert isinstance(wire.decode_event(first.recv()), wire.Accepted)
+    assert isinstance(wire.decode_event(first.recv()), ev.Accepted)
     second.send(frame)
-    events, others = hear(first, wire.Done), hear(second, wire.Done)
+    events, others = hear(first, ev.Done), hear(second, ev.Done)
     assert {e.plan_id for e in [*events, *others]} == {events[-1].plan_id}
     second.send(json.dumps({"type": "say", "id": "once", "text": "bow"}).encode())
     assert wire.decode_event(second.recv()).code == "id_in_use"
@@ -163,12 +164,12 @@ def test_bad_frames_get_one_error_and_the_daemon_goes_on(robot, running, context
     socket = dealer(context, running.endpoints.cmd)
     socket.send(frame)
     event = wire.decode_event(socket.recv())
-    assert isinstance(event, wire.ErrorEvent) and event.code == code
+    assert isinstance(event, ev.ErrorEvent) and event.code == code
     socket.send(b'{"type": "status"}')
-    assert isinstance(wire.decode_event(socket.recv()), wire.StateEvent)  # nothing else came for the bad frame
+    assert isinstance(wire.decode_event(socket.recv()), ev.StateEvent)  # nothing else came for the bad frame
     ctl = dealer(context, running.endpoints.ctl)
     ctl.send(frame)
-    assert isinstance(wire.decode_event(ctl.recv()), wire.ErrorEvent)
+    assert isinstance(wire.decode_event(ctl.recv()), ev.ErrorEvent)
 
 
 def test_several_frames_are_an_error(running, context):
@@ -208,21 +209,21 @@ def test_a_stop_right_after_a_text_stops_it(robot, running, context):
     """No lost stop: the text may still be on its way in another socket when the stop is served."""
     socket = dealer(context, running.endpoints.cmd)
     for _ in range(10):
-        socket.send(wire.encode(wire.Say(text="wave", t_mono=time.monotonic())))
+        socket.send(wire.encode(requests.Say(text="wave", t_mono=time.monotonic())))
         robot.stop()
-        assert kinds(hear(socket, wire.Cancelled))[-1] == "cancelled"
+        assert kinds(hear(socket, ev.Cancelled))[-1] == "cancelled"
     assert robot.status().command is None
 
 
 def test_cancel_by_id(robot, running, context):
     socket = dealer(context, running.endpoints.cmd)
-    socket.send(b'{"type": "say", "id": "c1", "text": "wave", "seconds": 4}')
-    hear(socket, wire.Progress)
+    socket.send(wire.encode(requests.Say(id="c1", text="wave", seconds=4, t_mono=time.monotonic())))
+    hear(socket, ev.Progress)
     with running.client() as client:
         with pytest.raises(RefusedError, match="c1"):
             client.cancel("another")
         client.cancel("c1")
-        assert hear(socket, wire.Cancelled)[-1].by == "cancel"
+        assert hear(socket, ev.Cancelled)[-1].by == "cancel"
         with pytest.raises(RefusedError, match="nothing is running"):
             client.cancel()
     robot.wait_for("holding", timeout_s=3)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from daemon.events import Accepted, Cancelled, Done
 from daemon.ledger import Ledger, Route, split_route
-from daemon.wire import Accepted, Cancelled, Done, Say, WireError
+from daemon.requests import Say
+from daemon.wire import WireError
 
 DEALER, REQ = Route((b"d",), once=False), Route((b"r", b""), once=True)
 

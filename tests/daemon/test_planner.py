@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from daemon.bus.servo_bus import ServoBus
 from daemon.bus_view import BusView
 from daemon.planner import Planner
+from daemon.posture import posture_of
 from daemon.shared import BusLink, BusRequest, BusState
 from daemon.streamer import Streamer
 from retarget.limits import JointLimits
@@ -22,6 +23,7 @@ from tests.daemon.kinematic import raised_arm
 ROBOT = load_robot("reference")
 RIGHT = raised_arm("right", 1.0, 1.0, "right")
 LEFT = raised_arm("left", 0.8, 0.9, "left")
+LEFT_POSTURE = posture_of(LEFT)
 PERIOD_S = ROBOT.bus.period_s
 
 
@@ -61,11 +63,12 @@ class Bench:
 
     def play(self, motion, plan_name: str = "c", retarget_cycles: int = 2):
         """Take over as the performer does; retargeting takes some bus cycles meanwhile."""
+        posture = posture_of(motion)
         start = self.planner.hand_over()
-        path = self.planner.retarget(motion, start)
+        path = self.planner.retarget(posture, start.state)
         self.cycle(retarget_cycles)
         assert not self.planner.hand_over_missed
-        return self.planner.commit(path, self.planner.new_plan_id(), plan_name, self.planner.epoch, 0)
+        return self.planner.commit(path, posture, self.planner.new_plan_id(), plan_name, self.planner.epoch, 0)
 
     def finish(self) -> None:
         for _ in range(1500):
@@ -104,10 +107,10 @@ def test_a_motion_is_played_to_its_end_unchanged_by_the_gate(bench):
     plan = bench.play(RIGHT)
     bench.finish()
     assert plan.played and plan.all_pushed
-    done = plan.statistics.done(plan.path.report, len(plan.q_rad))
-    assert done.frames == len(plan.q_rad)
+    done = plan.statistics.done(plan.n_frames)
+    assert done.frames == plan.n_frames
     assert done.gate_clipped_frames == 0 and done.underruns == 0 and done.log_dropped == 0
-    assert done.duration_s == pytest.approx(len(plan.q_rad) * PERIOD_S, abs=2 * PERIOD_S)
+    assert done.duration_s == pytest.approx(plan.n_frames * PERIOD_S, abs=2 * PERIOD_S)
     assert 0 < done.peak_speed_share <= 1.0 + 1e-9
     assert done.first_motion_ms is not None
     assert_within_limits(bench)
@@ -173,17 +176,17 @@ def test_a_late_front_brakes_and_the_next_motion_starts_from_there(bench):
     bench.play(RIGHT)
     bench.cycle(20)
     start = bench.planner.hand_over()
-    path = bench.planner.retarget(LEFT, start)
+    path = bench.planner.retarget(LEFT_POSTURE, start.state)
     bench.cycle(60, pump=True)  # retargeting takes far longer than foreseen
     assert bench.planner.hand_over_missed
     for _ in range(300):
         bench.cycle()
         if not bench.records[-1]["velocity_rad_s"].any():
             break
-    start = bench.planner.hand_over()
+    start = bench.planner.hand_over().state
     assert np.array_equal(start.position_rad, bench.view.goal_rad) and not start.velocity_rad_s.any()
-    path = bench.planner.retarget(LEFT, start)
-    bench.planner.commit(path, bench.planner.new_plan_id(), "c", bench.planner.epoch, 0)
+    path = bench.planner.retarget(LEFT_POSTURE, start)
+    bench.planner.commit(path, LEFT_POSTURE, bench.planner.new_plan_id(), "c", bench.planner.epoch, 0)
     bench.finish()
     assert_within_limits(bench)
 

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from rig import rig, swing
 
 from daemon import shared
+from daemon.bus.models import CONTROL_TABLES
 from daemon.bus.servo_bus import ServoBus
 from daemon.errors import PortMissingError
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
@@ -17,7 +18,12 @@ from sim.clock import VirtualClock
 from sim.faults import Fault
 from sim.port import SimPort
 
-ROBOTS = list_robots()
+ROBOTS = [
+    name
+    for name in list_robots()
+    if all(s.model.protocol == 2.0 and s.model.model_number in CONTROL_TABLES for s in load_robot(name).servos)
+]
+"""Those whose servos the bus knows how to talk to."""
 
 
 def assert_brakes_within_limits(records, robot) -> None:

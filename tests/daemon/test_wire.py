@@ -9,24 +9,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon import wire
+from daemon import events, requests, wire
 from daemon.wire_schemas import schemas, text_of
 
 DOCS = Path(__file__).parents[2] / "docs" / "wire"
 
 GOOD_CMD = [
-    ("plain text", b"wave with your right hand", wire.Say(text="wave with your right hand")),
-    ("plain text, spaces around", b"  nod twice \n", wire.Say(text="nod twice")),
-    ("plain text, not ASCII", "grüße".encode(), wire.Say(text="grüße")),
-    ("plain text that is JSON, but no object", b"42", wire.Say(text="42")),
-    ("least JSON", b'{"type": "say", "text": "bow"}', wire.Say(text="bow")),
+    ("plain text", b"wave with your right hand", requests.Say(text="wave with your right hand")),
+    ("plain text, spaces around", b"  nod twice \n", requests.Say(text="nod twice")),
+    ("plain text, not ASCII", "grüße".encode(), requests.Say(text="grüße")),
+    ("plain text that is JSON, but no object", b"42", requests.Say(text="42")),
+    ("least JSON", b'{"type": "say", "text": "bow"}', requests.Say(text="bow")),
     (
         "all fields",
         b'{"v": 1, "id": "a", "seq": 3, "t_mono": 1.5, "type": "say", "text": "bow", "seed": 7, "seconds": 2}',
-        wire.Say(v=1, id="a", seq=3, t_mono=1.5, text="bow", seed=7, seconds=2.0),
+        requests.Say(v=1, id="a", seq=3, t_mono=1.5, text="bow", seed=7, seconds=2.0),
     ),
-    ("status", b'{"type":"status","id":"s"}', wire.Status(id="s")),
-    ("cancel", b'{"type":"cancel","command":"a"}', wire.Cancel(command="a")),
+    ("status", b'{"type":"status","id":"s"}', requests.Status(id="s")),
+    ("cancel", b'{"type":"cancel","command":"a"}', requests.Cancel(command="a")),
 ]
 
 BAD_CMD = [
@@ -39,7 +39,7 @@ BAD_CMD = [
     ("a JSON list", b'["say", "wave"]', "bad_json", ["list"]),
     ("deep nesting", b"[" * 60_000, "bad_json", ["nested"]),
     ("no type", b'{"text": "wave"}', "unknown_type", ["no 'type'", "say"]),
-    ("unknown type", b'{"type": "dance", "id": "x"}', "unknown_type", ["'dance'", "say, cancel, status"]),
+    ("unknown type", b'{"type": "dance", "id": "x"}', "unknown_type", ["'dance'", "say, gesture", "cancel, status"]),
     ("type of another kind", b'{"type": 5}', "unknown_type", ["5"]),
     ("a ctl verb on cmd", b'{"type": "stop"}', "unknown_type", ["ctl socket"]),
     ("unknown field", b'{"type": "say", "text": "wave", "speed": 3}', "unknown_field", ["'speed'", "seconds"]),
@@ -81,7 +81,7 @@ def test_an_error_carries_the_id_of_its_request():
     assert wire.error_event(caught.value).id == "mine"
 
 
-@pytest.mark.parametrize("kind", wire.CTL_TYPES)
+@pytest.mark.parametrize("kind", requests.CTL_TYPES)
 def test_ctl_takes_json_and_bare_verbs(kind):
     verb = kind.__struct_config__.tag
     assert wire.decode_ctl(verb.encode()) == kind()
@@ -113,11 +113,11 @@ def test_any_object_either_decodes_or_raises_wire_error(fields):
         request = wire.decode_cmd(json.dumps(fields).encode())
     except wire.WireError:
         return
-    assert request.v == wire.PROTOCOL_VERSION
+    assert request.v == requests.PROTOCOL_VERSION
 
 
 def test_an_event_of_a_later_minor_version_is_still_read():
-    event = wire.Cancelled(plan_id=3, by="stop", id="a")
+    event = events.Cancelled(plan_id=3, by="stop", id="a")
     frame = wire.encode(event)[:-1] + b', "more": [1, 2]}'
     assert wire.decode_event(frame) == event
 

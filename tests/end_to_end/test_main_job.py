@@ -12,7 +12,8 @@ import time
 
 import pytest
 
-from daemon.wire import Accepted, Cancelled, Done, Progress, Say
+from daemon.events import Accepted, Cancelled, Done, Progress
+from daemon.requests import Say
 from mmm_core.checkpoint import MODEL_FILE
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 from tests.end_to_end.test_start_and_end import child_pid

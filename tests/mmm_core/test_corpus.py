@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 from mmm_core.corpus.cmu import mirror_words, read_clips
 from mmm_core.corpus.families import FAMILIES, Gesture
-from mmm_core.corpus.grammar import caption, known_commands
-from mmm_core.corpus.phrases import DIRECTED, PHRASES
+from mmm_core.corpus.grammar import caption, known_commands, plain_phrases
 from mmm_core.corpus.score import REST_ARM, Score
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.corpus.synthesis import ClipSpec, draw_spec, synthesise, synthesise_spec
@@ -26,13 +25,13 @@ SHARED = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared"
 
 @given(st.integers(0, 3000))
 def test_every_clip_is_whole_tokens_finite_and_bounded_in_speed(seed: int) -> None:
-    """The bound is loose: an arm raised from hanging straight up swings through its middle at up to 11 m/s."""
+    """An arm's ways are arcs: no wrist rushes, not even when a hanging arm is raised straight up."""
     clip = synthesise(np.random.default_rng(seed))
     assert len(clip.features) % 4 == 0
     assert 4 <= len(clip.features) <= 196
     assert np.isfinite(clip.features).all()
     joints = recover(clip.features).joints_m
-    assert np.linalg.norm(np.diff(joints[:, [20, 21]], axis=0), axis=-1).max() * 20 < 13.0, "wrists, m/s"
+    assert np.linalg.norm(np.diff(joints[:, [20, 21]], axis=0), axis=-1).max() * 20 < 7.0, "wrists, m/s"
 
 
 def test_a_clip_depends_on_seed_and_number_alone() -> None:
@@ -61,20 +60,24 @@ def test_a_sentence_names_no_side_that_the_motion_has_not(seed: int) -> None:
     rng = np.random.default_rng(seed)
     side = str(rng.choice(["left", "right"]))
     other = {"left": "right", "right": "left"}[side]
-    words = caption([Gesture("raise", side)], False, rng).lower()
-    denied = any(w in words for w in ("not ", "don't", "instead", "leave"))
+    words = caption([Gesture("raise", side)], False, rng).lower().replace(",", " ")
+    denied = any(
+        w in words
+        for w in ("not ", "don't", "instead", "leave", "keep", "without", "rests", "rather", "stop", "no ", "i said")
+    )
     assert other not in words.split() or denied
-    named = any(sorted(word.strip(".,!")) == sorted(side) for word in words.split())  # a slip of the finger counts
+    named = any(sorted(word.strip(".,!:;")) == sorted(side) for word in words.split())  # a slip of the finger counts
     assert named or side == "right", "an unnamed side is the right one"
 
 
-def test_each_family_has_words_and_each_table_a_family() -> None:
-    assert set(PHRASES) | set(DIRECTED) == set(FAMILIES)
-    for name, family in FAMILIES.items():
-        for where in family.directions or ("",):
-            table = DIRECTED.get(name, {}).get(where, PHRASES.get(name, {}))
-            for side in family.sides or ("",):
-                assert table.get({"both": "both", "": "none"}.get(side, "one")), (name, where, side)
+@pytest.mark.parametrize("name", sorted(FAMILIES))
+def test_each_family_can_be_said_in_twenty_ways_and_for_every_side(name: str) -> None:
+    family = FAMILIES[name]
+    phrases = {(row, p) for where in family.directions or ("",) for row, p in plain_phrases(name, where)}
+    assert len({p for _, p in phrases}) >= 20
+    rows = {row for row, _ in phrases}
+    wanted = {"both": "both", "left": "one", "right": "one", "alternating": "alternating", "": "none"}
+    assert {wanted[s] for s in family.sides or ("",)} <= rows
 
 
 def test_known_commands_are_plain() -> None:
@@ -85,7 +88,7 @@ def test_known_commands_are_plain() -> None:
 
 def test_sequences_and_parallels_are_drawn() -> None:
     specs = [draw_spec(np.random.default_rng(i)) for i in range(200)]
-    assert {len(s.gestures) for s in specs} == {1, 2}
+    assert {len(s.gestures) for s in specs} == {1, 2, 3}
     assert any(s.parallel for s in specs)
 
 

@@ -19,6 +19,7 @@ LIMB_FAMILIES = (
     "wave", "raise", "point", "clap", "bow", "nod", "shake_head", "look", "tilt_head", "lean",
     "twist", "cross_arms", "hands_on_hips", "salute", "punch", "stop", "t_pose", "hands_up", "think", "heart", "beckon",
 )  # fmt: skip
+SHOWN_AS = {"alternating": "both"}
 COUNTED = ("wave", "clap", "nod", "bow", "punch", "beckon")
 DIRECTED = ("look", "point", "lean", "twist", "tilt_head")
 
@@ -46,12 +47,12 @@ def test_side_and_limb_are_seen_on_motions_that_are_right(name: str) -> None:
     found = [(g, shown(f)) for g, f in gestures(name)]
     assert sum(checks.limb(s) == FAMILIES[name].limb for _, s in found) >= len(found) - 1
     if FAMILIES[name].sides:
-        assert sum(s.arms == g.side for g, s in found) >= len(found) - 1
+        assert sum(s.arms == SHOWN_AS.get(g.side, g.side) for g, s in found) >= len(found) - 1
 
 
 @pytest.mark.parametrize("name", ["wave", "raise", "salute", "stop"])
 def test_a_mirrored_motion_fails_the_side(name: str) -> None:
-    other = {"left": "right", "right": "left", "both": "both"}
+    other = {"left": "right", "right": "left", "both": "both", "alternating": "both"}
     found = [(g, shown(mirror(f))) for g, f in gestures(name)]
     assert sum(s.arms == other[g.side] for g, s in found) >= len(found) - 1
 
@@ -59,7 +60,9 @@ def test_a_mirrored_motion_fails_the_side(name: str) -> None:
 @pytest.mark.parametrize("name", COUNTED)
 def test_counts_are_seen(name: str) -> None:
     found = [
-        (g.count, checks.count(shown(f), name)) for g, f in gestures(name, 16) if g.side != "both" or name != "wave"
+        (g.count, checks.count(shown(f), name))
+        for g, f in gestures(name, 16)
+        if g.side in ("left", "right", "") or FAMILIES[name].sides == ("both",)
     ]
     assert sum(c is not None and abs(c - asked) <= 1 for asked, c in found) >= 0.9 * len(found), found
     assert sum(c == asked for asked, c in found) >= 0.7 * len(found), found
@@ -67,7 +70,7 @@ def test_counts_are_seen(name: str) -> None:
 
 @pytest.mark.parametrize("name", DIRECTED)
 def test_directions_are_seen_and_turn_round_in_a_mirror(name: str) -> None:
-    made = [(g, f) for g, f in gestures(name, 18) if g.direction != "self"]
+    made = gestures(name, 44)
     assert sum(checks.direction(shown(f), name) == g.direction for g, f in made) >= 0.9 * len(made)
     sideways = [(g, f) for g, f in made if g.direction in ("left", "right")]
     assert sum(checks.direction(shown(mirror(f)), name) == g.direction for g, f in sideways) == 0

@@ -8,7 +8,7 @@ import torch
 from mmm_core.checkpoint import TEXT_FILE, load_text_encoder
 from mmm_core.quantizer import Quantizer
 from mmm_core.text import TextStates
-from mmm_core.tokenizer import Tokenizer, TokenizerConfig, halo_tokens
+from mmm_core.tokenizer import Tokenizer, TokenizerConfig
 from mmm_core.transformer import MotionTransformer, TransformerConfig
 
 
@@ -49,7 +49,7 @@ def test_an_arm_token_does_not_see_the_other_parts(tokenizer: Tokenizer) -> None
 def test_a_window_with_its_halo_decodes_to_the_same_frames(tokenizer: Tokenizer) -> None:
     ids = torch.randint(0, 32, (1, 40, 3))
     whole = tokenizer.decode(ids)
-    halo, lo, hi = halo_tokens(), 15, 22
+    halo, lo, hi = tokenizer.halo_tokens(), 15, 22
     window = tokenizer.decode(ids[:, lo - halo : hi + halo])[:, 4 * halo : 4 * (halo + hi - lo)]
     assert torch.allclose(whole[:, 4 * lo : 4 * hi], window, atol=1e-5)
     short = tokenizer.decode(ids[:, lo - halo + 4 : hi + halo - 4])[:, 4 * (halo - 4) : 4 * (halo - 4 + hi - lo)]

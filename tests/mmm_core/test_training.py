@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from torch import nn
 
-from mmm_core.training.run import Schedule, train
+from mmm_core.training.run import Run, Schedule, train
 from mmm_core.training.transformer_training import Corruption, corrupt
 
 
@@ -32,12 +32,12 @@ def fresh() -> nn.Linear:
 def test_a_run_cut_at_any_step_gives_the_same_weights(tmp_path: Path) -> None:
     schedule = Schedule(steps=60, warmup_steps=5, save_every=7)
     whole = fresh()
-    train(whole, loss_of(whole), schedule, tmp_path / "whole", "m")
+    train(whole, loss_of(whole), schedule, Run(tmp_path / "whole"), "m")
     cut = fresh()
     with pytest.raises(KeyboardInterrupt):
-        train(cut, loss_of(cut, cut_at=33), schedule, tmp_path / "cut", "m")
+        train(cut, loss_of(cut, cut_at=33), schedule, Run(tmp_path / "cut"), "m")
     again = fresh()
-    train(again, loss_of(again), schedule, tmp_path / "cut", "m")
+    train(again, loss_of(again), schedule, Run(tmp_path / "cut"), "m")
     assert torch.equal(whole.weight, again.weight)
     assert torch.equal(whole.bias, again.bias)
 
@@ -45,7 +45,7 @@ def test_a_run_cut_at_any_step_gives_the_same_weights(tmp_path: Path) -> None:
 def test_training_learns_and_leaves_the_averaged_weights(tmp_path: Path) -> None:
     model = fresh()
     schedule = Schedule(steps=400, learning_rate=0.02, warmup_steps=5, weight_decay=0.0, ema_decay=0.9)
-    train(model, loss_of(model), schedule, tmp_path, "m")
+    train(model, loss_of(model), schedule, Run(tmp_path), "m")
     assert torch.allclose(model.weight, torch.full((1, 3), 0.8), atol=0.1), "dropout of 0.2 makes 0.8 the best weight"
     assert not model.training
 

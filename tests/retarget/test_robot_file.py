@@ -10,9 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 
 from retarget.errors import RobotFileError, UnknownRobotError
 from retarget.pipeline import Retargeter
@@ -83,22 +80,6 @@ def test_packaged_robots_are_slower_than_their_servos_and_park_without_touching(
     contact = Retargeter(robot).contact
     assert contact.pairs(robot.park_rad) == []
     assert contact.pairs(robot.rest_rad) == []
-
-
-@pytest.mark.parametrize("name", list_robots())
-@given(data=st.data())
-def test_ticks_and_angles_are_each_others_inverse(name: str, data: st.DataObject) -> None:
-    robot = load_robot(name)
-    ticks = JointServoMap(robot)
-    share = data.draw(arrays(np.float64, robot.n_joints, elements=st.floats(0, 1)))
-    q = robot.position_min_rad + share * (robot.position_max_rad - robot.position_min_rad)
-    found = ticks.rad_to_tick(q)
-    assert (found >= ticks.position_min_tick).all()
-    assert (found <= ticks.position_max_tick).all()
-    back = ticks.tick_to_rad(found)
-    whole_tick = 1.0 / np.abs(ticks.ticks_per_rad)
-    assert (np.abs(back - q) <= whole_tick + 1e-12).all(), "half a tick, a whole one only at the end of a range"
-    assert np.array_equal(ticks.rad_to_tick(back), found)
 
 
 def test_directions_and_zero_are_as_the_file_says() -> None:

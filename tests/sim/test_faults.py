@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from bench import Bench
+from servo_bench import Bench
 
 from daemon.bus import packet
 from daemon.bus.packet import Packet, PacketDecoder

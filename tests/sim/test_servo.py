@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 
 import pytest
-from bench import TICK_RAD, Bench
+from servo_bench import TICK_RAD, Bench
 
 from daemon.bus import packet
 from daemon.bus.models import MODELS

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from bench import Bench as Bench2
+from servo_bench import Bench as Bench2
 
 from daemon.bus import packet, packet1
 from daemon.bus.models import MODELS

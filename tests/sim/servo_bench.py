@@ -6,29 +6,27 @@ import math
 from pathlib import Path
 
 from daemon.bus import packet
-from daemon.bus.models import MODEL_NUMBERS, MODELS
+from daemon.bus.models import MODELS
 from daemon.bus.packet import Packet, PacketDecoder
 from retarget.robot import BusSettings, JointSpec, RobotModel, ServoSpec
-from retarget.servos import ServoModel
+from retarget.servos import servo_models
 from sim.bus import SimBus
 from sim.faults import Fault, FaultSchedule
-from sim.motors import MOTORS
 from sim.servo import SimServo
 from sim.wire import WireSettings
 from sim.world import World
 
 
-def spec(name: str, servo_id: int = 1) -> ServoSpec:
+def spec(name: str, servo_id: int = 1, joint: int = 0) -> ServoSpec:
     """A servo of a model, centred."""
-    model, motor = MODELS[MODEL_NUMBERS[name]], MOTORS[MODEL_NUMBERS[name]]
-    ticks = round(1023 * 360 / 300) if model.family == "ax" else model.ticks_per_turn
-    facts = ServoModel(name, model.model_number, model.protocol, ticks, motor.no_load_rad_s, model.has_current)
-    return ServoSpec(servo_id, f"joint_{servo_id}", facts, 1, 1.0, model.zero_tick)
+    facts = servo_models()[name]
+    low, high = facts.tick_range(extended=False)
+    return ServoSpec(servo_id, f"joint_{servo_id}", facts, 1, 1.0, facts.zero_tick, ((joint, 1.0),), low, high)
 
 
 def robot(*names: str, baud: int = 1_000_000, rate_hz: float = 100.0) -> RobotModel:
     """A robot of such servos, ids from 1."""
-    specs = tuple(spec(name, i) for i, name in enumerate(names, 1))
+    specs = tuple(spec(name, i + 1, i) for i, name in enumerate(names))
     joints = tuple(
         JointSpec(s.joint_name, s.joint_name, -2.5, 2.5, s.model.no_load_speed_rad_s, 100.0, 0.0, 0.0) for s in specs
     )
@@ -85,10 +83,6 @@ class Bench:
 
     def to(self, degrees: float) -> int:
         return 2048 + round(degrees * 4096 / 360)
-
-
-def torque_rad_s(name: str) -> float:
-    return MOTORS[MODEL_NUMBERS[name]].no_load_rad_s
 
 
 TICK_RAD = 2 * math.pi / 4096

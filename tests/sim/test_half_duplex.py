@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from bench import Bench
 from hypothesis import given
 from hypothesis import strategies as st
+from servo_bench import Bench
 
 from daemon.bus import packet
 from daemon.bus.packet import PacketDecoder

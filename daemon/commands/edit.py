@@ -1,0 +1,83 @@
+"""`mmmd edit`: a stretch, an end or a body part of a motion made again."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from daemon.errors import CommandError
+
+
+def edit(
+    motion: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="F.npz")],
+    text: Annotated[str, tyro.conf.Positional],
+    out: Path,
+    start_s: float | None = None,
+    end_s: float | None = None,
+    part: tuple[str, ...] = (),
+    before_s: float = 0.0,
+    after_s: float = 0.0,
+    then: Path | None = None,
+    seed: int = 0,
+    bvh: Path | None = None,
+    model: Path | None = None,
+    threads: int = 1,
+) -> int:
+    """Make a part of a motion again for a text and keep the rest.
+
+    Example, the middle: mmmd edit wave.npz "clap your hands" --start-s 1 --end-s 2.5 --out edited.npz
+
+    Example, one arm: mmmd edit wave.npz "raise your left arm" --part left_arm --out edited.npz
+
+    Example, a new end: mmmd edit wave.npz "bow" --after-s 2 --out longer.npz
+
+    Example, between two: mmmd edit wave.npz "turn to the left" --then clap.npz --after-s 1 --out joined.npz
+
+    Args:
+        motion: .npz written by `mmmd generate` (others need their `features`).
+        text: what the new part is to be.
+        out: .npz file to write.
+        start_s: where the new stretch begins, seconds; with neither --start-s nor --end-s all of it.
+        end_s: where it ends.
+        part: body parts to make again; the others keep what they do. The shipped model has left_arm, right_arm, rest.
+        before_s: a new beginning of so many seconds.
+        after_s: a new end of so many seconds; with --then the time between.
+        then: a second motion that follows.
+        seed: the same input and seed give the same motion.
+        bvh: BVH file to write as well.
+        model: checkpoint; the shipped one when it is not given.
+        threads: CPU threads.
+    """
+    from mmm_core.bvh import save_bvh
+    from mmm_core.editing import Edit, extend, in_between
+    from mmm_core.editing import edit as edit_motion
+    from mmm_core.engine import Engine
+    from mmm_core.motion import load_npz
+
+    stretch = start_s is not None or end_s is not None or bool(part)
+    longer = bool(before_s or after_s or then)
+    if stretch and longer:
+        raise CommandError("edit: --start-s, --end-s and --part make a stretch again; --before-s, --after-s and --then "
+                           "add to the motion: give one or the other")  # fmt: skip
+    if then is not None and (before_s or not after_s):
+        raise CommandError("edit: --then needs --after-s, the seconds between the two motions, and no --before-s")
+    for path in filter(None, (out, bvh)):
+        if not path.parent.is_dir():
+            raise CommandError(f"edit: {path}: no folder '{path.parent}'; make it, or choose another")
+    first = load_npz(motion)
+    second = None if then is None else load_npz(then)
+    engine = Engine.load(model, threads=threads)
+    if second is not None:
+        made = in_between(engine, first, second, after_s, text, seed=seed)
+    elif longer:
+        made = extend(engine, first, text, before_s=before_s, after_s=after_s, seed=seed)
+    else:
+        made = edit_motion(engine, first, Edit(start_s or 0.0, end_s, part or None), text, seed=seed)
+    made.save_npz(out)
+    if bvh is not None:
+        save_bvh(made, bvh)
+    sys.stdout.write(f"{out}: {len(made.joints_m)} frames at {made.fps:g} fps\n")
+    return 0

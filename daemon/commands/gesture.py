@@ -1,0 +1,96 @@
+"""`mmmd gesture`: play, list, record and add named clips."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+import tyro
+from tyro.conf import OmitArgPrefixes
+
+from daemon.commands.connection import Connection
+from daemon.commands.playing import PlayFlags, built, play
+from daemon.errors import CommandError
+
+
+def gesture(
+    verb: Annotated[Literal["play", "list", "record", "add"], tyro.conf.Positional],
+    name: Annotated[str, tyro.conf.Positional] = "",
+    file: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="[F.npz]")] = None,
+    command: str = "",
+    folder: Path | None = None,
+    how: OmitArgPrefixes[PlayFlags] = PlayFlags(),  # noqa: B008
+    wait: bool = True,
+    json: bool = False,
+    at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
+) -> int:
+    """Play a named gesture, list them, keep the robot's last motion as one, or add one from a file.
+
+    Example: mmmd gesture play wave_right --repeat 2
+
+    Example: mmmd say "bow slowly" && mmmd gesture record my_bow
+
+    Example: mmmd generate "salute" --out s.npz && mmmd gesture add my_salute s.npz
+
+    Args:
+        verb: play, list (all the library), record (the motion of a command) or add (a motion file).
+        name: of the gesture; for play, record and add.
+        file: .npz of `mmmd generate`; for add.
+        command: id of the command whose motion to record; the newest when it is not given.
+        folder: where your own gestures are; your data folder when it is not given. For list and add.
+        how: how it is to be played.
+        wait: return when the motion has ended; --no-wait returns once it is accepted.
+        json: print events, or the list, as JSON.
+        at: where the daemon is; for play and record.
+    """
+    if verb == "list":
+        return _list(folder, json)
+    if not name:
+        raise CommandError(f"gesture {verb}: no name; allowed: a name of `mmmd gesture list`, or a new one")
+    if verb == "add":
+        return _add(name, file, folder)
+    if verb == "record":
+        with at.client() as robot:
+            ack = robot.record(name, command)
+        sys.stdout.write(f"recorded {ack.note}\n")
+        return 0
+    from daemon.requests import Gesture
+
+    return play(built(Gesture, how, name=name), at, wait=wait, json=json)
+
+
+def _list(folder: Path | None, json: bool) -> int:
+    from daemon.gestures.library import GestureLibrary
+
+    infos = GestureLibrary(folder).infos()
+    if json:
+        import msgspec
+
+        sys.stdout.write(msgspec.json.encode(infos).decode() + "\n")
+        return 0
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title=f"{len(infos)} gestures")
+    for column in ("name", "shows", "s", "goes round", "held at", "other side", "own"):
+        table.add_column(column)
+    for i in infos:
+        loop, own = "in part" if i.loop else "as a whole", "yes" if i.own else ""
+        table.add_row(i.name, i.text, f"{i.seconds:.1f}", loop, f"{i.hold_s:.1f} s", i.mirror, own)
+    Console().print(table)
+    return 0
+
+
+def _add(name: str, file: Path | None, folder: Path | None) -> int:
+    from daemon.gestures.library import GestureLibrary
+    from daemon.posture import posture_of
+    from mmm_core.motion import load_npz
+
+    if file is None:
+        raise CommandError(f"gesture add {name}: no file; allowed: an .npz of `mmmd generate`")
+    motion = load_npz(file)
+    library = GestureLibrary(folder)
+    clip = library.keep(name, motion.text or name, posture_of(motion), f"file {file.name}")
+    sys.stdout.write(f"added {name} ({len(clip.posture) / clip.posture.fps:.1f} s) to {library.folder}\n")
+    return 0

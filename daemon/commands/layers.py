@@ -1,0 +1,98 @@
+"""`mmmd look`, `mmmd idle`, `mmmd cancel`, `mmmd capabilities`: requests that are no motion of their own."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated, Literal
+
+import tyro
+from tyro.conf import OmitArgPrefixes
+
+from daemon.commands.connection import Connection
+
+
+def look(
+    yaw: float | None = None,
+    pitch: float | None = None,
+    at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
+) -> int:
+    """Turn the head, whatever the body does; without angles it is let go again.
+
+    Example: mmmd look --yaw 30 --pitch -10
+
+    Args:
+        yaw: degrees to the left.
+        pitch: degrees down.
+        at: where the daemon is.
+    """
+    with at.client() as robot:
+        ack = robot.look(yaw, pitch)
+    sys.stdout.write(f"look: in {ack.state}" + (f"; {ack.note}" if ack.note else "") + "\n")
+    return 0
+
+
+def idle(
+    style: Annotated[Literal["off", "calm", "lively"], tyro.conf.Positional],
+    at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
+) -> int:
+    """Small movements of breath and gaze while there is nothing to play.
+
+    Example: mmmd idle calm
+
+    Args:
+        style: off, calm or lively.
+        at: where the daemon is.
+    """
+    with at.client() as robot:
+        ack = robot.idle(style != "off", "lively" if style == "lively" else "calm")
+    sys.stdout.write(f"idle {style}: in {ack.state}\n")
+    return 0
+
+
+def cancel(
+    command: Annotated[str, tyro.conf.Positional] = "",
+    at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
+) -> int:
+    """End a command; the robot brakes within its limits and holds.
+
+    Example: mmmd cancel
+
+    Args:
+        command: its id; everything that runs or waits when it is not given.
+        at: where the daemon is.
+    """
+    with at.client() as robot:
+        ack = robot.cancel(command)
+    sys.stdout.write(f"cancel: in {ack.state}\n")
+    return 0
+
+
+def capabilities(
+    at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
+    json: bool = False,
+) -> int:
+    """Show what the robot and the daemon can do: joints, requests, options, gestures, topics.
+
+    Example: mmmd capabilities --json
+
+    Args:
+        at: where the daemon is.
+        json: print one JSON object.
+    """
+    from daemon.wire import encode
+
+    with at.client() as robot:
+        found = robot.capabilities()
+    if json:
+        sys.stdout.write(encode(found).decode() + "\n")
+        return 0
+    lines = [
+        f"mmmd {found.version}, robot {found.robot}, {len(found.joints)} joints at {found.rate_hz:g} Hz",
+        f"generator: {found.generator}",
+        *(f"{socket}: {', '.join(names)}" for socket, names in found.requests.items()),
+        *(f"topic {topic}: {text}" for topic, text in found.topics.items()),
+        *(f"option {name}: {low:g} to {high:g}" for name, (low, high) in found.options.items()),
+        f"{len(found.gestures)} gestures (`mmmd gesture list`), idle styles {', '.join(found.idle_styles)}",
+    ]
+    sys.stdout.write("\n".join(lines) + "\n")
+    return 0

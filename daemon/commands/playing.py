@@ -1,0 +1,126 @@
+"""What `mmmd say` and `mmmd gesture play` share: options, sending, and printing what happens."""
+
+from __future__ import annotations
+
+import sys
+import uuid
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+from daemon.commands.connection import Connection
+from daemon.errors import CommandError
+
+if TYPE_CHECKING:
+    from daemon.requests import Play, PlayOptions
+
+
+@dataclass(frozen=True)
+class PlayFlags:
+    """How it is to be played.
+
+    Attributes:
+        tempo: how much faster than it was made, 0.5 to 2.
+        amplitude: size of the movement, 0.3 to 1.2.
+        mirror: left for right.
+        repeat: how often.
+        loop: go round until something ends it.
+        hold: stop in the pose that says most, and stay.
+        when: now (takes over), after (what is played), or at (with --at-s).
+        at_s: when to take over, on the daemon's clock (`t_mono` of its events).
+        deadline_s: reject it when it cannot begin so many seconds from now.
+        id: the same id twice is one command; one is chosen when it is not given.
+    """
+
+    tempo: float = 1.0
+    amplitude: float = 1.0
+    mirror: bool = False
+    repeat: int = 1
+    loop: bool = False
+    hold: bool = False
+    when: Literal["now", "after", "at"] = "now"
+    at_s: float | None = None
+    deadline_s: float | None = None
+    id: str = ""
+
+    def options(self) -> PlayOptions:
+        """For the request."""
+        return {
+            "tempo": self.tempo, "amplitude": self.amplitude, "mirror": self.mirror, "repeat": self.repeat,
+            "loop": self.loop, "hold": self.hold, "when": self.when, "at_s": self.at_s, "deadline_s": self.deadline_s,
+        }  # fmt: skip
+
+
+P = TypeVar("P", bound="Play")
+
+
+def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
+    """A request with the flags of the command line.
+
+    Raises:
+        CommandError: the flags contradict each other.
+    """
+    try:
+        return kind(id=how.id or uuid.uuid4().hex, **fields, **how.options())
+    except ValueError as error:
+        raise CommandError(f"{error}; leave out one of the options") from None
+
+
+def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
+    """Send a request and print its events; the exit status."""
+    from daemon.client import FIRST_REPLY_TIMEOUT_S, MOTION_TIMEOUT_S
+    from daemon.events import Accepted, Cancelled, Failed, Refusal
+    from daemon.wire import WireError, check_request, encode
+
+    try:
+        check_request(request)
+    except WireError as error:
+        sys.stderr.write(f"mmmd: {error}\n")
+        return 2
+    status = 0
+    timeout_s = FIRST_REPLY_TIMEOUT_S if not wait else float("inf") if request.loop else MOTION_TIMEOUT_S
+    if wait and not request.loop:
+        timeout_s *= max(1.0, request.repeat / request.tempo)
+    if request.when != "now":
+        timeout_s = float("inf")
+    with at.client() as robot:
+        for event in robot.events_of(request, timeout_s):
+            if json:
+                sys.stdout.write(encode(event).decode() + "\n")
+            elif not isinstance(event, Refusal):
+                sys.stdout.write(describe(event) + "\n")
+            sys.stdout.flush()
+            if isinstance(event, Refusal):
+                if not json:
+                    sys.stderr.write(f"mmmd: {event.message}\n")
+                status = 3 if isinstance(event, Failed) and event.code == "fault" else 1
+            elif isinstance(event, Cancelled):
+                status = 1
+            if not wait and isinstance(event, Accepted):
+                break
+    return status
+
+
+def describe(event: object) -> str:
+    """One line about an event, for people."""
+    from daemon.events import Accepted, Ack, Cancelled, Done, Progress, Refusal
+
+    if isinstance(event, Accepted):
+        reason = f" ({event.reason})" if event.reason else ""
+        return f"{event.status}: understood as {event.understood}{reason}; {event.duration_s:.1f} s"
+    if isinstance(event, Progress):
+        if event.first_motion_ms is None:
+            return f"{event.stage} ..."
+        return f"{event.stage}: first servo frame {event.first_motion_ms:.0f} ms after the text"
+    if isinstance(event, Done):
+        return (
+            f"done: {event.duration_s:.2f} s; peak {event.peak_speed_joint} at {100 * event.peak_speed_share:.0f} % of "
+            f"its {event.peak_speed_limit_rad_s:.2f} rad/s; {event.clipped_frames} of {event.frames} frames clipped; "
+            f"direction error {event.direction_error_deg:.1f} deg"
+        )
+    if isinstance(event, Cancelled):
+        return f"cancelled by {event.by}"
+    if isinstance(event, Ack):
+        return f"{event.verb}: in {event.state}" + (f"; {event.note}" if event.note else "")
+    if isinstance(event, Refusal):
+        return event.message
+    return str(event)

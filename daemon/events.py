@@ -1,0 +1,293 @@
+"""What the daemon says: one struct for each event. Sans-I/O."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import msgspec
+
+from daemon.requests import PROTOCOL_VERSION
+
+
+class Event(msgspec.Struct, tag_field="type", kw_only=True):
+    """What every event carries; a receiver ignores fields that it does not know.
+
+    Attributes:
+        v: version of the protocol.
+        id: id of the command that the event belongs to; empty for `state`.
+        seq: count of the daemon's messages.
+        t_mono: the daemon's monotonic clock in seconds.
+    """
+
+    terminal: ClassVar[bool] = False
+    v: int = PROTOCOL_VERSION
+    id: str = ""
+    seq: int = 0
+    t_mono: float = 0.0
+
+
+class Accepted(Event, tag="accepted"):
+    """The text was understood and the motion will be played.
+
+    Attributes:
+        plan_id: number of the plan in the log.
+        text: the text.
+        status: accepted, or degraded when only part of the text can be done.
+        understood: nearest known command and its score.
+        reason: why it is degraded, else empty.
+        scope_score: how near the text lies to what the model can do.
+        duration_s: length of the generated motion.
+        generate_ms: time the generator took.
+    """
+
+    plan_id: int
+    text: str
+    status: str
+    understood: str
+    reason: str
+    scope_score: float
+    duration_s: float
+    generate_ms: float
+
+
+class Progress(Event, tag="progress"):
+    """A stage was reached: `arming` (waiting for torque and rest pose) or `moving` (the first servo moves).
+
+    Attributes:
+        plan_id: number of the plan, 0 before there is one.
+        stage: the stage.
+        first_motion_ms: text to first changed servo goal, once `moving`.
+    """
+
+    plan_id: int
+    stage: str
+    first_motion_ms: float | None = None
+
+
+class Done(Event, tag="done"):
+    """The motion was played to its end.
+
+    Attributes:
+        plan_id: number of the plan in the log.
+        first_motion_ms: from the text's arrival to the first cycle in which a servo's goal changed; None when none did.
+        duration_s: from the first to the last frame at the bus.
+        frames: frames played.
+        peak_speed_share: largest joint speed as a share of that joint's limit.
+        peak_speed_joint: the joint that had it.
+        peak_speed_rad_s: its speed.
+        peak_speed_limit_rad_s: its limit.
+        clipped_frames: frames in which a position limit changed the model's motion.
+        gate_clipped_frames: frames that the last limiter before the bus changed.
+        underruns: cycles in which the plan had no frame ready.
+        direction_error_deg: mean angle between the human's and the robot's arm bones.
+        interventions: times the path was led round a self-collision.
+        log_dropped: cycles that are missing from these figures.
+    """
+
+    terminal: ClassVar[bool] = True
+    plan_id: int
+    first_motion_ms: float | None
+    duration_s: float
+    frames: int
+    peak_speed_share: float
+    peak_speed_joint: str
+    peak_speed_rad_s: float
+    peak_speed_limit_rad_s: float
+    clipped_frames: int
+    gate_clipped_frames: int
+    underruns: int
+    direction_error_deg: float
+    interventions: int = 0
+    log_dropped: int = 0
+
+
+class Cancelled(Event, tag="cancelled"):
+    """The command ended before its motion did.
+
+    Attributes:
+        plan_id: number of the plan, 0 when it had none yet.
+        by: what ended it: stop, estop, park, reset, cancel, shutdown, or `say ID`.
+    """
+
+    terminal: ClassVar[bool] = True
+    plan_id: int
+    by: str
+
+
+class Refusal(Event):
+    """What was asked, found and allowed, and what to do next."""
+
+    terminal: ClassVar[bool] = True
+    code: str
+    asked: str
+    found: str
+    allowed: str
+    do: str
+
+    @property
+    def message(self) -> str:
+        """One line for people."""
+        return f"{self.asked}: {self.found}; allowed: {self.allowed}; {self.do}"
+
+
+class Rejected(Refusal, tag="rejected"):
+    """A well-formed command that is not taken now (state of the robot) or at all (out of the model's scope).
+
+    Attributes:
+        understood: nearest known command, when the scope was the reason.
+        scope_score: how near the text lies to what the model can do.
+    """
+
+    understood: str = ""
+    scope_score: float | None = None
+
+
+class ErrorEvent(Refusal, tag="error"):
+    """A frame that is not a request."""
+
+
+class Failed(Refusal, tag="failed"):
+    """A command that could not be carried out: generator, retargeting or bus.
+
+    Attributes:
+        plan_id: number of the plan, 0 when it had none yet.
+    """
+
+    plan_id: int = 0
+
+
+class Ack(Event, tag="ack"):
+    """A ctl verb was handed to the bus; or a request that is no motion was carried out.
+
+    Attributes:
+        verb: the verb.
+        state: the robot's state when it was handed over.
+        note: what was changed about it, else empty.
+    """
+
+    verb: str
+    state: str
+    note: str = ""
+
+
+class GestureInfo(msgspec.Struct):
+    """A clip of the library.
+
+    Attributes:
+        name: for `gesture`.
+        text: what it shows.
+        seconds: its length.
+        loop: whether a part of it goes round; else the whole is done again.
+        hold_s: when it is held, with `hold`.
+        mirror: the clip that shows the same on the other side, empty when it is symmetric.
+        own: recorded or added by the user.
+    """
+
+    name: str
+    text: str
+    seconds: float
+    loop: bool
+    hold_s: float
+    mirror: str
+    own: bool = False
+
+
+class JointInfo(msgspec.Struct):
+    """A joint and what bounds it."""
+
+    name: str
+    role: str
+    position_min_rad: float
+    position_max_rad: float
+    velocity_limit_rad_s: float
+    acceleration_limit_rad_s2: float
+
+
+class CapabilitiesEvent(Event, tag="capabilities"):
+    """What this robot and this daemon can do.
+
+    Attributes:
+        version: of mmmd.
+        robot: name of the robot.
+        rate_hz: of the bus.
+        joints: the joints.
+        generator: ready, starting or down; with the checkpoint's hash.
+        checkpoint_hash: of the weights in use, empty while there are none.
+        requests: types that `cmd` and `ctl` take; each has a schema in docs/wire.
+        topics: what `pub` publishes; subscribe to a topic, or to a beginning of it.
+        options: bounds of the options of `say` and `gesture`.
+        gestures: the library.
+        idle_styles: for `idle`.
+    """
+
+    version: str
+    robot: str
+    rate_hz: float
+    joints: list[JointInfo]
+    generator: str
+    checkpoint_hash: str
+    requests: dict[str, list[str]]
+    topics: dict[str, str]
+    options: dict[str, list[float]]
+    gestures: list[GestureInfo]
+    idle_styles: list[str]
+
+
+class CurrentCommand(msgspec.Struct):
+    """The command that is being played."""
+
+    id: str
+    plan_id: int
+    text: str
+    frames: int
+    frames_pushed: int
+
+
+class StateEvent(Event, tag="state"):
+    """The robot and the daemon, 20 times a second on `v1/state` and in answer to `status`.
+
+    Attributes:
+        robot: name of the robot.
+        bus: URL of the bus.
+        state: limp, arming, idle, moving, holding, parking, fault or estop.
+        must_arm: an explicit `arm` is needed before the next text.
+        reason: why the robot is in fault, else empty.
+        command: what is being played, None when nothing is.
+        waiting: ids of the commands that wait for their turn or their time.
+        idle: style of the idle movements, `off` when there are none.
+        gaze_deg: where the head was told to look (left, down), None when it is free.
+        generator: ready, starting or down, with the reason.
+        joint_names: J names.
+        goal_rad: (J,) what the servos were last told.
+        present_rad: (J,) what they last measured.
+        queued_ms: setpoints that the bus process has in hand.
+        bus_info: counters of the bus process.
+        recording: path of the log, empty when there is none; says so when recording has stopped.
+        uptime_s: since the start of the daemon.
+    """
+
+    robot: str
+    bus: str
+    state: str
+    must_arm: bool
+    reason: str
+    command: CurrentCommand | None
+    generator: str
+    joint_names: list[str]
+    goal_rad: list[float]
+    present_rad: list[float]
+    queued_ms: float
+    bus_info: dict[str, Any]
+    recording: str
+    uptime_s: float
+    waiting: list[str] = msgspec.field(default_factory=list[str])
+    idle: str = "off"
+    gaze_deg: tuple[float, float] | None = None
+
+
+AnyEvent = (
+    Accepted | Progress | Done | Cancelled | Rejected | ErrorEvent | Failed | Ack | StateEvent | CapabilitiesEvent
+)
+EVENTS: tuple[type[Event], ...] = (
+    Accepted, Progress, Done, Cancelled, Rejected, ErrorEvent, Failed, Ack, StateEvent, CapabilitiesEvent,
+)  # fmt: skip

@@ -1,0 +1,86 @@
+"""What the `ctl` thread does: the bus process first, the event loop afterwards."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from typing import TYPE_CHECKING
+
+from daemon.events import Event, StateEvent
+from daemon.shared import BusRequest
+from daemon.state import CommandRefusedError, Trigger
+
+if TYPE_CHECKING:
+    from daemon.front import Front
+
+DRAIN_TIMEOUT_S = 0.05
+"""Longest wait of a `stop` reply for the texts that came before it; the stop itself does not wait."""
+
+
+class FrontControls:
+    """The verbs of `ctl` on a front."""
+
+    def __init__(self, front: Front) -> None:
+        self._front = front
+
+    def stop(self) -> str:
+        """Brake within the limits and hold; returns the state before."""
+        return self._halt(Trigger.STOP)
+
+    def estop(self) -> str:
+        """Cut torque; returns the state before."""
+        return self._halt(Trigger.ESTOP)
+
+    def park(self) -> str:
+        """Park, then torque off; returns the state before."""
+        return self._halt(Trigger.PARK)
+
+    def reset(self) -> str:
+        """Leave fault or e-stop; returns the state before."""
+        machine, state = self._front.machine, self._front.machine.state
+        machine.check(Trigger.RESET)
+        if not self._front.follower.bus_alive:
+            do = "the bus process is being started again; wait a second, then `mmmd reset`"
+            raise CommandRefusedError(state, Trigger.RESET, (), do)
+        self._front.link.request(BusRequest.RESET)
+        return state.value
+
+    def arm(self) -> str:
+        """Torque on, slow move to rest; returns the state before."""
+        machine, state = self._front.machine, self._front.machine.state
+        machine.check(Trigger.ARM)
+        machine.armed_by_person()
+        self._front.link.request(BusRequest.ARM)
+        return state.value
+
+    def status(self) -> Event:
+        """The state event."""
+        return self._front.state_event()
+
+    def sent(self, event: Event) -> Event:
+        """Number an event that is being sent, and tell the subscribers of it."""
+        self._front.ledger.stamp(event)
+        if not isinstance(event, StateEvent):
+            self._front.publish_from_thread(event)
+        return event
+
+    def _halt(self, command: Trigger) -> str:
+        front, performer, state = self._front, self._front.performer, self._front.machine.state
+        front.machine.check(command)
+        performer.halts.note(command.value)
+        front.follower.stopped = command is Trigger.STOP
+        front.link.request(BusRequest[command.name])
+        ended = threading.Event()
+
+        async def end_commands() -> None:
+            front.drain_cmd()
+            await asyncio.sleep(0)  # a request that was already received is taken now
+            performer.end_halted()
+            ended.set()
+
+        try:
+            asyncio.run_coroutine_threadsafe(end_commands(), front.loop)
+            ended.wait(DRAIN_TIMEOUT_S)
+        except RuntimeError:  # the loop is closed: there is nothing left to end
+            pass
+        return state.value

@@ -1,0 +1,113 @@
+"""Clips on disk: bones above the hips as 16-bit numbers, about 100 bytes a frame before compression.
+
+One .npz holds any number of clips. The legs are not kept: a clip is of a person who stands.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.errors import ClipError
+from daemon.posture import Posture, standing
+from daemon.score import Marks
+from mmm_core.motion import FPS
+from mmm_core.skeleton import BONE_LENGTHS_M, normalise
+
+FORMAT = 1
+_KEPT = np.array([3, 6, 9, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21])
+_UNIT = 32767.0
+_TWIST_RAD = 2 * np.pi
+"""Forearm twist of a full scale."""
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A named motion.
+
+    Attributes:
+        name: lower case letters, digits and _.
+        text: what it shows.
+        posture: its frames.
+        marks: where it goes round and where it is held.
+        mirror: name of the clip that shows the same on the other side, empty when there is none.
+        source: what made it.
+    """
+
+    name: str
+    text: str
+    posture: Posture
+    marks: Marks
+    mirror: str = ""
+    source: str = ""
+
+
+def save_clips(path: Path, clips: Mapping[str, Clip]) -> None:
+    """Write clips; an older file stays whole if writing fails.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    arrays: dict[str, NDArray[Any]] = {}
+    meta: dict[str, Any] = {"format": FORMAT, "clips": {}}
+    for name, clip in clips.items():
+        p = clip.posture
+        arrays[f"{name}.bones"] = np.rint(p.bones[:, _KEPT] * _UNIT).astype(np.int16)
+        arrays[f"{name}.head"] = np.rint(p.head_wxyz * _UNIT).astype(np.int16)
+        arrays[f"{name}.twist"] = np.rint(np.clip(p.twist_rad / _TWIST_RAD, -1, 1) * _UNIT).astype(np.int16)
+        meta["clips"][name] = {
+            "text": clip.text, "mirror": clip.mirror, "source": clip.source, "loop": clip.marks.loop,
+            "hold": clip.marks.hold,
+        }  # fmt: skip
+    partial = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with partial.open("wb") as f:
+            text = np.frombuffer(json.dumps(meta).encode(), np.uint8)
+            np.savez_compressed(f, allow_pickle=False, meta=text, **arrays)
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def load_clips(path: Path) -> dict[str, Clip]:
+    """The clips of a file.
+
+    Raises:
+        ClipError: it is missing, damaged or of another format; the path and what was found are named.
+    """
+    try:
+        with path.open("rb") as f, np.load(f, allow_pickle=False) as data:
+            meta = json.loads(data["meta"].tobytes())
+            if meta["format"] != FORMAT:
+                raise ClipError(f"{path}: clip format {meta['format']}; this mmmd reads {FORMAT}; make the clip again")
+            return {name: _clip(name, row, data) for name, row in meta["clips"].items()}
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+        if isinstance(error, ClipError):
+            raise
+        do = "gestures are written by `mmmd gesture add` and `mmmd gesture record`"
+        raise ClipError(f"{path}: no clips to be read there ({error}); {do}") from error
+
+
+def _clip(name: str, row: dict[str, Any], data: Mapping[str, NDArray[Any]]) -> Clip:
+    kept = data[f"{name}.bones"].astype(np.float64)
+    T = len(kept)
+    head, twist = data[f"{name}.head"].astype(np.float64), data[f"{name}.twist"].astype(np.float64)
+    loop = None if row["loop"] is None else (int(row["loop"][0]), int(row["loop"][1]))
+    sound = kept.shape == (T, len(_KEPT), 3) and head.shape == (T, 4) and twist.shape == (T, 2) and T >= 2
+    sound = sound and 0 <= int(row["hold"]) < T and (loop is None or 0 <= loop[0] < loop[1] <= T)
+    if not sound:
+        raise ValueError(f"clip '{name}' has arrays or marks that do not fit its {T} frames")
+    bones = standing().at(np.zeros(T, np.intp)).bones.copy()
+    bones[:, _KEPT] = normalise(kept)
+    posture = Posture(
+        bones, BONE_LENGTHS_M.copy(), np.asarray(normalise(head), np.float64), twist / _UNIT * _TWIST_RAD, FPS
+    )
+    return Clip(name, str(row["text"]), posture, Marks(loop, int(row["hold"])), str(row["mirror"]), str(row["source"]))

@@ -1,0 +1,124 @@
+"""Named gestures: those that ship, and the user's own in a folder, which win over shipped ones of the same name."""
+
+from __future__ import annotations
+
+import difflib
+import logging
+import os
+import re
+from pathlib import Path
+
+from daemon.errors import ClipError, UnknownGestureError
+from daemon.events import GestureInfo
+from daemon.gestures.clips import Clip, load_clips, save_clips
+from daemon.posture import Posture, at_tempo
+from daemon.score import marks_of
+from mmm_core.motion import FPS
+
+log = logging.getLogger(__name__)
+
+SHIPPED = Path(__file__).with_name("shipped.npz")
+_NAME = re.compile(r"[a-z0-9][a-z0-9_]{0,63}")
+MOST_OWN = 10_000
+LONGEST_CLIP_S = 60.0
+
+
+def own_folder() -> Path:
+    """Where a user's gestures are kept: $MMMD_GESTURES, else mmmd/gestures in the user's data folder."""
+    if chosen := os.environ.get("MMMD_GESTURES"):
+        return Path(chosen)
+    data = os.environ.get("XDG_DATA_HOME") or str(Path.home() / ".local" / "share")
+    return Path(data) / "mmmd" / "gestures"
+
+
+class GestureLibrary:
+    """Clips by name. Own ones are read again when their file has changed; for one thread."""
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self.folder = folder or own_folder()
+        self._shipped = load_clips(SHIPPED)
+        self._own: dict[str, tuple[int, Clip]] = {}
+
+    def get(self, name: str) -> Clip:
+        """The clip of that name.
+
+        Raises:
+            UnknownGestureError: there is none; the nearest names are told.
+            ClipError: the user's file of that name is damaged.
+        """
+        own = self._read_own(name) if _NAME.fullmatch(name) else None
+        clip = own or self._shipped.get(name)
+        if clip is None:
+            names = [*self._shipped, *self._own_names()]
+            raise UnknownGestureError(name, difflib.get_close_matches(name, names, 4, 0.5), len(names))
+        return clip
+
+    def keep(self, name: str, text: str, posture: Posture, source: str) -> Clip:
+        """Make a clip of the user's own; one of that name is replaced.
+
+        Raises:
+            ClipError: the name or the length is not allowed, or the file cannot be written.
+        """
+        if not _NAME.fullmatch(name):
+            raise ClipError(f"gesture name {name!r}; allowed: 1 to 64 of a-z, 0-9 and _, for example 'my_wave'")
+        if not 2 <= len(posture) <= LONGEST_CLIP_S * posture.fps:
+            seconds = len(posture) / posture.fps
+            raise ClipError(f"gesture '{name}': {seconds:.2f} s of motion; allowed: 2 frames to {LONGEST_CLIP_S:g} s")
+        if posture.fps != FPS:
+            posture = at_tempo(posture, posture.fps / FPS)
+        clip = Clip(name, text, posture, marks_of(posture), source=source)
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            save_clips(self._path(name), {name: clip})
+        except OSError as error:
+            raise ClipError(
+                f"gesture '{name}': {self._path(name)} cannot be written ({error}); choose another folder by MMMD_GESTURES"
+            ) from error
+        return clip
+
+    def infos(self) -> list[GestureInfo]:
+        """All clips by name, for people and programs; own files that are damaged are left out and logged."""
+        own: dict[str, Clip] = {}
+        for name in self._own_names():
+            try:
+                if (clip := self._read_own(name)) is not None:
+                    own[name] = clip
+            except ClipError as error:
+                log.warning("%s", error)
+        every = {**self._shipped, **own}
+        return [_info(every[name], name in own) for name in sorted(every)]
+
+    def _path(self, name: str) -> Path:
+        return self.folder / f"{name}.npz"
+
+    def _own_names(self) -> list[str]:
+        try:
+            found = sorted(p.stem for p in self.folder.glob("*.npz") if _NAME.fullmatch(p.stem))
+        except OSError:
+            return []
+        return found[:MOST_OWN]
+
+    def _read_own(self, name: str) -> Clip | None:
+        path = self._path(name)
+        try:
+            changed_ns = path.stat().st_mtime_ns
+        except OSError:
+            self._own.pop(name, None)
+            return None
+        known = self._own.get(name)
+        if known is None or known[0] != changed_ns:
+            clips = load_clips(path)
+            if name not in clips:
+                raise ClipError(
+                    f"{path}: holds {', '.join(clips) or 'nothing'}, not '{name}'; `mmmd gesture add` names it"
+                )
+            known = self._own[name] = (changed_ns, clips[name])
+        return known[1]
+
+
+def _info(clip: Clip, own: bool) -> GestureInfo:
+    p = clip.posture
+    return GestureInfo(
+        name=clip.name, text=clip.text, seconds=round(len(p) / p.fps, 2), loop=clip.marks.loop is not None,
+        hold_s=round(clip.marks.hold / p.fps, 2), mirror=clip.mirror, own=own,
+    )  # fmt: skip

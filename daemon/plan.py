@@ -1,0 +1,131 @@
+"""A plan: the frames of one command on their way to the bus, made stretch by stretch.
+
+What was played is forgotten, so that a loop or a story may last for ever.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.plan_statistics import PlanStatistics
+from daemon.posture import Posture, joined
+from retarget.paths import JointPath, JointState
+
+Array = NDArray[np.float64]
+
+KEPT_FRAMES = 512
+"""Frames kept after they were pushed: the bus process has at most 256 of them still in hand."""
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A path, the posture it was made of, and that without layers; its frames begin at `first` and end before `end`."""
+
+    first: int
+    end: int
+    posture: Posture
+    raw: Posture
+    path: JointPath
+
+
+class Plan:
+    """Frames of one command. For one thread.
+
+    Attributes:
+        plan_id: number in the log.
+        command_id: the command that it carries out, empty for idle movements.
+        epoch: the link's epoch when its command arrived; setpoints of an older epoch are thrown away.
+        statistics: what it did at the bus.
+        n_frames: frames so far.
+        complete: whether no more will come.
+        end: frames that may be pushed; None for all, fewer once another plan takes over.
+        pushed: frames pushed so far.
+    """
+
+    def __init__(self, plan_id: int, command_id: str, epoch: int, rate_hz: float, statistics: PlanStatistics) -> None:
+        self.plan_id, self.command_id, self.epoch, self.statistics = plan_id, command_id, epoch, statistics
+        self._rate_hz = rate_hz
+        self._stretches: list[Stretch] = []
+        self._frames: list[Array] = []
+        self._kept_from = 0
+        self.n_frames = 0
+        self.complete = False
+        self.end: int | None = None
+        self.pushed = 0
+
+    def append(self, path: JointPath, posture: Posture, *, complete: bool, raw: Posture | None = None) -> None:
+        """Add a stretch, which must begin where `state_at(n_frames - 1)` ends; `raw` is its posture without layers."""
+        frames = path.at_rate(self._rate_hz)
+        self._stretches.append(Stretch(self.n_frames, self.n_frames + len(frames), posture, raw or posture, path))
+        self._frames.append(frames)
+        self.n_frames += len(frames)
+        self.complete = complete
+        self.statistics.take_report(path.report, len(frames))
+        while len(self._stretches) > 1 and self._stretches[1].first < self.pushed - KEPT_FRAMES:
+            self._kept_from += len(self._frames.pop(0))
+            del self._stretches[0]
+
+    def cut(self, frame: int) -> None:
+        """Forget what comes after `frame`, to go on otherwise."""
+        n = frame + 1
+        while len(self._stretches) > 1 and self._stretches[-1].first >= n:
+            self._frames.pop()
+            self._stretches.pop()
+        last = self._stretches[-1]
+        self._stretches[-1] = replace(last, end=n)
+        self._frames[-1] = self._frames[-1][: n - last.first]
+        self.n_frames, self.complete = n, False
+
+    @property
+    def limit(self) -> int:
+        """Frames that may be pushed."""
+        return self.n_frames if self.end is None else min(self.end, self.n_frames)
+
+    @property
+    def all_pushed(self) -> bool:
+        """Whether the bus process has the last frame."""
+        return self.complete and self.pushed >= self.n_frames
+
+    @property
+    def played(self) -> bool:
+        """Whether the bus process has played the last frame."""
+        return self.complete and self.statistics.last_frame >= self.n_frames - 1
+
+    def frames(self, first: int, end: int) -> Array:
+        """(n, J) setpoints from `first` to before `end`, at bus rate."""
+        parts: list[Array] = []
+        at = self._kept_from
+        for part in self._frames:
+            if at < end and at + len(part) > first:
+                parts.append(part[max(0, first - at) : end - at])
+            at += len(part)
+        return np.concatenate(parts) if len(parts) != 1 else parts[0]
+
+    def state_at(self, frame: int) -> JointState:
+        """Position and velocity at a frame."""
+        stretch = self._stretch(frame)
+        t_s = min((frame - stretch.first + 1) / self._rate_hz, stretch.path.duration_s)
+        return JointState(self.frames(frame, frame + 1)[0].copy(), stretch.path.velocity_at(np.array([t_s]))[0])
+
+    def posture_from(self, frame: int, n: int, *, raw: bool = False) -> Posture:
+        """`n` frames of posture that follow bus frame `frame`; what is not planned stays as the last one is."""
+        stretch = self._stretch(max(0, min(frame, self.n_frames - 1)))
+        fps = stretch.posture.fps
+        first = round((frame - stretch.first + 1) / self._rate_hz * fps)
+        return (stretch.raw if raw else stretch.posture).at(first + np.arange(n))
+
+    def rest_raw(self, frame: int) -> Posture:
+        """What was planned to follow bus frame `frame`, without layers; at least one frame."""
+        stretch = self._stretch(frame)
+        first = round((frame - stretch.first + 1) / self._rate_hz * stretch.raw.fps)
+        later = self._stretches[self._stretches.index(stretch) + 1 :]
+        return joined([stretch.raw[min(first, len(stretch.raw) - 1) :], *(s.raw for s in later)])
+
+    def _stretch(self, frame: int) -> Stretch:
+        for stretch in self._stretches:
+            if frame < stretch.end:
+                return stretch
+        return self._stretches[-1]

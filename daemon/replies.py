@@ -1,0 +1,53 @@
+"""Events that tell how a command went, from what is known where it went so."""
+
+from __future__ import annotations
+
+import msgspec
+
+from daemon.events import Cancelled, Failed, Rejected
+from daemon.ledger import Entry
+from daemon.requests import tag_of
+from daemon.state import CommandRefusedError
+
+
+class NotPlayableError(Exception):
+    """A command that has come to its end before it was played; `event` tells how."""
+
+    def __init__(self, event: Rejected | Failed) -> None:
+        self.event = event
+        super().__init__(event.message)
+
+
+def refusal(request_id: str, error: CommandRefusedError) -> Rejected:
+    """The event of a command that the robot's state does not allow."""
+    return Rejected(
+        id=request_id,
+        code="wrong_state",
+        asked=error.command.value,
+        found=f"the robot is in {error.state.value}",
+        allowed=", ".join(error.allowed),
+        do=error.do,
+    )
+
+
+def refused_later(error: CommandRefusedError) -> Failed:
+    """The event of an accepted command for which the robot did not get, or stay, ready."""
+    return failed("wrong_state", f"the robot is in {error.state.value}", ", ".join(error.allowed), error.do)
+
+
+def too_late(entry: Entry, found: str) -> NotPlayableError:
+    """The end of a command that cannot begin in time: rejected, or failed once it was accepted."""
+    kind = Failed if entry.accepted else Rejected
+    asked = f"{tag_of(entry.request)} within {entry.request.deadline_s:g} s"
+    do = "leave out the deadline, or ask when the robot is free"
+    return NotPlayableError(kind(code="deadline", asked=asked, found=found, allowed="a beginning in time", do=do))
+
+
+def ending(plan_id: int, by: str, failure: Failed | None) -> Cancelled | Failed:
+    """The event that ends a command; each gets its own, for the ledger fills in its id."""
+    return Cancelled(plan_id=plan_id, by=by) if failure is None else msgspec.structs.replace(failure, plan_id=plan_id)
+
+
+def failed(code: str, found: str, allowed: str, do: str) -> Failed:
+    """A command that could not be carried out."""
+    return Failed(code=code, asked="say", found=found, allowed=allowed, do=do)

@@ -1,0 +1,40 @@
+"""The daemon's sockets: bound with limits, sent to without waiting."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import zmq
+import zmq.asyncio
+
+from daemon.config import config_error
+from daemon.probe import listening
+
+MAX_RECEIVE_BYTES = 1 << 20
+"""ZeroMQ drops the connection of a peer that sends more; below it the peer is told what is allowed."""
+
+
+def bind(socket: zmq.Socket[Any], key: str, endpoint: str) -> None:
+    """Bind a socket.
+
+    Raises:
+        ConfigError: the endpoint is taken or cannot be bound; `key` names the setting.
+    """
+    socket.setsockopt(zmq.LINGER, 0)
+    socket.setsockopt(zmq.MAXMSGSIZE, MAX_RECEIVE_BYTES)
+    do = "stop the other daemon (`mmmd status` shows it), or choose another endpoint"
+    if endpoint.startswith("ipc://") and listening(endpoint):  # ZeroMQ would take the path from it
+        raise config_error(key, f"{endpoint}: Address already in use", "a free endpoint", do)
+    try:
+        socket.bind(endpoint)
+    except zmq.ZMQError as error:
+        raise config_error(key, f"{endpoint}: {error}", "a free endpoint", do) from error
+
+
+def send_now(socket: zmq.asyncio.Socket, frames: list[bytes]) -> None:
+    """Send without waiting; a peer that never reads loses its own messages and slows nobody.
+
+    Through the asyncio socket: a send past it would swallow the edge that tells of received frames.
+    """
+    sent = cast("Any", socket.send_multipart(frames, zmq.DONTWAIT))  # pyright: ignore[reportUnknownMemberType]
+    sent.add_done_callback(lambda done: done.cancelled() or done.exception())  # pyright: ignore

@@ -1,0 +1,207 @@
+"""CLIP's text tower, the text encoder of the released model: 77 word states and one projected sentence vector.
+
+Radford et al. 2021 (arXiv 2103.00020) sec. 2.4: a causal pre-norm transformer over byte pairs, activation
+x * sigmoid(1.702 x). The motion model attends to all 77 positions, also those after the end of the text, and takes the
+sentence vector as it comes out of the projection, not normalised. No weights ship: a user names the files.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import pickle
+from dataclasses import dataclass
+from pathlib import Path
+
+import torch
+import torch.nn.functional as F
+from safetensors import SafetensorError
+from safetensors.torch import load_file
+from tokenizers import Regex, Tokenizer, decoders, models, normalizers, pre_tokenizers
+from torch import Tensor, nn
+
+from mmm_core.errors import CheckpointError
+from mmm_core.text import TextStates
+
+N_MERGES = 49152 - 256 - 2
+"""Byte pairs the published vocabulary file is read up to."""
+_PIECES = r"<\|startoftext\|>|<\|endoftext\|>|'s|'t|'re|'ve|'m|'ll|'d|[\p{L}]+|[\p{N}]|[^\s\p{L}\p{N}]+"
+
+
+@dataclass(frozen=True)
+class ClipConfig:
+    """Sizes of the text tower; the defaults are ViT-B/32's."""
+
+    vocabulary: int = 49408
+    context: int = 77
+    width: int = 512
+    n_layers: int = 12
+    n_heads: int = 8
+    embedding: int = 512
+
+
+class _Block(nn.Module):
+    """Pre-norm transformer block with causal attention."""
+
+    def __init__(self, config: ClipConfig) -> None:
+        super().__init__()
+        W = config.width
+        self.n_heads = config.n_heads
+        self.norm_attention, self.norm_mlp = nn.LayerNorm(W), nn.LayerNorm(W)
+        self.qkv, self.out = nn.Linear(W, 3 * W), nn.Linear(W, W)
+        self.mlp_in, self.mlp_out = nn.Linear(W, 4 * W), nn.Linear(4 * W, W)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """(B, N, W) -> (B, N, W)."""
+        B, N, W = x.shape
+        q, k, v = self.qkv(self.norm_attention(x)).reshape(B, N, 3, self.n_heads, -1).permute(2, 0, 3, 1, 4)
+        attended = F.scaled_dot_product_attention(q, k, v, is_causal=True)
+        x = x + self.out(attended.transpose(1, 2).reshape(B, N, W))
+        hidden = self.mlp_in(self.norm_mlp(x))
+        return x + self.mlp_out(hidden * torch.sigmoid(1.702 * hidden))
+
+
+class ClipText(nn.Module):
+    """The text tower. `encode` needs `word_pieces`; `states` works on ids."""
+
+    def __init__(self, config: ClipConfig, word_pieces: Tokenizer | None = None) -> None:
+        super().__init__()
+        self.config = config
+        self.word_pieces = word_pieces
+        self.token_embedding = nn.Embedding(config.vocabulary, config.width)
+        self.position_embedding = nn.Parameter(torch.zeros(config.context, config.width))
+        self.blocks = nn.ModuleList(_Block(config) for _ in range(config.n_layers))
+        self.norm_out = nn.LayerNorm(config.width)
+        self.projection = nn.Parameter(torch.zeros(config.width, config.embedding))
+
+    def piece_ids(self, texts: list[str]) -> Tensor:
+        """(B, 77) ids: start, pieces, end (the highest id), zeros; a longer text is cut before its end mark."""
+        if self.word_pieces is None:
+            raise CheckpointError(Path("vocabulary"), "", "not in the checkpoint", "one imported with --vocabulary")
+        start, end = self.config.vocabulary - 2, self.config.vocabulary - 1
+        ids = torch.zeros(len(texts), self.config.context, dtype=torch.int64)
+        for row, encoded in enumerate(self.word_pieces.encode_batch(texts, add_special_tokens=False)):
+            pieces = [start, *encoded.ids[: self.config.context - 2], end]
+            ids[row, : len(pieces)] = torch.tensor(pieces)
+        return ids
+
+    @torch.inference_mode()
+    def encode(self, texts: list[str]) -> TextStates:
+        """States of `texts`; every one of the 77 positions counts as a word, as in the released model."""
+        return self.states(self.piece_ids(texts))
+
+    def states(self, ids: Tensor) -> TextStates:
+        """States of (B, 77) ids: words after the last norm, sentence at the highest id, projected, not normalised."""
+        x = self.token_embedding(ids) + self.position_embedding
+        for block in self.blocks:
+            x = block(x)
+        x = self.norm_out(x)
+        sentence = x[torch.arange(len(ids)), ids.argmax(1)] @ self.projection
+        return TextStates(x, torch.ones(ids.shape, dtype=torch.bool), sentence)
+
+
+def read_clip(path: Path, vocabulary: Path) -> ClipText:
+    """The text tower from OpenAI's `ViT-B-32.pt` (a TorchScript archive), or from a state dict (.pt, .safetensors).
+
+    Raises:
+        CheckpointError: a file is missing, holds something else, or the two do not fit each other.
+    """
+    if not path.is_file():
+        raise CheckpointError(path, "", "no such file", "CLIP ViT-B/32's weights")
+    try:
+        if path.suffix == ".safetensors":
+            state = load_file(str(path))
+        else:
+            try:
+                state = torch.load(path, map_location="cpu", weights_only=True)
+            except RuntimeError:  # a TorchScript archive: its tensors are read, its code is not called
+                state = torch.jit.load(str(path), map_location="cpu").state_dict()  # type: ignore[no-untyped-call]
+    except (pickle.UnpicklingError, SafetensorError, RuntimeError, OSError, ValueError, EOFError) as error:
+        first = str(error).split("\n", 1)[0]
+        raise CheckpointError(path, "", f"not readable ({first})", "ViT-B-32.pt or a state dict of tensors") from None
+    if not isinstance(state, dict):
+        raise CheckpointError(path, "", f"a {type(state).__name__}", "a state dict of tensors")
+    tower = clip_from_openai(dict(state), path)
+    pieces = read_vocabulary(vocabulary)
+    if pieces.get_vocab_size() != tower.config.vocabulary:
+        found = f"{pieces.get_vocab_size()} pieces"
+        raise CheckpointError(vocabulary, "", found, f"{tower.config.vocabulary}, as many as the weights have")
+    tower.word_pieces = pieces
+    return tower
+
+
+def clip_from_openai(state: dict[str, Tensor], path: Path, n_heads: int | None = None) -> ClipText:
+    """The text tower of a CLIP state dict in OpenAI's layout; the image tower is left out.
+
+    Raises:
+        CheckpointError: a weight of the text tower is missing.
+    """
+    text = {k: v.float() for k, v in state.items() if not k.startswith("visual.")}
+    try:
+        vocabulary, width = text["token_embedding.weight"].shape
+        n_layers = 1 + max(int(k.split(".")[2]) for k in text if k.startswith("transformer.resblocks."))
+        config = ClipConfig(vocabulary, len(text["positional_embedding"]), width, n_layers, n_heads or width // 64,
+                            text["text_projection"].shape[1])  # fmt: skip
+        out = {
+            "token_embedding.weight": text["token_embedding.weight"],
+            "position_embedding": text["positional_embedding"],
+            "projection": text["text_projection"],
+        }
+        names = {"attn.in_proj_": "qkv.", "attn.out_proj.": "out.", "ln_1.": "norm_attention.", "ln_2.": "norm_mlp.",
+                 "mlp.c_fc.": "mlp_in.", "mlp.c_proj.": "mlp_out."}  # fmt: skip
+        for suffix in ("weight", "bias"):
+            out[f"norm_out.{suffix}"] = text[f"ln_final.{suffix}"]
+            for i in range(n_layers):
+                for theirs, ours in names.items():
+                    out[f"blocks.{i}.{ours}{suffix}"] = text[f"transformer.resblocks.{i}.{theirs}{suffix}"]
+    except (KeyError, ValueError) as error:
+        raise CheckpointError(path, str(error).strip("'"), "missing", "CLIP's text tower in OpenAI's layout") from None
+    tower = ClipText(config)
+    tower.load_state_dict(out)
+    return tower.eval().requires_grad_(False)
+
+
+def read_vocabulary(path: Path) -> Tokenizer:
+    """CLIP's byte-pair tokenizer from `bpe_simple_vocab_16e6.txt.gz` (or unpacked), or a `tokenizer.json`.
+
+    Raises:
+        CheckpointError: the file is missing or neither of the two.
+    """
+    if not path.is_file():
+        raise CheckpointError(path, "", "no such file", "bpe_simple_vocab_16e6.txt.gz or tokenizer.json")
+    try:
+        if path.suffix == ".json":
+            json.loads(path.read_text())
+            return Tokenizer.from_file(str(path))
+        raw = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
+        lines = raw.decode("utf-8").split("\n")[1 : N_MERGES + 1]
+        return byte_pairs([(a, b) for a, b in (line.split() for line in lines if line.strip())])
+    except (OSError, ValueError) as error:
+        expected = "bpe_simple_vocab_16e6.txt.gz or tokenizer.json"
+        raise CheckpointError(path, "", f"not a vocabulary ({error})", expected) from error
+
+
+def byte_pairs(merges: list[tuple[str, str]]) -> Tokenizer:
+    """Tokenizer over bytes with `merges`; lower case, one space between words, `</w>` at a word's end."""
+    letters = _byte_letters()
+    vocabulary = [*letters, *(letter + "</w>" for letter in letters), *(a + b for a, b in merges)]
+    ids = {piece: i for i, piece in enumerate([*vocabulary, "<|startoftext|>", "<|endoftext|>"])}
+    pieces = Tokenizer(models.BPE(ids, merges, end_of_word_suffix="</w>"))
+    pieces.normalizer = normalizers.Sequence(
+        [normalizers.NFC(), normalizers.Replace(Regex(r"\s+"), " "), normalizers.Lowercase()]
+    )
+    pieces.pre_tokenizer = pre_tokenizers.Sequence(
+        [
+            pre_tokenizers.Split(Regex(_PIECES), behavior="removed", invert=True),
+            pre_tokenizers.ByteLevel(add_prefix_space=False, use_regex=False),
+        ]
+    )
+    pieces.decoder = decoders.ByteLevel()
+    return pieces
+
+
+def _byte_letters() -> list[str]:
+    """A printable letter for each byte, GPT-2's order: printable bytes first, the others from U+0100 on."""
+    printable = [*range(ord("!"), ord("~") + 1), *range(ord("¡"), ord("¬") + 1), *range(ord("®"), ord("ÿ") + 1)]
+    others = [b for b in range(256) if b not in printable]
+    return [chr(b) for b in printable] + [chr(256 + n) for n in range(len(others))]

@@ -1,0 +1,64 @@
+"""Arm poses from where the palm is to be: two-bone inverse kinematics in the chest frame, and places of the body.
+
+Places are (outward, up, forward) in metres from the middle between the shoulders, for the acting arm: outward is to the
+left for the left arm. The 22 joints end at the wrist; the palm lies `PALM_M` further along the forearm.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mmm_core.corpus.score import ArmPose, Vector
+from mmm_core.skeleton import BONE_LENGTHS_M, REST_DIRECTIONS
+
+PALM_M = 0.08
+SHOULDER_OUT_M = float(BONE_LENGTHS_M[13] * REST_DIRECTIONS[13][0] + BONE_LENGTHS_M[16])
+_UPPER_M, _FORE_M = float(BONE_LENGTHS_M[18]), float(BONE_LENGTHS_M[20]) + PALM_M
+ELBOW_DOWN: Vector = (0.45, -0.85, -0.2)
+ELBOW_OUT: Vector = (1.0, -0.15, -0.1)
+ELBOW_UP: Vector = (0.8, 0.5, 0.0)
+
+CHIN: Vector = (0.02, 0.10, 0.13)
+MOUTH: Vector = (0.03, 0.16, 0.15)
+EYES: Vector = (0.03, 0.25, 0.13)
+FOREHEAD: Vector = (0.03, 0.30, 0.12)
+BROW: Vector = (0.09, 0.29, 0.12)
+EAR: Vector = (0.11, 0.21, 0.03)
+CROWN: Vector = (0.03, 0.38, 0.02)
+NAPE: Vector = (0.03, 0.17, -0.10)
+HEART: Vector = (-0.06, -0.13, 0.13)
+BELLY: Vector = (0.0, -0.34, 0.15)
+HIP: Vector = (0.17, -0.45, 0.06)
+LOWER_BACK: Vector = (0.06, -0.38, -0.15)
+OTHER_SHOULDER: Vector = (-0.17, -0.01, 0.08)
+STERNUM: Vector = (0.02, -0.16, 0.22)
+
+
+def reach(palm_m: Vector, elbow: Vector = ELBOW_DOWN, twist_rad: float = 0.0) -> ArmPose:
+    """The pose that brings the palm to a place, or as near as the arm is long.
+
+    Args:
+        palm_m: (outward, up, forward) from the middle between the shoulders.
+        elbow: direction towards which the elbow gives way.
+        twist_rad: forearm twist, palm up positive.
+    """
+    to_palm = np.array(palm_m) - np.array([SHOULDER_OUT_M, 0.0, 0.0])
+    distance = float(np.linalg.norm(to_palm))
+    along = to_palm / max(distance, 1e-6)
+    distance = min(max(distance, abs(_FORE_M - _UPPER_M) + 0.02), 0.995 * (_UPPER_M + _FORE_M))
+    aside = np.array(elbow) - (np.array(elbow) @ along) * along
+    aside /= max(float(np.linalg.norm(aside)), 1e-6)
+    cosine = (distance**2 + _UPPER_M**2 - _FORE_M**2) / (2 * distance * _UPPER_M)
+    upper = cosine * along + np.sqrt(max(0.0, 1 - cosine**2)) * aside
+    fore = distance * along - _UPPER_M * upper
+    return ArmPose(_vector(upper), _vector(fore), twist_rad)
+
+
+def palm_m(pose: ArmPose) -> Vector:
+    """Where the palm of a pose is: the inverse of `reach`."""
+    v = pose.vector()
+    return _vector(np.array([SHOULDER_OUT_M, 0, 0]) + _UPPER_M * v[:3] + _FORE_M * v[3:6])
+
+
+def _vector(v: np.ndarray) -> Vector:
+    return (float(v[0]), float(v[1]), float(v[2]))

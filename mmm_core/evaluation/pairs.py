@@ -1,0 +1,104 @@
+"""Motions of people and their captions, in the form that the model to be measured knows.
+
+Rotation channels depend on whose rest directions they are relative to (`checkpoint.Model.rest_pose`). A HumanML3D folder
+is brought to ours through its joint positions; the other way needs the body model that the data set was made with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.corpus.cmu import read_clips
+from mmm_core.datasets import Caption, Split, open_folder
+from mmm_core.engine import Engine
+from mmm_core.errors import EvaluationError, TrainingDataError
+from mmm_core.features import features_from_joints, joints_from_positions
+from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A motion of a person, whole tokens long, and one of its captions.
+
+    Attributes:
+        features: (T, F).
+        text: the caption.
+        words: its "word/POS" tokens, where the data set has them.
+        motion: number of the motion: pairs of one motion share it.
+    """
+
+    features: NDArray[np.float32]
+    text: str
+    words: tuple[str, ...]
+    motion: int
+
+
+def read_pairs(folder: Path, splits: Sequence[Split]) -> list[Pair]:
+    """Pairs of a data folder of either kind, one for each caption, in the folder's own features.
+
+    Raises:
+        TrainingDataError: no pair, or the folder cannot be read.
+    """
+    pairs: list[Pair] = []
+    for number, (features, captions) in enumerate(_motions(folder, splits)):
+        whole = features[: min(len(features) // FRAMES_PER_TOKEN, MAX_TOKENS) * FRAMES_PER_TOKEN]
+        pairs += [Pair(whole, c.text, c.tokens, number) for c in captions]
+    if not pairs:
+        raise TrainingDataError(folder, ", ".join(splits), "no pair of motion and caption", "a folder with this split")
+    return pairs
+
+
+def pairs_for(engines: Sequence[Engine], folder: Path, splits: Sequence[Split]) -> list[Pair]:
+    """Pairs of a folder in the features of `engines`.
+
+    Raises:
+        TrainingDataError: as `read_pairs`.
+        EvaluationError: the models differ in their features, or the folder's cannot be brought to theirs.
+    """
+    forms = {(engine.model.rest_pose, n_features(engine)) for engine in engines}
+    if len(forms) > 1:
+        found = " and ".join(f"{n} features ({pose})" for pose, n in sorted(forms))
+        raise EvaluationError(f"models with {found}", "models of one kind in a run")
+    (wanted_pose, wanted), pairs = forms.pop(), read_pairs(folder, splits)
+    found, pose = pairs[0].features.shape[1], folder_rest_pose(folder)
+    if found != wanted:
+        raise EvaluationError(f"{folder} has {found} features, the model {wanted}", "a model trained on such a folder")
+    if pose == wanted_pose:
+        return pairs
+    if pose == "mmmd":
+        raise EvaluationError(f"{folder} has this repository's rest directions, the model HumanML3D's",
+                              "a HumanML3D folder, or a model of `mmmd train` on this one")  # fmt: skip
+    moved = {p.motion: to_our_rest_pose(p.features) for p in {p.motion: p for p in pairs}.values()}
+    return [Pair(moved[p.motion], p.text, p.words, p.motion) for p in pairs]
+
+
+def folder_rest_pose(folder: Path) -> str:
+    """Whose rest directions a folder's rotations are relative to."""
+    return "mmmd" if (folder / "clips.jsonl").is_file() else "humanml3d"
+
+
+def n_features(engine: Engine) -> int:
+    """Values in a frame of the engine's features."""
+    return len(engine.model.tokenizer.mean)
+
+
+def to_our_rest_pose(features: NDArray[np.float32]) -> NDArray[np.float32]:
+    """HumanML3D's (T, 263) features -> ours, through the joint positions: bones then show no twist."""
+    return features_from_joints(joints_from_positions(features))
+
+
+def _motions(folder: Path, splits: Sequence[Split]) -> Iterator[tuple[NDArray[np.float32], tuple[Caption, ...]]]:
+    if (folder / "clips.jsonl").is_file():
+        for split in splits:
+            for features, captions in read_clips(folder, split):
+                yield features, tuple(Caption(text, (), 0.0, None) for text in captions)
+    else:
+        opened = open_folder(folder)
+        for split in splits:
+            for example in opened.examples(split):
+                yield example.features, example.captions

@@ -1,0 +1,90 @@
+"""Linear layers with their weights packed once for the matrix sizes of decoding.
+
+A row of tokens makes thin matrices (at most 51 rows), for which a plain linear layer spends much of its time bringing
+the weights into the order the processor wants. oneDNN can keep them in that order: measured on an Intel Xeon with
+AVX-512, one thread, width 1024: 1.4 times as fast with 51 rows, 2.4 times with 12 (`mmmd bench official`). The numbers are
+those of the plain layer but for rounding. Where PyTorch has no oneDNN the layers stay as they are.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Literal
+
+import torch
+from torch import Tensor, nn
+
+Precision = Literal["fp32", "bf16"]
+
+PACKED_FOR_ROWS = 51
+"""Rows the packing is chosen for; any number works."""
+SMALLEST = 128
+"""Layers narrower than this gain nothing."""
+
+
+# PyTorch offers packing under these names alone; its own inference passes use them.
+_PACK = getattr(torch.ops.mkldnn, "_reorder_linear_weight", None)
+_APPLY = getattr(torch.ops.mkldnn, "_linear_pointwise", None)
+
+
+class PackedLinear(nn.Module):
+    """A linear layer for inference; `gelu` adds the activation that follows it."""
+
+    def __init__(self, linear: nn.Linear, precision: Precision, *, gelu: bool = False) -> None:
+        super().__init__()
+        self._activation = "gelu" if gelu else "none"
+        self._dtype = torch.bfloat16 if precision == "bf16" else torch.float32
+        weight = linear.weight.detach().to(self._dtype)
+        assert _PACK is not None, "see can_pack"
+        self._packed = _PACK(weight, PACKED_FOR_ROWS)
+        self._bias = None if linear.bias is None else linear.bias.detach().to(self._dtype)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """(..., in) -> (..., out), float32."""
+        assert _APPLY is not None, "see can_pack"
+        y = _APPLY(x.to(self._dtype), self._packed, self._bias, self._activation, [], "none")
+        return y.float()
+
+
+def can_pack() -> bool:
+    """Whether this PyTorch and processor can."""
+    return torch.backends.mkldnn.is_available() and _PACK is not None and _APPLY is not None
+
+
+def fastest_precision(width: int = 1024, n_calls: int = 8) -> Precision:
+    """The faster of the two here, by timing a layer of `width`: about 20 ms. fp32 unless bf16 gains a quarter."""
+    if not can_pack():
+        return "fp32"
+    x, linear, seconds = torch.zeros(PACKED_FOR_ROWS, width), nn.Linear(width, width), {}
+    with torch.inference_mode():
+        for precision in ("fp32", "bf16"):
+            layer = PackedLinear(linear, precision)
+            layer(x)
+            start = time.perf_counter()
+            for _ in range(n_calls):
+                layer(x)
+            seconds[precision] = time.perf_counter() - start
+    return "bf16" if seconds["bf16"] < 0.75 * seconds["fp32"] else "fp32"
+
+
+def pack(module: nn.Module, precision: Precision = "fp32") -> nn.Module:
+    """Replace the linear layers of `module` in place, for inference only; returns it.
+
+    bf16 halves the memory traffic and is faster where the processor has matrix units for it (AMX); it changes tokens.
+    """
+    if can_pack():
+        _replace(module, precision)
+    return module
+
+
+def _replace(module: nn.Module, precision: Precision) -> None:
+    children = list(module.named_children())
+    for i, (name, child) in enumerate(children):
+        if isinstance(child, nn.Linear) and min(child.weight.shape) >= SMALLEST:
+            following = children[i + 1] if isinstance(module, nn.Sequential) and i + 1 < len(children) else None
+            gelu = following is not None and isinstance(following[1], nn.GELU) and following[1].approximate == "none"
+            setattr(module, name, PackedLinear(child, precision, gelu=gelu))
+            if gelu and following is not None:
+                setattr(module, following[0], nn.Identity())
+        else:
+            _replace(child, precision)

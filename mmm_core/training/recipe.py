@@ -1,0 +1,186 @@
+"""What a training makes, from one TOML file: data, text encoder, the sizes and the schedule of each stage."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from pathlib import Path
+from typing import Any, Literal, get_type_hints
+
+import msgspec
+
+from mmm_core.errors import TrainingDataError
+from mmm_core.tokenizer import TokenizerConfig
+from mmm_core.training.run import Schedule
+from mmm_core.training.transformer_training import TOKENS_PER_BATCH, Corruption
+from mmm_core.transformer import TransformerConfig
+from mmm_core.vqvae import VqVaeConfig
+
+RECIPES = Path(__file__).parent / "recipes"
+
+
+@dataclass(frozen=True)
+class DataRecipe:
+    """What it is made from.
+
+    Attributes:
+        folder: a HumanML3D or KIT-ML folder, or one with clips.jsonl (docs/DATA.md); empty for none.
+        synthesised: clips that the gesture corpus makes.
+        licence: of the folder's data; it goes into the checkpoint.
+    """
+
+    folder: str = ""
+    synthesised: int = 0
+    licence: str = ""
+
+
+@dataclass(frozen=True)
+class TextRecipe:
+    """Which text encoder reads the captions: the packed MiniLM, or CLIP from files."""
+
+    encoder: Literal["minilm", "clip"] = "minilm"
+    clip: str = ""
+    vocabulary: str = ""
+
+
+@dataclass(frozen=True)
+class TokenizerRecipe:
+    """The tokenizer: by body parts, or one of the paper's layouts.
+
+    Attributes:
+        layout: "parts" (ours), "whole" or "halves" (the paper's).
+        n_codes: codes of each codebook.
+        code_dim: width of a code.
+        width: of the decoder ("parts") or of all convolutions.
+        batch: windows in a step.
+        window_frames: frames in a window.
+        real_share: share of windows from people.
+        reset_rule: what becomes of dead codes; "official" never resets one that was used once.
+        schedule: how long.
+        decoder: further training of the decoder alone; 0 steps for none (layout "parts").
+    """
+
+    layout: Literal["parts", "whole", "halves"] = "parts"
+    n_codes: int = 512
+    code_dim: int = 16
+    width: int = 256
+    batch: int = 128
+    window_frames: int = 40
+    real_share: float = 0.12
+    reset_rule: Literal["for_good", "official"] = "for_good"
+    schedule: Schedule = field(default_factory=lambda: Schedule(steps=2600, learning_rate=1e-3))
+    decoder: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3))
+
+    def config(self, n_features: int) -> TokenizerConfig | VqVaeConfig:
+        """Sizes for features of that width."""
+        if self.layout == "parts":
+            return TokenizerConfig(self.n_codes, self.code_dim, self.width)
+        return VqVaeConfig(
+            self.layout, self.n_codes, self.code_dim, self.width, n_features=n_features, reset_rule=self.reset_rule
+        )
+
+
+@dataclass(frozen=True)
+class TransformerRecipe:
+    """The masked transformer; what the tokenizer and the text encoder decide is not asked again."""
+
+    width: int = 256
+    n_heads: int = 8
+    n_cross: int = 2
+    n_self: int = 6
+    dropout: float = 0.1
+    tokens_per_batch: int = TOKENS_PER_BATCH
+    corruption: Corruption = field(default_factory=Corruption)
+    schedule: Schedule = field(default_factory=lambda: Schedule(steps=6200, learning_rate=1e-3))
+
+    def config(self, tokenizer: TokenizerConfig | VqVaeConfig, n_codebooks: int, text_dim: int) -> TransformerConfig:
+        """Sizes; layout "halves" predicts the upper body given the lower."""
+        halves = isinstance(tokenizer, VqVaeConfig) and tokenizer.layout == "halves"
+        return TransformerConfig(
+            tokenizer.n_codes, n_codebooks, tokenizer.code_dim, self.width, self.n_heads, self.n_cross, self.n_self,
+            text_dim, self.dropout, 1 if halves else None,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """Everything; see the files in `recipes` for two whole ones.
+
+    Attributes:
+        seed: of the corpus and, unless its schedule has one of its own, of every stage.
+        data: what it is made from.
+        text: which text encoder.
+        tokenizer: motion to ids.
+        transformer: text to ids.
+        length: schedule of the length predictor.
+        evaluator: schedule of the evaluation's feature extractors.
+    """
+
+    seed: int = 0
+    data: DataRecipe = field(default_factory=lambda: DataRecipe(synthesised=14_000))
+    text: TextRecipe = field(default_factory=TextRecipe)
+    tokenizer: TokenizerRecipe = field(default_factory=TokenizerRecipe)
+    transformer: TransformerRecipe = field(default_factory=TransformerRecipe)
+    length: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3, save_every=500))
+    evaluator: Schedule = field(default_factory=lambda: Schedule(steps=1500, learning_rate=3e-4))
+
+    def seeded(self) -> Recipe:
+        """The same with the recipe's seed in every stage that has none of its own."""
+
+        def with_seed(schedule: Schedule) -> Schedule:
+            return replace(schedule, seed=schedule.seed or self.seed)
+
+        tokenizer = replace(self.tokenizer, schedule=with_seed(self.tokenizer.schedule),
+                            decoder=with_seed(self.tokenizer.decoder))  # fmt: skip
+        transformer = replace(self.transformer, schedule=with_seed(self.transformer.schedule))
+        return replace(self, tokenizer=tokenizer, transformer=transformer, length=with_seed(self.length),
+                       evaluator=with_seed(self.evaluator))  # fmt: skip
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain tables, for a checkpoint."""
+        return asdict(self)
+
+
+def known_recipes() -> list[str]:
+    """Names of the recipes that ship."""
+    return sorted(p.stem for p in RECIPES.glob("*.toml"))
+
+
+def read_recipe(name_or_path: str) -> Recipe:
+    """A recipe by its name, or from a TOML file.
+
+    Raises:
+        TrainingDataError: no such recipe, not TOML, an unknown key or a value of another kind; each is named.
+    """
+    path = RECIPES / f"{name_or_path}.toml"
+    if not path.is_file():
+        path = Path(name_or_path)
+    try:
+        table = tomllib.loads(path.read_text("utf-8"))
+    except OSError:
+        expected = f"a TOML file, or one of {', '.join(known_recipes())}"
+        raise TrainingDataError(path, "", "no such recipe", expected) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TrainingDataError(path, "", f"not TOML ({error})", "a recipe, see docs/training.md") from None
+    return _build(Recipe(), table, path, "").seeded()
+
+
+def _build(default: Any, table: dict[str, Any], path: Path, prefix: str) -> Any:
+    """`default` with the values of `table`, checked field by field."""
+    hints = get_type_hints(type(default))
+    known = [f.name for f in fields(default)]
+    values: dict[str, Any] = {}
+    for key, value in table.items():
+        if key not in known:
+            raise TrainingDataError(path, prefix + key, "unknown", ", ".join(known))
+        current = getattr(default, key)
+        if is_dataclass(current):
+            if not isinstance(value, dict):
+                raise TrainingDataError(path, prefix + key, repr(value), f"a table [{prefix}{key}]")
+            values[key] = _build(current, value, path, f"{prefix}{key}.")
+        else:
+            try:
+                values[key] = msgspec.convert(value, hints[key])
+            except msgspec.ValidationError as error:
+                raise TrainingDataError(path, prefix + key, repr(value), str(error)) from None
+    return replace(default, **values)

@@ -1,0 +1,276 @@
+"""How a model is made, stage by stage, from data to checkpoint: what `mmmd train` runs.
+
+corpus -> tokenizer -> ids and caption states -> length predictor, transformer -> checkpoint. Each stage keeps its state in
+the run's folder; a stage that is done is only loaded, so any of them can be asked for by itself.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import subprocess
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from mmm_core import distributed
+from mmm_core.checkpoint import Model, load_text_encoder, save_model
+from mmm_core.clip import ClipText, read_clip
+from mmm_core.corpus.grammar import known_commands
+from mmm_core.corpus.outside import OUTSIDE
+from mmm_core.corpus.stream import make_corpus
+from mmm_core.datasets import MotionFolder, open_folder
+from mmm_core.errors import TrainingDataError
+from mmm_core.evaluation.extractors import OURS, Evaluator, save_evaluator
+from mmm_core.features import joints_from_positions, recover
+from mmm_core.kit import joints_from_kit
+from mmm_core.length import LengthPredictor
+from mmm_core.motion import FPS, N_FEATURES
+from mmm_core.sampling import SamplingSettings, empty_row, fill
+from mmm_core.scope import ScopeIndex
+from mmm_core.text import TextEncoder, TextStates
+from mmm_core.tokenizer import Tokenizer
+from mmm_core.training.batches import (
+    CaptionStates,
+    Clip,
+    TokenCorpus,
+    cut_to_tokens,
+    encode_clips,
+    load_clips,
+    save_clips,
+)
+from mmm_core.training.evaluator_training import train_evaluator
+from mmm_core.training.recipe import Recipe
+from mmm_core.training.run import Run
+from mmm_core.training.samples import draw_rows
+from mmm_core.training.tokenizer_training import train_tokenizer, tune_decoder
+from mmm_core.training.transformer_training import train_length, train_transformer
+from mmm_core.transformer import MotionTransformer
+from mmm_core.vqvae import VqVae
+
+log = logging.getLogger(__name__)
+SAMPLE_TEXTS = ("wave with your right hand", "raise your left arm", "clap your hands", "bow")
+SAMPLE_TOKENS = 15
+
+
+class Stages:
+    """The stages of one recipe in one run; each property is made, or loaded, when it is first asked for."""
+
+    def __init__(self, recipe: Recipe, run: Run, data: Path | None = None) -> None:
+        """`data` stands for the recipe's folder."""
+        folder = data or (Path(recipe.data.folder) if recipe.data.folder else None)
+        self.recipe, self.run, self.data = recipe, run, folder
+        self.is_dataset = folder is not None and not (folder / "clips.jsonl").is_file()
+
+    @cached_property
+    def folder(self) -> MotionFolder | None:
+        """The HumanML3D or KIT-ML folder, if the data are one."""
+        return open_folder(self.data) if self.is_dataset and self.data else None
+
+    @cached_property
+    def clips(self) -> list[Clip]:
+        """The training motions: made once, then read from the run's folder.
+
+        Raises:
+            TrainingDataError: there are none.
+        """
+        path = self.run.folder / "corpus.npz"
+        if not path.is_file() and distributed.rank() == 0:
+            clips = [cut_to_tokens(c, np.random.default_rng((self.recipe.seed, i))) for i, c in enumerate(self._made())]
+            clips = [c for c in clips if len(c.features) and c.captions]
+            if not clips:
+                raise TrainingDataError(self.data or Path(), "data", "no clip", "data.folder, data.synthesised or both")
+            self.run.folder.mkdir(parents=True, exist_ok=True)
+            save_clips(path, clips)
+        distributed.wait()
+        clips = load_clips(path)
+        people = sum(c.is_real for c in clips)
+        log.info("%d clips, %.1f h, %d from people", len(clips), self._hours(clips), people)
+        return clips
+
+    def _made(self) -> list[Clip]:
+        synthesised, seed = self.recipe.data.synthesised, self.recipe.seed
+        if self.folder is None:
+            made = make_corpus(synthesised, self.data, seed, os.cpu_count() or 1)
+            return [Clip(c.features, list(c.captions), c.is_real) for c in made]
+        if synthesised and self.folder.n_features != N_FEATURES:
+            found = f"{synthesised} with {self.folder.n_features} features in {self.data}"
+            raise TrainingDataError(self.data or Path(), "data.synthesised", found, "0: gestures have 263")
+        made = make_corpus(synthesised, None, seed, os.cpu_count() or 1)
+        return [
+            *(Clip(c.features, list(c.captions), c.is_real) for c in made),
+            *(Clip(e.features, [c.text for c in e.captions], True) for e in self.folder.examples("train")),
+        ]
+
+    @cached_property
+    def text(self) -> TextEncoder:
+        """The encoder that reads captions."""
+        how = self.recipe.text
+        return load_text_encoder() if how.encoder == "minilm" else read_clip(Path(how.clip), Path(how.vocabulary))
+
+    @cached_property
+    def tokenizer(self) -> Tokenizer | VqVae:
+        """Motion to ids, trained; with the decoder as it was when the ids were made."""
+        how, clips = self.recipe.tokenizer, self.clips
+        width = clips[0].features.shape[1]
+        shown = torch.from_numpy(max(clips, key=lambda c: len(c.features)).features)
+        run = replace(self.run, sampler=lambda module, path: self._draw_reconstruction(module, shown, path))
+        statistics = None
+        if self.folder is not None and not self.recipe.data.synthesised:
+            statistics = torch.from_numpy(self.folder.mean), torch.from_numpy(self.folder.std)
+        return train_tokenizer(clips, how.config(width), how.schedule, run, statistics=statistics, batch=how.batch,
+                               window_frames=how.window_frames, real_share=how.real_share)  # fmt: skip
+
+    @cached_property
+    def corpus(self) -> TokenCorpus:
+        """Ids and caption states of the clips; caption states are kept in the run's folder."""
+        captions = sorted({c for clip in self.clips for c in clip.captions})
+        row = {caption: i for i, caption in enumerate(captions)}
+        rows = [[row[c] for c in clip.captions] for clip in self.clips]
+        is_real = np.array([c.is_real for c in self.clips])
+        states = self._caption_states(captions, self.text, "captions.pt")
+        return TokenCorpus(encode_clips(self.clips, self.tokenizer), rows, states, is_real)
+
+    def _caption_states(self, captions: list[str], encoder: TextEncoder, name: str) -> CaptionStates:
+        path = self.run.folder / name
+        if not path.is_file() and distributed.rank() == 0:
+            CaptionStates.encode(captions, encoder).save(path)
+        distributed.wait()
+        return CaptionStates.load(path)
+
+    @cached_property
+    def length(self) -> LengthPredictor:
+        """Seconds from text."""
+        fps = FPS if self.folder is None else self.folder.fps
+        return train_length(self.corpus, [len(c.features) / fps for c in self.clips], self.recipe.length, self.run)
+
+    @cached_property
+    def transformer(self) -> MotionTransformer:
+        """Text to ids."""
+        how, tokenizer = self.recipe.transformer, self.tokenizer
+        config = how.config(tokenizer.config, tokenizer.n_codebooks, self.corpus.captions.words.shape[1])
+        texts = self.text.encode(list(SAMPLE_TEXTS))
+        run = replace(self.run, sampler=lambda module, path: self._draw_samples(module, texts, path))
+        return train_transformer(
+            self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch
+        )
+
+    @cached_property
+    def evaluator(self) -> Evaluator:
+        """The extractors that evaluation uses; written beside the run's states when it is done.
+
+        It reads MiniLM's states whatever the model reads, so that models with other text encoders can be compared.
+        """
+        captions = sorted({c for clip in self.clips for c in clip.captions})
+        row = {caption: i for i, caption in enumerate(captions)}
+        rows = [[row[c] for c in clip.captions] for clip in self.clips]
+        shared = self.recipe.text.encoder == "minilm"
+        encoder, name = (self.text, "captions.pt") if shared else (load_text_encoder(), "captions_minilm.pt")
+        states = self._caption_states(captions, encoder, name)
+        width, words = self.clips[0].features.shape[1], states.words.shape[1]
+        pose = "mmmd" if self.folder is None else "humanml3d"
+        config = replace(OURS, n_features=width, word=words, rest_pose=pose)
+        evaluator = train_evaluator(self.clips, states, rows, self.recipe.evaluator, self.run, config)
+        if distributed.rank() == 0:
+            save_evaluator(self.run.folder / "evaluator.safetensors", evaluator, self.provenance())
+        return evaluator
+
+    def model(self) -> Model:
+        """All stages, as a model to be saved."""
+        length, transformer, tokenizer = self.length, self.transformer, self.tokenizer
+        if isinstance(tokenizer, Tokenizer) and self.recipe.tokenizer.decoder.steps:
+            tune_decoder(tokenizer, self.clips, self.recipe.tokenizer.decoder, self.run)
+        synthesised = bool(self.recipe.data.synthesised)
+        text = self.text if isinstance(self.text, ClipText) else None
+        pose = "humanml3d" if self.folder is not None else "mmmd"
+        scope = scope_index(self.text) if synthesised and text is None else None
+        return Model(tokenizer, transformer, length, scope, self.provenance(), text, pose)
+
+    def provenance(self) -> dict[str, object]:
+        """Where a checkpoint comes from: recipe, data with its licence, seed, revision, last losses."""
+        sources = ["synthesised gestures (this repository, Apache-2.0)"] if self.recipe.data.synthesised else []
+        if self.data is not None:
+            sources.append(f"{self.data.name}: {self.recipe.data.licence or 'licence not stated by the recipe'}")
+        return {
+            "recipe": json.loads(json.dumps(self.recipe.to_dict())),
+            "seed": self.recipe.seed,
+            "data": "; ".join(sources),
+            "clips": len(self.clips),
+            "clips_from_people": int(sum(c.is_real for c in self.clips)),
+            "hours": round(self._hours(self.clips), 2),
+            "revision": _revision(),
+            "metrics": _last_losses(self.run.folder),
+        }
+
+    def _hours(self, clips: Sequence[Clip]) -> float:
+        fps = FPS if self.folder is None else self.folder.fps
+        return sum(len(c.features) for c in clips) / fps / 3600
+
+    def _joints(self, features: np.ndarray) -> np.ndarray:
+        """(T, 22, 3) metres, by whatever the features are."""
+        if self.folder is None:
+            return recover(features).joints_m
+        joints = joints_from_positions(features)
+        return joints if joints.shape[1] == 22 else joints_from_kit(joints)
+
+    @torch.no_grad()
+    def _draw_reconstruction(self, tokenizer: nn.Module, shown: Tensor, path: Path) -> None:
+        assert isinstance(tokenizer, (Tokenizer, VqVae))
+        features = shown.to(tokenizer.mean.device)
+        again = tokenizer.decode(tokenizer.encode(features[None]))[0].cpu().numpy()
+        draw_rows(path, {"a clip": self._joints(shown.numpy()), "through the tokenizer": self._joints(again)})
+
+    @torch.no_grad()
+    def _draw_samples(self, transformer: nn.Module, texts: TextStates, path: Path) -> None:
+        assert isinstance(transformer, MotionTransformer)
+        device = transformer.codebooks.device
+        transformer.cpu()
+        rows = [empty_row(transformer, SAMPLE_TOKENS) for _ in SAMPLE_TEXTS]
+        if transformer.config.n_predicted is not None:  # the lower body of a clip is the context
+            for row, ids in zip(rows, self.corpus.ids, strict=False):
+                row[:, 1:] = ids[torch.arange(SAMPLE_TOKENS) % len(ids), 1:]
+        filled = fill(transformer, texts, rows, list(range(len(rows))), SamplingSettings())
+        transformer.to(device)
+        motions = [self.tokenizer.decode(ids[None])[0].numpy() for ids in filled]
+        draw_rows(path, {t: self._joints(m) for t, m in zip(SAMPLE_TEXTS, motions, strict=True)})
+
+
+def make_model(recipe: Recipe, run: Run, data: Path | None, out: Path) -> None:
+    """Run every stage that is not done yet and write the checkpoint to `out`."""
+    model = Stages(recipe, run, data).model()
+    if distributed.rank() == 0:
+        save_model(out, model, half=model.text is None)
+
+
+def scope_index(encoder: TextEncoder) -> ScopeIndex:
+    """What the model was taught to follow, in plain words, and what it cannot do."""
+    commands = sorted(known_commands())
+    texts = [*commands, *OUTSIDE]
+    vectors = [encoder.encode(texts[i : i + 64]).sentence for i in range(0, len(texts), 64)]
+    return ScopeIndex(texts, torch.cat(vectors), len(commands))
+
+
+def _last_losses(folder: Path) -> dict[str, dict[str, float]]:
+    """The last line of each stage's log."""
+    found: dict[str, dict[str, float]] = {}
+    for path in sorted(folder.glob("*.csv")):
+        lines = path.read_text().splitlines()
+        if len(lines) > 1 and lines[0].startswith("step,"):
+            names, values = lines[0].split(","), lines[-1].split(",")
+            found[path.stem] = {n: float(v) for n, v in zip(names, values, strict=False) if n != "seconds"}
+    return found
+
+
+def _revision() -> str:
+    """Git revision of the code that trains, or "unknown" outside a checkout."""
+    try:
+        done = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True, check=True, timeout=10)
+    except (OSError, subprocess.SubprocessError):
+        return "unknown"
+    return done.stdout.strip()

@@ -1,0 +1,66 @@
+"""Rods between a servo and its joint: the servo's angle as a table over the joint's, smooth and with an exact inverse.
+
+The few rows of a table are joined by a monotone cubic (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980) and that is
+sampled finely once; both ways are then linear between the same samples, so each is the other's inverse to rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+_SAMPLES_PER_ROW = 64
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """Strictly monotone samples (N,) of joint and servo angle."""
+
+    joint_rad: Array
+    servo_rad: Array
+
+    @classmethod
+    def of_table(cls, joint_rad: Array, servo_rad: Array) -> Linkage:
+        """The smooth curve through a table: joint angles rising, servo angles strictly monotone, at least 3 rows."""
+        step = np.diff(joint_rad)
+        slope = np.diff(servo_rad) / step
+        tangent = np.concatenate([slope[:1], (slope[1:] + slope[:-1]) / 2, slope[-1:]])
+        # Within three times either neighbouring slope the cubic stays monotone.
+        bound = 3 * np.minimum(np.abs(np.append(slope[:1], slope)), np.abs(np.append(slope, slope[-1:])))
+        tangent = np.sign(slope[0]) * np.minimum(np.abs(tangent), bound)
+        u = np.linspace(0, 1, _SAMPLES_PER_ROW, endpoint=False)
+        joint = joint_rad[:-1, None] + step[:, None] * u
+        servo = (
+            (1 + 2 * u) * (1 - u) ** 2 * servo_rad[:-1, None]
+            + u * (1 - u) ** 2 * step[:, None] * tangent[:-1, None]
+            + u**2 * (3 - 2 * u) * servo_rad[1:, None]
+            + u**2 * (u - 1) * step[:, None] * tangent[1:, None]
+        )
+        return cls(np.append(joint.ravel(), joint_rad[-1]), np.append(servo.ravel(), servo_rad[-1]))
+
+    def to_servo(self, joint_rad: Array) -> Array:
+        """Servo angles for joint angles; beyond the table its ends."""
+        return np.interp(joint_rad, self.joint_rad, self.servo_rad)
+
+    def to_joint(self, servo_rad: Array) -> Array:
+        """Joint angles for servo angles; beyond the table its ends."""
+        if self.servo_rad[0] > self.servo_rad[-1]:
+            return np.interp(servo_rad, self.servo_rad[::-1], self.joint_rad[::-1])
+        return np.interp(servo_rad, self.servo_rad, self.joint_rad)
+
+    @property
+    def steepest(self) -> float:
+        """Largest speed of the servo for a unit speed of the joint."""
+        return float(np.abs(self._slope()).max())
+
+    @property
+    def curvature(self) -> float:
+        """Largest change of that speed, per radian of the joint."""
+        middle = (self.joint_rad[1:] + self.joint_rad[:-1]) / 2
+        return float(np.abs(np.diff(self._slope()) / np.diff(middle)).max())
+
+    def _slope(self) -> Array:
+        return np.diff(self.servo_rad) / np.diff(self.joint_rad)

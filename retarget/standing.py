@@ -1,0 +1,40 @@
+"""A person who stands still with the arms in given directions: to ask a robot for a pose in the way all motions ask."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.motion import FPS, N_FEATURES, Motion
+from mmm_core.skeleton import BONE_LENGTHS_M, forward_kinematics
+from retarget.pipeline import Retargeter
+
+Array = NDArray[np.float64]
+Direction = tuple[float, float, float]
+_PELVIS_M = 0.92
+_ARMS = ((1.0, (16, 18, 20)), (-1.0, (17, 19, 21)))
+_FRAMES = 2
+
+
+def standing_motion(upper: Direction, fore: Direction) -> Motion:
+    """A motion of two equal frames, both arms alike.
+
+    Args:
+        upper: direction of the upper arms, (forward, outward, up) of any length.
+        fore: direction of the forearms.
+    """
+    joints, _ = forward_kinematics(np.broadcast_to(np.eye(3), (1, 22, 3, 3)), np.array([[0.0, _PELVIS_M, 0.0]]))
+    for side, (shoulder, elbow, wrist) in _ARMS:
+        for start, end, (forward, outward, up) in ((shoulder, elbow, upper), (elbow, wrist, fore)):
+            bone = np.array([side * outward, up, forward])
+            joints[:, end] = joints[:, start] + BONE_LENGTHS_M[end] * bone / np.linalg.norm(bone)
+    head = np.tile(np.array([1.0, 0, 0, 0], np.float32), (_FRAMES, 1))
+    return Motion(
+        np.repeat(joints, _FRAMES, 0).astype(np.float32), FPS, head, np.zeros((_FRAMES, 2), np.float32),
+        np.zeros((_FRAMES, N_FEATURES), np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0,
+    )  # fmt: skip
+
+
+def standing_pose(retargeter: Retargeter, upper: Direction, fore: Direction) -> Array:
+    """(J,) what the robot makes of it: within its limits, clear of itself."""
+    return retargeter.retarget(standing_motion(upper, fore)).q_rad[-1]

@@ -1,0 +1,67 @@
+"""`mmmd edit` and `mmmd generate --story` on files, as a user runs them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from daemon.cli import main
+from mmm_core.motion import load_npz
+
+
+@pytest.fixture(scope="module")
+def wave(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("motions") / "wave.npz"
+    assert main(["generate", "wave with your right hand", "--seconds", "3", "--out", str(path)]) == 0
+    return path
+
+
+def test_one_part_of_a_motion_is_made_again(wave: Path, tmp_path: Path) -> None:
+    out = tmp_path / "edited.npz"
+    command = ["edit", str(wave), "raise your left arm", "--part", "left_arm", "--out", str(out)]
+    assert main([*command, "--bvh", str(tmp_path / "e.bvh")]) == 0
+    before, after = load_npz(wave), load_npz(out)
+    assert not np.array_equal(before.tokens, after.tokens)
+    assert (tmp_path / "e.bvh").read_text().startswith("HIERARCHY")
+
+
+def test_a_motion_grows_at_its_end(wave: Path, tmp_path: Path) -> None:
+    out = tmp_path / "longer.npz"
+    assert main(["edit", str(wave), "bow", "--after-s", "2", "--out", str(out)]) == 0
+    assert len(load_npz(out).joints_m) == 100
+
+
+@pytest.mark.parametrize(
+    ("options", "status", "message"),
+    [
+        (["--part", "tail"], 1, "left_arm, right_arm, rest"),
+        (["--start-s", "2", "--end-s", "1"], 1, "0 <= start < end <= 3.0 s"),
+        (["--part", "rest", "--after-s", "1"], 2, "one or the other"),
+        (["--then", "other.npz"], 2, "--after-s"),
+    ],
+)
+def test_what_does_not_fit_is_said(
+    wave: Path, tmp_path: Path, options: list[str], status: int, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["edit", str(wave), "bow", *options, "--out", str(tmp_path / "out.npz")]) == status
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "out.npz").exists()
+
+
+def test_a_story_becomes_one_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scenes, out = tmp_path / "scenes.jsonl", tmp_path / "story.npz"
+    scenes.write_text('{"text": "wave with your right hand", "seconds": 2}\n\n{"text": "xq zzt"}\n{"text": "bow"}\n')
+    assert main(["generate", "--story", str(scenes), "--out", str(out)]) == 0
+    story = load_npz(out)
+    assert story.text == "wave with your right hand; bow"
+    assert len(story.joints_m) == 4 * len(story.tokens)
+    assert "left out: 'xq zzt'" in capsys.readouterr().err
+
+
+def test_a_bad_scene_is_named_by_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scenes = tmp_path / "scenes.jsonl"
+    scenes.write_text('{"text": "bow"}\n{"txt": "bow"}\n')
+    assert main(["generate", "--story", str(scenes), "--out", str(tmp_path / "s.npz")]) == 2
+    assert "line 2" in capsys.readouterr().err

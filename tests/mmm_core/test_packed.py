@@ -1,0 +1,53 @@
+"""Packed layers give what plain ones give."""
+
+from __future__ import annotations
+
+import copy
+
+import pytest
+import torch
+from torch import nn
+
+from mmm_core.packed import PackedLinear, can_pack, fastest_precision, pack
+from mmm_core.sampling import SamplingSettings, empty_row, fill
+from mmm_core.text import TextStates
+from mmm_core.transformer import MotionTransformer, TransformerConfig
+
+pytestmark = pytest.mark.skipif(not can_pack(), reason="this PyTorch has no oneDNN")
+
+
+@pytest.mark.parametrize("rows", [1, 7, 51, 200])
+@pytest.mark.parametrize("bias", [True, False])
+@torch.inference_mode()
+def test_a_packed_layer_equals_the_plain_one(rows: int, bias: bool) -> None:
+    torch.manual_seed(rows)
+    linear, x = nn.Linear(256, 512, bias=bias), torch.randn(2, rows, 256)
+    torch.testing.assert_close(PackedLinear(linear, "fp32")(x), linear(x), atol=1e-5, rtol=1e-5)
+    torch.testing.assert_close(PackedLinear(linear, "bf16")(x), linear(x), atol=0.05, rtol=0.05)
+
+
+@torch.inference_mode()
+def test_an_activation_that_follows_is_taken_over() -> None:
+    torch.manual_seed(0)
+    plain = nn.Sequential(nn.Linear(128, 512), nn.GELU(), nn.Linear(512, 128)).eval()
+    packed = pack(copy.deepcopy(plain))
+    assert isinstance(packed[1], nn.Identity)  # type: ignore[index]
+    x = torch.randn(3, 128)
+    torch.testing.assert_close(packed(x), plain(x), atol=1e-4, rtol=1e-4)
+
+
+def test_a_packed_transformer_chooses_the_same_tokens() -> None:
+    torch.manual_seed(1)
+    plain = MotionTransformer(TransformerConfig(n_codes=64, width=256, n_self=3, text_dim=128)).eval()
+    for parameter in plain.parameters():
+        parameter.data.normal_(0, 0.05)
+    packed = pack(copy.deepcopy(plain))
+    words = torch.randn(2, 9, 128)
+    text = TextStates(words, torch.ones(2, 9, dtype=torch.bool), words.mean(1))
+    rows = [empty_row(plain, 20), empty_row(plain, 33)]
+    a, b = (fill(m, text, rows, [1, 2], SamplingSettings()) for m in (plain, packed))  # type: ignore[arg-type]
+    assert all(torch.equal(x, y) for x, y in zip(a, b, strict=True))
+
+
+def test_a_precision_is_chosen() -> None:
+    assert fastest_precision(128, 2) in ("fp32", "bf16")

@@ -1,0 +1,249 @@
+"""`mmmd train` as a user runs it: small recipes, a killed run, two processes, and what bad input gets."""
+
+from __future__ import annotations
+
+import csv
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from daemon.cli import main
+from mmm_core.checkpoint import load_model
+from mmm_core.engine import Engine
+from mmm_core.errors import CheckpointError, TrainingDataError
+from mmm_core.evaluation.extractors import load_evaluator
+from mmm_core.training.recipe import known_recipes, read_recipe
+from mmm_core.training.run import Run, Schedule
+from mmm_core.training.run import train as run_stage
+from tests.mmm_core.folders import make_folder
+
+SCHEDULE = "steps = {steps}\nlearning_rate = 1e-3\nwarmup_steps = 2\nsave_every = 3\n"
+SMALL = """
+seed = 3
+[data]
+synthesised = {synthesised}
+licence = "made for a test"
+[tokenizer]
+layout = "{layout}"
+n_codes = 16
+code_dim = 8
+width = 16
+batch = 8
+window_frames = 40
+[tokenizer.schedule]
+{schedule}
+[tokenizer.decoder]
+{schedule}
+[transformer]
+width = 32
+n_heads = 2
+n_cross = 1
+n_self = 1
+dropout = 0.0
+tokens_per_batch = 96
+[transformer.corruption]
+part_share = 0.5
+[transformer.schedule]
+{schedule}
+[length]
+{schedule}
+[evaluator]
+{schedule}
+"""
+
+
+def small(path: Path, layout: str = "parts", steps: int = 8, synthesised: int = 12) -> Path:
+    schedule = SCHEDULE.format(steps=steps)
+    path.write_text(SMALL.format(layout=layout, schedule=schedule, synthesised=synthesised))
+    return path
+
+
+def environment() -> dict[str, str]:
+    root = str(Path(__file__).parents[2])
+    return {**os.environ, "PYTHONPATH": root, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
+
+
+def losses(path: Path) -> np.ndarray:
+    with path.open() as f:
+        rows = list(csv.reader(f))
+    return np.array([[float(v) for v in row[2:]] for row in rows if row[0] != "step"])
+
+
+@pytest.mark.parametrize("layout", ["parts", "whole", "halves"])
+def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path, layout: str) -> None:
+    config, run, out = small(tmp_path / "small.toml", layout), tmp_path / "run", tmp_path / "model.safetensors"
+    command = ["train", "--config", str(config), "--run", str(run), "--out", str(out), "--sample-every", "4"]
+    assert main(command) == 0
+    model = load_model(out)
+    assert model.provenance["seed"] == 3
+    assert "synthesised gestures" in model.provenance["data"]
+    assert set(model.provenance["metrics"]) >= {"tokenizer", "transformer", "length"}
+    assert (run / "samples" / "transformer_000008.png").read_bytes().startswith(b"\x89PNG")
+    engine = Engine.load(out, threads=None)
+    if layout != "halves":
+        assert engine.generate("wave with your right hand", seed=1, seconds=1).motion.joints_m.shape == (20, 22, 3)
+
+
+def test_an_evaluator_is_trained_and_written(tmp_path: Path) -> None:
+    config, run = small(tmp_path / "small.toml"), tmp_path / "run"
+    assert main(["train", "evaluator", "--config", str(config), "--run", str(run)]) == 0
+    evaluator, provenance = load_evaluator(run / "evaluator.safetensors")
+    assert evaluator.config.n_features == 263
+    assert provenance["clips"] == 12
+
+
+@pytest.mark.parametrize("kind", ["humanml3d", "kit"])
+def test_a_users_own_folder_trains(tmp_path: Path, kind: str) -> None:
+    folder = make_folder(tmp_path / "data", kind)
+    config = small(tmp_path / "small.toml", "whole", synthesised=0)
+    run = tmp_path / "run"
+    assert main(["train", "--config", str(config), "--data", str(folder), "--run", str(run)]) == 0
+    model = load_model(run / "model.safetensors")
+    assert model.rest_pose == "humanml3d"
+    assert "data: made for a test" in model.provenance["data"]
+    assert model.tokenizer.config.n_features == (263 if kind == "humanml3d" else 251)  # type: ignore[union-attr]
+    np.testing.assert_array_equal(model.tokenizer.mean.numpy(), np.load(folder / "Mean.npy").astype(np.float32))
+
+
+def test_a_killed_run_goes_on_with_the_same_weights(tmp_path: Path) -> None:
+    """SIGKILL at a random moment, again and again until it is done; then against a run that nobody cut."""
+    config = small(tmp_path / "small.toml", steps=60)
+    command = [sys.executable, "-m", "daemon.cli", "train", "tokenizer", "--config", str(config), "--sample-every", "0"]
+    rng = np.random.default_rng()
+    killed = 0
+    for _ in range(20):
+        process = subprocess.Popen(
+            [*command, "--run", str(tmp_path / "cut")], env=environment(), stdout=subprocess.DEVNULL
+        )
+        state = tmp_path / "cut" / "tokenizer.pt"
+        before = state.stat().st_mtime_ns if state.is_file() else 0
+        deadline = time.monotonic() + 60
+        while process.poll() is None and time.monotonic() < deadline:
+            if killed < 2 and state.is_file() and state.stat().st_mtime_ns != before:
+                time.sleep(rng.uniform(0, 0.1))
+                process.send_signal(signal.SIGKILL)
+                killed += 1
+                break
+            time.sleep(0.005)
+        if process.wait() == 0:
+            break
+    assert killed
+    assert main([*command[3:], "--run", str(tmp_path / "whole")]) == 0
+    cut, whole = (torch.load(tmp_path / r / "tokenizer.pt", weights_only=True) for r in ("cut", "whole"))
+    assert cut["step"] == whole["step"] == 60
+    for name, tensor in whole["module"].items():
+        assert torch.equal(cut["module"][name], tensor), name
+    assert all(torch.equal(a, b) for a, b in zip(cut["averages"], whole["averages"], strict=True))
+
+
+def test_two_processes_have_the_loss_of_one_with_the_whole_batch(tmp_path: Path) -> None:
+    config = small(tmp_path / "small.toml", steps=41)
+    options = ["train", "transformer", "--config", str(config), "--sample-every", "0", "--run-dir"]
+    assert main([*options, str(tmp_path / "one")]) == 0
+    launcher = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2"]
+    done = subprocess.run([*launcher, "-m", "daemon.cli", *options, str(tmp_path / "two")], env=environment(),
+                          capture_output=True, text=True, timeout=100, check=False)  # fmt: skip
+    assert done.returncode == 0, done.stderr[-2000:]
+    for stage in ("tokenizer", "transformer"):
+        one, two = losses(tmp_path / "one" / f"{stage}.csv"), losses(tmp_path / "two" / f"{stage}.csv")
+        assert len(one) == len(two) == 3
+        np.testing.assert_allclose(two[:, 0], one[:, 0], rtol=2e-3)
+    np.testing.assert_allclose(two[0], one[0], rtol=1e-4, atol=1e-4)
+
+
+def test_bf16_trains_too(tmp_path: Path) -> None:
+    config = small(tmp_path / "small.toml")
+    options = ["train", "--config", str(config), "--run", str(tmp_path / "run"), "--precision", "bf16"]
+    assert main([*options, "--sample-every", "0"]) == 0
+    weights = torch.load(tmp_path / "run" / "transformer.pt", weights_only=True)["module"]
+    assert all(torch.isfinite(w).all() for w in weights.values())
+    assert weights["head.weight"].dtype == torch.float32
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("[tokenizer]\nwidht = 3\n", r"tokenizer\.widht.*allowed|tokenizer\.widht.*unknown"),
+        ("[tokenizer.schedule]\nsteps = 'many'\n", r"tokenizer\.schedule\.steps"),
+        ("tokenizer = 3\n", r"a table \[tokenizer\]"),
+        ("[tokenizer]\nlayout = 'thirds'\n", r"tokenizer\.layout"),
+        ("[tokenizer\n", "not TOML"),
+    ],
+)
+def test_a_bad_recipe_is_named_by_its_key(tmp_path: Path, change: str, message: str) -> None:
+    (tmp_path / "r.toml").write_text(change)
+    with pytest.raises(TrainingDataError, match=message):
+        read_recipe(str(tmp_path / "r.toml"))
+
+
+def test_an_unknown_recipe_lists_those_that_ship(capsys: pytest.CaptureFixture[str]) -> None:
+    assert known_recipes() == ["compact", "paper"]
+    for name in known_recipes():
+        read_recipe(name)
+    assert main(["train", "--config", "nothing"]) == 1
+    assert "compact, paper" in capsys.readouterr().err
+
+
+def test_the_papers_recipe_has_the_released_sizes() -> None:
+    recipe = read_recipe("paper")
+    tokenizer = recipe.tokenizer.config(263)
+    transformer = recipe.transformer.config(tokenizer, 1, 512)
+    from mmm_core.transformer import OFFICIAL
+    from mmm_core.vqvae import VqVaeConfig
+
+    assert tokenizer == VqVaeConfig()
+    assert transformer == OFFICIAL
+
+
+@pytest.mark.skipif(torch.cuda.is_available(), reason="there is a GPU here")
+def test_a_missing_gpu_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["train", "--device", "cuda", "--run", str(tmp_path)]) == 1
+    assert "no CUDA device" in capsys.readouterr().err
+
+
+def test_data_without_a_clip_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    config = small(tmp_path / "small.toml", synthesised=0)
+    assert main(["train", "--config", str(config), "--run", str(tmp_path / "run")]) == 1
+    assert "no clip" in capsys.readouterr().err
+
+
+class TestStateFiles:
+    SCHEDULE = Schedule(steps=4, warmup_steps=1, save_every=2)
+
+    @staticmethod
+    def loss_of(model: torch.nn.Module, fill_disk_at: int | None = None) -> object:
+        def loss_fn(step: int, generator: torch.Generator) -> dict[str, torch.Tensor]:
+            if step == fill_disk_at:
+                _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+                resource.setrlimit(resource.RLIMIT_FSIZE, (2000, hard))
+            return {"loss": model(torch.randn(4, 64, generator=generator)).square().mean()}
+
+        return loss_fn
+
+    def test_a_full_disk_leaves_the_older_state_whole(self, tmp_path: Path) -> None:
+        """No file may grow beyond 2 kB, as on a full disk, from the third step on."""
+        model = torch.nn.Linear(64, 64)
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        try:
+            with pytest.raises(CheckpointError, match="earlier step is whole"):
+                run_stage(model, self.loss_of(model, 2), self.SCHEDULE, Run(tmp_path), "m")  # type: ignore[arg-type]
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+            signal.signal(signal.SIGXFSZ, ignored)
+        assert torch.load(tmp_path / "m.pt", weights_only=True)["step"] == 2
+        assert not (tmp_path / "m.part").exists()
+
+    def test_a_state_that_is_none_is_named(self, tmp_path: Path) -> None:
+        (tmp_path / "m.pt").write_bytes(b"nothing")
+        model = torch.nn.Linear(64, 64)
+        with pytest.raises(CheckpointError, match="delete it to begin anew"):
+            run_stage(model, self.loss_of(model), self.SCHEDULE, Run(tmp_path), "m")  # type: ignore[arg-type]

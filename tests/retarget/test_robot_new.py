@@ -1,0 +1,268 @@
+"""A robot file from a description: roles against the makers' tables, a stranger brought to work, bad descriptions named."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from mmm_core.engine import Engine
+from retarget.anatomy import find_anatomy
+from retarget.description import rotation_to_standard
+from retarget.errors import RobotFileError
+from retarget.inspection import inspect_robot
+from retarget.kinematics import Kinematics
+from retarget.pipeline import Retargeter
+from retarget.proposal import propose
+from retarget.robot import list_robots, load_robot
+from tests.retarget.test_pipeline import RATES_HZ, at_rest, check_bounds
+
+SHARED = Path(__file__).parents[3] / "shared" / "robots"
+NEW_NAMES = {"upper_arm_yaw": "shoulder_yaw", "torso": "waist"}
+NOT_OURS = ("gripper", "lift", "differential", "antenna", "platform")
+
+
+def described(folder: str) -> Path:
+    path = SHARED / folder
+    if not path.is_dir():
+        pytest.skip("no ../shared/robots beside this checkout")
+    return next(p for p in path.iterdir() if p.stem == "robot")
+
+
+@pytest.mark.parametrize(
+    "folder",
+    [
+        "berkeley_humanoid_lite",
+        "poppy_torso",
+        "reachy_2021",
+        "robotis_ffw_bg2",
+        "robotis_op2",
+        "robotis_op3",
+        "toddlerbot",
+    ],
+)
+def test_roles_are_those_of_the_makers_table(folder: str) -> None:
+    description = described(folder)
+    table = tomllib.loads((description.parent / "joints.toml").read_text())
+    wanted: dict[str, str] = {}
+    for joint in table["joint"]:
+        role = joint["role"]
+        for old, new in NEW_NAMES.items():
+            role = role.replace(old, new)
+        if not any(word in role for word in NOT_OURS):
+            wanted[joint.get("drives", joint["name"])] = role
+    found = {j.name: j.role for j in find_anatomy(description).joints}
+    assert found == wanted
+
+
+@pytest.mark.parametrize("name", list_robots())
+def test_roles_of_the_packaged_descriptions_are_those_of_their_files(name: str) -> None:
+    robot = load_robot(name)
+    found = find_anatomy(robot.description_path)
+    assert {j.name: j.role for j in found.joints} == {j.name: j.role for j in robot.joints}
+    assert (found.forward, found.up) == ("x", "z")
+
+
+def filled_in(text: str, first_id: int = 1) -> str:
+    ids = iter(range(first_id, 253))
+    return re.sub(r'id = "\?"', lambda _: f"id = {next(ids)}", text)
+
+
+def test_a_description_of_strangers_works_with_no_edits_but_ids(tmp_path: Path) -> None:
+    """Berkeley Humanoid Lite, written by none of us: five joints in each arm, axes tilted by 15 degrees, no head."""
+    robot_file = tmp_path / "berkeley" / "robot.toml"
+    proposal = propose(described("berkeley_humanoid_lite"), robot_file, "XM430-W350")
+    assert len(proposal.blanks) == 10
+    with pytest.raises(RobotFileError, match=r"servo\.id: blank, one of 10"):
+        load_robot(str(robot_file))
+    assert all("blank" in lack for lack in inspect_robot(load_robot(str(robot_file), blanks=True)).missing)
+    robot_file.write_text(filled_in(proposal.text))
+    robot = load_robot(str(robot_file))
+    assert inspect_robot(robot).missing == ()
+    r = Retargeter(robot)
+    places = dict(
+        zip((p.name for p in r.kinematics.key_points), r.kinematics.places(robot.rest_rad[None])[0], strict=True)
+    )
+    assert places["left_wrist"][2] < places["left_elbow"][2] < places["left_shoulder"][2], "its arms hang at rest"
+    engine = Engine.load(threads=None)
+    for text, up in (("raise your right arm", "right"), ("wave with your left hand", "left"), ("clap your hands", "")):
+        path = r.retarget(engine.generate(text, seed=1).motion, at_rest(r))
+        for rate_hz in RATES_HZ:
+            check_bounds(path, at_rest(r), r, rate_hz)
+        assert not r.contact.frames(path.at_rate(100.0)).any()
+        moved = r.kinematics.places(path.q_rad)
+        names = [p.name for p in r.kinematics.key_points]
+        height = {
+            s: (moved[:, names.index(f"{s}_wrist"), 2] - moved[:, names.index(f"{s}_shoulder"), 2]).max()
+            for s in ("left", "right")
+        }
+        if up:  # its ranges end where the arm is level or little above
+            assert height[up] > -0.05
+            assert height[up] > 0.2 + min(height.values()), (text, height)
+
+
+def test_another_frame_gives_the_same_robot(tmp_path: Path) -> None:
+    """Poppy's description looks along -y; what comes out looks along x, with the left hand on the left."""
+    propose(described("poppy_torso"), tmp_path / "robot.toml")
+    robot = load_robot(str(tmp_path), blanks=True)
+    assert robot.forward == "-y"
+    kinematics = Kinematics(robot)
+    places = dict(
+        zip((p.name for p in kinematics.key_points), kinematics.places(np.zeros((1, robot.n_joints)))[0], strict=True)
+    )
+    assert places["left_wrist"][1] > 0.4
+    assert places["right_wrist"][1] < -0.4
+    assert places["head"][2] > places["chest"][2]
+    assert rotation_to_standard("-y", "z") @ [0, -1, 0] == pytest.approx([1, 0, 0])
+
+
+def test_gears_and_unfit_ranges_become_servo_keys(tmp_path: Path) -> None:
+    propose(described("toddlerbot"), tmp_path / "robot.toml", "XL330-M288")
+    text = (tmp_path / "robot.toml").read_text()
+    neck = text[text.index('name = "neck_yaw_driven"') :].partition("[[joint]]")[0]
+    assert "direction = -1, gear_ratio = 1.1" in neck
+    assert "write a [[differential]]" in text
+
+
+def test_a_range_that_does_not_fit_about_the_middle_moves_the_zero(tmp_path: Path) -> None:
+    robot_file = proposed(tmp_path, two_arms().replace("-90 90", "-60 250"))
+    assert "zero_tick = 967" in robot_file.read_text()
+    robot_file.unlink()
+    robot_file = proposed(tmp_path, two_arms().replace("-90 90", "-190 250"))
+    assert "extended = true" in robot_file.read_text()
+    robot = load_robot(str(robot_file), blanks=True)
+    assert {s.extended for s in robot.servos} == {True, False}
+
+
+def test_an_unlimited_joint_is_marked_as_a_guess(tmp_path: Path) -> None:
+    proposal = propose(described("robotis_op3"), tmp_path / "robot.toml")
+    assert proposal.text.count("# ? the description has no range") == 8
+    assert any("l_el: no range" in note for note in proposal.anatomy.notes)
+    robot = load_robot(str(tmp_path), blanks=True)
+    assert len(robot.blanks) == 16, "ids and models"
+    assert any("has no range" in doubt for doubt in inspect_robot(robot).doubts)
+
+
+ARM = """
+<body name="{s}_upper" pos="0 {y} 1">
+ <joint name="{s}_pitch" axis="0 1 0" range="-90 90"/> <geom size=".02"/>
+ <body name="{s}_roll">
+  <joint name="{s}_roll" axis="1 0 0" range="-90 90"/> <geom type="capsule" fromto="0 0 0 0 0 -.15" size=".02"/>
+  <body name="{s}_fore" pos="0 0 -.2">
+   <joint name="{s}_elbow" axis="0 1 0" range="-120 0"/> <geom type="capsule" fromto="0 0 -.05 0 0 -.2" size=".02"/>
+   {more}
+  </body>
+ </body>
+</body>"""
+
+
+def two_arms(more: str = "", tail: str = "") -> str:
+    arms = ARM.format(s="left", y=0.2, more=more) + ARM.format(s="right", y=-0.2, more="")
+    return (
+        "<mujoco><compiler angle='degree' autolimits='true'/>"
+        f"<worldbody><geom type='box' size='.1 .1 .2' pos='0 0 .9'/>{arms}</worldbody>{tail}</mujoco>"
+    )
+
+
+def proposed(tmp_path: Path, xml: str, suffix: str = "xml") -> Path:
+    (tmp_path / f"mine.{suffix}").write_text(xml)
+    propose(tmp_path / f"mine.{suffix}", tmp_path / "robot.toml", "XM430-W350")
+    return tmp_path / "robot.toml"
+
+
+def test_missing_meshes_are_left_out_and_named(tmp_path: Path) -> None:
+    more = '<geom type="mesh" mesh="hand"/>'
+    robot_file = proposed(tmp_path, two_arms(more, '<asset><mesh name="hand" file="hand.stl"/></asset>'))
+    robot = load_robot(str(robot_file), blanks=True)
+    assert Retargeter(robot).arms
+    assert any("no file of mesh hand" in doubt for doubt in inspect_robot(robot).doubts)
+
+
+def test_a_mesh_that_is_there_keeps_its_shape(tmp_path: Path) -> None:
+    vertices = "0 0 0  .1 0 0  0 .1 0  0 0 .1"
+    tail = f'<asset><mesh name="hand" vertex="{vertices}"/></asset>'
+    robot = load_robot(str(proposed(tmp_path, two_arms('<geom type="mesh" mesh="hand"/>', tail))), blanks=True)
+    assert not any("mesh" in doubt for doubt in inspect_robot(robot).doubts)
+
+
+MIMIC = '<equality><joint joint1="left_elbow" joint2="left_roll" polycoef="0 1 0 0 0"/></equality>'
+LOOP = '<equality><connect body1="left_fore" body2="right_fore" anchor="0 0 0"/></equality>'
+
+
+def test_two_listed_joints_of_which_one_follows_are_refused(tmp_path: Path) -> None:
+    robot_file = proposed(tmp_path, two_arms())
+    (tmp_path / "mine.xml").write_text(two_arms(tail=MIMIC))
+    with pytest.raises(RobotFileError, match=r"'left_elbow' follows 'left_roll'.*both are listed.*one of the two"):
+        Retargeter(load_robot(str(robot_file), blanks=True))
+
+
+def test_a_follower_in_the_arm_that_is_not_listed_is_refused(tmp_path: Path) -> None:
+    """Its leader alone would leave the forearm where it is in the zero pose: a wrong angle."""
+    robot_file = proposed(tmp_path, two_arms())
+    text = robot_file.read_text()
+    start = text.index('[[joint]]\nname = "left_elbow"')
+    robot_file.write_text(text[:start] + text[text.index("[[joint]]", start + 1) :])
+    (tmp_path / "mine.xml").write_text(two_arms(tail=MIMIC))
+    with pytest.raises(RobotFileError, match=r"'left_roll' drives 'left_elbow'.*gear_ratio"):
+        Retargeter(load_robot(str(robot_file), blanks=True))
+
+
+def test_a_mimic_joint_of_a_urdf_is_seen(tmp_path: Path) -> None:
+    def arm(side: str, y: float) -> str:
+        links = "".join(f'<link name="{side}_{n}"/>' for n in ("upper", "fore", "finger"))
+        mimic = f'<mimic joint="{side}_elbow" multiplier="2"/>'
+        rows = (
+            ("pitch", "base", "upper", f"0 {y} 1", "0 1 0", ""),
+            ("elbow", f"{side}_upper", "fore", "0 0 -.2", "1 0 0", ""),
+            ("finger", f"{side}_fore", "finger", "0 0 -.2", "1 0 0", mimic),
+        )
+        joints = "".join(
+            f'<joint name="{side}_{n}" type="revolute"><parent link="{parent}"/><child link="{side}_{child}"/><origin xyz="{xyz}"/>'
+            f'<axis xyz="{axis}"/><limit lower="-1.5" upper="1.5" effort="1" velocity="0"/>{extra}</joint>'
+            for n, parent, child, xyz, axis, extra in rows
+        )
+        return links + joints
+
+    (tmp_path / "mine.urdf").write_text(
+        f'<robot name="r"><link name="base"/>{arm("left", 0.2)}{arm("right", -0.2)}</robot>'
+    )
+    found = find_anatomy(tmp_path / "mine.urdf")
+    assert {j.name: j.role for j in found.joints}["left_elbow"] == "left_elbow"
+    assert mujoco.MjSpec.from_file(str(tmp_path / "mine.urdf")).equalities, "MuJoCo reads <mimic>"
+
+
+def test_a_closed_loop_through_an_arm_is_refused(tmp_path: Path) -> None:
+    robot_file = proposed(tmp_path, two_arms())
+    (tmp_path / "mine.xml").write_text(two_arms(tail=LOOP))
+    with pytest.raises(RobotFileError, match=r"ties 'left_fore' to 'right_fore': a closed loop.*linkage table"):
+        Retargeter(load_robot(str(robot_file), blanks=True))
+
+
+def test_a_description_without_arms_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "mine.xml").write_text(
+        '<mujoco><worldbody><body><joint name="a"/><geom size=".1"/></body></worldbody></mujoco>'
+    )
+    with pytest.raises(RobotFileError, match=r"0 limbs on the left.*a pair of arms"):
+        propose(tmp_path / "mine.xml", tmp_path / "robot.toml")
+    (tmp_path / "none.xml").write_text('<mujoco><worldbody><geom size=".1"/></worldbody></mujoco>')
+    with pytest.raises(RobotFileError, match=r"no hinge joint"):
+        propose(tmp_path / "none.xml", tmp_path / "robot.toml")
+
+
+def test_a_point_on_an_unknown_body_is_named(tmp_path: Path) -> None:
+    robot_file = proposed(tmp_path, two_arms())
+    robot_file.write_text(robot_file.read_text().replace('body = "left_fore"', 'body = "left_hand"'))
+    with pytest.raises(
+        RobotFileError, match=r"points\.left_wrist\.body: 'left_hand' is not in the description.*left_fore"
+    ):
+        Retargeter(load_robot(str(robot_file), blanks=True))
+
+
+def test_an_unknown_servo_lists_the_known_ones(tmp_path: Path) -> None:
+    (tmp_path / "mine.xml").write_text(two_arms())
+    with pytest.raises(RobotFileError, match=r"'XL999'.*XM430-W350"):
+        propose(tmp_path / "mine.xml", tmp_path / "robot.toml", "XL999")
