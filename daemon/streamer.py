@@ -135,6 +135,7 @@ class Streamer:
                 self._enter(BusState.STOPPING)
         elif request is BusRequest.RESET:
             if self.state in (BusState.ESTOP, BusState.FAULT):
+                self._bus.look_again()
                 self._cut_torque()
                 self._link.set_text("")
                 self._link.drop_queued()

@@ -651,6 +651,10 @@ class ServoBus:
             self._lost_since_s = self._reopen_due_s = self.clock.now_s()
             self.events.add(BusEventKind.LOST, self._lost_since_s, str(error))
 
+    def look_again(self) -> None:
+        """Somebody says that the port is back: the next write looks for it, however lately it was looked for."""
+        self._reopen_due_s = 0.0
+
     def _reopen(self) -> None:
         """Try to open the port again, by its path or where the same adapter is now; at most twice a second.
 

@@ -33,7 +33,8 @@ class Servos:
     """The simulated robot behind a tty, served by a thread."""
 
     def __init__(self, folder) -> None:
-        self.server = PtyServer(SimBus(ROBOT), folder / "servos")
+        self._link = folder / "servos"
+        self.server = PtyServer(SimBus(ROBOT), self._link)
         self.url = f"dxl://{folder}/servos?baud={ROBOT.bus.baud}"
         self._thread = threading.Thread(target=self.server.serve, daemon=True)
         self._thread.start()
@@ -48,6 +49,7 @@ class Servos:
 
     def unplugged(self, on: bool) -> None:
         self.server.bus.faults = FaultSchedule((Fault("unplug"),) if on else ())
+        within(2.0, "the tty gone or back", lambda: self._link.exists() != on)
 
     def close(self) -> None:
         self.server.stop()
