@@ -203,6 +203,9 @@ class Cycle(Items):
         elif row is None or row not in step.rows:
             text = f"an answer of servo {answer.servo_id}, which was not asked; another controller, or a servo too many"
             self.events.add(BusEventKind.FOREIGN_PACKET, now_s, text)
+        elif valid[row] and self.reading.age_cycles[row]:
+            step.store(row, answer, self.reading)  # the first was the last cycle's, come late
+            self.health.came_late(row)
         elif valid[row]:
             text = f"servo {answer.servo_id} answered twice: two servos have this id; change one (mmmd servo id)"
             self.events.add(BusEventKind.DUPLICATE_ID, now_s, text, answer.servo_id)
