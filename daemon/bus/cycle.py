@@ -13,7 +13,7 @@ from daemon.bus.feedback import FastSyncStep, Protocol1Step, Step, is_status, st
 from daemon.bus.items import Items
 from daemon.bus.packet import Packet
 from daemon.bus.port import Port
-from daemon.bus.reading import BusReading
+from daemon.bus.reading import NEVER_CYCLES, BusReading
 from daemon.bus.slow import SlowReader
 from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
@@ -203,7 +203,7 @@ class Cycle(Items):
         elif row is None or row not in step.rows:
             text = f"an answer of servo {answer.servo_id}, which was not asked; another controller, or a servo too many"
             self.events.add(BusEventKind.FOREIGN_PACKET, now_s, text)
-        elif valid[row] and self.reading.age_cycles[row]:
+        elif valid[row] and 0 < self.reading.age_cycles[row] < NEVER_CYCLES:
             step.store(row, answer, self.reading)  # the first was the last cycle's, come late
             self.health.came_late(row)
         elif valid[row]:

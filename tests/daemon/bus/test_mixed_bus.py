@@ -244,6 +244,7 @@ def test_two_servos_with_one_id_are_named() -> None:
 
 def test_an_answer_of_the_last_cycle_that_comes_during_this_one_is_late_not_a_second_servo() -> None:
     bus, far, _ = bus_of(*("2XL430-W250",) * 3)
+    bus.exchange(None)
     far.servos[2].silent = True
     bus.exchange(None)
     far.servos[2].silent = False
