@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from daemon.approach import Approach
 from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
+from daemon.bus.multi import RobotBus
 from daemon.bus.packet import ALERT_BIT
+from daemon.bus.reading import BusReading
 from daemon.bus.registers import WATCHDOG_UNIT_S
-from daemon.bus.servo_bus import BusReading, ServoBus
 from daemon.clock import Clock
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
@@ -53,7 +54,7 @@ class Streamer:
     """State and loop of the bus process."""
 
     def __init__(
-        self, robot: RobotModel, bus: ServoBus, link: BusLink, clock: Clock, *, watch_front: bool = True
+        self, robot: RobotModel, bus: RobotBus, link: BusLink, clock: Clock, *, watch_front: bool = True
     ) -> None:
         self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
         self._ticks = JointServoMap(robot)
@@ -95,7 +96,7 @@ class Streamer:
 
     def close(self) -> None:
         """Release the port."""
-        self._bus.port.close()
+        self._bus.close()
 
     def cycle(self) -> None:
         """One bus period."""
@@ -381,7 +382,7 @@ class Streamer:
         self._link.publish()
 
 
-Opener = Callable[[], ServoBus]
+Opener = Callable[[], RobotBus]
 
 
 AFTER_LOSS = "the bus process was lost and is back; servos may still hold: `mmmd reset` makes them limp"
@@ -419,7 +420,7 @@ def start(
             log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))
         bus.exchange(None)
     except DaemonError as error:
-        bus.port.close()
+        bus.close()
         link.set_ready(Readiness.FAILED, str(error))
         return None
     streamer = Streamer(robot, bus, link, clock)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.servo_bus import ServoBus
+from daemon.bus.multi import RobotBus
 from daemon.errors import CommandError
 from retarget.errors import RobotFileError
 from retarget.robot import RobotModel, ServoSpec, load_robot
@@ -69,7 +69,7 @@ class Calibrated:
 
 
 def calibrate(
-    bus: ServoBus,
+    bus: RobotBus,
     robot: RobotModel,
     *,
     wait_zero: Callable[[Callable[[], Ranges]], None],

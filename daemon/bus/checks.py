@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from daemon.bus.models import BusModel
+from daemon.bus.multi import RobotBus
 from daemon.bus.registers import hardware_error_text
-from daemon.bus.servo_bus import ServoBus
 from daemon.errors import BusMismatchError, CommandError, MismatchRow
 from retarget.robot import RobotModel, ServoSpec
 from retarget.ticks import JointServoMap
@@ -49,7 +49,7 @@ class Finding:
     fix: int | None = None
 
 
-def check_servos(bus: ServoBus, robot: RobotModel) -> list[Finding]:
+def check_servos(bus: RobotBus, robot: RobotModel) -> list[Finding]:
     """What is not as it should be, servo by servo; reads only."""
     findings: list[Finding] = []
     ticks = JointServoMap(robot)
@@ -78,7 +78,7 @@ def require_needed(findings: Sequence[Finding]) -> None:
         raise BusMismatchError(rows, "correct them with torque off: mmmd doctor --fix")
 
 
-def fix(bus: ServoBus, findings: Sequence[Finding]) -> list[Finding]:
+def fix(bus: RobotBus, findings: Sequence[Finding]) -> list[Finding]:
     """Correct what can be, each confirmed by reading it back; what is left.
 
     Raises:

@@ -157,7 +157,7 @@ def _of_item(findings: list[Finding], *, correct: bool) -> list[Check]:
 
 
 def _events(bus: ServoBus) -> list[Check]:
-    return [Check(e.kind.value, e.text, ADVICE, "") for e in bus.events.take()]
+    return [Check(e.kind.value, e.text, ADVICE, "") for e in bus.take_events()]
 
 
 def _rate(bus: ServoBus, robot: RobotModel) -> list[Check]:
