@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import ctypes
 import logging
 import os
 import signal
@@ -15,19 +14,18 @@ from pathlib import Path
 from daemon.bus.open import PortContext, open_port
 from daemon.bus.servo_bus import ServoBus
 from daemon.clock import RealClock
+from daemon.realtime import BUS_PRIORITY, lock_memory, take_fifo
 from daemon.shared import BusLink, BusState
 from daemon.streamer import Streamer, start
 from retarget.robot import load_robot
 
 log = logging.getLogger(__name__)
 
-FIFO_PRIORITY = 40
 ORPHAN_CHECK_S = 0.5
 ORPHAN_END_S = 30.0
 """Longest life without a front: holding, parking and a fault in which torque was kept are over by then."""
 SLOW_EVERY = 10
 """Cycles between two readings of the slow registers, of one servo each."""
-_MCL_CURRENT_AND_FUTURE = 3
 
 
 def main() -> int:
@@ -78,15 +76,7 @@ def _end_with_parent(streamer: Streamer, parent_pid: int) -> None:
 
 def _take_rights() -> tuple[bool, bool]:
     """FIFO priority and locked memory, as far as this user may; what was granted."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY))
-        fifo = True
-    except (OSError, AttributeError):
-        fifo = False
-    try:
-        locked = ctypes.CDLL(None).mlockall(_MCL_CURRENT_AND_FUTURE) == 0
-    except (OSError, AttributeError):
-        locked = False
+    fifo, locked = take_fifo(BUS_PRIORITY), lock_memory()
     log.info(
         "FIFO priority %s, locked memory %s",
         "granted" if fifo else "not granted",

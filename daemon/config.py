@@ -18,11 +18,11 @@ def config_error(key: str, found: str, allowed: str, do: str) -> ConfigError:
     return ConfigError(f"{key}: found {found}; allowed: {allowed}; {do}")
 
 
-def check_local(key: str, endpoint: str) -> None:
-    """Refuse an endpoint that other machines could reach.
+def check_endpoint(key: str, endpoint: str, *, keys: bool = False) -> None:
+    """Refuse what is no endpoint, and without `keys` one that other machines could reach.
 
     Raises:
-        ConfigError: the endpoint is neither ipc:// nor tcp:// on a loopback address.
+        ConfigError: the endpoint is neither ipc:// nor tcp://, or not local and there are no keys.
     """
     allowed = "ipc://PATH, or tcp:// on a loopback address such as tcp://127.0.0.1:5871"
     if endpoint.startswith("ipc://") and len(endpoint) > len("ipc://"):
@@ -36,8 +36,8 @@ def check_local(key: str, endpoint: str) -> None:
         raise config_error(key, f"{endpoint!r} ({error})", allowed, "name a host and a port") from None
     if port is None and not endpoint.endswith(":*"):
         raise config_error(key, f"{endpoint!r} without a port", allowed, "name a host and a port")
-    if host != "localhost" and not _is_loopback(host):
-        do = "reach it through an ssh tunnel; sockets with CURVE keys are not built yet"
+    if not keys and host != "localhost" and not _is_loopback(host):
+        do = "give --keys (`mmmd keys --help` shows how), or use an ssh tunnel"
         raise config_error(key, f"{endpoint!r}, which other machines can reach without a key", allowed, do)
 
 
@@ -56,20 +56,22 @@ class Endpoints:
         cmd: requests and their events.
         ctl: stop, estop, reset, arm, park, status.
         pub: state and events for all.
+        keys: folder of CURVE keys, for which see `daemon.keys`; None leaves only local endpoints.
     """
 
     cmd: str = f"tcp://127.0.0.1:{CMD_PORT}"
     ctl: str = f"tcp://127.0.0.1:{CTL_PORT}"
     pub: str = f"tcp://127.0.0.1:{PUB_PORT}"
+    keys: Path | None = None
 
     def __post_init__(self) -> None:
         """Refuse what other machines could reach, and two sockets at one place.
 
         Raises:
-            ConfigError: see `check_local`.
+            ConfigError: see `check_endpoint`.
         """
         for key in ("cmd", "ctl", "pub"):
-            check_local(key, getattr(self, key))
+            check_endpoint(key, getattr(self, key), keys=self.keys is not None)
         if len({self.cmd, self.ctl, self.pub}) != 3 and not self.cmd.endswith(":*"):
             found = f"cmd {self.cmd}, ctl {self.ctl}, pub {self.pub}"
             raise config_error("endpoints", found, "three different endpoints", "give each its own port")
@@ -89,6 +91,7 @@ class DaemonConfig:
         auto_arm: whether the first text may arm the robot.
         idle: style of the movements while there is nothing to play: off, calm or lively.
         gestures: folder of the user's own gestures; None takes the user's data folder.
+        model_hash: beginning of the checkpoint's hash that the generator must have; empty takes any.
         queue_s: setpoints kept ready in the bus process.
         state_rate_hz: how often `v1/state` is published.
         generate_timeout_s: longest wait for the generator.
@@ -104,6 +107,7 @@ class DaemonConfig:
     auto_arm: bool = True
     idle: str = "off"
     gestures: Path | None = None
+    model_hash: str = ""
     queue_s: float = 0.1
     state_rate_hz: float = 20.0
     generate_timeout_s: float = 10.0
@@ -125,4 +129,4 @@ class DaemonConfig:
         if self.idle not in ("off", *IDLE_STYLES):
             raise config_error("idle", repr(self.idle), ", ".join(("off", *IDLE_STYLES)), "choose one of these")
         if self.generator is not None:
-            check_local("generator", self.generator)
+            check_endpoint("generator", self.generator, keys=self.endpoints.keys is not None)

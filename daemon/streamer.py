@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.approach import Approach
+from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.bus.packet import ALERT_BIT
 from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.bus.servo_bus import BusReading, ServoBus
@@ -39,8 +40,12 @@ TORQUE_OFF_REPEATS = 5
 MISSING_CYCLES = 20
 """Half of the servos silent for so many cycles is a fault (loose plug, power)."""
 TORQUE_CHECK_CYCLES = 5
+SWING_OUT_S = 1.0
+_STILL_S, _STILL_TICK = 0.02, 2
+"""Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
 """Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
+_LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
 _ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
 
 
@@ -152,7 +157,7 @@ class Streamer:
         try:
             self._bus.verify()
             self._bus.clear_watchdog()
-            reading = self._bus.exchange(None)
+            reading = self._reading_at_rest()
             if not reading.valid.all():
                 silent = ", ".join(str(i) for i, ok in zip(self._bus.ids, reading.valid, strict=True) if not ok)
                 self._fault(f"cannot arm: no fresh position of servo {silent}; check cable and power")
@@ -178,6 +183,30 @@ class Streamer:
         self._gate.reset(self._ticks.tick_to_rad(present))
         self._approach_to(self.rest_rad)
         self._enter(BusState.ARMING)
+
+    def _reading_at_rest(self) -> BusReading:
+        """A whole reading of joints that stand still: limp they swing on, and a goal pinned meanwhile would jerk.
+
+        After a second with a servo silent it is the last one, as it is.
+
+        Raises:
+            ServoFaultError: one still moves after a second.
+        """
+        reading = self._bus.exchange(None)
+        moved = np.zeros(len(self._bus.ids), np.int32)
+        for _ in range(round(SWING_OUT_S / _STILL_S)):
+            before = reading.position_tick.copy()
+            self._clock.sleep_until(self._clock.now_s() + _STILL_S)
+            reading = self._bus.exchange(None)
+            moved = np.abs(reading.position_tick - before)
+            if reading.valid.all() and moved.max() <= _STILL_TICK:
+                return reading
+        if not reading.valid.all():
+            return reading
+        row = int(moved.argmax())
+        raise ServoFaultError(
+            self._bus.ids[row], f"to stand still for {SWING_OUT_S:g} s", f"moves by {moved[row]} ticks"
+        )
 
     def _refuse_hardware_errors(self, reading: BusReading) -> None:
         for row in np.flatnonzero(reading.error & ALERT_BIT):
@@ -371,6 +400,19 @@ def start(
         return None
     try:
         bus.verify()
+        findings = check_servos(bus, robot)
+        for f in findings:
+            log.log(
+                _LEVELS[f.severity],
+                "servo %d (%s): %s %s, should be %s; %s",
+                f.servo_id,
+                f.joint_name,
+                f.item,
+                f.found,
+                f.expected,
+                f.remedy,
+            )
+        require_needed(findings)
         plan = bus.plan()
         if not plan.require(robot.bus.rate_hz):
             log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))

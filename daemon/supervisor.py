@@ -7,6 +7,7 @@ that dies is reported and the robot goes on.
 from __future__ import annotations
 
 import asyncio
+import importlib.util
 import logging
 import os
 import signal
@@ -18,10 +19,11 @@ import zmq
 import zmq.asyncio
 
 from daemon.children import Child
-from daemon.config import DaemonConfig
+from daemon.config import DaemonConfig, config_error
 from daemon.errors import DaemonError
 from daemon.front import Front
 from daemon.generation import GeneratorClient, GeneratorError
+from daemon.keys import KeyFolder
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
 from daemon.state import RobotState
 from retarget.robot import RobotModel, load_robot
@@ -76,6 +78,9 @@ class Supervisor:
     """One daemon, from start to park."""
 
     def __init__(self, config: DaemonConfig) -> None:
+        if config.generator is None and importlib.util.find_spec("torch") is None:
+            do = "install with `pip install 'mmmd[generate]'`, or name a generator elsewhere with --generator"
+            raise config_error("generator", "none, and torch is not installed", "one of the two", do)
         self._config = config
         self._robot: RobotModel = load_robot(config.robot)
         self._link = BusLink.create(self._robot.n_joints, self._robot.n_servos)
@@ -96,7 +101,8 @@ class Supervisor:
         """
         try:
             endpoint = self._config.generator or f"ipc://{self._folder.name}/generator"
-            generator = GeneratorClient(self._context, endpoint)
+            keys = KeyFolder(self._config.endpoints.keys) if self._config.endpoints.keys is not None else None
+            generator = GeneratorClient(self._context, endpoint, keys, self._config.model_hash)
             recorder = RecorderFeed(f"ipc://{self._folder.name}/events") if self._config.log else None
             front = Front(self._config, self._robot, self._link, self._context, generator, recorder)
             if recorder is not None:
@@ -263,9 +269,11 @@ class Supervisor:
                         client.mark_ready(checkpoint)
                         log.info("generator %s", client.state)
                     ready = True
-                except GeneratorError:
-                    if ready or client.state == "starting":
-                        client.mark_down(f"no answer from {self._config.generator}")
+                except GeneratorError as error:
+                    timeout = error.code == "generator_timeout"
+                    why = f"no answer from {self._config.generator}" if timeout else str(error)
+                    if ready or client.state == "starting" or not client.state.endswith(why):
+                        client.mark_down(why)
                         log.error("generator %s", client.state)
                     ready = False
             await asyncio.sleep(PING_EVERY_S / 2 if ready else 0.1)

@@ -41,6 +41,8 @@ _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
 _CAREFUL_CYCLES = 25
 """After a chained read that broke off: so long each servo answers for itself, until the silent one is quarantined."""
 _REOPEN_EVERY_S = 0.5
+_GAP_BYTES = 12
+"""Items no farther apart are read in one question."""
 _SLOW_BYTES = 14 + 11 + 7
 """Question and answer of the slow registers of one servo."""
 _ECHO_BYTES = 8
@@ -63,7 +65,7 @@ class ServoBus:
     def __init__(
         self, port: Port, servos: Sequence[ServoSpec], clock: Clock, *, margin_s: float = MARGIN_S, slow_every: int = 0
     ) -> None:
-        self.port, self.servos, self._clock = port, tuple(servos), clock
+        self.port, self.servos, self.clock = port, tuple(servos), clock
         self.ids = tuple(s.servo_id for s in servos)
         self.models = tuple(_model(s) for s in servos)
         self.firmware = [0] * len(servos)
@@ -169,7 +171,7 @@ class ServoBus:
         except LinkLostError as error:
             self._note_loss(error)
             raise
-        return self._clock.now_s()
+        return self.clock.now_s()
 
     def _collect(self, step: Step, sent_s: float, sent_bytes: int) -> None:
         """Gather the answers of a step in `_raw`: until all are there, the last servo has answered, or time is up."""
@@ -180,13 +182,13 @@ class ServoBus:
         deadline_s = sent_s + self.timing.longest_s(sent_bytes + step.reply_bytes, step.answers)
         now_s = sent_s
         if expected_s - now_s > _SLEEP_FROM_S:
-            self._clock.sleep_until(expected_s - _WAKE_BEFORE_S)
-            now_s = self._clock.now_s()
+            self.clock.sleep_until(expected_s - _WAKE_BEFORE_S)
+            now_s = self.clock.now_s()
         try:
             while len(raw) < need and (left_s := deadline_s - now_s) > 0:
                 data = self.port.read(need - len(raw), left_s)
                 raw += data
-                now_s = self._clock.now_s()
+                now_s = self.clock.now_s()
                 if not data or (len(raw) < need and step.ends(raw)):
                     break
         except LinkLostError as error:
@@ -224,7 +226,7 @@ class ServoBus:
             for answer in decoder.feed(data):
                 self._take_answer(step, answer, valid)
             missing = step.rows[~valid[step.rows]]
-            left_s = deadline_s - self._clock.now_s()
+            left_s = deadline_s - self.clock.now_s()
             if not len(missing) or not noise or left_s <= 0 or step.ends(self._raw):
                 break
             data = self.port.read(256, left_s)
@@ -237,7 +239,7 @@ class ServoBus:
 
     def _take_answer(self, step: Step, answer: Packet, valid: NDArray[np.bool_]) -> None:
         row = self._row.get(answer.servo_id)
-        now_s = self._clock.now_s()
+        now_s = self.clock.now_s()
         if not is_status(answer):
             text = f"instruction {answer.instruction:#04x} to servo {answer.servo_id} that we did not send"
             self.events.add(BusEventKind.FOREIGN_PACKET, now_s, text + ": another controller on the same wire")
@@ -257,13 +259,13 @@ class ServoBus:
             return False
         self._echo = 1
         text = f"{self.port.name} hears what it sends; it is skipped. Turn the adapter's echo off where it can be"
-        self.events.add(BusEventKind.ECHO, self._clock.now_s(), text)
+        self.events.add(BusEventKind.ECHO, self.clock.now_s(), text)
         return True
 
     def _finish_cycle(self, valid: NDArray[np.bool_]) -> None:
         self._judge(valid)
         self._cycle += 1
-        now_s = self._clock.now_s()
+        now_s = self.clock.now_s()
         probe = self.health.probe_due(now_s)
         if probe is not None:
             self._probe(probe)
@@ -272,7 +274,7 @@ class ServoBus:
 
     def _judge(self, valid: NDArray[np.bool_]) -> None:
         """Ages, health, quarantine."""
-        reading, now_s = self.reading, self._clock.now_s()
+        reading, now_s = self.reading, self.clock.now_s()
         if valid.all() and self.health.all_well(reading.error) and not self._careful:
             reading.age_cycles[:] = 0
             return
@@ -310,16 +312,16 @@ class ServoBus:
                 self._note_reboot(row)
         except ServoFaultError:
             back = True
-        self.health.probed(row, answered=back, now_s=self._clock.now_s())
+        self.health.probed(row, answered=back, now_s=self.clock.now_s())
         if back:
             text = f"servo {self.ids[row]} ({self.servos[row].joint_name}) answers again"
-            self.events.add(BusEventKind.RETURNED, self._clock.now_s(), text, self.ids[row])
+            self.events.add(BusEventKind.RETURNED, self.clock.now_s(), text, self.ids[row])
             self._build_steps()
 
     def _note_reboot(self, row: int) -> None:
         self.health.faulted[row] = True
         name = f"servo {self.ids[row]} ({self.servos[row].joint_name})"
-        now_s, n_lost = self._clock.now_s(), int(self.health.faulted.sum())
+        now_s, n_lost = self.clock.now_s(), int(self.health.faulted.sum())
         text = f"{name} has lost torque and settings; to be armed anew"
         self.events.add(BusEventKind.REBOOTED, now_s, text, self.ids[row])
         if 2 * n_lost >= len(self.ids) > 2:
@@ -332,7 +334,7 @@ class ServoBus:
         if row is None:
             return
         request, length = self._slow.request(row, self.ids[row])
-        asked_s = self._clock.now_s()
+        asked_s = self.clock.now_s()
         try:
             answer = self._ask_once(request, row, length, self.timing.margin_s)
         except ServoFaultError:
@@ -403,11 +405,11 @@ class ServoBus:
         delays: list[int] = []
         took: list[float] = []
         for row, servo_id in enumerate(self.ids):
-            start_s = self._clock.now_s()
+            start_s = self.clock.now_s()
             delays.append(self.read_item(servo_id, "return_delay_time"))
             dialect = self._of(row)
             n_bytes = len(dialect.read(servo_id, 0, 1)) + dialect.status_bytes + 1
-            took.append(self._clock.now_s() - start_s - self.timing.wire_s(n_bytes) - delays[-1] * RETURN_DELAY_UNIT_S)
+            took.append(self.clock.now_s() - start_s - self.timing.wire_s(n_bytes) - delays[-1] * RETURN_DELAY_UNIT_S)
         self.timing.return_delay_s = max(delays) * RETURN_DELAY_UNIT_S
         self.timing.turnaround_s = max(0.0, min(took))
 
@@ -458,7 +460,7 @@ class ServoBus:
                 log.info("fast sync read: %d of %d servos", len(rows), len(self.ids))
                 return
         text = f"no whole answer of servos {', '.join(str(self.ids[i]) for i in rows)}; plain sync reads from now on"
-        self.events.add(BusEventKind.FAST_SYNC_OFF, self._clock.now_s(), text)
+        self.events.add(BusEventKind.FAST_SYNC_OFF, self.clock.now_s(), text)
 
     # Single items.
 
@@ -468,6 +470,20 @@ class ServoBus:
         item = self._item(row, name)
         answer = self._ask(self._of(row).read(servo_id, item.address, item.size), row, item.size)
         return item.decode(answer.parameters)
+
+    def read_items(self, servo_id: int, names: Sequence[str]) -> dict[str, int]:
+        """Values of those of the named items that a servo has, neighbours in one question."""
+        row = self._row_of(servo_id)
+        table, values = self.models[row].table, dict[str, int]()
+        items = sorted((table[name] for name in names if name in table), key=lambda item: item.address)
+        while items:
+            span = [items.pop(0)]
+            while items and items[0].address - span[-1].end <= _GAP_BYTES:
+                span.append(items.pop(0))
+            start, length = span[0].address, span[-1].end - span[0].address
+            data = self._ask(self._of(row).read(servo_id, start, length), row, length).parameters
+            values |= {i.name: i.decode(data[i.address - start : i.end - start]) for i in span}
+        return values
 
     def poll_item(self, servo_id: int, name: str) -> int | None:
         """Value of one item, asked once and within the cycle; None when the servo did not answer in time."""
@@ -553,7 +569,7 @@ class ServoBus:
         Cleared under torque it would go on to the goal it was stopped on the way to.
         """
         for servo_id in self.tripped_watchdogs():
-            self.events.add(BusEventKind.WATCHDOG_TRIPPED, self._clock.now_s(), f"servo {servo_id}", servo_id)
+            self.events.add(BusEventKind.WATCHDOG_TRIPPED, self.clock.now_s(), f"servo {servo_id}", servo_id)
             self.write_item(servo_id, "torque_enable", 0)
         for servo_id, model in zip(self.ids, self.models, strict=True):
             if "bus_watchdog" in model.table:
@@ -601,7 +617,7 @@ class ServoBus:
         n_bytes = len(request) + dialect.status_bytes + (3 if answer_bytes is None else answer_bytes)
         deadline_s = sent_s + self.timing.longest_s(n_bytes, 1) - self.timing.margin_s + margin_s
         skip = self._echo * len(request)
-        while (left_s := deadline_s - self._clock.now_s()) > 0:
+        while (left_s := deadline_s - self.clock.now_s()) > 0:
             data = self.port.read(256, left_s)
             if not data:
                 break
@@ -632,7 +648,7 @@ class ServoBus:
 
     def _note_loss(self, error: LinkLostError) -> None:
         if self._lost_since_s is None:
-            self._lost_since_s = self._reopen_due_s = self._clock.now_s()
+            self._lost_since_s = self._reopen_due_s = self.clock.now_s()
             self.events.add(BusEventKind.LOST, self._lost_since_s, str(error))
 
     def _reopen(self) -> None:
@@ -641,7 +657,7 @@ class ServoBus:
         Raises:
             LinkLostError: it is not back.
         """
-        now_s = self._clock.now_s()
+        now_s = self.clock.now_s()
         if isinstance(self.port, Reopenable) and now_s >= self._reopen_due_s:
             self._reopen_due_s = now_s + _REOPEN_EVERY_S
             self.port.reopen()

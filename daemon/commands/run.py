@@ -24,6 +24,8 @@ def run(
     cmd: str = _DEFAULT.cmd,
     ctl: str = _DEFAULT.ctl,
     pub: str = _DEFAULT.pub,
+    keys: Path | None = None,
+    model_hash: str = "",
     quiet: bool = False,
 ) -> int:
     """Take texts over ZeroMQ and move servos, until SIGTERM or Ctrl-C, which park the robot.
@@ -44,6 +46,8 @@ def run(
         cmd: endpoint of requests.
         ctl: endpoint of stop, estop, reset, arm, park, status.
         pub: endpoint of state and events.
+        keys: folder of CURVE keys (`mmmd keys`): tcp sockets then take allowed clients only, and may be on any address.
+        model_hash: beginning of the checkpoint's hash; a generator with another one is not used.
         quiet: log only warnings.
     """
     from daemon.config import DaemonConfig
@@ -56,7 +60,7 @@ def run(
     if log is not None and (problem := log_path_error(log)):
         sys.stderr.write(f"mmmd: {problem}\n")
         return 2
-    endpoints = Endpoints(cmd, ctl, pub)
+    endpoints = Endpoints(cmd, ctl, pub, keys)
     return run_daemon(
         DaemonConfig(
             robot,
@@ -68,5 +72,6 @@ def run(
             auto_arm=auto_arm,
             idle=idle,
             gestures=gestures,
+            model_hash=model_hash,
         )
     )
