@@ -218,3 +218,41 @@ def test_slow_and_fast_are_told_apart(name: str) -> None:
             limb = FAMILIES[name].limb
             assert judge(Probe("", name, limb, side, tempo=word), shown(clip.features))["tempo"]
             assert not judge(Probe("", name, limb, side, tempo=other), shown(clip.features))["tempo"]
+
+
+def performed(probe: Probe, seed: int, in_a_mirror: bool = False) -> Shown:
+    """What is shown when the corpus itself performs what a probe asks."""
+
+    def gesture(p: Probe) -> Gesture:
+        family = FAMILIES[p.family]
+        side = p.side or ("right" if "right" in family.sides else "".join(family.sides[:1]))
+        count = p.count or (3 if p.tempo else family.counts[0] if family.counts else 1)
+        where = p.direction or ("" if "" in family.directions else (family.directions or ("",))[0])
+        tempo = {"slow": 0.65, "fast": 1.4}.get(p.tempo, 1.0)
+        return Gesture(p.family, side, count, where, tempo=tempo, hold_s=p.hold_s)
+
+    asked = (probe, probe.then) if probe.then else (probe,)
+    clip = synthesise_spec(ClipSpec(tuple(gesture(p) for p in asked)), np.random.default_rng(seed))
+    assert clip is not None, probe.text
+    return shown(mirror(clip.features) if in_a_mirror else clip.features)
+
+
+def test_what_the_corpus_performs_passes_the_whole_suite() -> None:
+    met: dict[str, list[bool]] = {}
+    for i, probe in enumerate(PROBES):
+        for key, ok in judge(probe, performed(probe, i), with_pose=True).items():
+            met.setdefault(key, []).append(ok)
+    assert set(met) == {"limb", "pose", "side", "count", "count_exact", "direction", "hold", "tempo", "order"}
+    shares = {key: np.mean(values) for key, values in met.items()}
+    assert min(shares.values()) >= 0.95, shares
+    assert shares["side"] >= 0.99
+    assert shares["limb"] >= 0.99
+
+
+def test_standing_still_and_the_mirror_image_fail_the_suite() -> None:
+    stands = synthesise_spec(ClipSpec((Gesture("stand"),)), np.random.default_rng(0))
+    assert stands is not None
+    still = shown(stands.features)
+    assert not any(all(judge(p, still, with_pose=True).values()) for p in PROBES)
+    one_sided = [p for p in PROBES if p.side in ("left", "right") and p.then is None]
+    assert not any(judge(p, performed(p, i, in_a_mirror=True))["side"] for i, p in enumerate(one_sided))
