@@ -12,8 +12,7 @@ import threading
 import time
 from pathlib import Path
 
-from daemon.bus.open import PortContext, open_port
-from daemon.bus.servo_bus import ServoBus
+from daemon.bus.multi import RobotBus, open_bus
 from daemon.clock import RealClock
 from daemon.shared import BusLink, BusState
 from daemon.streamer import Streamer, start
@@ -42,11 +41,10 @@ def main() -> int:
     link = BusLink.attach(Path(arguments.link), robot.n_joints)
     clock = RealClock()
 
-    def open_bus() -> ServoBus:
-        port = open_port(arguments.bus, PortContext(robot, clock))
-        return ServoBus(port, robot.servos, clock, slow_every=SLOW_EVERY)
+    def opened() -> RobotBus:
+        return open_bus(arguments.bus, robot, clock, slow_every=SLOW_EVERY)
 
-    streamer = start(robot, open_bus, link, clock, after_loss=arguments.after_loss)
+    streamer = start(robot, opened, link, clock, after_loss=arguments.after_loss)
     if streamer is None:
         return 1
     link.set_realtime(*_take_rights())

@@ -39,6 +39,12 @@ COMMANDS: dict[str, CommandEntry] = {
     "reset": CommandEntry("daemon.commands.control:reset", "leave e-stop or fault; the robot stays limp"),
     "arm": CommandEntry("daemon.commands.control:arm", "torque on, slow move to the rest pose"),
     "park": CommandEntry("daemon.commands.control:park", "slow move to the park pose, torque off"),
+    "scan": CommandEntry("daemon.commands.scan:scan", "which servos are on a port: every baud, both protocols"),
+    "doctor": CommandEntry("daemon.commands.doctor:doctor", "rights, adapter, servos, settings, rate; with the remedy"),
+    "servo": CommandEntry("daemon.commands.servo:servo", "read and set up one servo: get, set, reboot, id, baud"),
+    "calibrate": CommandEntry(
+        "daemon.commands.calibrate:calibrate", "zero positions and ranges of the joints, by hand"
+    ),
     "sim": CommandEntry("daemon.commands.sim:sim", "simulated servos behind a real tty"),
     "robot": CommandEntry("daemon.commands.robot:robot", "list, check and show robots"),
     "generate": CommandEntry("daemon.commands.generate:generate", "text to human motion: .npz and .bvh"),

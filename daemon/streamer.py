@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.approach import Approach
+from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
+from daemon.bus.multi import RobotBus
 from daemon.bus.packet import ALERT_BIT
+from daemon.bus.reading import BusReading
 from daemon.bus.registers import WATCHDOG_UNIT_S
-from daemon.bus.servo_bus import BusReading, ServoBus
 from daemon.clock import Clock
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
@@ -44,6 +46,7 @@ _STILL_S, _STILL_TICK = 0.02, 2
 """Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
 """Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
+_LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
 _ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
 
 
@@ -51,7 +54,7 @@ class Streamer:
     """State and loop of the bus process."""
 
     def __init__(
-        self, robot: RobotModel, bus: ServoBus, link: BusLink, clock: Clock, *, watch_front: bool = True
+        self, robot: RobotModel, bus: RobotBus, link: BusLink, clock: Clock, *, watch_front: bool = True
     ) -> None:
         self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
         self._ticks = JointServoMap(robot)
@@ -93,7 +96,7 @@ class Streamer:
 
     def close(self) -> None:
         """Release the port."""
-        self._bus.port.close()
+        self._bus.close()
 
     def cycle(self) -> None:
         """One bus period."""
@@ -378,7 +381,7 @@ class Streamer:
         self._link.publish()
 
 
-Opener = Callable[[], ServoBus]
+Opener = Callable[[], RobotBus]
 
 
 AFTER_LOSS = "the bus process was lost and is back; servos may still hold: `mmmd reset` makes them limp"
@@ -398,12 +401,25 @@ def start(
         return None
     try:
         bus.verify()
+        findings = check_servos(bus, robot)
+        for f in findings:
+            log.log(
+                _LEVELS[f.severity],
+                "servo %d (%s): %s %s, should be %s; %s",
+                f.servo_id,
+                f.joint_name,
+                f.item,
+                f.found,
+                f.expected,
+                f.remedy,
+            )
+        require_needed(findings)
         plan = bus.plan()
         if not plan.require(robot.bus.rate_hz):
             log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))
         bus.exchange(None)
     except DaemonError as error:
-        bus.port.close()
+        bus.close()
         link.set_ready(Readiness.FAILED, str(error))
         return None
     streamer = Streamer(robot, bus, link, clock)

@@ -15,7 +15,7 @@ from rich.console import Console
 
 from daemon.bench.bus_peers import PEERS, c_client_us, installed, sdk_codec_us
 from daemon.bench.report import context
-from daemon.bench.wire_emulator import CURRENT_RAW, MODEL_NUMBER, POSITION_TICK, VELOCITY_RAW
+from daemon.bench.wire_emulator import CURRENT_RAW, POSITION_TICK, VELOCITY_RAW
 from daemon.bus.feedback import FastSyncStep, SyncStep
 from daemon.bus.group import GroupWrite
 from daemon.bus.packet import Part, fast_status, status
@@ -24,7 +24,7 @@ from daemon.bus.serial_port import SerialPort
 from daemon.bus.servo_bus import ServoBus
 from daemon.clock import RealClock
 from retarget.robot import ServoSpec
-from retarget.servos import ServoModel
+from retarget.servos import servo_models
 
 N_SERVOS = 20
 IDS = list(range(1, N_SERVOS + 1))
@@ -33,11 +33,11 @@ LOSSES = (0.001, 0.01)
 _FIFO = 40
 _NO_BAUD = 100_000_000
 """Told to the driver where there is no wire: it sleeps through the time that bytes take."""
-_WARM_CYCLES = 50
+_WARM_CYCLES, _BLOCK = 50, 10
 _METHOD = (
     "20 servos on a pty whose other end, a process of its own, holds every byte back for its time on the wire; a cycle"
     " writes 20 goals and reads current, velocity and position of all, one cycle ahead (the next request goes out before"
-    " the last answers are parsed). share: wire time / median cycle; cpu_us: processor time of a cycle. loss and dead"
+    " the last answers are parsed). share: wire time / median cycle (means of ten); cpu_us: processor time of one. loss and dead"
     " servo at 1 Mbit/s by sync read, rates by mean. codec_us: build goals, parse 20 answers, store the values; median"
 )
 
@@ -115,8 +115,11 @@ def _emulator(baud: int, *, fast: bool = True, loss: float = 0.0, dead: int = 0)
 
 @contextmanager
 def _bus(device: str, baud: int, *, verify: bool = True) -> Generator[ServoBus]:
-    model = ServoModel("XM430-W350", MODEL_NUMBER, 2.0, 4096, 4.817, True)
-    servos = [ServoSpec(i, f"joint_{i}", model, 1, 1.0, 2048) for i in IDS]
+    model = servo_models()["XM430-W350"]
+    servos = [
+        ServoSpec(i, f"joint_{i}", model, 1, 1.0, model.zero_tick, ((n, 1.0),), model.min_tick, model.max_tick)
+        for n, i in enumerate(IDS)
+    ]
     port = SerialPort(device, baud)
     try:
         bus = ServoBus(port, servos, RealClock())
@@ -128,7 +131,10 @@ def _bus(device: str, baud: int, *, verify: bool = True) -> Generator[ServoBus]:
 
 
 def _timed(cycle: Callable[[], object], seconds: float) -> tuple[np.ndarray[Any, Any], float]:
-    """(N,) seconds of each cycle, and processor seconds of a cycle."""
+    """(N,) seconds of a cycle, each the mean of ten in a row, and processor seconds of a cycle.
+
+    Of ten, because a cycle that is noticed late makes the next one look short.
+    """
     for _ in range(_WARM_CYCLES):
         cycle()
     took: list[float] = []
@@ -139,7 +145,8 @@ def _timed(cycle: Callable[[], object], seconds: float) -> tuple[np.ndarray[Any,
         now_s = time.perf_counter()
         took.append(now_s - at_s)
         at_s = now_s
-    return np.array(took), (time.process_time() - cpu_s) / len(took)
+    blocks = np.array(took[: max(1, len(took) // _BLOCK) * _BLOCK]).reshape(-1, min(_BLOCK, len(took))).mean(axis=1)
+    return blocks, (time.process_time() - cpu_s) / len(took)
 
 
 def _run(bus: ServoBus, seconds: float) -> tuple[np.ndarray[Any, Any], float, float]:
