@@ -119,6 +119,12 @@ class Audit:
         track.before, track.last = track.last, tick
         self._collect(servo_id, tick)
 
+    def missed(self, servo_id: int, tick: int) -> None:
+        """A goal that was sent and lost on the wire: the next one is a step from it, not from the last one that came."""
+        track = self._tracks.get(servo_id)
+        if track is not None and track.last is not None:
+            track.before, track.last = track.last, tick
+
     def refused(self, t_s: float, servo_id: int, code: int, *, faulted: bool = False) -> None:
         """A servo refused a goal: the daemon wrote beyond its limits, or after its watchdog had stopped it."""
         track = self._tracks.get(servo_id)

@@ -1,8 +1,9 @@
 """Simulated servos on one half-duplex wire: bytes in, answers out, each byte in its time.
 
-Modelled and not modelled: docs/simulator.md. Of what the manual leaves open: in a sync or bulk read the next servo waits
-for the time of an answer that does not come; a fast read ends at the first servo that is silent, for the next ones
-cannot continue its checksum; a packet with a wrong checksum is not answered.
+What is modelled: time of every byte, half duplex with collisions, answers in order, every instruction. Not modelled: see
+the list in docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). Where the manual is
+silent: in a sync or bulk read the next servo waits for the time of an answer that does not come; a fast read ends at the
+first servo that is silent, for the next ones cannot continue its checksum; a packet with a wrong checksum is not answered.
 """
 
 from __future__ import annotations
@@ -93,11 +94,13 @@ class SimBus:
         for servo in self.on_wire:
             servo.set_baud(baud)
 
-    def receive(self, data: bytes, t_s: float, baud: int) -> None:
-        """The client sends `data` at `t_s`; answers are put on the wire."""
+    def receive(self, data: bytes, t_s: float, baud: int, *, patient: bool = False) -> None:
+        """The client sends `data` at `t_s`; answers are put on the wire. `patient`: see `Wire.talk`."""
         with self.world.lock:
             self.world.advance(t_s)
-            start_s, byte_s, heard = self.wire.talk(t_s, data, baud)
+            start_s, byte_s, heard = self.wire.talk(t_s, data, baud, patient=patient)
+            if heard != data:
+                self._note_lost(data)
             if self.faults.in_force("echo"):
                 self.wire.echo(start_s, data, byte_s)
             at = 0
@@ -127,10 +130,19 @@ class SimBus:
             for access in accesses_of(p, protocol):
                 for servo in by_id.get(access.servo_id, ()):
                     self._instructions.write(servo, access.address, access.data, t_s)
+                if access.servo_id not in by_id:
+                    self._instructions.missed(self.on_wire, access)
         elif p.servo_id == BROADCAST_ID:
             self._answer_all(p, listening, t_s, baud)
         else:
             self._answer_one(p, listening, by_id, t_s, baud)
+
+    def _note_lost(self, data: bytes) -> None:
+        """Goals that a collision took are steps that the daemon made all the same: the audit counts from them."""
+        for p in packet.PacketDecoder().feed(data):
+            if p.instruction in _GROUP_WRITES:
+                for access in accesses_of(p, 2.0):
+                    self._instructions.missed(self.on_wire, access)
 
     def _listening(self, protocol: float, t_s: float, baud: int) -> list[SimServo]:
         """Servos that hear and understand what is said now."""

@@ -69,7 +69,7 @@ class PtyServer:
                 except (BlockingIOError, OSError):
                     data = b""
                 if data:
-                    self.bus.receive(data, self._now_s(), self._client_baud())
+                    self.bus.receive(data, self._now_s(), self._client_baud(), patient=True)
             self._deliver()
 
     def stop(self) -> None:

@@ -78,10 +78,16 @@ class Wire:
         self._client_start_s, self._client_end_s = -math.inf, -math.inf
         self.collisions = 0
 
-    def talk(self, t_s: float, data: bytes, baud: int) -> tuple[float, float, bytearray]:
-        """The client sends: (start, seconds per byte, the bytes as servos hear them). What it meets is garbled."""
+    def talk(self, t_s: float, data: bytes, baud: int, *, patient: bool = False) -> tuple[float, float, bytearray]:
+        """The client sends: (start, seconds per byte, the bytes as servos hear them). What it meets is garbled.
+
+        `patient`: not before the answers under way are through. For doors in real time, where a simulator that was held up
+        would make answers late, and a client that was in time collide with them.
+        """
         byte_s = 0.0 if self.settings.no_wire_delay else BITS_PER_BYTE / baud
         start_s = max(t_s, self._client_end_s)
+        if patient and self._coming:
+            start_s = max(start_s, self._coming[-1].end_s)
         heard = bytearray(data)
         self._client_start_s, self._client_end_s = start_s, start_s + len(data) * byte_s
         for burst in self._coming:

@@ -85,6 +85,20 @@ def test_goals_faster_than_the_robots_rate_are_a_violation_unless_they_only_wait
     assert not hurried(0.02, 200)
 
 
+def test_a_goal_lost_on_the_wire_is_a_step_of_the_wires_and_not_of_the_daemons() -> None:
+    step = int(STEP)
+    audit = Audit(ROBOT)
+    audit.torque(0.0, SERVO.servo_id, True, 2048, 2048)
+    path = [2048 + round(min(i, 40) ** 2 * BEND / 2.2) for i in range(12)]
+    assert path[-1] - path[-3] > step / 2
+    for i, tick in enumerate(path):
+        if i == 9:
+            audit.missed(SERVO.servo_id, tick)
+        else:
+            audit.goal(0.01 * i, SERVO.servo_id, tick, True)
+    assert dict(audit.violations) == {}
+
+
 def test_goals_to_a_tripped_servo_are_counted_after_a_moment_and_asking_it_for_torque_is_a_violation() -> None:
     audit = Audit(ROBOT)
     for i in range(30):

@@ -155,3 +155,25 @@ def test_same_bytes_at_the_same_time_are_anded() -> None:
 def test_a_wire_that_cannot_be_is_refused(wrong: dict) -> None:
     with pytest.raises(SimSettingError, match=next(iter(wrong))):
         WireSettings(**wrong)
+
+
+def test_a_collision_takes_goals_but_is_no_violation_of_the_clients() -> None:
+    b = Bench("XM430-W350")
+    b.write("torque_enable", 1)
+    goals = [2048 + round(0.4 * i * i) for i in range(20)]
+    for i, tick in enumerate(goals):
+        if i == 12:  # a question whose answer the next goal runs into
+            b.bus.receive(packet.read(1, 126, 10), b.t_s, b.baud)
+            b.t_s += 150e-6
+        b.send(packet.sync_write(116, 4, [(1, tick.to_bytes(4, "little"))]))
+        b.wait(0.01)
+    assert b.bus.wire.collisions > 0 and b.bus.audit.goals == 19
+    assert not b.bus.audit.violations
+
+
+def test_a_patient_client_waits_for_the_answers() -> None:
+    b = Bench("XM430-W350", "XM430-W350")
+    for i in (1, 2):
+        b.bus.receive(packet.ping(i), 0.0, b.baud, patient=True)
+    assert [p.servo_id for p in b.ask(b"")] == [1, 2]
+    assert b.bus.wire.collisions == 0
