@@ -83,7 +83,7 @@ def bench_barge_in(n: int = 1000, seed: int = 0, robot: str = "reference") -> di
 
 def _talk(client: Client, texts: list[str], rng: np.random.Generator, heard: _Heard, stops_s: list[float]) -> None:
     """Say all of them, stop now and then, listen to the end."""
-    context_ = zmq.Context()
+    context_: zmq.Context[zmq.Socket[bytes]] = zmq.Context()
     socket = context_.socket(zmq.DEALER)
     socket.connect(client.endpoints.cmd)
 
@@ -95,7 +95,7 @@ def _talk(client: Client, texts: list[str], rng: np.random.Generator, heard: _He
 
     try:
         for i, text in enumerate(texts):
-            seed = int(rng.integers(2**31))
+            seed = int(rng.integers(0, 2**31))  # pyright: ignore[reportUnknownArgumentType]
             socket.send(encode(Say(id=f"b{i}", text=text, seed=seed, t_mono=time.monotonic())))
             listen(float(rng.uniform(SHORTEST_GAP_S, LONGEST_GAP_S)))
             if i % STOP_EVERY == STOP_EVERY - 1:
