@@ -13,6 +13,7 @@ import os
 import signal
 import tempfile
 import time
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import zmq
@@ -83,6 +84,7 @@ class Supervisor:
         if config.generator is None and importlib.util.find_spec("torch") is None:
             do = "install with `pip install 'mmmd[generate]'`, or name a generator elsewhere with --generator"
             raise config_error("generator", "none, and torch is not installed", "one of the two", do)
+        check_scheme(config.bus)
         self._config = config
         self._robot: RobotModel = load_robot(config.robot)
         self._link = BusLink.create(self._robot.n_joints)
@@ -331,6 +333,18 @@ def run(config: DaemonConfig) -> int:
         return await Supervisor(config).run()
 
     return asyncio.run(start())
+
+
+def check_scheme(bus: str) -> None:
+    """Refuse a bus URL whose scheme nobody serves, before anything is started.
+
+    Raises:
+        ConfigError: it is unknown.
+    """
+    known = sorted(point.name for point in entry_points(group="mmmd.ports"))
+    if bus.partition(":")[0] not in known:
+        allowed = ", ".join(f"{name}://" for name in known)
+        raise config_error("bus", f"'{bus}', an unknown scheme", allowed, "for example dxl:///dev/ttyUSB0?baud=1000000")
 
 
 def log_path_error(path: Path) -> str | None:

@@ -46,8 +46,9 @@ def test_the_async_client_says_stops_and_watches_at_once(running):
                 await saying
             async with contextlib.aclosing(robot.watch("v1/state")) as states:
                 async for topic, state in states:
-                    assert topic == "v1/state" and state.state == "holding"
-                    break
+                    assert topic == "v1/state"
+                    if state.state == "holding":
+                        break
             with pytest.raises(RefusedError, match="legs"):
                 await robot.say("do a somersault")
             assert (await robot.gesture("nod", tempo=2.0)).done
