@@ -13,6 +13,7 @@ from pathlib import Path
 
 from daemon.bus.multi import RobotBus, open_bus
 from daemon.clock import RealClock
+from daemon.logs import start_logging
 from daemon.realtime import BUS_PRIORITY, lock_memory, take_fifo
 from daemon.shared import BusLink, BusState
 from daemon.streamer import Streamer, start
@@ -34,7 +35,7 @@ def main() -> int:
         parser.add_argument(name, required=True)
     parser.add_argument("--after-loss", action="store_true")
     arguments = parser.parse_args()
-    logging.basicConfig(level=logging.INFO, format="bus: %(levelname)s %(message)s")
+    start_logging("bus")
     robot = load_robot(arguments.robot)
     link = BusLink.attach(Path(arguments.link), robot.n_joints, robot.n_servos)
     clock = RealClock()

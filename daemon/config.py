@@ -86,12 +86,15 @@ class DaemonConfig:
         bus: URL of the servo bus.
         endpoints: sockets.
         log: MCAP file to record into, None for none.
+        log_size_mb: a log of this size is ended and the next one begun; 0 for never.
+        log_total_mb: oldest logs of the run are removed beyond so much together; 0 for never.
         generator: endpoint of a generator that runs already; None starts one.
         model: checkpoint of the generator; None takes the shipped one.
         auto_arm: whether the first text may arm the robot.
         idle: style of the movements while there is nothing to play: off, calm or lively.
         gestures: folder of the user's own gestures; None takes the user's data folder.
         model_hash: beginning of the checkpoint's hash that the generator must have; empty takes any.
+        metrics: HOST:PORT of Prometheus metrics, empty for none.
         queue_s: setpoints kept ready in the bus process.
         state_rate_hz: how often `v1/state` is published.
         generate_timeout_s: longest wait for the generator.
@@ -102,12 +105,15 @@ class DaemonConfig:
     bus: str
     endpoints: Endpoints = field(default_factory=Endpoints)
     log: Path | None = None
+    log_size_mb: float = 500.0
+    log_total_mb: float = 0.0
     generator: str | None = None
     model: Path | None = None
     auto_arm: bool = True
     idle: str = "off"
     gestures: Path | None = None
     model_hash: str = ""
+    metrics: str = ""
     queue_s: float = 0.1
     state_rate_hz: float = 20.0
     generate_timeout_s: float = 10.0
@@ -120,7 +126,7 @@ class DaemonConfig:
             ConfigError: a value is outside its range.
         """
         for key, low, high in (
-            ("queue_s", 0.02, 0.3), ("state_rate_hz", 1.0, 200.0),
+            ("queue_s", 0.02, 0.3), ("log_size_mb", 0.0, 1e6), ("log_total_mb", 0.0, 1e7), ("state_rate_hz", 1.0, 200.0),
             ("generate_timeout_s", 0.1, 600.0), ("park_timeout_s", 1.0, 120.0),
         ):  # fmt: skip
             value = getattr(self, key)

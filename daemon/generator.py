@@ -31,6 +31,7 @@ from daemon.generation import (
     generated_message,
 )
 from daemon.keys import Doorkeeper, KeyFolder
+from daemon.logs import start_logging
 from daemon.sockets import bind as bind_socket
 
 log = logging.getLogger(__name__)
@@ -117,7 +118,7 @@ def main() -> int:
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--parent-pid", type=int)
     options = parser.parse_args()
-    logging.basicConfig(level=logging.INFO, format="generator: %(message)s")
+    start_logging("generator")
     from mmm_core.errors import MmmError
 
     try:

@@ -13,6 +13,7 @@ import os
 import signal
 import tempfile
 import time
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import zmq
@@ -24,6 +25,8 @@ from daemon.errors import DaemonError
 from daemon.front import Front
 from daemon.generation import GeneratorClient, GeneratorError
 from daemon.keys import KeyFolder
+from daemon.metrics import MetricsServer, exposition
+from daemon.notify import Notifier
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
 from daemon.state import RobotState
 from retarget.robot import RobotModel, load_robot
@@ -81,6 +84,7 @@ class Supervisor:
         if config.generator is None and importlib.util.find_spec("torch") is None:
             do = "install with `pip install 'mmmd[generate]'`, or name a generator elsewhere with --generator"
             raise config_error("generator", "none, and torch is not installed", "one of the two", do)
+        check_scheme(config.bus)
         self._config = config
         self._robot: RobotModel = load_robot(config.robot)
         self._link = BusLink.create(self._robot.n_joints, self._robot.n_servos)
@@ -90,6 +94,8 @@ class Supervisor:
         self._tasks: list[asyncio.Task[None]] = []
         self._asked_to_end = asyncio.Event()
         self._ending = False
+        self._notifier = Notifier()
+        self._metrics: MetricsServer | None = None
         arguments = ["--robot", config.robot, "--bus", config.bus, "--link", str(self._link.path)]
         self._bus = Child("bus process", "daemon.bus_process", arguments)
 
@@ -133,6 +139,7 @@ class Supervisor:
             else:
                 self._watch(self._follow_generator(generator))
             ends = self._config.endpoints
+            await self._start_extras(front)
             log.info("ready: robot %s on %s", self._robot.name, self._config.bus)
             log.info("cmd %s, ctl %s, pub %s", ends.cmd, ends.ctl, ends.pub)
             failure = asyncio.create_task(front.failure())
@@ -141,6 +148,7 @@ class Supervisor:
             asked.cancel()
             if failure.done():
                 log.error("the front failed", exc_info=failure.exception())
+            self._notifier.stopping()
             state = await front.park()
             self._ending = True
             self._link.request(BusRequest.SHUTDOWN)
@@ -149,7 +157,26 @@ class Supervisor:
             log.info("ended with the robot in %s", state.value)
             return GOOD if state is RobotState.LIMP else ROBOT_FAULT
         finally:
+            if self._metrics is not None:
+                await self._metrics.close()
             await front.close()
+
+    async def _start_extras(self, front: Front) -> None:
+        """Metrics on request; readiness and signs of life for systemd."""
+        if self._config.metrics:
+            self._metrics = MetricsServer(
+                self._config.metrics, lambda: exposition(front.state_event(), front.ledger.counts)
+            )  # fmt: skip
+            await self._metrics.start()
+        self._notifier.ready(f"robot {self._robot.name} on {self._config.bus}")
+        if self._notifier.watchdog_s is not None:
+            self._watch(self._sign_of_life(self._notifier.watchdog_s / 3))
+
+    async def _sign_of_life(self, period_s: float) -> None:
+        """The event loop runs: systemd may know. The bus process has its own supervision."""
+        while True:
+            self._notifier.alive()
+            await asyncio.sleep(period_s)
 
     def _end_asked(self) -> None:
         if self._asked_to_end.is_set():
@@ -282,6 +309,7 @@ class Supervisor:
         """Record until the end; a recorder that fails leaves the robot without a log, which is said."""
         arguments = ["--robot", self._config.robot, "--link", str(self._link.path)]
         arguments += ["--events", feed.endpoint, "--out", str(self._config.log)]
+        arguments += ["--size-mb", str(self._config.log_size_mb), "--total-mb", str(self._config.log_total_mb)]
         child = Child("recorder", "daemon.recorder", arguments)
         self._children.append(child)
         await child.start()
@@ -305,6 +333,18 @@ def run(config: DaemonConfig) -> int:
         return await Supervisor(config).run()
 
     return asyncio.run(start())
+
+
+def check_scheme(bus: str) -> None:
+    """Refuse a bus URL whose scheme nobody serves, before anything is started.
+
+    Raises:
+        ConfigError: it is unknown.
+    """
+    known = sorted(point.name for point in entry_points(group="mmmd.ports"))
+    if bus.partition(":")[0] not in known:
+        allowed = ", ".join(f"{name}://" for name in known)
+        raise config_error("bus", f"'{bus}', an unknown scheme", allowed, "for example dxl:///dev/ttyUSB0?baud=1000000")
 
 
 def log_path_error(path: Path) -> str | None:

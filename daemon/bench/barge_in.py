@@ -95,7 +95,7 @@ def _talk(client: Client, texts: list[str], rng: np.random.Generator, heard: _He
 
     try:
         for i, text in enumerate(texts):
-            seed = int(rng.uniform(0.0, float(2**31)))
+            seed = int(rng.integers(0, 2**31))  # pyright: ignore[reportUnknownArgumentType]
             socket.send(encode(Say(id=f"b{i}", text=text, seed=seed, t_mono=time.monotonic())))
             listen(float(rng.uniform(SHORTEST_GAP_S, LONGEST_GAP_S)))
             if i % STOP_EVERY == STOP_EVERY - 1:
