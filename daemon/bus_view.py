@@ -20,6 +20,7 @@ class BusView:
 
     Attributes:
         state: what the bus process is doing; limp before its first cycle.
+        fresh_states: what it did since the update before, one state after another; the last is `state`.
         goal_rad: (J,) what the servos were last told.
         present_rad: (J,) what they last measured.
         valid: (S,) whether each servo's last reading is from the newest cycle.
@@ -36,6 +37,7 @@ class BusView:
         self.at_rest = True
         self._last_cycle_s: float | None = None
         self.state = BusState.LIMP
+        self.fresh_states = [self.state]
         self.goal_rad: Array = robot.park_rad.copy()
         self.present_rad: Array = robot.park_rad.copy()
         self.valid = np.zeros(robot.n_servos, bool)
@@ -59,13 +61,18 @@ class BusView:
             self.valid, self.error = last["valid"] != 0, np.array(last["error"])
             self.underruns += int((records["underrun"] != 0).sum())
             self.at_rest = not np.any(last["velocity_rad_s"])
-            self.state = BusState(int(last["state"]))
+            codes = np.asarray(records["state"])
+            is_new = np.concatenate([[True], codes[1:] != codes[:-1]])
+            self.fresh_states = [BusState(int(code)) for code in codes[is_new]]
+            self.state = self.fresh_states[-1]
+        else:
+            self.fresh_states = [self.state]
         return records, lost
 
     def begin(self, state: BusState = BusState.LIMP) -> None:
         """The bus process has just said that it is ready, in `state`: its silence counts from here."""
         self.update()  # what one before it has published is not its own
-        self.state, self.at_rest = state, True
+        self.state, self.fresh_states, self.at_rest = state, [state], True
         self._last_cycle_s = time.monotonic()
 
     @property

@@ -135,14 +135,14 @@ class Performer:
 
     def tick(self) -> None:
         """Follow the bus process, end what is over, feed what goes on, idle."""
-        state = self.follower.update()
-        if state is RobotState.FAULT:
-            do = "find the cause, then `mmmd reset` and `mmmd arm`"
-            self.end_all("fault", failed("fault", self.follower.fault_reason, "a robot without fault", do))
-        elif state is RobotState.ESTOP:
-            self.end_all("estop")
-        elif state in (RobotState.LIMP, RobotState.PARKING):
-            self._player.end("park")  # a command on its way is refused or arms again by itself
+        for state in self.follower.update():
+            if state is RobotState.FAULT:
+                do = "find the cause, then `mmmd reset` and `mmmd arm`"
+                self.end_all("fault", failed("fault", self.follower.fault_reason, "a robot without fault", do))
+            elif state is RobotState.ESTOP:
+                self.end_all("estop")
+            elif state in (RobotState.LIMP, RobotState.PARKING):
+                self._player.end("park")  # a command on its way is refused or arms again by itself
         self._player.watch(finish_loop=self._waiting.someone_waits_after)
         self._player.idle(free=not len(self._waiting))
 

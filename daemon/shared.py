@@ -52,6 +52,13 @@ class BusRequest(IntEnum):
     SHUTDOWN = 13
 
 
+_OVERRULES = {
+    BusRequest.ESTOP: (BusRequest.STOP, BusRequest.RESET, BusRequest.PARK, BusRequest.ARM),
+    BusRequest.STOP: (BusRequest.PARK, BusRequest.ARM),
+}
+"""What is thrown away when it was asked for before the e-stop or stop and not yet taken."""
+
+
 class _Word(IntEnum):
     MAGIC = 0
     PUSHED = 1
@@ -172,7 +179,7 @@ class BusLink:
         """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before."""
         if kind in (BusRequest.STOP, BusRequest.ESTOP, BusRequest.PARK):
             self._words[_Word.EPOCH] += np.uint64(1)
-        self._words[kind] += np.uint64(1)
+        self._words[kind] = max(time.monotonic_ns(), int(self._words[kind]) + 1)
 
     def heartbeat(self) -> None:
         """Say that the front is alive."""
@@ -211,22 +218,20 @@ class BusLink:
         """Throw away every setpoint pushed so far."""
         self._words[_Word.POPPED] = self._words[_Word.PUSHED]
 
-    def take_requests(self) -> list[BusRequest]:
-        """Requests since the last call, e-stop first."""
-        fresh: list[BusRequest] = []
-        for request in (
-            BusRequest.ESTOP,
-            BusRequest.STOP,
-            BusRequest.RESET,
-            BusRequest.PARK,
-            BusRequest.ARM,
-            BusRequest.SHUTDOWN,
-        ):
-            count = int(self._words[request])
-            if count != self._seen[request]:
-                self._seen[request] = count
-                fresh.append(request)
-        return fresh
+    def take_request(self) -> BusRequest | None:
+        """The next request: e-stop first, then stop, then in the order they were asked for.
+
+        One a cycle, so that every state it leads to is published. What an e-stop or a stop finds older than itself is
+        thrown away: nothing that was asked for before may undo it.
+        """
+        asked_ns = {r: int(self._words[r]) for r in BusRequest if int(self._words[r]) != self._seen[r]}
+        if not asked_ns:
+            return None
+        request = next((r for r in _OVERRULES if r in asked_ns), min(asked_ns, key=asked_ns.__getitem__))
+        for other in (request, *_OVERRULES.get(request, ())):
+            if asked_ns.get(other, 0) <= asked_ns[request]:
+                self._seen[other] = asked_ns.get(other, self._seen[other])
+        return request
 
     @property
     def heartbeat_age_s(self) -> float:

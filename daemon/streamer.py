@@ -101,7 +101,8 @@ class Streamer:
     def cycle(self) -> None:
         """One bus period."""
         try:
-            for request in self._link.take_requests():
+            request = self._link.take_request()
+            if request is not None:
                 self._serve(request)
             self._repeat_torque_off()
             self._watch_heartbeat()

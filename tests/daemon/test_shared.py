@@ -73,22 +73,40 @@ def test_a_stop_voids_what_was_pushed_before_and_by_who_does_not_know_of_it(link
     assert got is not None and got.plan_id == 2
 
 
-def test_requests_are_seen_once_each_and_the_e_stop_first(link, bus):
-    assert bus.take_requests() == []
-    for kind in (BusRequest.ARM, BusRequest.PARK, BusRequest.STOP, BusRequest.ESTOP):
+def test_requests_are_seen_once_each_one_at_a_time_in_the_order_they_were_asked_for(link, bus):
+    assert bus.take_request() is None
+    for kind in (BusRequest.PARK, BusRequest.ARM, BusRequest.PARK):
         link.request(kind)
-    link.request(BusRequest.ARM)
-    taken = bus.take_requests()
-    assert taken[0] is BusRequest.ESTOP
-    assert taken.index(BusRequest.STOP) < taken.index(BusRequest.ARM)
-    assert sorted(taken) == sorted({BusRequest.ARM, BusRequest.PARK, BusRequest.STOP, BusRequest.ESTOP})
-    assert bus.take_requests() == []
+    assert [bus.take_request() for _ in range(3)] == [BusRequest.ARM, BusRequest.PARK, None]
+
+
+@pytest.mark.parametrize(
+    ("asked", "taken"),
+    [
+        ("arm park estop", "estop"),
+        ("reset arm estop", "estop"),
+        ("estop reset", "estop reset"),
+        ("reset estop reset arm", "estop reset arm"),
+        ("estop reset arm estop", "estop"),
+        ("estop stop", "estop stop"),
+        ("shutdown estop", "estop shutdown"),
+        ("arm park stop", "stop"),
+        ("park stop park", "stop park"),
+        ("reset stop", "stop reset"),
+        ("arm stop estop", "estop"),
+    ],
+)
+def test_nothing_asked_for_before_undoes_a_stop(link, bus, asked, taken):
+    for name in asked.split():
+        link.request(BusRequest[name.upper()])
+    expected = [BusRequest[name.upper()] for name in taken.split()]
+    assert [bus.take_request() for _ in range(len(expected) + 1)] == [*expected, None]
 
 
 def test_a_request_of_before_the_bus_process_is_not_carried_out(link):
     """A bus process that starts anew must not arm because its predecessor was asked to."""
     link.request(BusRequest.ARM)
-    assert BusLink.attach(link.path, J).take_requests() == []
+    assert BusLink.attach(link.path, J).take_request() is None
 
 
 def test_cycles_are_read_by_several_readers_and_losses_counted(link, bus):
