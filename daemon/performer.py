@@ -160,9 +160,10 @@ class Performer:
     async def _perform(self, pending: Pending) -> None:
         entry = pending.entry
         try:
-            prepared = await self._sources.prepare(entry)
+            prepared = await self._sources.prepare(entry, lambda: self.planner.raw_now)
             self._check_deadline(entry)
             plan_id = self.planner.new_plan_id()
+            self._sources.kept.number(entry.id, plan_id)
             self._ledger.emit(entry, prepared.accepted(entry, plan_id))
             await self._turn(pending)
             await self._until_armed(entry, plan_id)
