@@ -20,12 +20,12 @@ class BusView:
 
     Attributes:
         state: what the bus process is doing; limp before its first cycle.
-        fresh_states: what it did since the update before, one state after another; the last is `state`.
         goal_rad: (J,) what the servos were last told.
         present_rad: (J,) what they last measured.
         valid: (S,) whether each servo's last reading is from the newest cycle.
         error: (S,) error bits of the last replies.
         at_rest: whether the last cycle moved no goal.
+        passed: states of the cycles that the last update brought, each once, in order.
         index: cycles published so far, as far as they have been read.
         lost: cycles that were overwritten before they were read.
     """
@@ -37,7 +37,7 @@ class BusView:
         self.at_rest = True
         self._last_cycle_s: float | None = None
         self.state = BusState.LIMP
-        self.fresh_states = [self.state]
+        self.passed: list[BusState] = []
         self.goal_rad: Array = robot.park_rad.copy()
         self.present_rad: Array = robot.park_rad.copy()
         self.valid = np.zeros(robot.n_servos, bool)
@@ -61,18 +61,15 @@ class BusView:
             self.valid, self.error = last["valid"] != 0, np.array(last["error"])
             self.underruns += int((records["underrun"] != 0).sum())
             self.at_rest = not np.any(last["velocity_rad_s"])
-            codes = np.asarray(records["state"])
-            is_new = np.concatenate([[True], codes[1:] != codes[:-1]])
-            self.fresh_states = [BusState(int(code)) for code in codes[is_new]]
-            self.state = self.fresh_states[-1]
-        else:
-            self.fresh_states = [self.state]
+            self.state = BusState(int(last["state"]))
+        states = [int(state) for state in records["state"]]
+        self.passed = [BusState(s) for i, s in enumerate(states) if i == 0 or s != states[i - 1]]
         return records, lost
 
     def begin(self, state: BusState = BusState.LIMP) -> None:
         """The bus process has just said that it is ready, in `state`: its silence counts from here."""
         self.update()  # what one before it has published is not its own
-        self.state, self.fresh_states, self.at_rest = state, [state], True
+        self.state, self.at_rest = state, True
         self._last_cycle_s = time.monotonic()
 
     @property

@@ -37,7 +37,7 @@ class Follower:
         self._epoch, self._settled_at = planner.epoch, 0
 
     def update(self) -> list[RobotState]:
-        """Heartbeat, setpoints, records, state; the states it has gone through since the last call."""
+        """Heartbeat, setpoints, records, state; the states that the robot went through since the last call."""
         self._link.heartbeat()
         self._planner.pump()
         if self._planner.epoch != self._epoch:
@@ -45,10 +45,7 @@ class Follower:
         self._planner.read_cycles()
         if self.machine.state is RobotState.FAULT and self.bus_alive and self._view.message:
             self.fault_reason = self._view.message  # the bus process is back and knows better
-        if not self.bus_alive or self._view.silent_s > BUS_SILENT_S:
-            reports = [Trigger.BUS_LOST]
-        else:
-            reports = [self._report_of(state) for state in self._view.fresh_states]
+        reports = [self._report(state) for state in self._view.passed] or [self._report(self._view.state)]
         return [state for report in reports if (state := self._follow(report)) is not None]
 
     @property
@@ -66,7 +63,9 @@ class Follower:
         """Whether no goal moves."""
         return self._view.at_rest
 
-    def _report_of(self, state: BusState) -> Trigger:
+    def _report(self, state: BusState) -> Trigger:
+        if not self.bus_alive or self._view.silent_s > BUS_SILENT_S:
+            return Trigger.BUS_LOST
         report = REPORTS[state]
         if report is Trigger.BUS_HOLDING and self.stopped:
             return Trigger.BUS_STOPPED
