@@ -70,15 +70,20 @@ class SelfContact:
 
         The way out is how its distance grows with each joint.
         """
+        beyond, way = self.nearest(q_rad, np.arange(len(self._pairs), dtype=np.int64))
+        return aim_m - beyond, way
+
+    def nearest(self, q_rad: Array, of: NDArray[np.int64]) -> tuple[Array, Array]:
+        """What lies between the nearest of some pairs beyond its margin, (T,), and how that grows with each joint, (T, J)."""
         placed = self._placed(q_rad)
         distance, s, t = self._distances(q_rad, placed)
-        lack = self._margin_m + aim_m - distance
-        rows, pair = np.arange(len(q_rad)), lack.argmax(1)
+        beyond = distance[:, of] - self._margin_m[of]
+        rows, pair = np.arange(len(q_rad)), of[beyond.argmin(1)]
         a, b = self._pairs[pair].T
         point1 = placed.centre[rows, a] + s[rows, pair, None] * placed.axis[rows, a]
         point2 = placed.centre[rows, b] + t[rows, pair, None] * placed.axis[rows, b]
         apart = point2 - point1  # of segments, which have a direction even where capsules overlap
-        for i in np.flatnonzero(~self._exact[pair] & (lack[rows, pair] > 0)):
+        for i in np.flatnonzero(~self._exact[pair] & (distance[rows, pair] < _MEASURED_M)):
             self._place(q_rad[i])
             overlap = self._measured(int(pair[i])) < 0
             point1[i], point2[i] = self._points[:3], self._points[3:]
@@ -87,7 +92,21 @@ class SelfContact:
         lever = ((point1 + point2) / 2)[:, None] - placed.anchor
         turned = np.einsum("tji,ti->tj", cross(placed.joint_axis, lever), normal)
         body = self._model.geom_bodyid
-        return lack[rows, pair], turned * (self._above[body[b]] - self._above[body[a]])
+        return beyond.min(1), turned * (self._above[body[b]] - self._above[body[a]])
+
+    def pairs_between(self, some: NDArray[np.int64], others: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Which pairs have one shape of `some` and one of `others`."""
+        a, b = self._pairs.T
+        crossed = (np.isin(a, some) & np.isin(b, others)) | (np.isin(a, others) & np.isin(b, some))
+        return np.flatnonzero(crossed)
+
+    def shapes_moved_by(self, some_of: list[int], none_of: list[int]) -> NDArray[np.int64]:
+        """Shapes that can touch, moved by a joint of `some_of` (any shape when empty) and by none of `none_of`."""
+        model, above = self._model, self._above[self._model.geom_bodyid]
+        solid = (model.geom_contype | model.geom_conaffinity) != 0
+        solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
+        moved = above[:, some_of].any(1) if some_of else solid
+        return np.flatnonzero(solid & moved & ~above[:, none_of].any(1))
 
     def _distances(self, q_rad: Array, placed: _Placed) -> tuple[Array, Array, Array]:
         """Distances (T, P), and for capsules where along each axis they are taken."""

@@ -16,8 +16,9 @@ def bench(
     """Measure one figure and print it.
 
     generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten steps.
-    story: ten minutes of motion from 59 texts on two threads. first-motion: text to first moving servo frame, warm, through the
-    daemon. retarget: time of all its stages and direction error per robot, bounds and contacts checked again. audit: many texts through the daemon's bus side on two robots, every goal checked against the limits.
+    story: ten minutes of motion from 59 texts on two threads. first-motion: text to first moving servo frame, warm, through
+    the daemon. retarget: time of all its stages and direction error per robot, bounds and contacts checked again. audit:
+    many texts through the daemon's bus side on two robots, every goal checked against the limits.
 
     Example: mmmd bench first-motion --json
 
