@@ -44,7 +44,7 @@ format: setup
 	$(BIN)/ruff check --fix .
 
 soak: setup
-	$(BIN)/python -m pytest -m soak --timeout 0
+	$(BIN)/python -m pytest -m soak --timeout 0 -s
 
 clean:
 	rm -rf $(VENV) out .pytest_cache .ruff_cache .hypothesis

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import ctypes
 import logging
 import os
 import signal
@@ -12,20 +11,21 @@ import threading
 import time
 from pathlib import Path
 
-from daemon.bus.open import PortContext, open_port
-from daemon.bus.servo_bus import ServoBus
+from daemon.bus.multi import RobotBus, open_bus
 from daemon.clock import RealClock
+from daemon.logs import start_logging
+from daemon.realtime import BUS_PRIORITY, lock_memory, take_fifo
 from daemon.shared import BusLink, BusState
 from daemon.streamer import Streamer, start
 from retarget.robot import load_robot
 
 log = logging.getLogger(__name__)
 
-FIFO_PRIORITY = 40
 ORPHAN_CHECK_S = 0.5
 ORPHAN_END_S = 30.0
 """Longest life without a front: holding, parking and a fault in which torque was kept are over by then."""
-_MCL_CURRENT_AND_FUTURE = 3
+SLOW_EVERY = 10
+"""Cycles between two readings of the slow registers, of one servo each."""
 
 
 def main() -> int:
@@ -33,14 +33,17 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="the bus process of mmmd; started by `mmmd run`")
     for name in ("--robot", "--bus", "--link"):
         parser.add_argument(name, required=True)
+    parser.add_argument("--after-loss", action="store_true")
     arguments = parser.parse_args()
-    logging.basicConfig(level=logging.INFO, format="bus: %(levelname)s %(message)s")
+    start_logging("bus")
     robot = load_robot(arguments.robot)
-    link = BusLink.attach(Path(arguments.link), robot.n_joints)
+    link = BusLink.attach(Path(arguments.link), robot.n_joints, robot.n_servos)
     clock = RealClock()
-    streamer = start(
-        robot, lambda: ServoBus(open_port(arguments.bus, PortContext(robot, clock)), robot.servos, clock), link, clock
-    )
+
+    def opened() -> RobotBus:
+        return open_bus(arguments.bus, robot, clock, slow_every=SLOW_EVERY)
+
+    streamer = start(robot, opened, link, clock, after_loss=arguments.after_loss)
     if streamer is None:
         return 1
     link.set_realtime(*_take_rights())
@@ -72,15 +75,7 @@ def _end_with_parent(streamer: Streamer, parent_pid: int) -> None:
 
 def _take_rights() -> tuple[bool, bool]:
     """FIFO priority and locked memory, as far as this user may; what was granted."""
-    try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO_PRIORITY))
-        fifo = True
-    except (OSError, AttributeError):
-        fifo = False
-    try:
-        locked = ctypes.CDLL(None).mlockall(_MCL_CURRENT_AND_FUTURE) == 0
-    except (OSError, AttributeError):
-        locked = False
+    fifo, locked = take_fifo(BUS_PRIORITY), lock_memory()
     log.info(
         "FIFO priority %s, locked memory %s",
         "granted" if fifo else "not granted",

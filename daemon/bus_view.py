@@ -34,12 +34,12 @@ class BusView:
         self._servo_map = JointServoMap(robot)
         self.index = 0
         self.at_rest = True
-        self._last_cycle_s = time.monotonic()
+        self._last_cycle_s: float | None = None
         self.state = BusState.LIMP
         self.goal_rad: Array = robot.park_rad.copy()
         self.present_rad: Array = robot.park_rad.copy()
-        self.valid = np.zeros(robot.n_joints, bool)
-        self.error = np.zeros(robot.n_joints, np.uint8)
+        self.valid = np.zeros(robot.n_servos, bool)
+        self.error = np.zeros(robot.n_servos, np.uint8)
         self.lost = 0
         self.underruns = 0
 
@@ -47,6 +47,10 @@ class BusView:
         """Cycles since the last call, and how many were lost between."""
         records, self.index, lost = self._link.cycles_since(self.index)
         self.lost += lost
+        if (
+            self._last_cycle_s is None
+        ):  # the first look: the bus process has just become ready, its first cycle is to come
+            self._last_cycle_s = time.monotonic()
         if len(records):
             last = records[-1]
             self._last_cycle_s = time.monotonic()
@@ -58,14 +62,16 @@ class BusView:
             self.state = BusState(int(last["state"]))
         return records, lost
 
-    def begin(self) -> None:
-        """The bus process has just said that it is ready: its silence counts from here."""
+    def begin(self, state: BusState = BusState.LIMP) -> None:
+        """The bus process has just said that it is ready, in `state`: its silence counts from here."""
+        self.update()  # what one before it has published is not its own
+        self.state, self.at_rest = state, True
         self._last_cycle_s = time.monotonic()
 
     @property
     def silent_s(self) -> float:
-        """Seconds since the newest cycle."""
-        return time.monotonic() - self._last_cycle_s
+        """Seconds since the newest cycle; before the first, since the first look for one."""
+        return 0.0 if self._last_cycle_s is None else time.monotonic() - self._last_cycle_s
 
     @property
     def message(self) -> str:

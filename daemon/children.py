@@ -7,6 +7,7 @@ import contextlib
 import logging
 import os
 import sys
+import time
 from collections import deque
 from collections.abc import Sequence
 
@@ -34,6 +35,7 @@ class Child:
         self._module, self._arguments = module, list(arguments)
         self._process: asyncio.subprocess.Process | None = None
         self._forward: asyncio.Task[None] | None = None
+        self._started_s = time.monotonic()
         self.said: deque[str] = deque(maxlen=5)
 
     @property
@@ -52,10 +54,21 @@ class Child:
         """Its exit status; None while it runs."""
         return None if self._process is None else self._process.returncode
 
+    @property
+    def lived_s(self) -> float:
+        """Seconds since it was started last."""
+        return time.monotonic() - self._started_s
+
+    def add_argument(self, argument: str) -> None:
+        """Give it one more argument at its next start."""
+        if argument not in self._arguments:
+            self._arguments.append(argument)
+
     async def start(self) -> None:
         """Start it (again)."""
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
         self.said.clear()
+        self._started_s = time.monotonic()
         self._process = await asyncio.create_subprocess_exec(
             sys.executable, "-m", self._module, *self._arguments,
             stdin=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE if self._follow else None, env=environment,

@@ -26,6 +26,8 @@ class CommandEntry:
 COMMANDS: dict[str, CommandEntry] = {
     "demo": CommandEntry("daemon.commands.demo:demo", "simulated robot, daemon, three texts, pictures: see it work"),
     "run": CommandEntry("daemon.commands.run:run", "the daemon: text over ZeroMQ in, servo motion out"),
+    "config": CommandEntry("daemon.commands.run:config", "the settings of `run` and where each comes from"),
+    "install-service": CommandEntry("daemon.commands.service:install_service", "systemd unit and udev rule"),
     "say": CommandEntry("daemon.commands.say:say", "tell the robot what to do"),
     "gesture": CommandEntry("daemon.commands.gesture:gesture", "play, list, record and add named gestures"),
     "look": CommandEntry("daemon.commands.layers:look", "turn the head, whatever the body does"),
@@ -39,6 +41,14 @@ COMMANDS: dict[str, CommandEntry] = {
     "reset": CommandEntry("daemon.commands.control:reset", "leave e-stop or fault; the robot stays limp"),
     "arm": CommandEntry("daemon.commands.control:arm", "torque on, slow move to the rest pose"),
     "park": CommandEntry("daemon.commands.control:park", "slow move to the park pose, torque off"),
+    "mcp": CommandEntry("daemon.commands.mcp:mcp", "tools for a language model: say, gesture, look, stop"),
+    "keys": CommandEntry("daemon.commands.keys:keys", "who may talk to whom over the network"),
+    "scan": CommandEntry("daemon.commands.scan:scan", "which servos are on a port: every baud, both protocols"),
+    "doctor": CommandEntry("daemon.commands.doctor:doctor", "rights, adapter, servos, settings, rate; with the remedy"),
+    "servo": CommandEntry("daemon.commands.servo:servo", "read and set up one servo: get, set, reboot, id, baud"),
+    "calibrate": CommandEntry(
+        "daemon.commands.calibrate:calibrate", "zero positions and ranges of the joints, by hand"
+    ),
     "sim": CommandEntry("daemon.commands.sim:sim", "simulated servos behind a real tty"),
     "robot": CommandEntry("daemon.commands.robot:robot", "list, check and show robots"),
     "generate": CommandEntry("daemon.commands.generate:generate", "text to human motion: .npz and .bvh"),

@@ -13,6 +13,7 @@ import zmq
 from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
+from daemon.keys import KeyFolder, connect_curve
 from daemon.probe import PROBE_TIMEOUT_S, listening
 from daemon.requests import (
     Arm,
@@ -298,6 +299,7 @@ class Client:
         try:
             for topic in topics or ("v1/",):
                 socket.setsockopt(zmq.SUBSCRIBE, topic.encode())
+            self._secure(socket, self.endpoints.pub)
             socket.connect(self.endpoints.pub)
             while True:
                 if not socket.poll(int(1000 * timeout_s)):
@@ -360,5 +362,10 @@ class Client:
             raise NoAnswerError(endpoint, "connect", PROBE_TIMEOUT_S)
         socket = self._context.socket(zmq.DEALER)
         socket.setsockopt(zmq.LINGER, 200)
+        self._secure(socket, endpoint)
         socket.connect(endpoint)
         return socket
+
+    def _secure(self, socket: zmq.Socket[bytes], endpoint: str) -> None:
+        if self.endpoints.keys is not None and endpoint.startswith("tcp://"):
+            connect_curve(socket, KeyFolder(self.endpoints.keys), "daemon")

@@ -18,11 +18,11 @@ def config_error(key: str, found: str, allowed: str, do: str) -> ConfigError:
     return ConfigError(f"{key}: found {found}; allowed: {allowed}; {do}")
 
 
-def check_local(key: str, endpoint: str) -> None:
-    """Refuse an endpoint that other machines could reach.
+def check_endpoint(key: str, endpoint: str, *, keys: bool = False) -> None:
+    """Refuse what is no endpoint, and without `keys` one that other machines could reach.
 
     Raises:
-        ConfigError: the endpoint is neither ipc:// nor tcp:// on a loopback address.
+        ConfigError: the endpoint is neither ipc:// nor tcp://, or not local and there are no keys.
     """
     allowed = "ipc://PATH, or tcp:// on a loopback address such as tcp://127.0.0.1:5871"
     if endpoint.startswith("ipc://") and len(endpoint) > len("ipc://"):
@@ -36,8 +36,8 @@ def check_local(key: str, endpoint: str) -> None:
         raise config_error(key, f"{endpoint!r} ({error})", allowed, "name a host and a port") from None
     if port is None and not endpoint.endswith(":*"):
         raise config_error(key, f"{endpoint!r} without a port", allowed, "name a host and a port")
-    if host != "localhost" and not _is_loopback(host):
-        do = "reach it through an ssh tunnel; sockets with CURVE keys are not built yet"
+    if not keys and host != "localhost" and not _is_loopback(host):
+        do = "give --keys (`mmmd keys --help` shows how), or use an ssh tunnel"
         raise config_error(key, f"{endpoint!r}, which other machines can reach without a key", allowed, do)
 
 
@@ -56,20 +56,22 @@ class Endpoints:
         cmd: requests and their events.
         ctl: stop, estop, reset, arm, park, status.
         pub: state and events for all.
+        keys: folder of CURVE keys, for which see `daemon.keys`; None leaves only local endpoints.
     """
 
     cmd: str = f"tcp://127.0.0.1:{CMD_PORT}"
     ctl: str = f"tcp://127.0.0.1:{CTL_PORT}"
     pub: str = f"tcp://127.0.0.1:{PUB_PORT}"
+    keys: Path | None = None
 
     def __post_init__(self) -> None:
         """Refuse what other machines could reach, and two sockets at one place.
 
         Raises:
-            ConfigError: see `check_local`.
+            ConfigError: see `check_endpoint`.
         """
         for key in ("cmd", "ctl", "pub"):
-            check_local(key, getattr(self, key))
+            check_endpoint(key, getattr(self, key), keys=self.keys is not None)
         if len({self.cmd, self.ctl, self.pub}) != 3 and not self.cmd.endswith(":*"):
             found = f"cmd {self.cmd}, ctl {self.ctl}, pub {self.pub}"
             raise config_error("endpoints", found, "three different endpoints", "give each its own port")
@@ -84,11 +86,15 @@ class DaemonConfig:
         bus: URL of the servo bus.
         endpoints: sockets.
         log: MCAP file to record into, None for none.
+        log_size_mb: a log of this size is ended and the next one begun; 0 for never.
+        log_total_mb: oldest logs of the run are removed beyond so much together; 0 for never.
         generator: endpoint of a generator that runs already; None starts one.
         model: checkpoint of the generator; None takes the shipped one.
         auto_arm: whether the first text may arm the robot.
         idle: style of the movements while there is nothing to play: off, calm or lively.
         gestures: folder of the user's own gestures; None takes the user's data folder.
+        model_hash: beginning of the checkpoint's hash that the generator must have; empty takes any.
+        metrics: HOST:PORT of Prometheus metrics, empty for none.
         queue_s: setpoints kept ready in the bus process.
         state_rate_hz: how often `v1/state` is published.
         generate_timeout_s: longest wait for the generator.
@@ -99,11 +105,15 @@ class DaemonConfig:
     bus: str
     endpoints: Endpoints = field(default_factory=Endpoints)
     log: Path | None = None
+    log_size_mb: float = 500.0
+    log_total_mb: float = 0.0
     generator: str | None = None
     model: Path | None = None
     auto_arm: bool = True
     idle: str = "off"
     gestures: Path | None = None
+    model_hash: str = ""
+    metrics: str = ""
     queue_s: float = 0.1
     state_rate_hz: float = 20.0
     generate_timeout_s: float = 10.0
@@ -116,7 +126,7 @@ class DaemonConfig:
             ConfigError: a value is outside its range.
         """
         for key, low, high in (
-            ("queue_s", 0.02, 0.3), ("state_rate_hz", 1.0, 200.0),
+            ("queue_s", 0.02, 0.3), ("log_size_mb", 0.0, 1e6), ("log_total_mb", 0.0, 1e7), ("state_rate_hz", 1.0, 200.0),
             ("generate_timeout_s", 0.1, 600.0), ("park_timeout_s", 1.0, 120.0),
         ):  # fmt: skip
             value = getattr(self, key)
@@ -125,4 +135,4 @@ class DaemonConfig:
         if self.idle not in ("off", *IDLE_STYLES):
             raise config_error("idle", repr(self.idle), ", ".join(("off", *IDLE_STYLES)), "choose one of these")
         if self.generator is not None:
-            check_local("generator", self.generator)
+            check_endpoint("generator", self.generator, keys=self.endpoints.keys is not None)

@@ -11,6 +11,7 @@ import zmq
 
 from daemon.events import Ack, Event, Rejected
 from daemon.ledger import split_route
+from daemon.realtime import CONTROL_PRIORITY, take_fifo
 from daemon.replies import refusal
 from daemon.requests import Arm, CtlRequest, Estop, Park, Reset, Status, Stop
 from daemon.state import CommandRefusedError
@@ -77,6 +78,8 @@ class ControlThread:
             self._socket.close(0)
 
     def _run(self) -> None:
+        if take_fifo(CONTROL_PRIORITY):
+            log.info("the ctl thread has FIFO priority")
         while not self._stopping.is_set():
             if not self._socket.poll(POLL_MS):
                 continue

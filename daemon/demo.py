@@ -61,7 +61,8 @@ def free_endpoints() -> Endpoints:
         ports.append(s.getsockname()[1])
     for s in held:
         s.close()
-    return Endpoints(*(f"tcp://127.0.0.1:{port}" for port in ports))
+    cmd, ctl, pub = (f"tcp://127.0.0.1:{port}" for port in ports)
+    return Endpoints(cmd, ctl, pub)
 
 
 @contextmanager

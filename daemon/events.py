@@ -262,7 +262,7 @@ class StateEvent(Event, tag="state"):
         present_rad: (J,) what they last measured.
         queued_ms: setpoints that the bus process has in hand.
         bus_info: counters of the bus process.
-        recording: path of the log, empty when there is none.
+        recording: path of the log, empty when there is none; says so when recording has stopped.
         uptime_s: since the start of the daemon.
     """
 

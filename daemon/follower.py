@@ -43,6 +43,8 @@ class Follower:
         if self._planner.epoch != self._epoch:
             self._epoch, self._settled_at = self._planner.epoch, self._view.index + SETTLING_CYCLES
         self._planner.read_cycles()
+        if self.machine.state is RobotState.FAULT and self.bus_alive and self._view.message:
+            self.fault_reason = self._view.message  # the bus process is back and knows better
         return self._follow(self._report())
 
     @property

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import sys
 import time
 from collections.abc import Callable
 from typing import Any, cast
@@ -26,9 +27,12 @@ from daemon.follower import Follower
 from daemon.front_controls import FrontControls
 from daemon.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
+from daemon.keys import Doorkeeper, KeyFolder
 from daemon.ledger import Ledger, Route, split_route
 from daemon.performer import TICK_S, Performer
 from daemon.planner import Planner
+from daemon.rates import RATE_HZ, Rates
+from daemon.realtime import CONTROL_PRIORITY, may_fifo
 from daemon.shared import BusLink, BusRequest
 from daemon.sockets import bind, send_now
 from daemon.sources import Sources
@@ -40,6 +44,10 @@ log = logging.getLogger(__name__)
 
 DRAIN_LIMIT = 10_000
 PARK_AGAIN_S = 1.0
+SWITCH_S = 0.001
+"""Longest that the event loop keeps the interpreter from the ctl thread."""
+SCHED_FIFO = 1
+"""As in sched.h; ZeroMQ takes the number."""
 Record = Callable[[str, bytes], None]
 
 
@@ -78,6 +86,8 @@ class Front:
         self.performer = Performer(config, link, planner, self.follower, self.ledger, sources)
         self._desk = Desk(robot, self.performer, sources, self.ledger, generator, self.state_event)
         self._started_s = time.monotonic()
+        self.recording = str(config.log) if config.log else ""
+        self._rates = Rates()
         self._last_values: dict[bytes, bytes] = {}
         self._tasks: list[asyncio.Task[None]] = []
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -85,12 +95,21 @@ class Front:
         self._pub = context.socket(zmq.XPUB)
         self._pub.setsockopt(zmq.XPUB_VERBOSE, 1)
         self._ctl_context = zmq.Context()  # its own I/O thread: a flood on the other sockets delays no stop
+        if may_fifo(CONTROL_PRIORITY):  # libzmq aborts where it is not permitted
+            self._ctl_context.set(zmq.THREAD_SCHED_POLICY, SCHED_FIFO)
+            self._ctl_context.set(zmq.THREAD_PRIORITY, CONTROL_PRIORITY)
+        sys.setswitchinterval(SWITCH_S)
         ctl = self._ctl_context.socket(zmq.ROUTER)
+        keys = KeyFolder(config.endpoints.keys) if config.endpoints.keys is not None else None
+        contexts = (context, self._ctl_context) if keys is not None else ()
+        self._doorkeepers = [Doorkeeper(c, keys) for c in contexts if keys is not None]
         sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "ctl": ctl, "pub": self._pub}
         try:
             for key, socket in sockets.items():
-                bind(socket, key, getattr(config.endpoints, key))
+                bind(socket, key, getattr(config.endpoints, key), keys)
         except BaseException:
+            for doorkeeper in self._doorkeepers:
+                doorkeeper.close()
             for socket in sockets.values():
                 socket.close(0)
             self._ctl_context.term()
@@ -149,6 +168,8 @@ class Front:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         await asyncio.to_thread(self._control.close)
+        for doorkeeper in self._doorkeepers:
+            await asyncio.to_thread(doorkeeper.close)
         self._ctl_context.destroy(linger=200)
         await self._generator.close()
         self._cmd.close(200)  # the last events still go out
@@ -161,6 +182,9 @@ class Front:
     def _take_frames(self, frames: list[bytes]) -> None:
         t_received_ns = time.monotonic_ns()
         route, parts = split_route(frames)
+        if not self._rates.allows(route.frames[0], t_received_ns * 1e-9):
+            self._refuse_rate(route)
+            return
         try:
             if len(parts) != 1:
                 found = f"{len(parts)} frames"
@@ -177,6 +201,13 @@ class Front:
             log.exception("a request failed")
             event = Rejected(code="internal", asked="cmd", found=str(error), allowed="", do="see the daemon's log")
             self.ledger.reply(route, event)
+
+    def _refuse_rate(self, route: Route) -> None:
+        """Tell a client that asks too much, but not as often as it asks."""
+        if self._rates.refused % 1000 == 1:
+            do, allowed = "ask less often; texts that were dropped were not accepted", f"{RATE_HZ:g} requests a second"
+            error = WireError("too_fast", "read a request", "more than that for a while", allowed, do)
+            self.ledger.reply(route, error_event(error))
 
     def drain_cmd(self) -> None:
         """Take the requests that wait in the socket."""
@@ -237,8 +268,8 @@ class Front:
             goal_rad=[round(float(q), 5) for q in self.view.goal_rad],
             present_rad=[round(float(q), 5) for q in self.view.present_rad],
             queued_ms=round(1e3 * self.link.queued_frames / self._robot.bus.rate_hz, 1),
-            bus_info=self.view.counters(),
-            recording=str(self._config.log) if self._config.log else "",
+            bus_info=self.view.counters() | {"requests_dropped": self._rates.refused},
+            recording=self.recording,
             uptime_s=round(time.monotonic() - self._started_s, 2),
             waiting=self.performer.waiting_ids(),
             idle=self.performer.layers.idle_style or "off",

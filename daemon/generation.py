@@ -21,6 +21,7 @@ import zmq.asyncio
 from numpy.typing import NDArray
 
 from daemon.errors import DaemonError
+from daemon.keys import KeyFolder, connect_curve
 from mmm_core.motion import N_FEATURES, N_JOINTS, Motion
 
 log = logging.getLogger(__name__)
@@ -62,6 +63,7 @@ class PongMessage(msgspec.Struct, tag="pong", kw_only=True):
 
     id: int
     checkpoint_hash: str
+    version: str = ""
 
 
 class FailureMessage(msgspec.Struct, tag="failure", kw_only=True):
@@ -204,8 +206,13 @@ class GeneratorClient:
         timeouts: requests that were not answered in time.
     """
 
-    def __init__(self, context: zmq.asyncio.Context, endpoint: str) -> None:
+    def __init__(
+        self, context: zmq.asyncio.Context, endpoint: str, keys: KeyFolder | None = None, model_hash: str = ""
+    ) -> None:
+        self._model_hash = model_hash
         self._socket = context.socket(zmq.DEALER)
+        if keys is not None and endpoint.startswith("tcp://"):
+            connect_curve(self._socket, keys, "generator")
         self._socket.setsockopt(zmq.LINGER, 0)
         self._socket.setsockopt(zmq.RECONNECT_IVL, 20)
         self._socket.setsockopt(zmq.RECONNECT_IVL_MAX, 200)
@@ -260,10 +267,17 @@ class GeneratorClient:
         """The hash of the generator's checkpoint.
 
         Raises:
-            GeneratorError: no answer in time.
+            GeneratorError: no answer in time, another version of the protocol, another checkpoint than agreed.
         """
         reply = await self._ask(PingMessage(id=next(self._ids)), timeout_s, "a sign of life")
-        return reply.checkpoint_hash if isinstance(reply, PongMessage) else ""
+        if isinstance(reply, FailureMessage):
+            do = "install the same version of mmmd on both machines"
+            raise GeneratorError(reply.code, "a sign of life", reply.found, reply.allowed, do)
+        found = reply.checkpoint_hash if isinstance(reply, PongMessage) else ""
+        if not found.startswith(self._model_hash):
+            allowed, do = f"checkpoint {self._model_hash}", "start the generator with the model that was agreed on"
+            raise GeneratorError("checkpoint", "a sign of life", f"checkpoint {found[:12]}", allowed, do)
+        return found
 
     async def _until_ready(self, asked: str) -> None:
         began_s = time.monotonic()

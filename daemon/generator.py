@@ -6,6 +6,7 @@ One thread, lower priority. It ends when the process that started it does, so no
 from __future__ import annotations
 
 import argparse
+import importlib.metadata
 import logging
 import os
 import sys
@@ -15,9 +16,10 @@ from pathlib import Path
 import msgspec
 import zmq
 
-from daemon.config import check_local, config_error
+from daemon.config import check_endpoint
 from daemon.errors import ConfigError
 from daemon.generation import (
+    GENERATION_VERSION,
     FailureMessage,
     FromGenerator,
     Generated,
@@ -28,6 +30,9 @@ from daemon.generation import (
     encode,
     generated_message,
 )
+from daemon.keys import Doorkeeper, KeyFolder
+from daemon.logs import start_logging
+from daemon.sockets import bind as bind_socket
 
 log = logging.getLogger(__name__)
 
@@ -38,8 +43,11 @@ Generate = Callable[[str, int, float | None], Generated]
 
 def answer(request: ToGenerator, generate: Generate, checkpoint_hash: str) -> FromGenerator:
     """The reply to one request; an error of the model becomes a `failure`, never the end of the process."""
+    if request.v != GENERATION_VERSION:
+        found, allowed = f"version {request.v} of the generator's protocol", f"version {GENERATION_VERSION}"
+        return FailureMessage(id=request.id, code="version", found=found, allowed=allowed)
     if isinstance(request, PingMessage):
-        return PongMessage(id=request.id, checkpoint_hash=checkpoint_hash)
+        return PongMessage(id=request.id, checkpoint_hash=checkpoint_hash, version=importlib.metadata.version("mmmd"))
     try:
         return generated_message(request.id, generate(request.text, request.seed, request.seconds))
     except Exception as error:  # whatever the model raises, the next text must still be answered
@@ -76,26 +84,28 @@ def load(model: Path | None, threads: int) -> tuple[Generate, str]:
     return generate, engine.checkpoint_hash
 
 
-def run(bind: str, model: Path | None = None, threads: int = 1, parent_pid: int | None = None) -> None:
+def run(
+    bind: str, model: Path | None = None, threads: int = 1, parent_pid: int | None = None, keys: Path | None = None
+) -> None:
     """Load the model, bind and answer until the parent process is gone.
 
     Raises:
         ConfigError: the endpoint could be reached from other machines, or cannot be bound.
     """
-    check_local("bind", bind)
+    check_endpoint("bind", bind, keys=keys is not None)
     os.nice(NICENESS)
     generate, checkpoint_hash = load(model, threads)
     context = zmq.Context()
     socket = context.socket(zmq.ROUTER)
-    socket.setsockopt(zmq.LINGER, 0)
+    folder = KeyFolder(keys) if keys is not None else None
+    doorkeeper = Doorkeeper(context, folder) if folder is not None else None
     try:
-        try:
-            socket.bind(bind)
-        except zmq.ZMQError as error:
-            raise config_error("bind", f"{bind!r}: {error}", "a free endpoint", "choose another") from error
+        bind_socket(socket, "bind", bind, folder)
         log.info("generator ready on %s with checkpoint %s", bind, checkpoint_hash[:12])
         serve(socket, generate, checkpoint_hash, lambda: parent_pid is None or os.getppid() == parent_pid)
     finally:
+        if doorkeeper is not None:
+            doorkeeper.close()
         socket.close(0)
         context.term()
 
@@ -108,7 +118,7 @@ def main() -> int:
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--parent-pid", type=int)
     options = parser.parse_args()
-    logging.basicConfig(level=logging.INFO, format="generator: %(message)s")
+    start_logging("generator")
     from mmm_core.errors import MmmError
 
     try:

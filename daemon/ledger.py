@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import time
 import uuid
-from collections import OrderedDict
+from collections import Counter, OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -77,16 +77,21 @@ class Ledger:
     Args:
         send: called with each route and event that is due.
         publish: called once with each event.
+
+    Attributes:
+        counts: events so far, by type.
     """
 
     def __init__(self, send: Callable[[Route, Event], None], publish: Callable[[Event], None]) -> None:
         self._send, self._publish = send, publish
         self._entries: OrderedDict[str, Entry] = OrderedDict()
         self._seq = itertools.count(1)
+        self.counts: Counter[str] = Counter()
 
     def stamp(self, event: Event) -> Event:
         """Give an event its number and time."""
         event.seq, event.t_mono = next(self._seq), time.monotonic()
+        self.counts[tag_of(event)] += 1
         return event
 
     def open(self, request: Play, route: Route, t_received_ns: int) -> Entry | None:

@@ -16,7 +16,8 @@ from pathlib import Path
 
 import zmq
 
-from daemon.mcap_log import LogWriter
+from daemon.logs import start_logging
+from daemon.rotation import RotatingLog
 from daemon.shared import N_CYCLES, BusLink
 from retarget.robot import load_robot
 
@@ -33,10 +34,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="the recorder of mmmd; started by `mmmd run --log`")
     for name in ("--robot", "--link", "--events", "--out"):
         parser.add_argument(name, required=True)
+    for name in ("--size-mb", "--total-mb"):
+        parser.add_argument(name, type=float, default=0.0)
     arguments = parser.parse_args()
-    logging.basicConfig(level=logging.INFO, format="recorder: %(levelname)s %(message)s")
+    start_logging("recorder")
     robot = load_robot(arguments.robot)
-    link = BusLink.attach(Path(arguments.link), robot.n_joints)
+    link = BusLink.attach(Path(arguments.link), robot.n_joints, robot.n_servos)
     stopping: list[int] = []
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, lambda number, _frame: stopping.append(number))
@@ -47,8 +50,7 @@ def main() -> int:
     index, dropped, flushed_s = max(0, link.n_cycles - N_CYCLES // 2), 0, time.monotonic()  # what is still there
     parent = os.getppid()
     try:
-        with Path(arguments.out).open("wb") as f:
-            writer = LogWriter(f, robot)
+        with RotatingLog(Path(arguments.out), robot, arguments.size_mb, arguments.total_mb) as writer:
             while True:
                 last_round = bool(stopping) or os.getppid() != parent
                 events.poll(0 if last_round else round(POLL_S * 1e3))
@@ -68,7 +70,6 @@ def main() -> int:
                     writer.flush()
                 if last_round:
                     break
-            writer.finish()
     except OSError as error:
         log.error("recording stopped (%s); the robot goes on without a log", error)
         return 1

@@ -169,7 +169,7 @@ class _Player:
         rows = np.flatnonzero(self._tap.goal_tick != logged)
         if len(rows):
             row = int(rows[0])
-            servo = f"servo {self._robot.servo_ids[row]} ({self._robot.joint_names[row]})"
+            servo = f"servo {self._robot.servo_ids[row]} ({self._robot.servos[row].joint_name})"
             return f"cycle {cycle.cycle}, {servo}: log {logged[row]}, now {self._tap.goal_tick[row]} ticks"
         if record["goal_rad"].tobytes() != cycle.goal_rad.tobytes():
             joint = int(np.flatnonzero(record["goal_rad"] != cycle.goal_rad)[0])

@@ -104,9 +104,9 @@ class Setpoint:
 class BusLink:
     """Both ends of the shared memory; `create` in the front, `attach` in the bus process and in readers."""
 
-    def __init__(self, path: Path, n_joints: int, *, owner: bool) -> None:
+    def __init__(self, path: Path, n_joints: int, n_servos: int, *, owner: bool) -> None:
         self.path, self.n_joints, self._owner = path, n_joints, owner
-        setpoints, cycles = setpoint_dtype(n_joints), cycle_dtype(n_joints, n_joints)
+        setpoints, cycles = setpoint_dtype(n_joints), cycle_dtype(n_joints, n_servos)
         sizes = [64 * 8, N_SETPOINTS * setpoints.itemsize, N_CYCLES * cycles.itemsize, _TEXT_BYTES]
         starts = np.concatenate([[0], np.cumsum(sizes)])
         if owner:
@@ -126,18 +126,18 @@ class BusLink:
             raise ValueError(f"{path}: is no shared memory of this mmmd version")
 
     @classmethod
-    def create(cls, n_joints: int) -> BusLink:
+    def create(cls, n_joints: int, n_servos: int | None = None) -> BusLink:
         """New shared memory, in /dev/shm where there is one; what daemons that were killed left there is removed."""
         folder = "/dev/shm" if os.access("/dev/shm", os.W_OK) else tempfile.gettempdir()
         _remove_orphans(Path(folder))
         fd, name = tempfile.mkstemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=folder)
         os.close(fd)
-        return cls(Path(name), n_joints, owner=True)
+        return cls(Path(name), n_joints, n_servos or n_joints, owner=True)
 
     @classmethod
-    def attach(cls, path: Path, n_joints: int) -> BusLink:
+    def attach(cls, path: Path, n_joints: int, n_servos: int | None = None) -> BusLink:
         """The memory that another process created."""
-        return cls(path, n_joints, owner=False)
+        return cls(path, n_joints, n_servos or n_joints, owner=False)
 
     def close(self) -> None:
         """Remove the memory's file; mappings end with their processes."""

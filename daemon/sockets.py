@@ -8,20 +8,23 @@ import zmq
 import zmq.asyncio
 
 from daemon.config import config_error
+from daemon.keys import KeyFolder, serve_curve
 from daemon.probe import listening
 
 MAX_RECEIVE_BYTES = 1 << 20
 """ZeroMQ drops the connection of a peer that sends more; below it the peer is told what is allowed."""
 
 
-def bind(socket: zmq.Socket[Any], key: str, endpoint: str) -> None:
-    """Bind a socket.
+def bind(socket: zmq.Socket[Any], key: str, endpoint: str, keys: KeyFolder | None = None) -> None:
+    """Bind a socket; one that machines can reach takes only allowed `keys`, where there are any.
 
     Raises:
         ConfigError: the endpoint is taken or cannot be bound; `key` names the setting.
     """
     socket.setsockopt(zmq.LINGER, 0)
     socket.setsockopt(zmq.MAXMSGSIZE, MAX_RECEIVE_BYTES)
+    if keys is not None and endpoint.startswith("tcp://"):
+        serve_curve(socket, keys)
     do = "stop the other daemon (`mmmd status` shows it), or choose another endpoint"
     if endpoint.startswith("ipc://") and listening(endpoint):  # ZeroMQ would take the path from it
         raise config_error(key, f"{endpoint}: Address already in use", "a free endpoint", do)

@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.approach import Approach
+from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
+from daemon.bus.multi import RobotBus
 from daemon.bus.packet import ALERT_BIT
-from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, hardware_error_text
-from daemon.bus.servo_bus import BusReading, ServoBus
+from daemon.bus.reading import BusReading
+from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.clock import Clock
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
@@ -30,6 +32,8 @@ log = logging.getLogger(__name__)
 HEARTBEAT_LOST_S = 0.5
 PARK_AFTER_S = 5.0
 """A silent front: after the first time decelerate and hold, after the second park and go limp."""
+FAULT_LIMP_S = 10.0
+"""A fault in which torque was kept, and a front so long silent: nobody will come, the servos go limp."""
 WATCHDOG_UNITS = 10
 """Servo bus watchdog, 20 ms each: 200 ms without any packet on the bus and the servos stop by themselves."""
 TORQUE_OFF_REPEATS = 5
@@ -37,8 +41,12 @@ TORQUE_OFF_REPEATS = 5
 MISSING_CYCLES = 20
 """Half of the servos silent for so many cycles is a fault (loose plug, power)."""
 TORQUE_CHECK_CYCLES = 5
+SWING_OUT_S = 1.0
+_STILL_S, _STILL_TICK = 0.02, 2
+"""Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
-"""Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all."""
+"""Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
+_LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
 _ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
 
 
@@ -46,7 +54,7 @@ class Streamer:
     """State and loop of the bus process."""
 
     def __init__(
-        self, robot: RobotModel, bus: ServoBus, link: BusLink, clock: Clock, *, watch_front: bool = True
+        self, robot: RobotModel, bus: RobotBus, link: BusLink, clock: Clock, *, watch_front: bool = True
     ) -> None:
         self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
         self._ticks = JointServoMap(robot)
@@ -88,7 +96,7 @@ class Streamer:
 
     def close(self) -> None:
         """Release the port."""
-        self._bus.port.close()
+        self._bus.close()
 
     def cycle(self) -> None:
         """One bus period."""
@@ -128,6 +136,7 @@ class Streamer:
                 self._enter(BusState.STOPPING)
         elif request is BusRequest.RESET:
             if self.state in (BusState.ESTOP, BusState.FAULT):
+                self._bus.look_again()
                 self._cut_torque()
                 self._link.set_text("")
                 self._link.drop_queued()
@@ -149,22 +158,24 @@ class Streamer:
         self._link.set_text("")
         try:
             self._bus.verify()
-            reading = self._bus.exchange(None)
+            self._bus.clear_watchdog()
+            reading = self._reading_at_rest()
             if not reading.valid.all():
                 silent = ", ".join(str(i) for i, ok in zip(self._bus.ids, reading.valid, strict=True) if not ok)
                 self._fault(f"cannot arm: no fresh position of servo {silent}; check cable and power")
                 return
             present = reading.position_tick.copy()
             self._refuse_hardware_errors(reading)
-            self._bus.write_all("bus_watchdog", 0)
             for servo_id, tick in zip(self._bus.ids, present, strict=True):
                 self._bus.write_item(servo_id, "goal_position", int(tick))
                 pinned = self._bus.read_item(servo_id, "goal_position")
                 if pinned != tick:
                     raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
-                self._bus.write_item(servo_id, "goal_pwm", PWM_START)
+            self._bus.set_effort(PWM_START / PWM_FULL, confirmed=True)
             self._bus.write_all("torque_enable", 1)
-            self._bus.write_all("bus_watchdog", WATCHDOG_UNITS)
+            without = self._bus.arm_watchdog(WATCHDOG_UNITS)
+            if without:
+                log.warning("no bus watchdog to rely on: servo %s", ", ".join(map(str, without)))
         except DaemonError as error:
             self._cut_torque()
             self._fault(f"cannot arm: {error}")
@@ -175,10 +186,34 @@ class Streamer:
         self._approach_to(self.rest_rad)
         self._enter(BusState.ARMING)
 
+    def _reading_at_rest(self) -> BusReading:
+        """A whole reading of joints that stand still: limp they swing on, and a goal pinned meanwhile would jerk.
+
+        After a second with a servo silent it is the last one, as it is.
+
+        Raises:
+            ServoFaultError: one still moves after a second.
+        """
+        reading = self._bus.exchange(None)
+        moved = np.zeros(len(self._bus.ids), np.int32)
+        for _ in range(round(SWING_OUT_S / _STILL_S)):
+            before = reading.position_tick.copy()
+            self._clock.sleep_until(self._clock.now_s() + _STILL_S)
+            reading = self._bus.exchange(None)
+            moved = np.abs(reading.position_tick - before)
+            if reading.valid.all() and moved.max() <= _STILL_TICK:
+                return reading
+        if not reading.valid.all():
+            return reading
+        row = int(moved.argmax())
+        raise ServoFaultError(
+            self._bus.ids[row], f"to stand still for {SWING_OUT_S:g} s", f"moves by {moved[row]} ticks"
+        )
+
     def _refuse_hardware_errors(self, reading: BusReading) -> None:
         for row in np.flatnonzero(reading.error & ALERT_BIT):
             servo_id = self._bus.ids[int(row)]
-            text = hardware_error_text(self._bus.read_item(servo_id, "hardware_error_status"))
+            text = self._bus.hardware_error_text(servo_id)
             raise ServoFaultError(servo_id, "hardware error status", f"{text}; reboot the servo")
 
     # Goals.
@@ -247,21 +282,22 @@ class Streamer:
     def _ramp_torque(self) -> None:
         if self._pwm is not None and self._cycle % 5 == 0:
             self._pwm = min(PWM_FULL, self._pwm + round((PWM_FULL - PWM_START) * 5 * self._period_s / PWM_RAMP_S))
-            self._bus.send_all("goal_pwm", self._pwm)
+            self._bus.set_effort(self._pwm / PWM_FULL)
             if self._pwm == PWM_FULL:
                 self._pwm = None
 
     # Judgement.
 
     def _watch_heartbeat(self) -> None:
-        if (
-            not self._watch_front
-            or not self._torque
-            or self.state in (BusState.PARKING, BusState.FAULT, BusState.ESTOP)
-        ):
+        if not self._watch_front or not self._torque or self.state in (BusState.PARKING, BusState.ESTOP):
             self._front_lost_s = None
             return
         age_s = self._link.heartbeat_age_s
+        if self.state is BusState.FAULT:
+            if age_s > FAULT_LIMP_S:
+                log.warning("in fault and the front silent for %.1f s: torque off", age_s)
+                self._cut_torque()
+            return
         if age_s < HEARTBEAT_LOST_S:
             self._front_lost_s = None
         elif age_s > PARK_AFTER_S:
@@ -277,13 +313,10 @@ class Streamer:
         pause_s, self._fed_s = self._clock.now_s() - self._fed_s, self._clock.now_s()
         if not self._torque or self._goal_tick is None or pause_s < 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S:
             return
-        for servo_id in self._bus.ids:
-            if self._bus.read_item(servo_id, "bus_watchdog") == WATCHDOG_TRIPPED:
-                self._goal_tick = None
-                self._fault(
-                    f"the bus process was held up for {pause_s:.2f} s: servo {servo_id} stopped by its watchdog"
-                )
-                return
+        tripped = self._bus.tripped_watchdogs()
+        if tripped:
+            self._goal_tick = None
+            self._fault(f"the bus process was held up for {pause_s:.2f} s: servo {tripped[0]} stopped by its watchdog")
 
     def _judge(self, reading: BusReading) -> None:
         """A tripped servo, lost torque or half of the robot silent is a fault."""
@@ -301,7 +334,7 @@ class Streamer:
             row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)
             if reading.valid[row] and self._bus.poll_item(self._bus.ids[row], "torque_enable") == 0:
                 self._fault(
-                    f"servo {self._bus.ids[row]} ({self.robot.joint_names[row]}) lost its torque; it may have rebooted"
+                    f"servo {self._bus.ids[row]} ({self.robot.servos[row].joint_name}) lost its torque; it may have rebooted"
                 )
 
     def _fault(self, text: str) -> None:
@@ -349,11 +382,19 @@ class Streamer:
         self._link.publish()
 
 
-Opener = Callable[[], ServoBus]
+Opener = Callable[[], RobotBus]
 
 
-def start(robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock) -> Streamer | None:
-    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link."""
+AFTER_LOSS = "the bus process was lost and is back; servos may still hold: `mmmd reset` makes them limp"
+
+
+def start(
+    robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock, *, after_loss: bool = False
+) -> Streamer | None:
+    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link.
+
+    `after_loss` starts it in a latched fault: what the servos do now nobody knows, and nothing may move by itself.
+    """
     try:
         bus = open_bus()
     except DaemonError as error:
@@ -361,10 +402,30 @@ def start(robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock) -> S
         return None
     try:
         bus.verify()
+        findings = check_servos(bus, robot)
+        for f in findings:
+            log.log(
+                _LEVELS[f.severity],
+                "servo %d (%s): %s %s, should be %s; %s",
+                f.servo_id,
+                f.joint_name,
+                f.item,
+                f.found,
+                f.expected,
+                f.remedy,
+            )
+        require_needed(findings)
+        plan = bus.plan()
+        if not plan.require(robot.bus.rate_hz):
+            log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))
         bus.exchange(None)
     except DaemonError as error:
-        bus.port.close()
+        bus.close()
         link.set_ready(Readiness.FAILED, str(error))
         return None
-    link.set_ready(Readiness.READY)
-    return Streamer(robot, bus, link, clock)
+    streamer = Streamer(robot, bus, link, clock)
+    link.drop_queued()
+    if after_loss:
+        streamer.state = BusState.FAULT
+    link.set_ready(Readiness.READY, AFTER_LOSS if after_loss else "")
+    return streamer

@@ -7,22 +7,27 @@ that dies is reported and the robot goes on.
 from __future__ import annotations
 
 import asyncio
+import importlib.util
 import logging
 import os
 import signal
 import tempfile
 import time
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import zmq
 import zmq.asyncio
 
 from daemon.children import Child
-from daemon.config import DaemonConfig
+from daemon.config import DaemonConfig, config_error
 from daemon.errors import DaemonError
 from daemon.front import Front
 from daemon.generation import GeneratorClient, GeneratorError
-from daemon.shared import BusLink, BusRequest, Readiness
+from daemon.keys import KeyFolder
+from daemon.metrics import MetricsServer, exposition
+from daemon.notify import Notifier
+from daemon.shared import BusLink, BusRequest, BusState, Readiness
 from daemon.state import RobotState
 from retarget.robot import RobotModel, load_robot
 
@@ -30,9 +35,13 @@ log = logging.getLogger(__name__)
 
 BUS_START_TIMEOUT_S = 20.0
 BUS_END_TIMEOUT_S = 5.0
+BUS_FROZEN_S = 2.5
+"""A bus process so long silent is killed and started again; from 1 s on the robot is in fault."""
 PING_EVERY_S, PING_TIMEOUT_S = 2.0, 5.0
 GENERATOR_START_TIMEOUT_S = 120.0
 """Loading torch and the model from a slow card."""
+GOOD_LIFE_S = 2.0
+"""A process that lived so long did not fail to start: the wait before its next start is short again."""
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
 RECORDER_QUEUE = 2000
 GOOD, ROBOT_FAULT = 0, 3
@@ -72,15 +81,23 @@ class Supervisor:
     """One daemon, from start to park."""
 
     def __init__(self, config: DaemonConfig) -> None:
+        if config.generator is None and importlib.util.find_spec("torch") is None:
+            do = "install with `pip install 'mmmd[generate]'`, or name a generator elsewhere with --generator"
+            raise config_error("generator", "none, and torch is not installed", "one of the two", do)
+        check_scheme(config.bus)
         self._config = config
         self._robot: RobotModel = load_robot(config.robot)
-        self._link = BusLink.create(self._robot.n_joints)
+        self._link = BusLink.create(self._robot.n_joints, self._robot.n_servos)
         self._folder = tempfile.TemporaryDirectory(prefix="mmmd-")
         self._context = zmq.asyncio.Context()
         self._children: list[Child] = []
         self._tasks: list[asyncio.Task[None]] = []
         self._asked_to_end = asyncio.Event()
         self._ending = False
+        self._notifier = Notifier()
+        self._metrics: MetricsServer | None = None
+        arguments = ["--robot", config.robot, "--bus", config.bus, "--link", str(self._link.path)]
+        self._bus = Child("bus process", "daemon.bus_process", arguments)
 
     async def run(self) -> int:
         """Serve until SIGTERM or SIGINT; 0 after a park, 3 when the robot was left in a latched fault or e-stop.
@@ -90,11 +107,12 @@ class Supervisor:
         """
         try:
             endpoint = self._config.generator or f"ipc://{self._folder.name}/generator"
-            generator = GeneratorClient(self._context, endpoint)
+            keys = KeyFolder(self._config.endpoints.keys) if self._config.endpoints.keys is not None else None
+            generator = GeneratorClient(self._context, endpoint, keys, self._config.model_hash)
             recorder = RecorderFeed(f"ipc://{self._folder.name}/events") if self._config.log else None
             front = Front(self._config, self._robot, self._link, self._context, generator, recorder)
             if recorder is not None:
-                self._watch(self._watch_recorder(recorder))
+                self._watch(self._watch_recorder(recorder, front))
             return await self._serve(front, generator, endpoint)
         finally:
             for task in self._tasks:
@@ -111,14 +129,17 @@ class Supervisor:
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self._end_asked)
         try:
-            bus = await self._start_bus()
+            bus = self._bus
+            self._children.append(bus)
+            await self._start_bus(bus)
             front.start()
-            self._watch(self._watch_bus(front, bus))
+            self._watch(self._keep_bus(front, bus))
             if self._config.generator is None:
                 self._watch(self._keep_generator(generator, endpoint))
             else:
                 self._watch(self._follow_generator(generator))
             ends = self._config.endpoints
+            await self._start_extras(front)
             log.info("ready: robot %s on %s", self._robot.name, self._config.bus)
             log.info("cmd %s, ctl %s, pub %s", ends.cmd, ends.ctl, ends.pub)
             failure = asyncio.create_task(front.failure())
@@ -127,6 +148,7 @@ class Supervisor:
             asked.cancel()
             if failure.done():
                 log.error("the front failed", exc_info=failure.exception())
+            self._notifier.stopping()
             state = await front.park()
             self._ending = True
             self._link.request(BusRequest.SHUTDOWN)
@@ -135,7 +157,26 @@ class Supervisor:
             log.info("ended with the robot in %s", state.value)
             return GOOD if state is RobotState.LIMP else ROBOT_FAULT
         finally:
+            if self._metrics is not None:
+                await self._metrics.close()
             await front.close()
+
+    async def _start_extras(self, front: Front) -> None:
+        """Metrics on request; readiness and signs of life for systemd."""
+        if self._config.metrics:
+            self._metrics = MetricsServer(
+                self._config.metrics, lambda: exposition(front.state_event(), front.ledger.counts)
+            )  # fmt: skip
+            await self._metrics.start()
+        self._notifier.ready(f"robot {self._robot.name} on {self._config.bus}")
+        if self._notifier.watchdog_s is not None:
+            self._watch(self._sign_of_life(self._notifier.watchdog_s / 3))
+
+    async def _sign_of_life(self, period_s: float) -> None:
+        """The event loop runs: systemd may know. The bus process has its own supervision."""
+        while True:
+            self._notifier.alive()
+            await asyncio.sleep(period_s)
 
     def _end_asked(self) -> None:
         if self._asked_to_end.is_set():
@@ -146,11 +187,9 @@ class Supervisor:
     def _watch(self, work: object) -> None:
         self._tasks.append(asyncio.ensure_future(work))  # type: ignore[arg-type]
 
-    async def _start_bus(self) -> Child:
-        arguments = ["--robot", self._config.robot, "--bus", self._config.bus, "--link", str(self._link.path)]
-        bus = Child("bus process", "daemon.bus_process", arguments)
+    async def _start_bus(self, bus: Child) -> None:
+        self._link.set_ready(Readiness.STARTING)
         await bus.start()
-        self._children.append(bus)
         end_s = time.monotonic() + BUS_START_TIMEOUT_S
         while self._link.readiness is Readiness.STARTING and bus.running and time.monotonic() < end_s:
             if self._asked_to_end.is_set():
@@ -158,7 +197,7 @@ class Supervisor:
             self._link.heartbeat()
             await asyncio.sleep(0.01)
         if self._link.readiness is Readiness.READY:
-            return bus
+            return
         if self._link.readiness is Readiness.FAILED:
             raise BusStartError(self._link.text)
         if not bus.running:
@@ -166,12 +205,40 @@ class Supervisor:
             raise BusStartError(f"the bus process ended with status {status}; what it printed says why")
         raise BusStartError(f"the bus process did not open {self._config.bus} in {BUS_START_TIMEOUT_S:g} s")
 
-    async def _watch_bus(self, front: Front, bus: Child) -> None:
-        status = await bus.ended()
-        front.follower.bus_alive = False
-        if self._ending:
-            return
-        log.error("the bus process ended with status %d; servos that have a bus watchdog stop by it", status)
+    async def _keep_bus(self, front: Front, bus: Child) -> None:
+        """Notice the end of the bus process and start it again: in a latched fault, which a person has to reset."""
+        back_off_s = FIRST_BACK_OFF_S
+        while True:
+            status = await self._lost_bus(front, bus)
+            if self._ending:
+                return
+            front.follower.bus_alive = False
+            if bus.lived_s > GOOD_LIFE_S:
+                back_off_s = FIRST_BACK_OFF_S
+            log.error("the bus process ended with status %d; servos that have a bus watchdog stop by it", status)
+            await asyncio.sleep(back_off_s)
+            back_off_s = min(2 * back_off_s, LONGEST_BACK_OFF_S)
+            if self._ending:
+                return
+            bus.add_argument("--after-loss")
+            try:
+                await self._start_bus(bus)
+            except BusStartError as error:
+                log.error("the bus process could not be started again: %s", error)
+                continue
+            front.view.begin(BusState.FAULT)
+            front.follower.bus_alive = True
+            log.warning("the bus process runs again, in fault: `mmmd reset`, then `mmmd arm`")
+
+    async def _lost_bus(self, front: Front, bus: Child) -> int:
+        """Wait for the end of the bus process, which a frozen one is brought to; its status."""
+        ended = asyncio.create_task(bus.ended())
+        while not ended.done():
+            await asyncio.wait({ended}, timeout=0.2)
+            if front.view.silent_s > BUS_FROZEN_S and not ended.done():
+                log.error("the bus process has been silent for %.1f s and is killed", front.view.silent_s)
+                bus.kill()
+        return ended.result()
 
     async def _keep_generator(self, client: GeneratorClient, endpoint: str) -> None:
         """Start the generator, and again whenever it ends or freezes."""
@@ -229,22 +296,26 @@ class Supervisor:
                         client.mark_ready(checkpoint)
                         log.info("generator %s", client.state)
                     ready = True
-                except GeneratorError:
-                    if ready or client.state == "starting":
-                        client.mark_down(f"no answer from {self._config.generator}")
+                except GeneratorError as error:
+                    timeout = error.code == "generator_timeout"
+                    why = f"no answer from {self._config.generator}" if timeout else str(error)
+                    if ready or client.state == "starting" or not client.state.endswith(why):
+                        client.mark_down(why)
                         log.error("generator %s", client.state)
                     ready = False
             await asyncio.sleep(PING_EVERY_S / 2 if ready else 0.1)
 
-    async def _watch_recorder(self, feed: RecorderFeed) -> None:
+    async def _watch_recorder(self, feed: RecorderFeed, front: Front) -> None:
         """Record until the end; a recorder that fails leaves the robot without a log, which is said."""
         arguments = ["--robot", self._config.robot, "--link", str(self._link.path)]
         arguments += ["--events", feed.endpoint, "--out", str(self._config.log)]
+        arguments += ["--size-mb", str(self._config.log_size_mb), "--total-mb", str(self._config.log_total_mb)]
         child = Child("recorder", "daemon.recorder", arguments)
         self._children.append(child)
         await child.start()
         try:
             status = await child.ended()
+            front.recording = f"stopped (status {status}): {self._config.log}"
             log.error("recording ended with status %d; the robot goes on without a log", status)
         finally:
             feed.close()
@@ -262,6 +333,18 @@ def run(config: DaemonConfig) -> int:
         return await Supervisor(config).run()
 
     return asyncio.run(start())
+
+
+def check_scheme(bus: str) -> None:
+    """Refuse a bus URL whose scheme nobody serves, before anything is started.
+
+    Raises:
+        ConfigError: it is unknown.
+    """
+    known = sorted(point.name for point in entry_points(group="mmmd.ports"))
+    if bus.partition(":")[0] not in known:
+        allowed = ", ".join(f"{name}://" for name in known)
+        raise config_error("bus", f"'{bus}', an unknown scheme", allowed, "for example dxl:///dev/ttyUSB0?baud=1000000")
 
 
 def log_path_error(path: Path) -> str | None:

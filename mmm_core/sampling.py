@@ -17,7 +17,7 @@ from mmm_core.decode import DecodeSettings, NoiseFn, decode
 from mmm_core.errors import GenerationError
 from mmm_core.schedule import Schedule, masked_counts, official_counts
 from mmm_core.text import TextStates
-from mmm_core.transformer import MotionTransformer
+from mmm_core.transformer import MotionTransformer, StepMemory
 
 
 @dataclass(frozen=True)
@@ -95,9 +95,11 @@ def fill(
         batch[i, len(row)] = ids.end
     context = transformer.read_text(_and_without(text, transformer) if guided else text)
 
+    memory = StepMemory() if len(rows) == 1 and not guided else None
+
     def logits_fn(tokens: Tensor, asked: Tensor) -> Tensor:
         if not guided:
-            return transformer(tokens, context, asked)
+            return transformer(tokens, context, asked, memory)
         both = transformer(tokens.repeat(2, 1, 1), context, asked.repeat(2, 1))
         with_text, without = both.chunk(2)
         return without + settings.guidance * (with_text - without)

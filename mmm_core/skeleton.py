@@ -22,6 +22,9 @@ PARENTS = (-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18,
 MIRROR = (0, 2, 1, 3, 5, 4, 6, 8, 7, 9, 11, 10, 12, 14, 13, 15, 17, 16, 19, 18, 21, 20)
 """Joint that takes each joint's place in a mirror."""
 
+_LEVELS = ([1, 2, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17], [18, 19], [20, 21])
+"""Joints by their distance from the pelvis: those of one level are turned at once."""
+
 BONE_LENGTHS_M = np.array([
     0, 0.105, 0.105, 0.115, 0.385, 0.385, 0.138, 0.405, 0.405, 0.056, 0.14, 0.14, 0.21, 0.135, 0.135, 0.09, 0.125,
     0.125, 0.262, 0.262, 0.252, 0.252,
@@ -66,11 +69,11 @@ def rotation_about(axis: Array, angle_rad: Array) -> Array:
     x, y, z = np.moveaxis(np.broadcast_to(axis, (*np.shape(angle_rad), 3)), -1, 0)
     c, s = np.cos(angle_rad), np.sin(angle_rad)
     d = 1 - c
-    return np.stack([
-        np.stack([c + x * x * d, x * y * d - z * s, x * z * d + y * s], -1),
-        np.stack([y * x * d + z * s, c + y * y * d, y * z * d - x * s], -1),
-        np.stack([z * x * d - y * s, z * y * d + x * s, c + z * z * d], -1),
-    ], -2)  # fmt: skip
+    xy, xz, yz = x * y * d, x * z * d, y * z * d
+    rows = [
+        c + x * x * d, xy - z * s, xz + y * s, xy + z * s, c + y * y * d, yz - x * s, xz - y * s, yz + x * s, c + z * z * d,
+    ]  # fmt: skip
+    return np.stack(rows, -1).reshape(*np.shape(c), 3, 3)
 
 
 def smallest_rotation(a: Array, b: Array) -> Array:
@@ -79,14 +82,13 @@ def smallest_rotation(a: Array, b: Array) -> Array:
     Undefined for opposite vectors, where the result is finite and near a half turn.
     """
     a, b = np.broadcast_arrays(a, b)
-    x, y, z = np.moveaxis(np.cross(a, b), -1, 0)
-    c = (a * b).sum(-1)
+    (a1, a2, a3), (b1, b2, b3) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
+    x, y, z = a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1
+    c = a1 * b1 + a2 * b2 + a3 * b3
     k = 1.0 / np.maximum(1.0 + c, 1e-6)
-    return np.stack([
-        np.stack([c + x * x * k, x * y * k - z, x * z * k + y], -1),
-        np.stack([y * x * k + z, c + y * y * k, y * z * k - x], -1),
-        np.stack([z * x * k - y, z * y * k + x, c + z * z * k], -1),
-    ], -2)  # fmt: skip
+    xy, xz, yz = x * y * k, x * z * k, y * z * k
+    rows = [c + x * x * k, xy - z, xz + y, xy + z, c + y * y * k, yz - x, xz - y, yz + x, c + z * z * k]
+    return np.stack(rows, -1).reshape(*np.shape(c), 3, 3)
 
 
 def six_d(R: Array) -> Array:
@@ -155,16 +157,16 @@ def local_rotations(
     local = np.empty((T, 22, 3, 3))
     world = np.empty((T, 22, 3, 3))
     local[:, 0] = world[:, 0] = rotation_y(yaw_rad)
-    for j, p in enumerate(PARENTS[1:], 1):
-        if j == 15 and head_R_world is not None:
-            local[:, j] = np.swapaxes(world[:, p], -1, -2) @ head_R_world
-        else:
-            bone = normalise(joints_m[:, j] - joints_m[:, p])
-            in_parent = np.einsum("tij,ti->tj", world[:, p], bone)
-            local[:, j] = smallest_rotation(REST_DIRECTIONS[j], in_parent)
-            if j in (20, 21) and forearm_twist_rad is not None:
-                local[:, j] = local[:, j] @ rotation_about(REST_DIRECTIONS[j], forearm_twist_rad[:, j - 20])
-        world[:, j] = world[:, p] @ local[:, j]
+    bones = normalise(joints_m - joints_m[:, np.maximum(PARENTS, 0)])
+    for level in _LEVELS:
+        parents = world[:, [PARENTS[j] for j in level]]
+        in_parent = np.einsum("tjab,tja->tjb", parents, bones[:, level])
+        local[:, level] = smallest_rotation(REST_DIRECTIONS[level], in_parent)
+        if 15 in level and head_R_world is not None:
+            local[:, 15] = np.swapaxes(world[:, PARENTS[15]], -1, -2) @ head_R_world
+        if 20 in level and forearm_twist_rad is not None:
+            local[:, level] = local[:, level] @ rotation_about(REST_DIRECTIONS[level], forearm_twist_rad)
+        world[:, level] = parents @ local[:, level]
     return local
 
 
@@ -173,9 +175,11 @@ def forward_kinematics(local: Array, root_m: Array) -> tuple[Array, Array]:
     world = np.empty_like(local)
     joints = np.empty((len(local), 22, 3))
     world[:, 0], joints[:, 0] = local[:, 0], root_m
-    for j, p in enumerate(PARENTS[1:], 1):
-        world[:, j] = world[:, p] @ local[:, j]
-        joints[:, j] = joints[:, p] + BONE_LENGTHS_M[j] * (world[:, j] @ REST_DIRECTIONS[j])
+    bones_m = BONE_LENGTHS_M[:, None] * REST_DIRECTIONS
+    for level in _LEVELS:
+        parents = [PARENTS[j] for j in level]
+        world[:, level] = world[:, parents] @ local[:, level]
+        joints[:, level] = joints[:, parents] + np.einsum("tjab,jb->tja", world[:, level], bones_m[level])
     return joints, world
 
 

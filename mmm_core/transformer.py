@@ -186,19 +186,18 @@ class MotionTransformer(nn.Module):
             empty, torch.ones(batch, 1, dtype=torch.bool, device=empty.device), self.no_words.expand(batch, -1)
         )
 
-    def forward(self, ids: Tensor, context: TextContext, wanted: Tensor | None = None) -> Tensor:
+    def forward(
+        self, ids: Tensor, context: TextContext, wanted: Tensor | None = None, memory: StepMemory | None = None
+    ) -> Tensor:
         """Logits of `ids` (B, L, C): (B, L, C, K), or (N, C, K) at the N positions of `wanted` (B, L), row by row.
 
         An [END] closes each motion and [PAD] fills the rest of the row; both are in `ids`. With `wanted`, the head and,
-        for a batch of one, the last block are computed at those positions alone.
+        for a batch of one, the last block are computed at those positions alone; with `memory` (a batch of one) the
+        blocks that attend to words are computed only where an id changed since the step before.
         """
         B, L, _ = ids.shape
         is_pad = ids[..., 0] == self.ids.pad  # (B, L)
-        x = self.embed(self._vectors(ids))
-        if len(self.cross):
-            x = x + self.positions[:L]
-        for block, keys_values in zip(self.cross, context.keys_values, strict=True):
-            x = block(x, keys_values, context.word_bias)
+        x = self.with_words(ids, self.positions[:L], context) if memory is None else memory.update(self, ids, context)
         x = torch.cat([context.sentence[:, None], x], 1) + self.positions[: L + 1]
         bias = F.pad(x.new_zeros(B, L).masked_fill(is_pad, MASKED_KEY), (1, 0))[:, None, None, :]
         *blocks, last = self.blocks
@@ -213,12 +212,52 @@ class MotionTransformer(nn.Module):
             x = last(x, bias)[:, 1:][wanted]
         return self.head(self.norm_out(x)).reshape(len(x), self.config.n_out, -1)
 
+    def with_words(self, ids: Tensor, positions: Tensor, context: TextContext) -> Tensor:
+        """(B, L, W): what stands at each position and what the words say to it; positions do not see each other yet."""
+        x = self.embed(self._vectors(ids))
+        if len(self.cross):
+            x = x + positions
+        for block, keys_values in zip(self.cross, context.keys_values, strict=True):
+            x = block(x, keys_values, context.word_bias)
+        return x
+
     def _vectors(self, ids: Tensor) -> Tensor:
         """(B, L, C) ids, specials included -> (B, L, C * D) vectors; each codebook has its part of the specials."""
         C, _, D = self.codebooks.shape
         specials = self.specials.reshape(3, C, D)
         tables = torch.cat([self.codebooks, specials.transpose(0, 1)], 1)  # (C, K + 3, D)
         return torch.cat([F.embedding(ids[..., c], tables[c]) for c in range(C)], -1)
+
+
+class StepMemory:
+    """What the word blocks gave in the step before, for one sequence and one text.
+
+    Those blocks have no self-attention, so a position's result depends on its id alone: most ids stay from step to step,
+    and a position that is masked again has been masked before.
+    """
+
+    def __init__(self) -> None:
+        self._ids: Tensor | None = None  # (1, L, C)
+        self._x = self._masked = torch.empty(0)  # (1, L, W)
+        self._was_masked = torch.empty(0)  # (L,) bool
+
+    def update(self, model: MotionTransformer, ids: Tensor, context: TextContext) -> Tensor:
+        """(1, L, W) for `ids`."""
+        positions = model.positions[: ids.shape[1]]
+        masked = (ids[0] == model.ids.mask).all(-1)
+        if self._ids is None:
+            self._x = self._masked = model.with_words(ids, positions, context)
+            self._was_masked = masked
+        else:
+            changed = (ids != self._ids).any(-1)[0]
+            again = changed & masked & self._was_masked
+            new = changed & ~again
+            self._x = self._x.clone()
+            self._x[:, again] = self._masked[:, again]
+            if new.any():
+                self._x[:, new] = model.with_words(ids[:, new], positions[new], context)
+        self._ids = ids.clone()
+        return self._x
 
 
 def _initialise(module: nn.Module) -> None:

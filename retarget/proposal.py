@@ -87,10 +87,11 @@ class _Writer:
     def __init__(self, anatomy: Anatomy, robot_file: Path, servo: str) -> None:
         self._anatomy, self._file, self._servo = anatomy, robot_file, servo
         self.notes: list[str] = []
+        self._guessed: list[str] = []
 
     def text(self, rest_deg: dict[str, float]) -> str:
         """The whole TOML."""
-        self.notes = []
+        self.notes, self._guessed = [], []
         anatomy = self._anatomy
         model = servo_models().get(self._servo)
         protocol = 2.0 if model is None else model.protocol
@@ -121,6 +122,9 @@ class _Writer:
             lines += ["", f"[points.{point}]", f'body = "{place.body}"', f"offset_m = {list(place.offset_m)}"]
         for joint in anatomy.joints:
             lines += ["", *self._joint(joint, rest_deg.get(joint.name, 0.0))]
+        if self._guessed:
+            ends = f"{_UNLIMITED_DEG[0]:g} to {_UNLIMITED_DEG[1]:g}"
+            self.notes.append(f"no range in the description, so {ends} degrees is a guess: {', '.join(self._guessed)}")
         return "\n".join(lines) + "\n"
 
     def _joint(self, joint: FoundJoint, rest_deg: float) -> list[str]:
@@ -129,7 +133,7 @@ class _Writer:
         remark = ""
         if joint.range_deg is None:
             remark = "  # ? the description has no range: a guess, measure it"
-            self.notes.append(f"{joint.name}: no range in the description, {low:g} to {high:g} is a guess")
+            self._guessed.append(joint.name)
         rest = float(np.clip(round(rest_deg), low, high)) + 0.0
         sense = {1: "the usual sense", -1: "against the usual sense", 0: "see its axis"}[joint.sign]
         axis = ", ".join(f"{v + 0.0:.2f}" for v in np.round(joint.axis, 2))

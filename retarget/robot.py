@@ -77,6 +77,12 @@ class ServoSpec:
     extended: bool = False
     linkage: Linkage | None = None
 
+    @classmethod
+    def direct(cls, servo_id: int, joint_name: str, model: ServoModel, joint_idx: int = 0) -> ServoSpec:
+        """A servo on a joint of its own, straight and in position mode."""
+        zero = model.zero_tick
+        return cls(servo_id, joint_name, model, 1, 1.0, zero, ((joint_idx, 1.0),), model.min_tick, model.max_tick)
+
     @property
     def ticks_per_rad(self) -> float:
         """Ticks, with their sign, for a radian behind the couplings and the linkage."""
@@ -131,6 +137,11 @@ class RobotModel:
     def n_joints(self) -> int:
         """Number of joints."""
         return len(self.joints)
+
+    @property
+    def n_servos(self) -> int:
+        """Number of servos: more than joints where several drive one."""
+        return len(self.servos)
 
     @cached_property
     def joint_names(self) -> tuple[str, ...]:

@@ -35,6 +35,7 @@ class JointServoMap:
         forward = [list(s.couplings) for s in robot.servos]
         self._joint, self._coupling = _padded(forward)
         self._servo, self._share = _padded(_inverse(forward, robot.n_joints))
+        self._straight = forward == [[(j, 1.0)] for j in range(robot.n_joints)]  # servo j on joint j: nothing to sum
         self.position_range_rad = self._range_rad()
         corners = self._extremes_tick(*self.position_range_rad)
         self.position_min_tick: NDArray[np.int32] = np.rint(corners[0]).astype(np.int32)
@@ -42,7 +43,7 @@ class JointServoMap:
 
     def to_ticks(self, q_rad: Array) -> Array:
         """(..., J) radians -> (..., S) ticks, not rounded."""
-        angle = (q_rad[..., self._joint] * self._coupling).sum(-1)
+        angle = q_rad.copy() if self._straight else (q_rad[..., self._joint] * self._coupling).sum(-1)
         for i, linkage in self._linkages:
             angle[..., i] = linkage.to_servo(angle[..., i])
         return angle * self.ticks_per_rad + self.zero_tick
@@ -57,7 +58,7 @@ class JointServoMap:
         angle = (ticks - self.zero_tick) / self.ticks_per_rad
         for i, linkage in self._linkages:
             angle[..., i] = linkage.to_joint(angle[..., i])
-        return (angle[..., self._servo] * self._share).sum(-1)
+        return angle if self._straight else (angle[..., self._servo] * self._share).sum(-1)
 
     @cached_property
     def velocity_limit_tick_s(self) -> Array:

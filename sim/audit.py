@@ -2,11 +2,12 @@
 
 Written from the robot file alone, in ticks of each servo. A goal is one step of one bus period; rounding to ticks adds at most one
 tick to a step and two to the difference of two steps. Between two goals the bus may pause (a skipped cycle), but may
-not hurry: what is checked is the step, not the wall clock.
+not hurry: goals that come faster than the robot's rate, more than a few in a row, are a violation of their own.
 """
 
 from __future__ import annotations
 
+from array import array
 from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
@@ -19,8 +20,13 @@ from retarget.ticks import JointServoMap
 
 PIN_TOLERANCE_TICK = 12
 """About one degree: torque may come on over a goal no further from where the servo stands."""
+HURRY_GOALS, HURRY_RATE = 30, 1.1
+"""So many goals may come at once (what waited in a tty while a loaded machine slept), in the long run a tenth too many."""
+FAULT_GRACE_S = 0.1
+"""Goals that were under way when a servo tripped are not counted against anybody."""
 _CONTACT_EVERY = 5
 _MAX_DETAILS = 20
+_MAX_POSES = 500_000
 
 
 @dataclass
@@ -33,15 +39,28 @@ class _Track:
     bend: float
     last: int | None = None
     before: int | None = None
+    at_s: float = 0.0
+    credit: float = HURRY_GOALS
+    faulted_s: float | None = None
 
 
 @dataclass
 class Audit:
-    """Collects goals and violations of one robot."""
+    """Collects goals and violations of one robot.
+
+    Attributes:
+        goals: goals received.
+        violations: by kind.
+        writes_in_fault: goals to a servo whose fault has taken its torque, after a grace of 0.1 s. They move nothing.
+        body_contacts: steps in which the body (MuJoCo) touched itself.
+        details: the first violations in words.
+    """
 
     robot: RobotModel
     goals: int = 0
     violations: Counter[str] = field(default_factory=Counter[str])
+    writes_in_fault: int = 0
+    body_contacts: int = 0
     details: list[str] = field(default_factory=list[str])
 
     def __post_init__(self) -> None:
@@ -49,7 +68,9 @@ class Audit:
         period = self.robot.bus.period_s
         self._tracks: dict[int, _Track] = {}
         self._pose: dict[int, int] = {}
-        self._poses: list[list[float]] = []
+        self._poses = array("i")  # ticks of poses to be checked, one after another
+        self._poses_checked, self._contacts = 0, 0
+        self._contact: SelfContact | None = None
         self._sets = 0
         ticks = self._ticks = JointServoMap(self.robot)
         bounds = zip(
@@ -65,16 +86,22 @@ class Audit:
         if track is None:
             return
         track.last = track.before = goal_tick if on else None
+        track.faulted_s = None
         if on and abs(goal_tick - present_tick) > PIN_TOLERANCE_TICK:
             self._violate(t_s, servo_id, "unpinned_torque", f"goal {goal_tick}, standing at {present_tick}")
 
-    def goal(self, t_s: float, servo_id: int, tick: int, torque: bool) -> None:
+    def torque_in_fault(self, t_s: float, servo_id: int) -> None:
+        """Somebody asked a servo for torque that has latched a fault."""
+        self._violate(t_s, servo_id, "torque_in_fault", "it has to be rebooted first")
+
+    def goal(self, t_s: float, servo_id: int, tick: int, torque: bool, *, faulted: bool = False) -> None:
         """A servo received a goal."""
         track = self._tracks.get(servo_id)
         if track is None:
             return
         self.goals += 1
         if not torque:
+            self._count_in_fault(track, t_s, faulted)
             return
         # Where a joint stood outside its range when torque came on, it may only come back.
         low, high = track.minimum, track.maximum
@@ -88,28 +115,70 @@ class Audit:
                 self._violate(t_s, servo_id, "velocity", f"step {step} ticks, allowed {track.step:.2f}")
             if abs(bend) > track.bend + 1e-6:
                 self._violate(t_s, servo_id, "acceleration", f"second difference {bend}, allowed {track.bend:.2f}")
+        self._count_hurry(track, t_s, servo_id, tick)
         track.before, track.last = track.last, tick
         self._collect(servo_id, tick)
 
-    def refused(self, t_s: float, servo_id: int, code: int) -> None:
-        """A servo refused a goal: the daemon wrote to a servo in fault or beyond its own limits."""
-        self._violate(t_s, servo_id, "refused_goal", f"error code {code}")
+    def missed(self, servo_id: int, tick: int) -> None:
+        """A goal that was sent and lost on the wire: the next one is a step from it, not from the last one that came."""
+        track = self._tracks.get(servo_id)
+        if track is not None and track.last is not None:
+            track.before, track.last = track.last, tick
+
+    def refused(self, t_s: float, servo_id: int, code: int, *, faulted: bool = False) -> None:
+        """A servo refused a goal: the daemon wrote beyond its limits, or after its watchdog had stopped it."""
+        track = self._tracks.get(servo_id)
+        if track is not None and faulted:
+            self._count_in_fault(track, t_s, faulted)
+        else:
+            self._violate(t_s, servo_id, "refused_goal", f"error code {code}")
 
     def report(self) -> dict[str, Any]:
         """All figures as plain values."""
-        contacts = 0
-        if self._poses:
-            contact = SelfContact(self.robot, margin_m=0.0)
-            contacts = int(contact.frames(np.array(self._poses)).sum())
+        self.check_poses()
         return {
             "robot": self.robot.name,
             "goals": self.goals,
             "violations": sum(self.violations.values()),
             "violations_by_kind": dict(self.violations),
-            "self_contacts": contacts,
-            "poses_checked": len(self._poses),
+            "writes_in_fault": self.writes_in_fault,
+            "self_contacts": self._contacts,
+            "poses_checked": self._poses_checked,
+            "body_contacts": self.body_contacts,
             "details": self.details,
         }
+
+    def check_poses(self) -> None:
+        """Look for self-contact in the poses collected so far, and forget them: for runs of hours."""
+        if not self._poses:
+            return
+        if self._contact is None:
+            self._contact = SelfContact(self.robot, margin_m=0.0)
+        ticks = np.array(self._poses, np.int32).reshape(-1, len(self._tracks))
+        poses = self._ticks.tick_to_rad(ticks)
+        self._contacts += int(self._contact.frames(poses).sum())
+        self._poses_checked += len(poses)
+        self._poses = array("i")
+
+    def _count_in_fault(self, track: _Track, t_s: float, faulted: bool) -> None:
+        if not faulted:
+            track.faulted_s = None
+            return
+        if track.faulted_s is None:
+            track.faulted_s = t_s
+        self.writes_in_fault += t_s > track.faulted_s + FAULT_GRACE_S
+
+    def _count_hurry(self, track: _Track, t_s: float, servo_id: int, tick: int) -> None:
+        """Goals that move the servo are paid for by time."""
+        earned = (t_s - track.at_s) * self.robot.bus.rate_hz * HURRY_RATE
+        track.credit, track.at_s = min(float(HURRY_GOALS), track.credit + max(0.0, earned)), max(track.at_s, t_s)
+        if tick == track.last:
+            return
+        track.credit -= 1
+        if track.credit < 0:
+            track.credit = 0.0
+            rate_hz = self.robot.bus.rate_hz
+            self._violate(t_s, servo_id, "hurry", f"more than {HURRY_GOALS} goals faster than {rate_hz:g} a second")
 
     def _collect(self, servo_id: int, tick: int) -> None:
         """Keep every few whole sets of goals for the check of self-contact."""
@@ -117,9 +186,8 @@ class Audit:
         if servo_id != self.robot.servos[-1].servo_id or len(self._pose) < len(self._tracks):
             return
         self._sets += 1
-        if self._sets % _CONTACT_EVERY == 0:
-            ticks = np.array([self._pose[servo_id] for servo_id in self.robot.servo_ids])
-            self._poses.append(self._ticks.tick_to_rad(ticks).tolist())
+        if self._sets % _CONTACT_EVERY == 0 and len(self._poses) < _MAX_POSES * len(self._tracks):
+            self._poses.extend(self._pose[servo_id] for servo_id in self.robot.servo_ids)
 
     def _violate(self, t_s: float, servo_id: int, kind: str, text: str) -> None:
         self.violations[kind] += 1

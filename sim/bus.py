@@ -1,137 +1,271 @@
-"""Simulated servos on one half-duplex wire: bytes in, bytes and their time of arrival out.
+"""Simulated servos on one half-duplex wire: bytes in, answers out, each byte in its time.
 
-Modelled: time of every byte at the baud in both directions, return delay, silence of servos that are not addressed or
-got bytes at another baud, faults on a schedule. Not modelled: collisions, echo, adapter latency, noise between packets.
+What is modelled: time of every byte, half duplex with collisions, answers in order, every instruction. Not modelled: see
+the list in docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). Where the manual is
+silent: in a sync or bulk read the next servo waits for the time of an answer that does not come; a fast read ends at the
+first servo that is silent, for the next ones cannot continue its checksum; a packet with a wrong checksum is not answered.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
-import numpy as np
-
-from daemon.bus.packet import BROADCAST_ID, Instruction, Packet, PacketDecoder, encode
+from daemon.bus import packet, packet1
+from daemon.bus.crc import crc16
+from daemon.bus.packet import BROADCAST_ID, Instruction, Packet, Part
+from daemon.bus.registers import RETURN_DELAY_UNIT_S
 from retarget.robot import RobotModel
-from retarget.ticks import JointServoMap
 from sim.audit import Audit
 from sim.faults import FaultSchedule
+from sim.instructions import Instructions, accesses_of
 from sim.servo import SimServo
+from sim.spoil import spoil
+from sim.wire import Wire, WireSettings
+from sim.world import World
 
-_BITS_PER_BYTE = 10
-_RETURN_DELAY_UNIT_S = 2e-6
-_GOAL_POSITION = 116
-_TORQUE_ENABLE = 64
+_READS = (Instruction.SYNC_READ, Instruction.BULK_READ)
+_FAST_READS = (Instruction.FAST_SYNC_READ, Instruction.FAST_BULK_READ)
+_GROUP_WRITES = (Instruction.SYNC_WRITE, Instruction.BULK_WRITE)
 
 
 class SimBus:
-    """The servos of a robot behind real packets. Time comes from outside."""
+    """Servos of a robot behind real packets on one wire. Time comes from outside.
+
+    Args:
+        robot: whose servos.
+        faults, start_rad: of the world made here when `world` is None; see `World`.
+        world: servos that are shared with other wires.
+        servo_ids: those on this wire; all when None.
+        wire: how wire and adapter behave.
+        baud: what the servos are set to; as the world made them when None.
+    """
 
     def __init__(
-        self, robot: RobotModel, faults: FaultSchedule | None = None, start_rad: list[float] | None = None
+        self,
+        robot: RobotModel,
+        faults: FaultSchedule | None = None,
+        start_rad: Sequence[float] | None = None,
+        *,
+        world: World | None = None,
+        servo_ids: Sequence[int] | None = None,
+        wire: WireSettings | None = None,
+        baud: int | None = None,
     ) -> None:
-        pose = start_rad if start_rad is not None else robot.park_rad.tolist()
         self.robot = robot
-        ticks = JointServoMap(robot)
-        angles = ((ticks.to_ticks(np.array(pose, np.float64)) - ticks.zero_tick) / ticks.ticks_per_rad).tolist()
-        self.servos = {s.servo_id: SimServo(s, a) for s, a in zip(robot.servos, angles, strict=True)}
-        self.faults = faults or FaultSchedule()
-        self.audit = Audit(robot)
-        self.on_goal: Callable[[float, int, int], None] | None = None
+        self.world = world or World(robot, faults, start_rad)
+        mine = None if servo_ids is None else set(servo_ids)
+        self.on_wire = [s for s in self.world.all if mine is None or s.spec.servo_id in mine]
+        self.servos = {k: s for k, s in self.world.servos.items() if mine is None or k in mine}
+        """By the id in the robot's file."""
+        self.wire = Wire(wire)
+        self._instructions = Instructions(self.world.audit)
+        if baud is not None:
+            self.set_baud(baud)
+        self._decoder = packet.PacketDecoder()
+        speaks_1 = any(s.model.protocol == 1.0 for s in self.on_wire)
+        self._decoder_1 = packet1.PacketDecoder(answers=False) if speaks_1 else None
+
+    @property
+    def on_goal(self) -> Callable[[float, int, int], None] | None:
         """Called with (time, servo id, tick) for every goal position received; for comparisons."""
-        self._decoder = PacketDecoder()
-        self._tripped: set[int] = set()
+        return self._instructions.on_goal
 
-    def receive(self, data: bytes, t_s: float, baud: int) -> list[tuple[float, bytes]]:
-        """Replies to `data` sent at `t_s`, each with the time its last byte arrives."""
-        replies: list[tuple[float, bytes]] = []
-        sent_s = t_s + len(data) * _BITS_PER_BYTE / baud
-        for p in self._decoder.feed(data):
-            if p.instruction == Instruction.STATUS:
-                continue
-            self._advance(sent_s)
-            for servo in self.servos.values():
-                servo.fed(sent_s)
-            for servo, reply in self._carry_out(p, sent_s):
-                if servo.get("status_return_level") == 0 and p.instruction != Instruction.PING:
-                    continue
-                raw = self.faults.spoil(encode(reply), sent_s, servo.servo_id)
-                delay = servo.get("return_delay_time") * _RETURN_DELAY_UNIT_S
-                sent_s += delay + len(encode(reply)) * _BITS_PER_BYTE / baud
-                if raw:
-                    replies.append((sent_s, raw))
-        return replies
+    @on_goal.setter
+    def on_goal(self, call: Callable[[float, int, int], None] | None) -> None:
+        self._instructions.on_goal = call
 
-    def _advance(self, t_s: float) -> None:
-        for servo in self.servos.values():
-            servo.advance(t_s)
-            if servo.servo_id not in self._tripped and self.faults.active("trip", t_s, servo.servo_id):
-                self._tripped.add(servo.servo_id)
-                servo.trip(1 << 5)
+    @property
+    def faults(self) -> FaultSchedule:
+        """What goes wrong."""
+        return self.world.faults
 
-    def _carry_out(self, p: Packet, t_s: float) -> list[tuple[SimServo, Packet]]:
-        """Do what an instruction says; the status packets in the order they are sent."""
-        if p.instruction == Instruction.SYNC_WRITE:
-            self._sync_write(p.parameters, t_s)
-            return []
-        if p.instruction == Instruction.SYNC_READ:
-            if len(p.parameters) < 4:
-                return []
-            address, length = struct.unpack_from("<HH", p.parameters)
-            asked = [self.servos[i] for i in p.parameters[4:] if i in self.servos]
-            return [(s, self._status(s, *s.read(address, length))) for s in asked]
-        everyone = p.servo_id == BROADCAST_ID
-        addressed = (
-            list(self.servos.values()) if everyone else [s for s in self.servos.values() if s.servo_id == p.servo_id]
-        )
-        replies = [(s, self._one(s, p, t_s)) for s in addressed]
-        return [(s, r) for s, r in replies if r is not None and (not everyone or p.instruction == Instruction.PING)]
+    @faults.setter
+    def faults(self, schedule: FaultSchedule) -> None:
+        self.world.faults = schedule
 
-    def _one(self, servo: SimServo, p: Packet, t_s: float) -> Packet | None:
-        if p.instruction == Instruction.PING:
-            data = struct.pack("<HB", servo.get("model_number"), servo.get("firmware_version"))
-            return self._status(servo, 0, data)
-        if p.instruction == Instruction.READ:
-            if len(p.parameters) != 4:
-                return self._status(servo, 5, b"")
-            return self._status(servo, *servo.read(*struct.unpack("<HH", p.parameters)))
-        if p.instruction == Instruction.WRITE:
-            if len(p.parameters) < 3:
-                return self._status(servo, 5, b"")
-            error = self._write(servo, struct.unpack_from("<H", p.parameters)[0], p.parameters[2:], t_s)
-            return self._status(servo, error, b"")
-        if p.instruction == Instruction.REBOOT:
-            self.audit.torque(t_s, servo.servo_id, False, 0, 0)
-            servo.reboot()
-            return self._status(servo, 0, b"")
-        return self._status(servo, 2, b"")
+    @property
+    def audit(self) -> Audit:
+        """What was received."""
+        return self.world.audit
 
-    def _sync_write(self, parameters: bytes, t_s: float) -> None:
-        if len(parameters) < 4:
+    def set_baud(self, baud: int) -> None:
+        """Set every servo's baud, as a tool would have."""
+        for servo in self.on_wire:
+            servo.set_baud(baud)
+
+    def receive(self, data: bytes, t_s: float, baud: int, *, patient: bool = False) -> None:
+        """The client sends `data` at `t_s`; answers are put on the wire. `patient`: see `Wire.talk`."""
+        with self.world.lock:
+            self.world.advance(t_s)
+            start_s, byte_s, heard = self.wire.talk(t_s, data, baud, patient=patient)
+            if heard != data:
+                self._note_lost(data)
+            if self.faults.in_force("echo"):
+                self.wire.echo(start_s, data, byte_s)
+            at = 0
+            for end in _packet_ends(heard, with_1=self._decoder_1 is not None):
+                end_s = start_s + end * byte_s
+                for p in self._decoder.feed(bytes(heard[at:end])):
+                    if p.instruction != Instruction.STATUS:
+                        self._hear(p, 2.0, end_s, baud)
+                if self._decoder_1 is not None:
+                    for p in self._decoder_1.feed(bytes(heard[at:end])):
+                        self._hear(p, 1.0, end_s, baud)
+                at = end
+
+    def _hear(self, p: Packet, protocol: float, t_s: float, baud: int) -> None:
+        """One instruction packet, heard by the servos of its protocol and baud."""
+        self.world.advance(t_s)
+        listening = self._listening(protocol, t_s, baud)
+        by_id: dict[int, list[SimServo]] = {}
+        for servo in listening:
+            servo.fed(t_s)
+            by_id.setdefault(servo.servo_id, []).append(servo)
+        if p.instruction in _FAST_READS and protocol == 2.0:
+            self._answer_fast(p, by_id, t_s, baud)
+        elif p.instruction in _READS:
+            self._answer_group(p, protocol, by_id, t_s, baud)
+        elif p.instruction in _GROUP_WRITES:
+            for access in accesses_of(p, protocol):
+                for servo in by_id.get(access.servo_id, ()):
+                    self._instructions.write(servo, access.address, access.data, t_s)
+                if access.servo_id not in by_id:
+                    self._instructions.missed(self.on_wire, access)
+        elif p.servo_id == BROADCAST_ID:
+            self._answer_all(p, listening, t_s, baud)
+        else:
+            self._answer_one(p, listening, by_id, t_s, baud)
+
+    def _note_lost(self, data: bytes) -> None:
+        """Goals that a collision took are steps that the daemon made all the same: the audit counts from them."""
+        for p in packet.PacketDecoder().feed(data):
+            if p.instruction in _GROUP_WRITES:
+                for access in accesses_of(p, 2.0):
+                    self._instructions.missed(self.on_wire, access)
+
+    def _listening(self, protocol: float, t_s: float, baud: int) -> list[SimServo]:
+        """Servos that hear and understand what is said now."""
+        listening = [
+            s
+            for s in self.on_wire
+            if s.baud == baud and s.powered and t_s >= s.silent_until_s and s.model.protocol == protocol
+        ]
+        if self.faults.in_force("deaf"):
+            listening = [s for s in listening if not self.faults.active("deaf", t_s, s.spec.servo_id)]
+        return listening
+
+    # Answers.
+
+    def _answer_one(
+        self, p: Packet, listening: list[SimServo], by_id: dict[int, list[SimServo]], t_s: float, baud: int
+    ) -> None:
+        """The servo that is meant; one with this as its second id obeys in silence."""
+        for servo in listening:
+            if "secondary_id" in servo.items and servo.memory.get("secondary_id") == p.servo_id:
+                self._instructions.carry_out(servo, p, t_s)
+        for servo in by_id.get(p.servo_id, ()):
+            error, parameters = self._instructions.carry_out(servo, p, t_s)
+            if _answers(servo, p.instruction):
+                self._send(servo, error, parameters, t_s, baud)
+
+    def _answer_all(self, p: Packet, listening: list[SimServo], t_s: float, baud: int) -> None:
+        """A broadcast: everybody obeys, and only a ping is answered, by one after another."""
+        for servo in sorted(listening, key=lambda s: s.servo_id):
+            error, parameters = self._instructions.carry_out(servo, p, t_s)
+            if p.instruction == Instruction.PING:
+                t_s = self._send(servo, error, parameters, t_s, baud)
+
+    def _send(self, servo: SimServo, error: int, parameters: bytes, t_s: float, baud: int) -> float:
+        """Put one status packet on the wire; the time it ends, or would have ended."""
+        byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
+        status = packet.status if servo.model.protocol == 2.0 else packet1.status
+        start_s = t_s + self._pause_s(servo)
+        error |= servo.alert()
+        end_s = start_s + byte_s * (len(parameters) + (11 if servo.model.protocol == 2.0 else 6))
+        for piece in spoil(self.faults, servo.servo_id, lambda i: status(i, error, parameters), start_s, byte_s):
+            sent_s = self.wire.answer(start_s + piece.after_s, piece.data, baud, alone=piece.alone)
+            end_s = max(end_s, sent_s) if not piece.after_s else end_s
+        return end_s
+
+    def _pause_s(self, servo: SimServo) -> float:
+        if self.wire.settings.no_wire_delay:
+            return 0.0
+        return servo.memory.get("return_delay_time") * RETURN_DELAY_UNIT_S + self.wire.settings.turnaround_s
+
+    def _answer_group(
+        self, p: Packet, protocol: float, by_id: dict[int, list[SimServo]], t_s: float, baud: int
+    ) -> None:
+        """One status packet after another, in the order asked."""
+        for access in accesses_of(p, protocol):
+            ends_s = [
+                self._send(servo, *servo.read(access.address, access.length), t_s, baud)
+                for servo in by_id.get(access.servo_id, ())
+                if _answers(servo, Instruction.READ)
+            ]
+            byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
+            t_s = max(ends_s, default=t_s + (11 + access.length) * byte_s)
+
+    def _answer_fast(self, p: Packet, by_id: dict[int, list[SimServo]], t_s: float, baud: int) -> None:
+        """One packet to which each servo adds its part."""
+        parts: list[Part] = []
+        speakers: list[SimServo] = []
+        for access in accesses_of(p, 2.0):
+            servo = next(iter(by_id.get(access.servo_id, ())), None)
+            if servo is None or not servo.model.has_fast_sync(servo.firmware) or not _answers(servo, Instruction.READ):
+                break
+            error, data = servo.read(access.address, access.length)
+            parts.append(Part(servo.servo_id, error | servo.alert(), data.ljust(access.length, b"\0")))
+            speakers.append(servo)
+        if not parts:
             return
-        address, length = struct.unpack_from("<HH", parameters)
-        rows = parameters[4:]
-        for at in range(0, len(rows) - length, length + 1):
-            servo = self.servos.get(rows[at])
-            if servo is not None:
-                self._write(servo, address, rows[at + 1 : at + 1 + length], t_s)
+        byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
+        start_s = t_s + self._pause_s(speakers[0])
+        whole = 1 + sum(4 + access.length for access in accesses_of(p, 2.0))
+        for servo, own in zip(speakers, _fast_shares(parts, whole), strict=True):
+            pieces = spoil(self.faults, servo.servo_id, lambda _id, own=own: own, start_s, byte_s)
+            if not pieces:
+                return
+            for piece in pieces:
+                self.wire.answer(start_s + piece.after_s, piece.data, baud, alone=piece.alone)
+            start_s += len(own) * byte_s
 
-    def _write(self, servo: SimServo, address: int, data: bytes, t_s: float) -> int:
-        had_torque = servo.torque
-        error = servo.write(address, data)
-        covers = range(address, address + len(data))
-        if _GOAL_POSITION in covers:
-            if error:
-                self.audit.refused(t_s, servo.servo_id, error)
-            else:
-                tick = servo.get("goal_position")
-                self.audit.goal(t_s, servo.servo_id, tick, had_torque)
-                if self.on_goal is not None:
-                    self.on_goal(t_s, servo.servo_id, tick)
-        if _TORQUE_ENABLE in covers and not error and servo.torque != had_torque:
-            self.audit.torque(t_s, servo.servo_id, servo.torque, servo.get("goal_position"), round(servo.position_tick))
-        return error
 
-    @staticmethod
-    def _status(servo: SimServo, error: int, data: bytes) -> Packet:
-        return Packet(servo.servo_id, Instruction.STATUS, data, error | servo.alert())
+def _fast_shares(parts: Sequence[Part], length: int) -> list[bytes]:
+    """What each servo sends of a fast reply: the first one the head, each its part and the checksum of all so far."""
+    head = packet.HEADER + struct.pack("<BHB", BROADCAST_ID, length, Instruction.STATUS)
+    shares: list[bytes] = []
+    crc = 0
+    for part in parts:
+        own = (b"" if shares else head) + bytes([part.error, part.servo_id]) + part.data
+        crc = crc16(own, crc)
+        tail = struct.pack("<H", crc)
+        crc = crc16(tail, crc)
+        shares.append(own + tail)
+    return shares
+
+
+def _answers(servo: SimServo, kind: int) -> bool:
+    """Whether the status return level lets it answer."""
+    level = servo.memory.get("status_return_level")
+    return level == 2 or kind == Instruction.PING or (level == 1 and kind == Instruction.READ)
+
+
+def _packet_ends(data: bytes | bytearray, *, with_1: bool) -> list[int]:
+    """Where packets seem to end, and the end of all: what follows an instruction is heard after it."""
+    ends: list[int] = []
+    at = 0
+    while (at := data.find(b"\xff\xff", at)) >= 0:
+        end = 0
+        if data[at : at + 4] == packet.HEADER and at + 7 <= len(data):
+            end = at + 7 + (data[at + 5] | data[at + 6] << 8)
+        elif with_1 and at + 4 <= len(data) and data[at + 2] != 0xFF:
+            end = at + 4 + data[at + 3]
+        if at < end <= len(data):
+            ends.append(end)
+            at = end
+        else:
+            at += 1
+    if not ends or ends[-1] != len(data):
+        ends.append(len(data))
+    return ends

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import deque
 from pathlib import Path
 from urllib.parse import SplitResult, parse_qs
 
@@ -11,7 +10,10 @@ from daemon.bus.open import PortContext
 from daemon.clock import Clock
 from daemon.errors import CommandError, LinkLostError
 from sim.bus import SimBus
+from sim.clock import VirtualClock
+from sim.errors import FaultFileError
 from sim.faults import FaultSchedule
+from sim.options import wire_settings, world_of
 
 
 class SimPort:
@@ -21,39 +23,35 @@ class SimPort:
         self.name, self.bus = "sim://", bus
         self.baud = baud or bus.robot.bus.baud
         self._clock, self._audit_file = clock, audit_file
-        self._start_s = clock.now_s()
-        self._arriving: deque[tuple[float, bytes]] = deque()
+        self._start_s = self._time_s()
         self._closed = False
+        if isinstance(clock, VirtualClock):
+            bus.world.on_clock_jump = clock.jump
+        elif any(f.kind == "clock_jump" for f in bus.faults.faults):
+            raise FaultFileError("fault schedule", "kind", "clock_jump with the real clock", "virtual time")
 
     def write(self, data: bytes) -> None:
         """Hand bytes to the servos; a servo at another baud hears only noise."""
-        t_s = self._present()
-        if self.baud == self.bus.robot.bus.baud:
-            self._arriving += self.bus.receive(data, t_s, self.baud)
+        self.bus.receive(data, self._present(), self.baud)
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Bytes that have arrived, waiting at most `timeout_s` for the first."""
+        """Bytes that have arrived, waiting at most `timeout_s` for the first.
+
+        Waits for the rest of a burst that ends in time: fewer wake-ups, and the caller asks for whole groups anyway.
+        """
         t_s = self._present()
-        until = t_s + max(0.0, timeout_s)
-        if not self._arriving or self._arriving[0][0] > until:
-            if timeout_s > 0:
-                self._clock.sleep_until(until + self._start_s)
-            return b""
-        # Wait for everything that comes in time: fewer wake-ups, and the caller asks for whole groups anyway.
-        wanted, last_s = 0, t_s
-        for at_s, chunk in self._arriving:
-            if at_s > until or wanted >= max_bytes:
-                break
-            wanted, last_s = wanted + len(chunk), at_s
-        self._clock.sleep_until(last_s + self._start_s)
-        out = b""
-        while self._arriving and self._arriving[0][0] <= last_s and len(out) < max_bytes:
-            at_s, chunk = self._arriving.popleft()
-            room = max_bytes - len(out)
-            out += chunk[:room]
-            if len(chunk) > room:
-                self._arriving.appendleft((at_s, chunk[room:]))
-        return out
+        until_s = t_s + max(0.0, timeout_s)
+        wire = self.bus.wire
+        ready_s = wire.ready_s(max_bytes, until_s)
+        if ready_s is None or ready_s > until_s:
+            if timeout_s <= 0:
+                return b""
+            self._sleep_until(until_s)
+            t_s = until_s
+        else:
+            self._sleep_until(ready_s)
+            t_s = max(t_s, ready_s)
+        return wire.take(t_s, max_bytes)
 
     def close(self) -> None:
         """Write the audit once."""
@@ -61,27 +59,52 @@ class SimPort:
             self._audit_file.write_text(json.dumps(self.bus.audit.report(), indent=1))
         self._closed = True
 
+    def _time_s(self) -> float:
+        """The servos' time: what a clock shows may jump, time does not."""
+        return self._clock.true_s if isinstance(self._clock, VirtualClock) else self._clock.now_s()
+
+    def _sleep_until(self, t_s: float) -> None:
+        if isinstance(self._clock, VirtualClock):
+            self._clock.sleep_until_true(t_s + self._start_s)
+        else:
+            self._clock.sleep_until(t_s + self._start_s)
+
     def _present(self) -> float:
         """Seconds since the simulator started.
 
         Raises:
             LinkLostError: unplugged or closed.
         """
-        t_s = self._clock.now_s() - self._start_s
+        t_s = self._time_s() - self._start_s
+        if self.bus.faults.faults:
+            with self.bus.world.lock:
+                self.bus.world.advance(t_s)
         if self._closed or self.bus.faults.active("unplug", t_s):
+            self.bus.wire.clear()
             raise LinkLostError(f"{self.name}: lost (unplugged); plug it in again")
         return t_s
 
 
+_OPTIONS = (
+    "audit=FILE, faults=FILE.toml, baud=NUMBER, body=plain|mujoco, latency_ms=NUMBER, pieces=LEAST-MOST, factory=1"
+)
+
+
 def open_sim(url: SplitResult, context: PortContext) -> SimPort:
-    """`sim://`, with options: audit=FILE, faults=FILE.toml, baud=NUMBER."""
+    """`sim://`, with options: audit, faults, baud, body, latency_ms, pieces, factory (docs/simulator.md).
+
+    Raises:
+        CommandError: an unknown option or a value it cannot have.
+    """
     query = {key: values[0] for key, values in parse_qs(url.query).items()}
-    unknown = query.keys() - {"audit", "faults", "baud"}
-    if unknown or url.netloc or url.path.strip("/"):
-        raise CommandError(f"bus '{url.geturl()}': allowed: sim://?audit=FILE&faults=FILE.toml&baud=NUMBER")
+    allowed = {part.strip().partition("=")[0] for part in _OPTIONS.split(",")}
+    if query.keys() - allowed or url.netloc or url.path.strip("/"):
+        raise CommandError(f"bus '{url.geturl()}': allowed: sim://?{_OPTIONS.replace(', ', '&')}")
     faults = FaultSchedule.load(Path(query["faults"])) if "faults" in query else None
     baud = query.get("baud", str(context.robot.bus.baud))
     if not baud.isdigit():
         raise CommandError(f"bus '{url.geturl()}': baud '{baud}' is not a number; example: baud=1000000")
     audit = Path(query["audit"]) if "audit" in query else None
-    return SimPort(SimBus(context.robot, faults), context.clock, int(baud), audit)
+    world = world_of(context.robot, faults, query.get("body", "plain"), factory=query.get("factory") == "1")
+    wire = wire_settings(query.get("latency_ms", "0"), query.get("pieces", ""))
+    return SimPort(SimBus(context.robot, world=world, wire=wire), context.clock, int(baud), audit)

@@ -1,11 +1,14 @@
-"""The simulated servos behind a real tty: anything that opens a serial port can talk to them.
+"""The simulated servos behind a real tty: anything that opens a serial port can talk to them, in real time.
 
 A pty paces nothing and knows no baud; the simulator keeps the wire's time itself and reads the speed the client has set
-from the tty: at another baud the servos stay silent.
+from the tty: at another baud the servos stay silent. Unplugged, the tty is gone (its client reads EIO) and comes back as
+another one, under the same link or another.
 """
 
 from __future__ import annotations
 
+import contextlib
+import logging
 import os
 import pty
 import select
@@ -16,56 +19,58 @@ from pathlib import Path
 
 from daemon.errors import CommandError
 from sim.bus import SimBus
+from sim.errors import FaultFileError
+
+log = logging.getLogger(__name__)
 
 _SPEEDS = {getattr(termios, name): int(name[1:]) for name in dir(termios) if name[0] == "B" and name[1:].isdigit()}
 _OTHER_SPEED = getattr(termios, "BOTHER", 0o010000)
+_IDLE_S = 0.05
+"""The servos' time goes on at least so often, so that watchdogs run out when nobody talks."""
 
 
 class PtyServer:
     """Serves a `SimBus` on a pseudo terminal, with a link at a path of choice. Clients may come and go."""
 
     def __init__(self, bus: SimBus, link: Path | None = None, baud: int | None = None) -> None:
-        self.bus = bus
+        self.bus, self.link = bus, link
+        if any(f.kind == "clock_jump" for f in bus.faults.faults):
+            raise FaultFileError("fault schedule", "kind", "clock_jump behind a tty", "virtual time: sim:// in process")
+        if baud is not None:
+            bus.set_baud(baud)
         self.baud = baud or bus.robot.bus.baud
-        """What the servos are set to."""
-        self._master, self._slave = pty.openpty()  # our own slave end stays open, so that a client may leave
-        tty.setraw(self._slave)
-        os.set_blocking(self._master, False)
-        self.device = os.ttyname(self._slave)
-        self.link = link
-        self._start_s = time.monotonic()
+        """Taken for a speed that the system cannot name."""
+        self.overruns = 0
+        """Bytes lost because the client did not read."""
+        self._master, self._slave, self.device = -1, -1, ""
+        self._linked: Path | None = None
         self._wake_r, self._wake_w = os.pipe()
-        if link is not None:
-            if link.is_symlink():
-                link.unlink()
-            elif link.exists():
-                self.close()
-                raise CommandError(f"--link {link}: exists and is no link; choose another path")
-            link.symlink_to(self.device)
+        self._start_s = time.monotonic()
+        try:
+            self._plug(link)
+        except CommandError:
+            self.close()
+            raise
 
     def serve(self) -> None:
         """Answer until `stop` is called."""
         while True:
-            ready, _, _ = select.select([self._master, self._wake_r], [], [])
+            now_s = self._now_s()
+            with self.bus.world.lock:
+                self.bus.world.advance(now_s)
+                self._follow_plug(now_s)
+            waiting = [self._wake_r] if self._master < 0 else [self._wake_r, self._master]
+            ready, _, _ = select.select(waiting, [], [], self._pause_s(now_s))
             if self._wake_r in ready:
                 return
-            try:
-                data = os.read(self._master, 4096)
-            except (BlockingIOError, OSError):
-                continue
-            now = time.monotonic() - self._start_s
-            if self.bus.faults.active("unplug", now) or self._client_baud() != self.baud:
-                continue
-            for at_s, reply in self._grouped(self.bus.receive(data, now, self.baud)):
-                left = at_s + self._start_s - time.monotonic()
-                if left > 0:
-                    time.sleep(left)
-                os.write(self._master, reply)
-
-    @staticmethod
-    def _grouped(replies: list[tuple[float, bytes]]) -> list[tuple[float, bytes]]:
-        """Replies that follow each other at once arrive as one piece, as through a buffered adapter."""
-        return [(replies[-1][0], b"".join(raw for _, raw in replies))] if replies else []
+            if self._master >= 0 and self._master in ready:
+                try:
+                    data = os.read(self._master, 4096)
+                except (BlockingIOError, OSError):
+                    data = b""
+                if data:
+                    self.bus.receive(data, self._now_s(), self._client_baud(), patient=True)
+            self._deliver()
 
     def stop(self) -> None:
         """Make `serve` return; may be called from a signal handler."""
@@ -73,13 +78,69 @@ class PtyServer:
 
     def close(self) -> None:
         """Remove the link and the tty."""
-        if self.link is not None and self.link.is_symlink():
-            self.link.unlink()
-        for fd in (self._master, self._slave, self._wake_r, self._wake_w):
-            try:
+        self._unplug()
+        for fd in (self._wake_r, self._wake_w):
+            with contextlib.suppress(OSError):
                 os.close(fd)
-            except OSError:
-                pass
+
+    def _now_s(self) -> float:
+        return time.monotonic() - self._start_s
+
+    def _pause_s(self, now_s: float) -> float:
+        """Until the next bytes are due."""
+        ready_s = self.bus.wire.ready_s() if self._master >= 0 else None
+        return _IDLE_S if ready_s is None else min(_IDLE_S, max(0.0, ready_s - now_s))
+
+    def _deliver(self) -> None:
+        """Hand over what is due."""
+        with self.bus.world.lock:
+            now_s = self._now_s()
+            ready_s = self.bus.wire.ready_s()
+            if self._master < 0 or ready_s is None or ready_s > now_s:
+                return
+            data = self.bus.wire.take(now_s)
+        try:
+            written = os.write(self._master, data)
+        except (BlockingIOError, OSError):
+            written = 0
+        self.overruns += len(data) - written
+
+    def _follow_plug(self, now_s: float) -> None:
+        """Take the tty away, or bring another, as the fault schedule says."""
+        fault = self.bus.faults.active("unplug", now_s)
+        if fault is not None and self._master >= 0:
+            log.info("%.3f s: unplugged: %s is gone", now_s, self.device)
+            self._replug_at = Path(fault.path) if fault.path is not None else self.link
+            self._unplug()
+        elif fault is None and self._master < 0:
+            self._plug(self._replug_at)
+            log.info("%.3f s: plugged in: %s", now_s, self._linked or self.device)
+
+    def _plug(self, link: Path | None) -> None:
+        """Open a tty and let the link point to it.
+
+        Raises:
+            CommandError: something else is at the link's path.
+        """
+        if link is not None and link.exists() and not link.is_symlink():
+            raise CommandError(f"--link {link}: exists and is no link; choose another path")
+        self._master, self._slave = pty.openpty()  # our own slave end stays open, so that a client may leave
+        tty.setraw(self._slave)
+        os.set_blocking(self._master, False)
+        self.device = os.ttyname(self._slave)
+        if link is not None:
+            link.unlink(missing_ok=True)
+            link.symlink_to(self.device)
+        self._linked = link
+
+    def _unplug(self) -> None:
+        self.bus.wire.clear()
+        if self._linked is not None and self._linked.is_symlink() and os.readlink(self._linked) == self.device:
+            self._linked.unlink()
+        for fd in (self._master, self._slave):
+            with contextlib.suppress(OSError):
+                os.close(fd)
+        self._master = self._slave = -1
 
     def _client_baud(self) -> int:
         """Speed that the client has set; the servos' own where the system cannot tell."""

@@ -75,7 +75,7 @@ class _Rig:
         self._clock = VirtualClock()
         self._bus = SimBus(robot)
         servo_bus = ServoBus(SimPort(self._bus, self._clock), robot.servos, self._clock)
-        self._link = BusLink.create(robot.n_joints)
+        self._link = BusLink.create(robot.n_joints, robot.n_servos)
         self._streamer = Streamer(robot, servo_bus, self._link, self._clock, watch_front=False)
         self._period_s = robot.bus.period_s
         self._last: NDArray[np.float64] = robot.rest_rad

@@ -2,63 +2,88 @@
 
 from __future__ import annotations
 
+import contextlib
+import subprocess
+import sys
 import tempfile
 import time
+from collections.abc import Generator
 from pathlib import Path
 from typing import Any
 
+from daemon.bench.daemon_rig import busy_cores, running_daemon
 from daemon.bench.report import context, percentiles_ms
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
-from daemon.demo import child, free_endpoints, wait_until_ready
+from daemon.demo import free_endpoints
 from daemon.events import Done, Failed, Progress, Rejected
+from daemon.keys import KeyFolder
 from daemon.requests import Say
 
 N_WARM = 5
 REST_S = 0.3
 _METHOD = (
-    "mmmd run --bus sim:// with all its processes; each text sent at rest, its clock starts when the front receives it and"
-    " ends at the first bus cycle whose goal tick of any servo differs; stopped after that; {} texts before to warm up"
+    "mmmd run --bus sim:// with all its processes; the clock starts when the front receives the text and ends at the first"
+    " bus cycle whose goal tick of any servo differs; from rest: the robot stands still; idle: idle movements are going on;"
+    " during: a motion is being played; loaded: from rest, while one busy process for each core runs at normal priority;"
+    " remote: from rest, generator in another process over loopback TCP with CURVE; {} texts before to warm up"
 )
 
 
 def bench_first_motion(n: int = 50, seed: int = 0, robot: str = "reference") -> dict[str, Any]:
-    """`p50_ms`, `p95_ms` and `n`, from idle; stages of the median text beside them."""
+    """`p50_ms`, `p95_ms` and `n` from rest; the same under `idle`, `during`, `loaded` and `remote`."""
     texts = draw_texts(N_WARM + n, seed)
-    first_s: list[float] = []
-    generate_s: list[float] = []
-    refused: list[str] = []
-    endpoints = free_endpoints()
-    with tempfile.TemporaryDirectory() as folder:
-        log = Path(folder) / "daemon.log"
-        ends = ["--cmd", endpoints.cmd, "--ctl", endpoints.ctl, "--pub", endpoints.pub]
-        with (
-            child(["run", "--robot", robot, "--bus", "sim://", "--quiet", *ends], log) as process,
-            Client(endpoints) as client,
-        ):
-            wait_until_ready(client, process, log)
-            client.arm()
-            for i, text in enumerate(texts):
-                first_ms, generate_ms = _first_motion(client, f"bench-{i}", text, i)
-                if first_ms is None:
-                    refused.append(text)
-                elif i >= N_WARM:
-                    first_s.append(first_ms / 1e3)
-                    generate_s.append(generate_ms / 1e3)
-                client.stop()
-                client.wait_for("idle", "holding", timeout_s=10)
-                time.sleep(REST_S)
-            client.park()
-    if not first_s:
-        raise RuntimeError(f"no text moved the robot; refused: {refused}")
+    with running_daemon(robot, "--quiet") as (client, _):
+        _times(client, texts[:N_WARM], seed, "warm")
+        rest = _times(client, texts[N_WARM:], seed, "rest")
+        during = _times(client, texts[N_WARM:], seed, "during", stop=False)
+        client.stop()
+        client.idle(True, "lively")
+        idle = _times(client, texts[N_WARM:], seed, "idle", cancel=False)
+        client.idle(False)
+        with busy_cores():
+            loaded = _times(client, texts[N_WARM:], seed, "loaded")
+    with _remote_generator() as options, running_daemon(robot, "--quiet", *options) as (client, _):
+        _times(client, texts[:N_WARM], seed, "warm")
+        remote = _times(client, texts[N_WARM:], seed, "remote")
     return {
-        **percentiles_ms(first_s),
-        "n": len(first_s),
-        "generate": percentiles_ms(generate_s),
-        "without_motion": refused,
+        **rest,
+        "idle": idle,
+        "during": during,
+        "loaded": loaded,
+        "remote": remote,
         "robot": robot,
         **context(seed, _METHOD.format(N_WARM)),
     }
+
+
+def _times(
+    client: Client, texts: list[str], seed: int, name: str, *, stop: bool = True, cancel: bool = True
+) -> dict[str, Any]:
+    """Say each text; with `stop` from stillness, else while the one before is played, or (without `cancel`) once it idles."""
+    first_s: list[float] = []
+    generate_s: list[float] = []
+    refused: list[str] = []
+    for i, text in enumerate(texts):
+        first_ms, generate_ms = _first_motion(client, f"{name}-{i}", text, seed + i)
+        if first_ms is None:
+            refused.append(text)
+        else:
+            first_s.append(first_ms / 1e3)
+            generate_s.append(generate_ms / 1e3)
+        if not cancel:
+            client.wait_for("idle", timeout_s=15)
+            time.sleep(1.2)
+        elif stop:
+            client.stop()
+            client.wait_for("idle", "holding", timeout_s=10)
+            time.sleep(REST_S)
+        else:
+            time.sleep(REST_S)
+    if not first_s:
+        raise RuntimeError(f"no text moved the robot; refused: {refused}")
+    figures: dict[str, Any] = percentiles_ms(first_s) | {"n": len(first_s), "generate": percentiles_ms(generate_s)}
+    return figures | ({"without_motion": refused} if refused else {})
 
 
 def _first_motion(client: Client, command_id: str, text: str, seed: int) -> tuple[float | None, float]:
@@ -71,3 +96,23 @@ def _first_motion(client: Client, command_id: str, text: str, seed: int) -> tupl
         if isinstance(event, Rejected | Failed):
             break
     return None, generate_ms
+
+
+@contextlib.contextmanager
+def _remote_generator() -> Generator[list[str]]:
+    """A generator behind keys; the options that lead a daemon to it."""
+    with tempfile.TemporaryDirectory() as folder:
+        server, board = KeyFolder(Path(folder) / "server"), KeyFolder(Path(folder) / "board")
+        server.allow("board", board.new().public.decode())
+        board.trust("generator", server.new().public.decode())
+        public = board.own().public.decode()
+        board.trust("daemon", public)
+        board.allow("bench", public)
+        address = free_endpoints().cmd
+        command = [sys.executable, "-m", "daemon.cli", "generator", "--bind", address, "--keys", str(server.path)]
+        process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+        try:
+            yield ["--generator", address, "--keys", str(board.path)]
+        finally:
+            process.terminate()
+            process.wait(10)

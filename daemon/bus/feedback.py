@@ -44,10 +44,21 @@ PROTOCOL_1_ADDRESS, PROTOCOL_1_LENGTH = 36, 6
 """Protocol 1.0: position 36, speed 38, load 40."""
 
 
+_ALL = slice(None)
+
+
+def _index(rows: Sequence[int]) -> NDArray[np.intp] | slice:
+    """The rows as a slice where they are neighbours: several times quicker."""
+    if list(rows) == list(range(rows[0], rows[0] + len(rows))):
+        return slice(rows[0], rows[0] + len(rows))
+    return np.array(rows, np.intp)
+
+
 class Step(Protocol):
-    """One request and its answers."""
+    """One request and its answers; `index` picks its rows out of a reading's columns."""
 
     rows: NDArray[np.intp]
+    index: NDArray[np.intp] | slice
     request: bytes
     reply_bytes: int
     answers: int
@@ -76,6 +87,7 @@ class SyncStep:
 
     def __init__(self, rows: Sequence[int], servo_ids: Sequence[int], layout: Layout = DIRECT) -> None:
         self.rows, self._layout = np.array(rows, np.intp), layout
+        self.index = _index(rows)
         self.request = packet.sync_read(layout.address, layout.length, servo_ids)
         self._reply = GroupReply(servo_ids, layout.length)
         self.reply_bytes, self.answers = self._reply.n_bytes, len(rows)
@@ -87,7 +99,7 @@ class SyncStep:
         """All answers at once, or none."""
         if not self._reply.parse(raw):
             return self._none
-        self._columns.store(self.rows, self._reply.errors, reading)
+        self._columns.store(self.index, self._reply.errors, reading)
         return self._all
 
     def ends(self, raw: bytearray) -> bool:
@@ -110,7 +122,7 @@ class FastSyncStep:
     """Fast sync read of a group: one common packet, each servo's part judged by itself."""
 
     def __init__(self, rows: Sequence[int], servo_ids: Sequence[int], layout: Layout = DIRECT) -> None:
-        self.rows = np.array(rows, np.intp)
+        self.rows, self.index = np.array(rows, np.intp), _index(rows)
         self.request = packet.sync_read(layout.address, layout.length, servo_ids, fast=True)
         self._reply = FastGroupReply(servo_ids, layout.length)
         self.reply_bytes, self.answers = self._reply.n_bytes, 1
@@ -120,9 +132,9 @@ class FastSyncStep:
         """The parts that are whole."""
         whole = self._reply.parse(raw)
         if whole.all():
-            self._columns.store(self.rows, self._reply.errors, reading)
+            self._columns.store(self.index, self._reply.errors, reading)
         elif whole.any():
-            self._columns.store(self.rows, self._reply.errors, reading, whole)
+            self._columns.store(self.rows[whole], self._reply.errors, reading, whole)
         return whole
 
     def ends(self, raw: bytearray) -> bool:
@@ -144,17 +156,16 @@ class _Columns:
 
     def store(
         self,
-        rows: NDArray[np.intp],
+        index: NDArray[np.intp] | slice,
         errors: NDArray[np.uint8],
         reading: BusReading,
-        whole: NDArray[np.bool_] | None = None,
+        whole: NDArray[np.bool_] | slice = _ALL,
     ) -> None:
-        pick = slice(None) if whole is None else whole
-        rows = rows[pick]
-        reading.error[rows] = errors[pick]
-        reading.position_tick[rows] = self._position[pick]
-        reading.velocity_raw[rows] = self._velocity[pick]
-        reading.current_raw[rows] = self._effort[pick]
+        """Copy the servos picked by `whole` to the rows of `index`."""
+        reading.error[index] = errors[whole]
+        reading.position_tick[index] = self._position[whole]
+        reading.velocity_raw[index] = self._velocity[whole]
+        reading.current_raw[index] = self._effort[whole]
 
 
 class Protocol1Step:
@@ -167,7 +178,7 @@ class Protocol1Step:
     """
 
     def __init__(self, rows: Sequence[int], servo_ids: Sequence[int], models: Sequence[BusModel]) -> None:
-        self.rows = np.array(rows, np.intp)
+        self.rows, self.index = np.array(rows, np.intp), _index(rows)
         if len(rows) > 1:
             self.request = packet1.bulk_read([(i, PROTOCOL_1_ADDRESS, PROTOCOL_1_LENGTH) for i in servo_ids])
         else:

@@ -82,12 +82,12 @@ class GroupReply:
         """(N,) view of the number at `offset` of each servo's data; `dtype` like "<i4"."""
         return np.ndarray((len(self.errors),), dtype, self._buffer.data, 9 + offset, (self.frame_bytes,))
 
-    def parse(self, raw: bytes | bytearray | memoryview) -> bool:
+    def parse(self, raw: bytes | bytearray) -> bool:
         """Whether `raw` is exactly the expected frames; then they stand in `errors`, `data` and the columns.
 
         A stuffed frame has another length, so nothing taken here needs unstuffing.
         """
-        if len(raw) != self.n_bytes or bytes(raw).count(STUFFED) != len(self._heads):
+        if len(raw) != self.n_bytes or raw.count(STUFFED) != len(self._heads):
             return False
         self._buffer[:] = np.frombuffer(raw, np.uint8)
         return bool((self._head == self._heads).all() and (self._crc_of.of(self._body) == self._crc).all())
@@ -139,10 +139,10 @@ class FastGroupReply:
         at = _HEAD_BYTES + 2 + offset
         return np.ndarray((len(self.errors),), dtype, self._buffer.data, at, (self._part_bytes,))
 
-    def parse(self, raw: bytes | bytearray | memoryview) -> NDArray[np.bool_]:
+    def parse(self, raw: bytes | bytearray) -> NDArray[np.bool_]:
         """(N,) which servos' parts are whole; they stand in `errors`, `data` and the columns."""
         n = len(raw)
-        if bytes(raw[:_HEAD_BYTES]) != self._head or n > self.n_bytes:
+        if not raw.startswith(self._head) or n > self.n_bytes:
             return np.zeros(len(self._ids), bool)
         self._buffer[:n] = np.frombuffer(raw, np.uint8)
         self._start[0] = self._first

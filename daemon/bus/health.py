@@ -53,18 +53,21 @@ class HealthTracker:
         self._missed = np.zeros(n, np.int32)
         self._alerted = np.zeros(n, bool)
         self._probe_due_s = np.zeros(n)
+        self._well = True
         self.asked = np.ones(n, bool)
         """(S,) servos that take part in the cycle."""
         self.faulted = np.zeros(n, bool)
         """(S,) servos that came back changed; cleared by `cleared`."""
 
+    def all_well(self, error: NDArray[np.uint8]) -> bool:
+        """Whether nothing was wrong with any servo before, and these error bytes say nothing new."""
+        return self._well and not error.any() and not self.faulted.any()
+
     def after_cycle(self, valid: NDArray[np.bool_], error: NDArray[np.uint8], now_s: float) -> bool:
         """Judge a cycle: who answered with which error byte. True when somebody was just quarantined."""
         missing = self.asked & ~valid
         alert = valid & ((error & ALERT_BIT) != 0)
-        if not (missing.any() or alert.any() or self._alerted.any() or self._missed.any() or self.faulted.any()):
-            self.state[self.asked] = Health.OK
-            return False
+        self._well = False
         self._missed[valid] = 0
         self._missed[missing] += 1
         self.counters.timeouts += missing
@@ -72,6 +75,7 @@ class HealthTracker:
         self._alerted[valid] = alert[valid]
         self.state[valid] = np.where(alert[valid] | self.faulted[valid], Health.FAULTED, Health.OK)
         self.state[missing] = Health.MISSING
+        self._well = not (self.state.any() or self._alerted.any() or self._missed.any() or self.faulted.any())
         gone = self.asked & (self._missed >= QUARANTINE_AFTER)
         # Half of them silent at once is no matter of single servos (power, cable): all are asked on.
         if not gone.any() or 2 * int(missing.sum()) >= int(self.asked.sum()) > 1:

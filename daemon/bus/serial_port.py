@@ -10,32 +10,65 @@ from urllib.parse import SplitResult, parse_qs
 
 import serial
 
+from daemon.bus.adapter import adapter_at, device_of
 from daemon.bus.lock import PortLock, process_holding
 from daemon.bus.open import PortContext
 from daemon.errors import CommandError, LinkLostError, PortBusyError, PortError, PortMissingError, PortPermissionError
 
 
 class SerialPort:
-    """A `Port` on a serial device. One process at a time, also against root."""
+    """A `Port` on a serial device. One process at a time, also against root.
+
+    Args:
+        device: path of the device, or of a link to it.
+        baud: bits per second.
+        url: what to call it in messages; the device's path when None.
+    """
 
     def __init__(self, device: str, baud: int, url: str | None = None) -> None:
-        self.name, self.baud = url or device, baud
+        self.name, self.baud, self._given = url or device, baud, device
+        self._closed = False
+        self._open(device)
+        self._adapter = adapter_at(device)
+
+    def _open(self, device: str) -> None:
         if not os.path.exists(device):
             raise PortMissingError(
                 self.name, f"no device '{device}'", "plug the adapter in, or list them: ls /dev/serial/by-id/"
             )
         try:
-            self._lock = PortLock(device)
+            lock = PortLock(device)
         except BlockingIOError as error:
             raise PortBusyError(self.name, f"in use by {error}", "stop it, or ask it: mmmd status") from None
         try:
-            self._serial = _open(device, baud, self.name)
+            self._serial = _open(device, self.baud, self.name)
         except BaseException:
-            self._lock.release()
+            lock.release()
             raise
+        self._lock, self.device = lock, device
         self._fd = self._serial.fileno()
         self._poll = select.poll()
         self._poll.register(self._fd, select.POLLIN)
+
+    def reopen(self) -> None:
+        """Open the device again: where it was, or where the same adapter is now (another number after a replug).
+
+        Raises:
+            LinkLostError: it is not back, or somebody else took it.
+        """
+        if self._closed:
+            raise LinkLostError(f"{self.name}: closed")
+        self._release()
+        found = device_of(self._adapter) if self._adapter is not None else None
+        why = "not plugged in"
+        for device in dict.fromkeys(d for d in (found, self._given) if d is not None):
+            try:
+                self._open(device)
+            except PortError as error:
+                why = error.problem
+            else:
+                return
+        raise LinkLostError(f"{self.name}: still lost ({why}); plug it in again")
 
     def write(self, data: bytes) -> None:
         """Send all of `data`; raises LinkLostError when the device is gone."""
@@ -63,7 +96,14 @@ class SerialPort:
 
     def close(self) -> None:
         """Release device and lock."""
-        self._serial.close()
+        self._closed = True
+        self._release()
+
+    def _release(self) -> None:
+        try:
+            self._serial.close()
+        except OSError:
+            pass  # a device that is gone cannot be told to go
         self._lock.release()
 
 

@@ -51,7 +51,21 @@ class SlowReader:
         self._models = tuple(models)
         self._spans: list[list[Span]] = [_direct(m) for m in models]
         self._turn = [0] * len(models)
+        self._tried = [False] * len(models)
         self._next = 0
+
+    @property
+    def n_windows(self) -> int:
+        """Servos whose window is in use."""
+        return sum(spans[0].witness for spans in self._spans)
+
+    def wants_window(self, row: int) -> bool:
+        """Whether a servo has none yet, and was not found to refuse one."""
+        return not self._spans[row][0].witness and not self._tried[row]
+
+    def no_window(self, row: int) -> None:
+        """It refuses one."""
+        self._tried[row] = True
 
     def map_window(
         self, row: int, firmware: int, write: Callable[[int, bytes], None], read: Callable[[int, int], bytes]
@@ -72,10 +86,12 @@ class SlowReader:
             addresses += range(item.address, item.end)
         window = next((w for w in model.indirect_windows(firmware) if w.count >= len(addresses)), None)
         if window is None:
+            self._tried[row] = True
             return False
         data = struct.pack(f"<{len(addresses)}H", *addresses)
         write(window.address, data)
         if read(window.address, len(data)) != data:
+            self._tried[row] = True
             return False
         self._spans[row] = [Span(window.data, len(addresses), offsets, witness=True)]
         self._turn[row] = 0

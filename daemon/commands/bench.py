@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import importlib
 import json as json_module
-from typing import Annotated, Literal
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
 
 import tyro
 
-BenchName = Literal["generate", "official", "story", "first-motion", "retarget", "audit"]
+BenchName = Literal[
+    "generate", "official", "story", "retarget", "first-motion", "barge-in", "seams", "estop", "audit", "bus"
+]
+_WITH_N: dict[str, int | None] = {
+    "story": 59, "retarget": None, "first-motion": 50, "barge-in": 1000, "seams": 60, "estop": 30, "audit": 200,
+}  # fmt: skip
+"""Figures that take a number of texts, clips or trials, and how many it is when none is given (None: all)."""
 
 
 def bench(
@@ -16,9 +24,12 @@ def bench(
     """Measure one figure and print it.
 
     generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten steps.
-    story: ten minutes of motion from 59 texts on two threads. first-motion: text to first moving servo frame, warm, through
-    the daemon. retarget: time of all its stages and direction error per robot, bounds and contacts checked again. audit:
-    many texts through the daemon's bus side on two robots, every goal checked against the limits.
+    story: ten minutes of motion from 59 texts on two threads. retarget: time of all its stages and direction error for
+    each robot, bounds and contacts checked again. first-motion: text to first moving servo frame, warm, through the
+    daemon. barge-in: overlapping commands and stops at random instants. seams: jerk and steps where motions meet, and
+    closure of loops. estop: e-stop to torque-off bytes with busy cores. audit: many texts through the daemon's bus side
+    on two robots, every goal checked against the limits. bus: codec and servo bus against a wire kept on a pty, beside
+    other drivers where they are installed.
 
     Example: mmmd bench first-motion --json
 
@@ -26,34 +37,13 @@ def bench(
         name: what to measure.
         json: print one JSON object instead of lines.
         seed: seed of the texts and of generation.
-        n: number of texts or clips, where the figure has any.
+        n: number of texts, clips or trials, where the figure has any.
     """
     from rich.console import Console
 
-    if name == "generate":
-        from daemon.bench.generate import bench_generate
-
-        figures = bench_generate(seed)
-    elif name == "official":
-        from daemon.bench.official import bench_official
-
-        figures = bench_official(seed)
-    elif name == "story":
-        from daemon.bench.story import N_SCENES, bench_story
-
-        figures = bench_story(n or N_SCENES, seed)
-    elif name == "first-motion":
-        from daemon.bench.first_motion import bench_first_motion
-
-        figures = bench_first_motion(n or 50, seed)
-    elif name == "retarget":
-        from daemon.bench.retarget import bench_retarget
-
-        figures = bench_retarget(n, seed)
-    else:
-        from daemon.bench.audit import bench_audit
-
-        figures = bench_audit(n or 200, seed)
+    file = name.replace("-", "_")
+    measure: Callable[..., dict[str, Any]] = getattr(importlib.import_module(f"daemon.bench.{file}"), f"bench_{file}")
+    figures = measure(n or _WITH_N[name], seed=seed) if name in _WITH_N else measure(seed=seed)
     console = Console()
     if json:
         console.out(json_module.dumps(figures))

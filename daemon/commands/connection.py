@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from daemon.config import Endpoints
@@ -21,20 +22,22 @@ class Connection:
         cmd: endpoint of requests.
         ctl: endpoint of stop, estop, reset, arm, park, status.
         pub: endpoint of state and events.
+        keys: folder of CURVE keys, for a daemon on another machine (`mmmd keys`).
         timeout_s: longest wait for a reply.
     """
 
     cmd: str = _DEFAULT.cmd
     ctl: str = _DEFAULT.ctl
     pub: str = _DEFAULT.pub
+    keys: Path | None = None
     timeout_s: float = 5.0
 
     def client(self) -> Client:
         """A client for it.
 
         Raises:
-            ConfigError: an endpoint is not a local one.
+            ConfigError: an endpoint is not a local one and there are no keys.
         """
         from daemon.client import Client
 
-        return Client(Endpoints(self.cmd, self.ctl, self.pub), self.timeout_s)
+        return Client(Endpoints(self.cmd, self.ctl, self.pub, self.keys), self.timeout_s)

@@ -53,7 +53,7 @@ def replay(
         if warning:
             notes.print(f"warning: {warning}", style="yellow", highlight=False, soft_wrap=True)
     port, clock = _open(bus, model, found)
-    link = BusLink.create(model.n_joints)
+    link = BusLink.create(model.n_joints, model.n_servos)
     try:
         with Progress(console=notes, disable=json, transient=True) as bar:
             task = bar.add_task("replay", total=sum(c.torque for c in found.cycles))

@@ -116,13 +116,37 @@ def _check(console: Any, model: RobotModel) -> int:
             ", ".join(_turns(s.direction * s.gear_ratio * dict(s.couplings)[i], s.linkage is not None) for s in servos),
         ))  # fmt: skip
     _print_rows(console, rows)
-    for doubt in found.doubts:
+    said, doubts, missing = _bus_time(model)
+    if said:
+        console.print(said)
+    for doubt in (*found.doubts, *doubts):
         console.print(f"look at: {doubt}")
-    for lack in found.missing:
+    for lack in (*found.missing, *missing):
         console.print(f"missing: {lack}")
-    if not found.missing:
+    if not found.missing and not missing:
         console.print("nothing is missing")
-    return 1 if found.missing else 0
+    return 1 if found.missing or missing else 0
+
+
+def _bus_time(model: RobotModel) -> tuple[str, list[str], list[str]]:
+    """What a cycle takes on the wire; what to look at; what makes the rate impossible."""
+    from daemon.bus.models import MODEL_NUMBERS, MODELS
+    from daemon.bus.rate_plan import plan_for
+    from daemon.errors import ConfigError
+
+    strange = sorted({s.model.name for s in model.servos if s.model.name not in MODEL_NUMBERS} - {"?"})
+    if strange:
+        return "", [f"the bus has no control table of {', '.join(strange)}: `mmmd run` refuses this robot"], []
+    if any(s.model.name == "?" for s in model.servos):
+        return "", [], []
+    plan = plan_for([MODELS[MODEL_NUMBERS[s.model.name]] for s in model.servos], model.bus.baud)
+    period_ms = model.bus.period_s * 1e3
+    said = f"bus: {plan.certain_s * 1e3:.2f} of {period_ms:.1f} ms a cycle with return delay 0, adapter not counted"
+    try:
+        plan.require(model.bus.rate_hz)
+    except ConfigError as error:
+        return said, [], [str(error)]
+    return said, [], []
 
 
 def _turns(ratio: float, linkage: bool) -> str:

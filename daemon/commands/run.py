@@ -1,72 +1,117 @@
-"""`mmmd run`: the daemon."""
+"""`mmmd run` and `mmmd config`: the daemon, and where its settings come from."""
 
 from __future__ import annotations
 
 import logging
 import sys
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Any, Literal
 
-from daemon.config import Endpoints
-
-_DEFAULT = Endpoints()
+import tyro
 
 
 def run(
-    robot: str = "reference",
-    bus: str = "sim://",
+    robot: str | None = None,
+    bus: str | None = None,
+    config: Path | None = None,
     log: Path | None = None,
+    log_size_mb: float | None = None,
+    log_total_mb: float | None = None,
     generator: str | None = None,
     model: Path | None = None,
+    model_hash: str | None = None,
     auto_arm: bool = True,
-    idle: Literal["off", "calm", "lively"] = "off",
+    idle: Literal["off", "calm", "lively"] | None = None,
     gestures: Path | None = None,
-    cmd: str = _DEFAULT.cmd,
-    ctl: str = _DEFAULT.ctl,
-    pub: str = _DEFAULT.pub,
+    cmd: str | None = None,
+    ctl: str | None = None,
+    pub: str | None = None,
+    keys: Path | None = None,
+    metrics: str | None = None,
+    log_json: bool = False,
     quiet: bool = False,
 ) -> int:
     """Take texts over ZeroMQ and move servos, until SIGTERM or Ctrl-C, which park the robot.
+
+    Every setting can also stand in a TOML file or in the environment (MMMD_ROBOT, ...); `mmmd config show` tells the
+    values and where each came from.
 
     Exit status: 0 after a park, 3 when a fault or e-stop was latched, 1 when it could not start, 2 for bad use.
 
     Example: mmmd run --robot op3 --bus "dxl:///dev/ttyUSB0?baud=1000000" --log run.mcap
 
     Args:
-        robot: name of a packaged robot, or path of a robot.toml.
+        robot: name of a packaged robot, or path of a robot.toml; reference when nothing says otherwise.
         bus: where the servos are: sim:// or dxl://DEVICE?baud=N.
+        config: TOML file; else $MMMD_CONFIG, ~/.config/mmmd/mmmd.toml, /etc/mmmd/mmmd.toml.
         log: MCAP file to record into.
+        log_size_mb: a log of this size is ended and the next one begun (NAME.1.mcap, ...); 0 for never.
+        log_total_mb: oldest logs of this run are removed beyond so much together; 0 for never.
         generator: endpoint of a generator that runs already (`mmmd generator`); one is started when it is not given.
         model: checkpoint of the generator; the shipped one when it is not given.
+        model_hash: beginning of the checkpoint's hash; a generator with another one is not used.
         auto_arm: the first text arms the robot; --no-auto-arm waits for `mmmd arm`.
         idle: small movements while there is nothing to play.
         gestures: folder of your own gestures; your data folder when it is not given.
         cmd: endpoint of requests.
         ctl: endpoint of stop, estop, reset, arm, park, status.
         pub: endpoint of state and events.
+        keys: folder of CURVE keys (`mmmd keys`): tcp sockets then take allowed clients only, and may be on any address.
+        metrics: HOST:PORT of Prometheus metrics; none when it is not given.
+        log_json: one JSON object a line instead of text.
         quiet: log only warnings.
     """
-    from daemon.config import DaemonConfig
+    given = dict(locals())
+    from daemon.logs import start_logging
+    from daemon.settings import config_of, resolve
     from daemon.supervisor import log_path_error
     from daemon.supervisor import run as run_daemon
 
-    logging.basicConfig(
-        level=logging.WARNING if quiet else logging.INFO, format="%(asctime)s %(message)s", datefmt="%H:%M:%S"
-    )
-    if log is not None and (problem := log_path_error(log)):
+    settings = resolve(_flags(given), config)
+    as_json = bool(settings["log_json"].value)
+    start_logging("front", level=logging.WARNING if quiet else logging.INFO, as_json=as_json, stamp=True)
+    chosen = config_of(settings)
+    if chosen.log is not None and (problem := log_path_error(chosen.log)):
         sys.stderr.write(f"mmmd: {problem}\n")
         return 2
-    endpoints = Endpoints(cmd, ctl, pub)
-    return run_daemon(
-        DaemonConfig(
-            robot,
-            bus,
-            endpoints,
-            log,
-            generator=generator,
-            model=model,
-            auto_arm=auto_arm,
-            idle=idle,
-            gestures=gestures,
-        )
-    )
+    return run_daemon(chosen)
+
+
+def config(
+    verb: Annotated[Literal["show"], tyro.conf.Positional],
+    config: Path | None = None,
+    json: bool = False,
+) -> int:
+    """Show every setting of `mmmd run` and where its value comes from: default, file, environment.
+
+    Example: mmmd config show
+
+    Args:
+        verb: show.
+        config: TOML file; else where `mmmd run` looks.
+        json: print one JSON object.
+    """
+    from daemon.settings import config_of, resolve
+
+    settings = resolve({}, config)
+    config_of(settings)
+    if json:
+        import json as json_module
+
+        rows = {key: {"value": s.value, "source": s.source} for key, s in settings.items()}
+        sys.stdout.write(json_module.dumps(rows, default=str) + "\n")
+        return 0
+    width = max(map(len, settings))
+    values = {key: "-" if s.value in (None, "") else str(s.value) for key, s in settings.items()}
+    wide = max(map(len, values.values()))
+    lines = [f"{key:<{width}}  {values[key]:<{wide}}  {s.source}" for key, s in settings.items()]
+    sys.stdout.write("\n".join(lines) + "\n")
+    return 0
+
+
+def _flags(given: dict[str, Any]) -> dict[str, Any]:
+    """What was given on the command line; a switch that stands as it is by default was not."""
+    flags = {key: value for key, value in given.items() if key not in ("config", "quiet")}
+    flags["auto_arm"] = None if given["auto_arm"] else False
+    flags["log_json"] = True if given["log_json"] else None
+    return flags

@@ -55,14 +55,16 @@ def plain(phrase: str) -> str:
 
 def persons_words(phrase: str, pronoun: str) -> str:
     """The phrase with "your" and "yourself" in the third person."""
-    self_word = {"their": "themselves", "his": "himself", "her": "herself"}[pronoun]
-    other = {"their": "they", "his": "he", "her": "she"}[pronoun]
+    self_word, other = {
+        "their": ("themselves", "them"),
+        "his": ("himself", "him"),
+        "her": ("herself", "her"),
+        "its": ("itself", "it"),
+    }[pronoun]
     phrase = re.sub(r"\byourself\b", self_word, phrase)
-    phrase = re.sub(r"\byou are\b", f"{other} {'are' if other == 'they' else 'is'}", phrase)
     phrase = re.sub(r"\byour\b", pronoun, phrase)
-    if re.search(r"\b(behind|around|in front of|towards|below|above|front of|to) you\b", phrase):
-        return re.sub(r"\byou\b", {"they": "them", "he": "him", "she": "her"}[other], phrase)
-    return re.sub(r"\byou\b", other, phrase)
+    phrase = re.sub(r"\b(behind|around|in front of|towards|below|above|to) you\b", rf"\1 {other}", phrase)
+    return re.sub(r"\byou\b", "they", phrase)  # the subject of a clause; "they" needs no other verb form
 
 
 def times(count: int, rng: np.random.Generator) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,38 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mmm_core.corpus.mirroring import mirror_words
 from mmm_core.errors import TrainingDataError
 from mmm_core.features import features_from_joints, mirror
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 
 LONGEST_FRAMES = MAX_TOKENS * FRAMES_PER_TOKEN
 SHORTEST_FRAMES = 24
-_SWAPS = {
-    "left": "right", "right": "left", "clockwise": "counterclockwise", "counterclockwise": "clockwise",
-    "anticlockwise": "clockwise", "counter-clockwise": "clockwise", "leftward": "rightward", "rightward": "leftward",
-    "leftwards": "rightwards", "rightwards": "leftwards",
-}  # fmt: skip
-_NOT_A_SIDE = re.compile(r"\b(right (?:away|now|after|before|then|back|there|here)|(?:is|has|have|had|was) left\b(?! hand| arm| leg| foot)|left the\b|all right|alright)", re.IGNORECASE)  # fmt: skip
-
-
-def mirror_words(sentence: str) -> str:
-    """The sentence for the mirrored motion: sides and turns swapped, other meanings of left and right kept.
-
-    "waves the left hand right away" -> "waves the right hand right away".
-    """
-    kept: list[str] = []
-
-    def put_aside(match: re.Match[str]) -> str:
-        kept.append(match[0])
-        return f"\x00{len(kept) - 1}\x00"
-
-    def swap(match: re.Match[str]) -> str:
-        word = _SWAPS[match[0].lower()]
-        return word.capitalize() if match[0][0].isupper() else word
-
-    words = "|".join(sorted(_SWAPS, key=len, reverse=True))
-    swapped = re.sub(rf"\b(?:{words})\b", swap, _NOT_A_SIDE.sub(put_aside, sentence), flags=re.IGNORECASE)
-    return re.sub("\x00(\\d+)\x00", lambda m: kept[int(m[1])], swapped)
 
 
 def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.float32], list[str]]]:

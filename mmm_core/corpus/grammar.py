@@ -4,7 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from mmm_core.corpus.bending import NUMBERS, expand, gerund, plain, respell, singular, slip, third_person, times
+from mmm_core.corpus.bending import (
+    NUMBERS,
+    expand,
+    gerund,
+    persons_words,
+    plain,
+    respell,
+    singular,
+    slip,
+    third_person,
+    times,
+)
 from mmm_core.corpus.families import FAMILIES, MIMED, Gesture, Words
 from mmm_core.corpus.styles import STYLES
 
@@ -15,7 +26,8 @@ _IN_TURNS = (" one after the other", " alternately", " in turns", " with alterna
 _PRETEND = ("pretend to {v}", "act as if you {v}", "mime how you {v}", "make believe that you {v}", "do as if you {v}", "show me how you {v}")  # fmt: skip
 _PRETENDING = ("pretend", "act", "be", "imitate", "do", "show", "dance", "perform")
 """Verbs of phrases that already say it."""
-_REQUESTS = ("please {v}", "could you {v}", "can you {v}", "{v} please", "robot, {v}", "now {v}", "I want you to {v}", "go ahead and {v}", "you should {v}", "try to {v}", "would you {v}", "I would like you to {v}", "hey, {v}", "ok, {v}", "hey robot, {v}", "robot please {v}", "can you please {v}", "could you {v} for me", "would you mind and {v}", "I need you to {v}", "just {v}", "um, {v}", "uh {v}", "ok so {v}", "well, {v}", "you can {v} now", "will you {v}", "{v}, thanks", "{v} for me", "{v} now", "have the robot {v}", "let the robot {v}", "make the robot {v}", "kindly {v}", "come on, {v}", "mate, {v}", "you must {v}")  # fmt: skip
+_REQUESTS = ("please {v}", "could you {v}", "can you {v}", "{v} please", "robot, {v}", "now {v}", "I want you to {v}", "go ahead and {v}", "you should {v}", "try to {v}", "would you {v}", "I would like you to {v}", "hey, {v}", "ok, {v}", "hey robot, {v}", "robot please {v}", "can you please {v}", "could you {v} for me", "would you mind and {v}", "I need you to {v}", "just {v}", "um, {v}", "uh {v}", "ok so {v}", "well, {v}", "you can {v} now", "will you {v}", "{v}, thanks", "{v} for me", "{v} now", "kindly {v}", "come on, {v}", "mate, {v}", "you must {v}")  # fmt: skip
+_ABOUT_THE_ROBOT = ("have the robot {v}", "let the robot {v}", "make the robot {v}", "tell the robot to {v}", "the robot should {v}", "the robot must {v}")  # fmt: skip
 _PERSONS = ("a person {v}", "someone {v}", "the person {v}", "a man {v}", "a woman {v}", "the robot {v}", "a figure {v}", "the character {v}", "he {v}", "she {v}", "somebody {v}", "the humanoid {v}", "a human {v}", "a standing person {v}", "this person {v}")  # fmt: skip
 _GERUNDS = ("a person {v}", "someone {v}", "a person is {v}", "the robot is {v}", "{v}", "start {v}", "a motion of {v}", "show {v}", "a man is {v}", "begin {v}", "someone who is {v}")  # fmt: skip
 _SLOW = ("slowly", "gently", "in slow motion", "calmly", "at a slow pace", "carefully", "very slowly", "unhurriedly")
@@ -167,6 +179,8 @@ def caption(gestures: list[Gesture], parallel: bool, rng: np.random.Generator) -
         return _finish(plain(_joined(clauses, _THEN, rng)), rng)
     if style < 0.7:
         joined = plain(_joined(clauses, ("{a}, then {b}", "{a} and then {b}", "{a} and {b}"), rng))
+        if style > 0.66:
+            return _finish(_pick(_ABOUT_THE_ROBOT, rng).replace("{v}", persons_words(joined, "its")), rng)
         return _finish(_pick(_REQUESTS, rng).replace("{v}", joined), rng)
     if style < 0.88 or len(clauses) > 1:
         third = [third_person(c, pronoun) for c in clauses]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,9 @@ from rich.progress import track
 
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.corpus.synthesis import ClipSpec, synthesise
+
+_WORTH_A_PROCESS = 500
+"""Fewer clips are made before a process has started."""
 
 
 @dataclass(frozen=True)
@@ -23,12 +27,27 @@ class CorpusClip:
     spec: ClipSpec | None
 
 
-def make_corpus(n_synthesised: int, data_dir: Path | None, seed: int) -> list[CorpusClip]:
-    """`n_synthesised` gesture clips and the real clips of `data_dir`; clip i depends on `seed` and i alone."""
-    clips: list[CorpusClip] = []
-    for i in track(range(n_synthesised), description="gestures"):
-        made = synthesise(np.random.default_rng((seed, i)))
-        clips.append(CorpusClip(made.features, made.captions, False, made.spec))
+def make_corpus(n_synthesised: int, data_dir: Path | None, seed: int, processes: int = 1) -> list[CorpusClip]:
+    """`n_synthesised` gesture clips and the real clips of `data_dir`; clip i depends on `seed` and i alone.
+
+    Args:
+        n_synthesised: how many gesture clips.
+        data_dir: folder of real motion; None for gestures alone.
+        seed: of the gestures.
+        processes: how many of them make gestures; the clips are the same for any number.
+    """
+    jobs = ((seed, i) for i in range(n_synthesised))
+    shown = {"description": "gestures", "total": n_synthesised}
+    if processes > 1 and n_synthesised > _WORTH_A_PROCESS * processes:
+        with get_context("spawn").Pool(processes) as pool:
+            clips = list(track(pool.imap(_made, jobs, chunksize=100), **shown))
+    else:
+        clips = list(track(map(_made, jobs), **shown))
     if data_dir is not None:
         clips += [CorpusClip(features, captions, True, None) for features, captions in read_clips(data_dir)]
     return clips
+
+
+def _made(job: tuple[int, int]) -> CorpusClip:
+    made = synthesise(np.random.default_rng(job))
+    return CorpusClip(made.features, made.captions, False, made.spec)

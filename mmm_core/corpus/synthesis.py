@@ -28,6 +28,8 @@ _WEIGHTS = {
 _NAMES = list(FAMILIES)
 _P = np.array([_WEIGHTS.get(name, 0.8) for name in _NAMES])
 _P /= _P.sum()
+_UNSIZED = ("tilt_head", "look", "look_back", "look_around", "high_five", "handshake", "fist_pump", "cheer", "catch", "throw", "throw_low", "tennis", "golf", "basketball", "archery", "kiss", "type", "drum", "piano", "pick", "climb", "turn_key", "flip_palm", "robot", "arm_wave", "yawn", "hook", "uppercut", "punch", "stand", "shift")  # fmt: skip
+"""Families whose way of performing knows no size."""
 _HEAD_ONLY = ("nod", "shake_head", "look", "tilt_head")
 _USES_HEAD = ("zombie", "stretch", "think", "shade_eyes", "facepalm", "listen", "yawn", "drink", "watch_time", "lift", "robot", "dab", "violin", "archery", "celebrate", "shrug", "present", "point")  # fmt: skip
 _ONE_ARMED = tuple(n for n, f in FAMILIES.items() if f.limb == "arm" and "right" in f.sides and not f.starts_away)
@@ -76,6 +78,8 @@ def draw_gesture(rng: np.random.Generator, names: tuple[str, ...] = (), side: st
     if family.counts:
         said = rng.random() < 0.7
         count = 1 + int(rng.choice(8, p=_COUNT_WEIGHTS)) if said else int(rng.choice(usual_counts(name)))
+    if side == "alternating":
+        count = max(2, count)
     g = Gesture(name, side if family.sides else "", count, direction)
     height = str(rng.choice(["low", "high"])) if family.heights and rng.random() < 0.3 else ""
     return replace(_in_a_manner(g, rng), height=height)
@@ -86,7 +90,7 @@ def _in_a_manner(g: Gesture, rng: np.random.Generator) -> Gesture:
     family, kind = FAMILIES[g.family], rng.random()
     if kind < 0.2:
         return replace(g, tempo=float(rng.choice([0.65, 1.4])))
-    if kind < 0.32 and (family.counts or family.limb in ("head", "trunk")):
+    if kind < 0.32 and g.family not in _UNSIZED and (family.counts or family.limb in ("head", "trunk")):
         return replace(g, size=float(rng.choice([0.65, 1.25])))
     if kind < 0.42 and family.holds:
         return replace(g, hold_s=float(rng.choice([1, 2, 3, 4, 5], p=[0.1, 0.3, 0.3, 0.2, 0.1])))
@@ -143,7 +147,8 @@ def synthesise_spec(spec: ClipSpec, rng: np.random.Generator) -> SynthClip | Non
         score.hold(rng.choice([rng.uniform(0.05, 0.35), rng.uniform(0.3, 1.5)]))
     _write(score, spec)
     last = FAMILIES[spec.gestures[-1].family]
-    if rng.random() < (0.55 if last.holds else 0.93):
+    says_how_long = spec.gestures[-1].hold_s > 0  # then the pose ends when the words say so
+    if says_how_long or rng.random() < (0.55 if last.holds else 0.93):
         score.relax(rng.uniform(0.65, 0.95))
     score.hold(rng.choice([0.1, rng.uniform(0.1, 0.6), rng.uniform(0.3, 2.0)]))
     n_tokens = int(np.ceil(score.time_s * FPS / FRAMES_PER_TOKEN))

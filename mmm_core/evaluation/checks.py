@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mmm_core.motion import FPS
 from mmm_core.skeleton import matrix_from_quat, normalise
 
 Array = NDArray[np.floating]
@@ -34,6 +35,8 @@ class Shown:
         trunk_yaw_deg, trunk_pitch_deg, trunk_roll_deg: (T,) chest against the pelvis: left, forward, left.
         upper, fore: per side, (T, 3) bone directions in the chest frame (left, up, forward).
         wrists_m: per side, (T, 3) wrist in the chest frame, from the middle of the shoulders.
+        lift_m: (T,) height of the shoulders above the neck's root, in the chest frame.
+        twist_rad: per side, (T,) forearm twist; None where it is not known.
     """
 
     arms: str
@@ -46,29 +49,50 @@ class Shown:
     upper: dict[str, Array]
     fore: dict[str, Array]
     wrists_m: dict[str, Array]
+    lift_m: Array
+    twist_rad: dict[str, Array | None]
 
 
-def look_at(joints_m: Array, head_quat_wxyz: Array) -> Shown:
-    """Read a motion: (T, 22, 3) joints and (T, 4) head orientation."""
+def look_at(joints_m: Array, head_quat_wxyz: Array, forearm_twist_rad: Array | None = None) -> Shown:
+    """Read a motion: (T, 22, 3) joints, (T, 4) head orientation and, where known, (T, 2) forearm twist."""
     joints = np.asarray(joints_m, np.float64)
     pelvis = _frame(joints[:, 1] - joints[:, 2], np.broadcast_to([0.0, 1, 0], joints[:, 0].shape))
     chest = _frame(joints[:, 13] - joints[:, 14], joints[:, 12] - joints[:, 3])
     to_chest = np.swapaxes(chest, -1, -2)
-    upper, fore, wrists, moved = {}, {}, {}, {}
+    upper, fore, wrists = {}, {}, {}
     middle = (joints[:, 16] + joints[:, 17]) / 2
     for side, (shoulder, elbow, wrist) in _ARMS.items():
         upper[side] = np.einsum("tij,tj->ti", to_chest, normalise(joints[:, elbow] - joints[:, shoulder]))
         fore[side] = np.einsum("tij,tj->ti", to_chest, normalise(joints[:, wrist] - joints[:, elbow]))
         wrists[side] = np.einsum("tij,tj->ti", to_chest, joints[:, wrist] - middle)
-        hanging = np.array([0.15 if side == "left" else -0.15, -0.97, 0.2])
-        away = np.maximum(_angle_deg(upper[side], hanging), _angle_deg(fore[side], hanging))
-        moved[side] = bool(away.max() > ARM_MOVED_DEG)
-    arms = {(True, True): "both", (True, False): "left", (False, True): "right"}.get(
-        (moved["left"], moved["right"]), ""
-    )
     head = _yaw_pitch_roll_deg(to_chest @ matrix_from_quat(np.asarray(head_quat_wxyz, np.float64)))
     trunk = _yaw_pitch_roll_deg(np.swapaxes(pelvis, -1, -2) @ chest)
-    return Shown(arms, *head, *trunk, upper, fore, wrists)
+    twist: dict[str, Array | None] = {
+        side: None if forearm_twist_rad is None else np.asarray(forearm_twist_rad)[:, i] for i, side in enumerate(_ARMS)
+    }
+    lift = np.einsum("ti,ti->t", chest[:, :, 1], middle - joints[:, 9])
+    return Shown(_moved(upper, fore), *head, *trunk, upper, fore, wrists, lift, twist)
+
+
+def _moved(upper: dict[str, Array], fore: dict[str, Array]) -> str:
+    """Which arms left their hanging pose."""
+    moved: list[str] = []
+    for side in _ARMS:
+        hanging = np.array([0.15 if side == "left" else -0.15, -0.97, 0.2])
+        away = np.maximum(_angle_deg(upper[side], hanging), _angle_deg(fore[side], hanging))
+        moved += [side] if away.max() > ARM_MOVED_DEG else []
+    return "both" if len(moved) == 2 else "".join(moved)
+
+
+def part(s: Shown, start: int, end: int) -> Shown:
+    """What frames `start` to `end` show."""
+    upper, fore = ({side: v[start:end] for side, v in d.items()} for d in (s.upper, s.fore))
+    return Shown(
+        _moved(upper, fore), s.head_yaw_deg[start:end], s.head_pitch_deg[start:end], s.head_roll_deg[start:end],
+        s.trunk_yaw_deg[start:end], s.trunk_pitch_deg[start:end], s.trunk_roll_deg[start:end], upper, fore,
+        {side: v[start:end] for side, v in s.wrists_m.items()}, s.lift_m[start:end],
+        {side: None if v is None else v[start:end] for side, v in s.twist_rad.items()},
+    )  # fmt: skip
 
 
 def limb(s: Shown) -> str:
@@ -82,21 +106,68 @@ def limb(s: Shown) -> str:
     return "head" if head > HEAD_MOVED_DEG else ""
 
 
-def count(s: Shown, family: str) -> int | None:
-    """How often the stroke of a repeating family is made; None for families that do not repeat."""
-    if family == "nod":
-        return _strokes(s.head_pitch_deg, 8.0)
+def count(s: Shown, family: str, side: str = "") -> int | None:
+    """How often the stroke of a repeating family is made; None for families whose strokes are not counted.
+
+    Args:
+        s: what the motion shows.
+        family: whose strokes.
+        side: "alternating" adds up both arms' strokes; else the arm with more of them counts.
+    """
+    signals = _stroke_signals(s, family)
+    if not signals:
+        return None
+    counts = [strokes(signal, least) for signal, least in signals]
     if family == "shake_head":
-        return max(0, _strokes(s.head_yaw_deg, 12.0) + _strokes(-s.head_yaw_deg, 12.0) - 1)
-    if family == "bow":
-        return _strokes(s.trunk_pitch_deg, 12.0)
-    if family == "clap":
-        return _strokes(-np.linalg.norm(s.wrists_m["left"] - s.wrists_m["right"], axis=-1)[_raised(s)], 0.08)
-    if family in ("wave", "punch", "beckon"):
+        return max(0, sum(counts) - 1)
+    return sum(counts) if family == "punch" or side == "alternating" else max(counts)
+
+
+def cycle_s(s: Shown, family: str) -> float | None:
+    """Seconds from stroke to stroke; None with fewer than two."""
+    found = [peaks(signal, least) for signal, least in _stroke_signals(s, family)]
+    best = max(found, key=len, default=[])
+    return float(np.median(np.diff(best))) / FPS if len(best) > 1 else None
+
+
+def held_s(s: Shown, limb_name: str) -> float:
+    """How long the limb stays where it has gone: the longest time with hardly any movement away from its start."""
+    if limb_name == "arm":
         sides = ("left", "right") if s.arms in ("both", "") else (s.arms,)
-        counts = [_arm_strokes(s, family, side) for side in sides]
-        return sum(counts) if family == "punch" else max(counts)
-    return None
+        return max(_still_s(s.wrists_m[side] * 100, 20.0) for side in sides)
+    angles = (s.head_yaw_deg, s.head_pitch_deg, s.head_roll_deg)
+    if limb_name == "trunk":
+        angles = (s.trunk_yaw_deg, s.trunk_pitch_deg, s.trunk_roll_deg)
+    return _still_s(np.stack(angles, -1), 20.0)
+
+
+def _still_s(path: Array, most_per_s: float) -> float:
+    """Longest stretch, seconds, that is far from the start and slower than `most_per_s`."""
+    far = np.linalg.norm(path - path[0], axis=-1)
+    slow = np.linalg.norm(np.gradient(path, axis=0), axis=-1) * FPS < most_per_s
+    longest = run = 0
+    for ok in (slow & (far > 0.6 * far.max())).tolist():
+        run = run + 1 if ok else 0
+        longest = max(longest, run)
+    return longest / FPS
+
+
+def _stroke_signals(s: Shown, family: str) -> list[tuple[Array, float]]:
+    """Signals whose peaks are the family's strokes, each with the least range that counts."""
+    if family == "nod":
+        return [(s.head_pitch_deg, 8.0)]
+    if family == "shake_head":
+        return [(s.head_yaw_deg, 12.0), (-s.head_yaw_deg, 12.0)]
+    if family == "bow":
+        return [(s.trunk_pitch_deg, 12.0)]
+    if family == "sway":
+        return [(s.trunk_roll_deg, 6.0)]
+    if family == "clap":
+        return [(-np.linalg.norm(s.wrists_m["left"] - s.wrists_m["right"], axis=-1)[_raised(s)], 0.08)]
+    if family not in _ARM_SIGNALS:
+        return []
+    sides = ("left", "right") if s.arms in ("both", "") else (s.arms,)
+    return [_ARM_SIGNALS[family](s, side) for side in sides]
 
 
 def direction(s: Shown, family: str) -> str:
@@ -126,15 +197,27 @@ def direction(s: Shown, family: str) -> str:
     return ""
 
 
-def _arm_strokes(s: Shown, family: str, side: str) -> int:
-    fore, wrist = s.fore[side], s.wrists_m[side]
-    if family == "wave":
-        up = fore[:, 1] > 0.55
-        outward = fore[:, 0] * (1 if side == "left" else -1)
-        return _strokes(outward[up], 0.25) if up.sum() > 3 else 0
-    if family == "punch":
-        return _strokes(wrist[:, 2], 0.12)
-    return _strokes(fore[:, 1][s.upper[side][:, 2] > 0.25], 0.35)
+def _wave_signal(s: Shown, side: str) -> tuple[Array, float]:
+    up = s.fore[side][:, 1] > 0.55
+    return (s.fore[side][:, 0] * (1 if side == "left" else -1))[up], 0.25
+
+
+def _forward_signal(s: Shown, side: str) -> tuple[Array, float]:
+    return s.wrists_m[side][:, 2], 0.12
+
+
+def _fold_signal(s: Shown, side: str) -> tuple[Array, float]:
+    return s.fore[side][:, 1][s.upper[side][:, 2] > 0.25], 0.35
+
+
+def _height_signal(s: Shown, side: str) -> tuple[Array, float]:
+    return s.wrists_m[side][:, 1], 0.3
+
+
+_ARM_SIGNALS = {
+    "wave": _wave_signal, "punch": _forward_signal, "beckon": _fold_signal,
+    "jumping_jack": _height_signal, "lift_weight": _height_signal,
+}  # fmt: skip
 
 
 def _raised(s: Shown) -> NDArray[np.bool_]:
@@ -150,25 +233,33 @@ def _held(s: Shown, side: str) -> NDArray[np.bool_]:
     return wanted & (speed <= np.median(speed[wanted]))
 
 
-def _strokes(signal: Array, least: float) -> int:
+def strokes(signal: Array, least: float) -> int:
     """Number of peaks that rise from the valley before, and fall after (or the signal ends), by a share of the range.
 
     0 when the range is below `least`.
     """
+    return len(peaks(signal, least))
+
+
+def peaks(signal: Array, least: float) -> list[int]:
+    """Frames of the peaks that `strokes` counts."""
     if len(signal) < 3 or np.ptp(signal) < least:
-        return 0
+        return []
     turn = max(0.6 * least, 0.22 * float(np.ptp(signal)))
-    strokes, rising, valley, peak = 0, False, float(signal[0]), float(signal[0])
-    for value in signal[1:]:
+    found: list[int] = []
+    rising, valley, peak = False, float(signal[0]), float(signal[0])
+    for frame, value in enumerate(signal[1:].tolist(), 1):
         if rising:
-            peak = max(peak, float(value))
+            if value > peak:
+                peak, found[-1] = value, frame
             if value < peak - turn:
-                rising, valley = False, float(value)
+                rising, valley = False, value
         else:
-            valley = min(valley, float(value))
+            valley = min(valley, value)
             if value > valley + turn:
-                strokes, rising, peak = strokes + 1, True, float(value)
-    return strokes
+                found.append(frame)
+                rising, peak = True, value
+    return found
 
 
 def _aim(left: float, up: float, least: float) -> str:

@@ -9,23 +9,55 @@ from typing import Any
 from mmm_core.corpus.heldout import PROBES, Probe
 from mmm_core.evaluation import checks
 from mmm_core.evaluation.checks import Shown, look_at
+from mmm_core.evaluation.signs import shows
 from mmm_core.motion import Motion
 
+SLOW_CYCLE_S, FAST_CYCLE_S = 0.72, 0.64
+"""Longer from stroke to stroke is slow, shorter is fast; 0.6 to 0.7 s are usual."""
+MIN_PART = 12
+"""Frames that each gesture of a sequence has at least."""
 Generate = Callable[[str, int], Motion]
 
 
-def judge(probe: Probe, shown: Shown) -> dict[str, bool]:
-    """Which of a probe's expectations a motion meets; only those the probe has."""
+def judge(probe: Probe, shown: Shown, with_pose: bool = False) -> dict[str, bool]:
+    """Which of a probe's expectations a motion meets; only those the probe has, and its family's sign if asked for."""
+    if probe.then is not None:
+        return {"order": _in_order(probe, probe.then, shown)}
     verdict = {"limb": checks.limb(shown) == probe.limb}
+    if with_pose:
+        verdict["pose"] = shows(shown, probe.family, probe.side, probe.direction)
     if probe.side:
-        verdict["side"] = shown.arms == probe.side
+        verdict["side"] = shown.arms == ("both" if probe.side == "alternating" else probe.side)
     if probe.count is not None:
-        found = checks.count(shown, probe.family)
+        found = checks.count(shown, probe.family, probe.side)
         verdict["count"] = found is not None and abs(found - probe.count) <= 1
         verdict["count_exact"] = found == probe.count
     if probe.direction:
         verdict["direction"] = checks.direction(shown, probe.family) == probe.direction
+    if probe.hold_s:
+        held = checks.held_s(shown, probe.limb)
+        verdict["hold"] = abs(held - probe.hold_s) <= max(1.0, 0.25 * probe.hold_s)
+    if probe.tempo:
+        cycle = checks.cycle_s(shown, probe.family)
+        wanted = cycle is not None and (cycle > SLOW_CYCLE_S if probe.tempo == "slow" else cycle < FAST_CYCLE_S)
+        verdict["tempo"] = bool(wanted)
     return verdict
+
+
+def _in_order(first: Probe, second: Probe, shown: Shown) -> bool:
+    """Whether some moment parts the motion into the first gesture and the second, and none into second and first."""
+    n_frames = len(shown.head_yaw_deg)
+
+    def parts(a: Probe, b: Probe, t: int) -> bool:
+        return _is_seen(a, checks.part(shown, 0, t)) and _is_seen(b, checks.part(shown, t, n_frames))
+
+    moments = range(MIN_PART, n_frames - MIN_PART, 2)
+    return any(parts(first, second, t) for t in moments) and not any(parts(second, first, t) for t in moments)
+
+
+def _is_seen(probe: Probe, shown: Shown) -> bool:
+    ok = checks.limb(shown) == probe.limb and (not probe.side or shown.arms == probe.side)
+    return ok and (not probe.direction or checks.direction(shown, probe.family) == probe.direction)
 
 
 def evaluate(
@@ -39,7 +71,9 @@ def evaluate(
         for seed in seeds:
             motion = generate(probe.text, seed)
             if len(motion.joints_m):
-                verdict = judge(probe, look_at(motion.joints_m, motion.head_quat_wxyz))
+                verdict = judge(
+                    probe, look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad), with_pose=True
+                )
             else:
                 refused += 1
                 verdict = dict.fromkeys(_expectations(probe), False)
@@ -55,7 +89,9 @@ def evaluate(
 
 
 def _expectations(probe: Probe) -> list[str]:
-    wanted = ["limb"]
-    wanted += ["side"] if probe.side else []
+    if probe.then is not None:
+        return ["order"]
+    wanted = ["limb", "pose"] + (["side"] if probe.side else [])
     wanted += ["count", "count_exact"] if probe.count is not None else []
-    return wanted + (["direction"] if probe.direction else [])
+    wanted += ["direction"] if probe.direction else []
+    return wanted + (["hold"] if probe.hold_s else []) + (["tempo"] if probe.tempo else [])

@@ -152,7 +152,10 @@ def half_width(value: Any) -> float:
 
 
 def _plain(value: Any) -> Any:
-    return [number(value), half_width(value)] if isinstance(value, Interval) else number(value)
+    """An interval as [mean, half width]; a count stays a whole number."""
+    if isinstance(value, Interval):
+        return [number(value), half_width(value)]
+    return value if isinstance(value, int) else number(value)
 
 
 def _ratio(made: float | None, reference: float | None) -> float | None:

@@ -14,6 +14,7 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from mmm_core import distributed
+from mmm_core.errors import TrainingDataError
 from mmm_core.evaluation.extractors import OURS, Evaluator, EvaluatorConfig
 from mmm_core.tokenizer import feature_std
 from mmm_core.training.batches import CaptionStates, Clip
@@ -30,13 +31,29 @@ def train_evaluator(
     clips: Sequence[Clip], captions: CaptionStates, rows: list[list[int]], schedule: Schedule, run: Run,
     config: EvaluatorConfig = OURS, real_share: float = 0.5,
 ) -> Evaluator:  # fmt: skip
-    """An evaluator trained on `clips` and the states of their captions; half of a batch comes from people."""
+    """An evaluator trained on `clips` and the states of their captions; half of a batch comes from people.
+
+    Args:
+        clips: motions; those shorter than 24 frames are left out.
+        captions: text states.
+        rows: for each clip the rows of its captions in `captions`.
+        schedule: how long.
+        run: where.
+        config: sizes.
+        real_share: share of a batch from people, where there are both kinds.
+
+    Raises:
+        TrainingDataError: no clip is long enough.
+    """
     torch.manual_seed(schedule.seed)
     evaluator = Evaluator(config)
     sample = torch.from_numpy(np.concatenate([c.features for c in clips[:: max(1, len(clips) // 1500)]]))
     evaluator.mean.copy_(sample.mean(0))
     evaluator.std.copy_(feature_std(sample))
     usable = [i for i, c in enumerate(clips) if len(c.features) >= SHORTEST_FRAMES and rows[i]]
+    if not usable:
+        raise TrainingDataError(run.folder, "clips", f"{len(clips)}, none of them long enough",
+                                f"clips of at least {SHORTEST_FRAMES} frames with a caption")  # fmt: skip
     people = np.array([i for i in usable if clips[i].is_real])
     others = np.array([i for i in usable if not clips[i].is_real])
     n_people = round(BATCH * real_share) if len(people) and len(others) else BATCH * bool(len(people))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import logging
+import os
 import subprocess
 from collections.abc import Sequence
 from dataclasses import replace
@@ -96,12 +97,12 @@ class Stages:
     def _made(self) -> list[Clip]:
         synthesised, seed = self.recipe.data.synthesised, self.recipe.seed
         if self.folder is None:
-            made = make_corpus(synthesised, self.data, seed)
+            made = make_corpus(synthesised, self.data, seed, os.cpu_count() or 1)
             return [Clip(c.features, list(c.captions), c.is_real) for c in made]
         if synthesised and self.folder.n_features != N_FEATURES:
             found = f"{synthesised} with {self.folder.n_features} features in {self.data}"
             raise TrainingDataError(self.data or Path(), "data.synthesised", found, "0: gestures have 263")
-        made = make_corpus(synthesised, None, seed)
+        made = make_corpus(synthesised, None, seed, os.cpu_count() or 1)
         return [
             *(Clip(c.features, list(c.captions), c.is_real) for c in made),
             *(Clip(e.features, [c.text for c in e.captions], True) for e in self.folder.examples("train")),

@@ -88,7 +88,7 @@ class Rig:
 def rig(name: str = "reference", *faults: Fault, **options) -> Iterator[Rig]:
     """A rig whose shared memory is removed at the end."""
     robot = load_robot(name)
-    link = BusLink.create(robot.n_joints)
+    link = BusLink.create(robot.n_joints, robot.n_servos)
     try:
         yield Rig(robot, link, *faults, **options)
     finally:

@@ -36,6 +36,16 @@ def test_check_finds_nothing_missing_in_what_ships(name: str, capsys: pytest.Cap
     assert "nothing is missing" in out
     for joint in load_robot(name).joint_names:
         assert joint in out
+    assert ("bus has no control table" in out) == (name == "ffw_bg2")
+    assert ("ms a cycle" in out) == (name != "ffw_bg2")
+
+
+def test_check_refuses_a_rate_that_the_wire_cannot_carry(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shutil.copytree(ROBOTS_DIR / "reference", tmp_path / "mine")
+    robot_file = tmp_path / "mine" / "robot.toml"
+    robot_file.write_text(robot_file.read_text().replace("baud = 1000000", "baud = 57600"))
+    assert main(["robot", "check", str(tmp_path / "mine")]) == 1
+    assert "missing: bus.rate_hz 100 is impossible at 57600 baud" in capsys.readouterr().out
 
 
 def test_from_a_description_to_a_simulated_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from daemon.shared import BusState
@@ -15,6 +17,7 @@ from daemon.state import (
     StateMachine,
     Trigger,
 )
+from daemon.state_docs import page
 
 S, T = RobotState, Trigger
 
@@ -98,3 +101,19 @@ def test_without_auto_arm_the_first_text_waits_for_arm():
     machine = StateMachine(auto_arm=False)
     with pytest.raises(CommandRefusedError, match="mmmd arm"):
         machine.check(T.SAY)
+
+
+def test_the_page_of_the_docs_is_that_of_the_table():
+    """`python -m daemon.state_docs docs/states.md` writes it."""
+    assert (Path(__file__).parents[2] / "docs" / "states.md").read_text("utf-8") == page()
+
+
+def test_the_page_draws_every_transition():
+    text = page()
+    for state, row in TRANSITIONS.items():
+        for trigger, following in row.items():
+            if following is not state:
+                arrow = next(
+                    x for x in text.splitlines() if x.strip().startswith(f"{state.value} --> {following.value}:")
+                )
+                assert trigger.value in arrow

@@ -168,7 +168,7 @@ def test_parking_ends_limp_in_the_park_pose():
         assert not any(r.torque)
         r.cycle(20)
         ticks = r.streamer._ticks.rad_to_tick(r.robot.park_rad)
-        assert np.abs(r.records[-1]["present_tick"] - ticks).max() <= 3
+        assert np.abs(r.records[-1]["present_tick"] - ticks).max() <= 6, "half a degree: friction stops a servo short"
         r.assert_limits_kept()
 
 

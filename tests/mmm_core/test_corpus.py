@@ -11,9 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmm_core.corpus.cmu import mirror_words, read_clips
+from mmm_core.corpus.cmu import read_clips
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.grammar import caption, known_commands, plain_phrases
+from mmm_core.corpus.mirroring import mirror_words
 from mmm_core.corpus.score import REST_ARM, Score
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.corpus.synthesis import ClipSpec, draw_spec, synthesise, synthesise_spec
@@ -114,6 +115,31 @@ def test_a_score_holds_what_it_does_not_move() -> None:
         ("walks counter-clockwise", "walks clockwise"),
         ("is all right", "is all right"),
         ("raises its right arm right after", "raises its left arm right after"),
+        ("with the hand on the left hip on the right", "with the hand on the right hip on the left"),
+        ("puts the right hand on the left hip, right away", "puts the left hand on the right hip, right away"),
+        ("he left the room waving", "he left the room waving"),
+        ("they left, then turned left", "they left, then turned right"),
+        ("is left standing, left hand up", "is left standing, right hand up"),
+        ("what is left of the left arm", "what is left of the right arm"),
+        ("the person's left hand is left out", "the person's right hand is left out"),
+        ("turn right right there", "turn left right there"),
+        ("right as he raises the left arm", "right as he raises the right arm"),
+        ("right in front of him, the left hand", "right in front of him, the right hand"),
+        ("it serves him right", "it serves him right"),
+        ("you are right, wave with the left hand", "you are right, wave with the right hand"),
+        ("the right way to wave", "the right way to wave"),
+        ("a right angle with the left elbow", "a right angle with the right elbow"),
+        ("leaves to the left", "leaves to the right"),
+        ("has left to the right", "has left to the left"),
+        ("a right-handed punch", "a left-handed punch"),
+        ("the leftmost finger", "the rightmost finger"),
+        ("circles anti-clockwise", "circles clockwise"),
+        ("clockwise, then counter clockwise", "counterclockwise, then clockwise"),
+        ("LEFT arm! Right arm!", "RIGHT arm! Left arm!"),
+        ("bright light, upright posture, copyright", "bright light, upright posture, copyright"),
+        ("the hand is right", "the hand is right"),
+        ("the arm is to the right", "the arm is to the left"),
+        ("his right arm is left of his head", "his left arm is right of his head"),
     ],
 )
 def test_words_of_a_mirrored_clip(said: str, mirrored: str) -> None:

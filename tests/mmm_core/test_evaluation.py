@@ -9,10 +9,12 @@ import pytest
 
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.grammar import known_commands
-from mmm_core.corpus.heldout import PROBES
-from mmm_core.corpus.synthesis import ClipSpec, synthesise, synthesise_spec
+from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, Probe
+from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthesise_spec
 from mmm_core.evaluation import checks
 from mmm_core.evaluation.checks import Shown, look_at
+from mmm_core.evaluation.probes import judge
+from mmm_core.evaluation.signs import shows
 from mmm_core.features import mirror, recover
 
 LIMB_FAMILIES = (
@@ -26,7 +28,7 @@ DIRECTED = ("look", "point", "lean", "twist", "tilt_head")
 
 def shown(features: np.ndarray) -> Shown:
     motion = recover(features)
-    return look_at(motion.joints_m, motion.head_quat_wxyz)
+    return look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 
 def gestures(name: str, n: int = 12) -> list[tuple[Gesture, np.ndarray]]:
@@ -83,19 +85,174 @@ def test_standing_still_shows_nothing() -> None:
         assert checks.limb(shown(clip.features)) == ""
 
 
-def test_no_probe_is_a_sentence_of_the_grammar() -> None:
+def test_no_probe_is_a_sentence_of_the_grammar_and_some_words_are_never_said() -> None:
     """Thousands of drawn captions and every plain phrase: the probes' words stay out of training."""
 
     def plain(text: str) -> str:
         return re.sub(r"[^a-z0-9 ]", "", text.lower()).strip()
 
-    said = {plain(text) for text in known_commands()}
+    said = {plain(text) for text in known_commands(10_000)}
     for i in range(400):
         said |= {plain(text) for text in synthesise(np.random.default_rng((1, i))).captions}
     assert not said & {plain(p.text) for p in PROBES}
+    words = {word for text in said for word in text.split()}
+    assert not [v for v in HELD_OUT_VERBS if {v, v + "s", v + "es", v + "ing", v[:-1] + "ing"} & words]
 
 
 def test_probes_name_families_limbs_and_directions_that_exist() -> None:
     for probe in PROBES:
         assert FAMILIES[probe.family].limb == probe.limb, probe.text
         assert probe.direction in ("", *FAMILIES[probe.family].directions), probe.text
+
+
+def drawn(name: str, n: int, seed: int = 3) -> list[tuple[Gesture, np.ndarray]]:
+    """Clips of one family as training draws them: any side, count, tempo, size and manner."""
+    made: list[tuple[Gesture, np.ndarray]] = []
+    for i in range(40):
+        if len(made) == n:
+            break
+        rng = np.random.default_rng((seed, len(name), ord(name[0]), i))
+        gesture = draw_gesture(rng, (name,))
+        clip = None if gesture.height else synthesise_spec(ClipSpec((gesture,)), rng)
+        if clip is not None:
+            made.append((gesture, clip.features))
+    return made
+
+
+@pytest.fixture(scope="module")
+def everything() -> list[tuple[Gesture, Shown, Shown]]:
+    """A few clips of every family, each with its mirror image."""
+    return [(g, shown(f), shown(mirror(f))) for name in FAMILIES for g, f in drawn(name, 4)]
+
+
+def asked_side(name: str, side: str) -> str:
+    """The side that a family could be asked with, given what another gesture has."""
+    sides = FAMILIES[name].sides
+    return side if side in sides else "both" if sides == ("both",) else ""
+
+
+@pytest.fixture(scope="module")
+def seen_elsewhere(everything: list[tuple[Gesture, Shown, Shown]]) -> dict[str, list[bool]]:
+    """For each family whether its sign is seen in each clip of every other family."""
+    return {
+        name: [
+            shows(s, name, asked_side(name, g.side), (family.directions or ("",))[0])
+            for g, s, _ in everything
+            if g.family != name
+        ]
+        for name, family in FAMILIES.items()
+    }
+
+
+@pytest.mark.parametrize("name", sorted(FAMILIES))
+def test_each_family_has_a_sign_that_sees_it_and_little_else(
+    name: str, everything: list[tuple[Gesture, Shown, Shown]], seen_elsewhere: dict[str, list[bool]]
+) -> None:
+    """Right: own motions. Mirrored: not with the same arm. Absent: standing. Other: every other family."""
+    own = [(g, s, m) for g, s, m in everything if g.family == name]
+    assert sum(shows(s, name, g.side, g.direction) for g, s, _ in own) >= len(own) - 1
+    one_sided = [(g, m) for g, _, m in own if g.side in ("left", "right")]
+    assert not any(shows(m, name, g.side, g.direction) for g, m in one_sided if name not in USES_OTHER_ARM)
+    family = FAMILIES[name]
+    where = family.directions[0] if family.directions else ""
+    if name not in ("stand", "shift"):
+        absent = [s for g, s, _ in everything if g.family == "stand"]
+        assert not any(shows(s, name, asked_side(name, ""), where) for s in absent)
+    assert np.mean(seen_elsewhere[name]) < (0.32 if name in LOOSE else 0.12)
+
+
+USES_OTHER_ARM = ("disco", "dab", "superhero")
+# fmt: off
+LOOSE = ("point", "beckon", "go_away", "punch", "hook", "uppercut", "karate_chop", "lift_weight", "knock", "hammer",
+         "conduct", "dance_pump", "handshake", "wave", "draw_circle", "sword", "paint", "fist_pump",
+         "push", "pull")
+# fmt: on
+"""Signs of up-and-down and to-and-fro movements, which many gestures have."""
+
+
+def test_signs_together_seldom_see_what_is_not_there(seen_elsewhere: dict[str, list[bool]]) -> None:
+    assert np.mean([np.mean(seen) for seen in seen_elsewhere.values()]) < 0.06
+
+
+@pytest.mark.parametrize(("first", "second"), [
+    (Gesture("raise", "left"), Gesture("bow")), (Gesture("bow"), Gesture("raise", "right")),
+    (Gesture("nod", count=2), Gesture("clap", "both", 3)),
+    (Gesture("look", direction="left"), Gesture("look", direction="right")), (Gesture("raise", "left"), Gesture("raise", "right")),
+])  # fmt: skip
+def test_order_is_seen_and_the_other_order_is_not(first: Gesture, second: Gesture) -> None:
+    def probe(a: Gesture, b: Gesture) -> Probe:
+        then = Probe("", b.family, FAMILIES[b.family].limb, b.side, None, b.direction)
+        return Probe("", a.family, FAMILIES[a.family].limb, a.side, None, a.direction, then=then)
+
+    made = [synthesise_spec(ClipSpec((first, second)), np.random.default_rng(i)) for i in range(8)]
+    seen = [shown(clip.features) for clip in made if clip is not None]
+    assert sum(judge(probe(first, second), s)["order"] for s in seen) >= len(seen) - 1
+    assert not any(judge(probe(second, first), s)["order"] for s in seen)
+
+
+@pytest.mark.parametrize("seconds", [1.0, 3.0, 5.0])
+def test_holds_are_seen(seconds: float) -> None:
+    for name, side, where in (
+        ("raise", "left", ""),
+        ("t_pose", "both", ""),
+        ("look", "", "left"),
+        ("lean", "", "right"),
+    ):
+        probe = Probe("", name, FAMILIES[name].limb, side, None, where, hold_s=seconds)
+        longer = Probe("", name, FAMILIES[name].limb, side, None, where, hold_s=seconds + 3)
+        for seed in range(4):
+            gesture = Gesture(name, side, direction=where, hold_s=seconds)
+            clip = synthesise_spec(ClipSpec((gesture,)), np.random.default_rng(seed))
+            assert clip is not None
+            assert judge(probe, shown(clip.features))["hold"]
+            assert not judge(longer, shown(clip.features))["hold"]
+
+
+@pytest.mark.parametrize("name", ["wave", "clap", "nod", "shake_head", "punch"])
+def test_slow_and_fast_are_told_apart(name: str) -> None:
+    side = {"clap": "both", "wave": "right", "punch": "left"}.get(name, "")
+    for tempo, word, other in ((0.65, "slow", "fast"), (1.4, "fast", "slow")):
+        for seed in range(4):
+            clip = synthesise_spec(ClipSpec((Gesture(name, side, 4, tempo=tempo),)), np.random.default_rng(seed))
+            assert clip is not None
+            limb = FAMILIES[name].limb
+            assert judge(Probe("", name, limb, side, tempo=word), shown(clip.features))["tempo"]
+            assert not judge(Probe("", name, limb, side, tempo=other), shown(clip.features))["tempo"]
+
+
+def performed(probe: Probe, seed: int, in_a_mirror: bool = False) -> Shown:
+    """What is shown when the corpus itself performs what a probe asks."""
+
+    def gesture(p: Probe) -> Gesture:
+        family = FAMILIES[p.family]
+        side = p.side or ("right" if "right" in family.sides else "".join(family.sides[:1]))
+        count = p.count or (3 if p.tempo else family.counts[0] if family.counts else 1)
+        where = p.direction or ("" if "" in family.directions else (family.directions or ("",))[0])
+        tempo = {"slow": 0.65, "fast": 1.4}.get(p.tempo, 1.0)
+        return Gesture(p.family, side, count, where, tempo=tempo, hold_s=p.hold_s)
+
+    asked = (probe, probe.then) if probe.then else (probe,)
+    clip = synthesise_spec(ClipSpec(tuple(gesture(p) for p in asked)), np.random.default_rng(seed))
+    assert clip is not None, probe.text
+    return shown(mirror(clip.features) if in_a_mirror else clip.features)
+
+
+def test_what_the_corpus_performs_passes_the_whole_suite() -> None:
+    met: dict[str, list[bool]] = {}
+    for i, probe in enumerate(PROBES):
+        for key, ok in judge(probe, performed(probe, i), with_pose=True).items():
+            met.setdefault(key, []).append(ok)
+    assert set(met) == {"limb", "pose", "side", "count", "count_exact", "direction", "hold", "tempo", "order"}
+    shares = {key: np.mean(values) for key, values in met.items()}
+    assert min(shares.values()) >= 0.95, shares
+    assert shares["side"] >= 0.99
+    assert shares["limb"] >= 0.99
+
+
+def test_standing_still_and_the_mirror_image_fail_the_suite() -> None:
+    stands = synthesise_spec(ClipSpec((Gesture("stand"),)), np.random.default_rng(0))
+    assert stands is not None
+    still = shown(stands.features)
+    assert not any(all(judge(p, still, with_pose=True).values()) for p in PROBES)
+    one_sided = [p for p in PROBES if p.side in ("left", "right") and p.then is None]
+    assert not any(judge(p, performed(p, i, in_a_mirror=True))["side"] for i, p in enumerate(one_sided))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -216,10 +217,10 @@ def small_model(path: Path) -> Path:
     return path
 
 
-def humanml3d_model(path: Path) -> Engine:
+def humanml3d_model(path: Path, n_features: int = 263) -> Engine:
     """The same with one codebook and HumanML3D's rest directions, as an import or a training on a folder has."""
     torch.manual_seed(0)
-    tokenizer = VqVae(VqVaeConfig(n_codes=16, code_dim=8, width=16, depth=1))
+    tokenizer = VqVae(VqVaeConfig(n_codes=16, code_dim=8, width=16, depth=1, n_features=n_features))
     transformer = MotionTransformer(TransformerConfig(16, 1, 8, 32, 2, 1, 1))
     save_model(path, Model(tokenizer, transformer, None, None, {}, rest_pose="humanml3d"))
     return Engine.load(path, threads=None)
@@ -341,6 +342,20 @@ class TestCommand:
         (tmp_path / "std.npy").write_bytes(b"nothing")
         assert main([*command, "--evaluator-std", str(tmp_path / "std.npy")]) == 1
         assert "std.npy" in capsys.readouterr().err
+
+    def test_kits_comparison_is_table_two(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        folder = make_folder(tmp_path / "data", "kit")
+        humanml3d_model(tmp_path / "m.safetensors", 251)
+        torch.manual_seed(0)
+        save_evaluator(tmp_path / "e.safetensors", Evaluator(replace(OURS, n_features=251, rest_pose="humanml3d")), {})
+        command = ["eval", "paper", "--data", str(folder), "--model", str(tmp_path / "m.safetensors"), "--tables", "2", "5",
+                   "--evaluator", str(tmp_path / "e.safetensors"), "--repeats", "1", "--motions-per-text", "2"]  # fmt: skip
+        assert main([*command, "--json"]) == 0
+        tables = json.loads(capsys.readouterr().out)["tables"]
+        assert list(tables) == ["2 (comparison)", "5 (editing the upper body)"]
+        assert tables["5 (editing the upper body)"] == {}, "one codebook for the whole body has no parts"
+        assert main(command) == 0
+        assert "no body parts" in capsys.readouterr().out
 
     def test_real_gives_its_keys(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         folder = make_folder(tmp_path / "data")

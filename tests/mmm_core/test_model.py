@@ -9,7 +9,7 @@ from mmm_core.checkpoint import TEXT_FILE, load_text_encoder
 from mmm_core.quantizer import Quantizer
 from mmm_core.text import TextStates
 from mmm_core.tokenizer import Tokenizer, TokenizerConfig
-from mmm_core.transformer import MotionTransformer, TransformerConfig
+from mmm_core.transformer import MotionTransformer, StepMemory, TransformerConfig
 
 
 @pytest.fixture(scope="module")
@@ -103,3 +103,23 @@ def test_the_packed_encoder_keeps_its_known_geometry() -> None:
     assert float(cosine[0, 2]) < 0.4
     alone = encoder.encode(["eat a sandwich"])
     assert torch.allclose(alone.sentence[0], states.sentence[2], atol=1e-5), "padding does not change a text"
+
+
+@torch.inference_mode()
+def test_remembering_the_step_before_changes_no_logit() -> None:
+    """Ids change at random, are masked again, and are kept: the logits are those of a pass without memory."""
+    model = small_transformer()
+    for parameter in model.parameters():
+        parameter.normal_(0, 0.3)
+    words = torch.randn(1, 5, 16)
+    context = model.read_text(TextStates(words, torch.ones(1, 5, dtype=torch.bool), words.mean(1)))
+    generator, memory = torch.Generator().manual_seed(1), StepMemory()
+    ids = torch.full((1, 12, 3), model.ids.mask)
+    ids[:, 3:5] = 7  # known from the beginning: an edit
+    for _ in range(8):
+        asked = torch.rand(1, 12, generator=generator) < 0.5
+        torch.testing.assert_close(model(ids, context, asked, memory), model(ids, context, asked), atol=1e-5, rtol=1e-4)
+        ids = torch.where(
+            torch.rand(1, 12, 1, generator=generator) < 0.4, torch.randint(0, 32, (1, 12, 3), generator=generator), ids
+        )
+        ids = torch.where(torch.rand(1, 12, 1, generator=generator) < 0.3, model.ids.mask, ids)

@@ -19,6 +19,7 @@ from mmm_core.engine import Engine
 from mmm_core.motion import Motion
 from retarget.pipeline import Retargeter
 from retarget.robot import RobotModel, list_robots, load_robot
+from tests.retarget.random_motions import random_motion
 from tests.retarget.test_pipeline import RATES_HZ, at_rest, check_bounds
 
 SHARED = Path(__file__).parents[3] / "shared" / "robots"
@@ -220,6 +221,16 @@ def test_the_shipped_models_gestures_keep_every_limit_and_touch_nothing(name: st
         for rate_hz in RATES_HZ:
             check_bounds(path, at_rest(r), r, rate_hz)
         assert not r.contact.frames(path.at_rate(100.0)).any(), text
+
+
+@pytest.mark.parametrize("kind", ["noise", "teleport"])
+@pytest.mark.parametrize("name", list_robots())
+def test_arms_that_do_anything_at_all_keep_every_limit_and_touch_nothing(name: str, kind: str) -> None:
+    r = Retargeter(load_robot(name))
+    path = r.retarget(random_motion(3, 40, kind), at_rest(r))
+    for rate_hz in RATES_HZ:
+        check_bounds(path, at_rest(r), r, rate_hz)
+    assert not r.contact.frames(path.at_rate(100.0)).any()
 
 
 @pytest.mark.parametrize("name", [n for n in list_robots() if n not in ("op2", "op3")])

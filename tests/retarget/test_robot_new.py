@@ -19,6 +19,7 @@ from retarget.kinematics import Kinematics
 from retarget.pipeline import Retargeter
 from retarget.proposal import propose
 from retarget.robot import list_robots, load_robot
+from retarget.standing import Direction, standing_pose
 from tests.retarget.test_pipeline import RATES_HZ, at_rest, check_bounds
 
 SHARED = Path(__file__).parents[3] / "shared" / "robots"
@@ -104,6 +105,30 @@ def test_a_description_of_strangers_works_with_no_edits_but_ids(tmp_path: Path) 
             assert height[up] > -0.05
             assert height[up] > 0.2 + min(height.values()), (text, height)
 
+    for upper, fore in (
+        ((0.0, 0.5, 1.0), (0.0, 0.0, 1.0)),
+        ((1.0, 0.2, 0.2), (0.0, 0.0, 1.0)),
+        ((0.3, 0.3, -1.0), (1.0, 0.0, 0.5)),
+    ):
+        assert_nearest_there_is(r, upper, fore)
+
+
+def assert_nearest_there_is(r: Retargeter, upper: Direction, fore: Direction) -> None:
+    """Its ranges are narrow (yaw 45, elbow 90 degrees): not exact, but hardly worse than the best of many poses."""
+    robot, names = r.robot, [p.name for p in r.kinematics.key_points]
+    share = np.random.default_rng(0).uniform(size=(20_000, robot.n_joints))
+    anywhere = robot.position_min_rad + share * (robot.position_max_rad - robot.position_min_rad)
+    poses = np.concatenate([standing_pose(r, upper, fore)[None], anywhere])
+    places = r.kinematics.places(poses)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        error = np.zeros(len(poses))
+        for (a, b), (forward, outward, up) in ((("shoulder", "elbow"), upper), (("elbow", "wrist"), fore)):
+            bone = places[:, names.index(f"{side}_{b}")] - places[:, names.index(f"{side}_{a}")]
+            wanted = np.array([forward, sign * outward, up])
+            cosine = bone @ wanted / np.linalg.norm(bone, axis=-1) / np.linalg.norm(wanted)
+            error += np.rad2deg(np.arccos(np.clip(cosine, -1, 1)))
+        assert error[0] <= error[1:].min() + 8.0, (side, upper, fore, error[0], error[1:].min())
+
 
 def test_another_frame_gives_the_same_robot(tmp_path: Path) -> None:
     """Poppy's description looks along -y; what comes out looks along x, with the left hand on the left."""
@@ -141,7 +166,7 @@ def test_a_range_that_does_not_fit_about_the_middle_moves_the_zero(tmp_path: Pat
 def test_an_unlimited_joint_is_marked_as_a_guess(tmp_path: Path) -> None:
     proposal = propose(described("robotis_op3"), tmp_path / "robot.toml")
     assert proposal.text.count("# ? the description has no range") == 8
-    assert any("l_el: no range" in note for note in proposal.anatomy.notes)
+    assert any("no range" in note and "l_el" in note for note in proposal.anatomy.notes)
     robot = load_robot(str(tmp_path), blanks=True)
     assert len(robot.blanks) == 16, "ids and models"
     assert any("has no range" in doubt for doubt in inspect_robot(robot).doubts)
@@ -187,6 +212,41 @@ def test_a_mesh_that_is_there_keeps_its_shape(tmp_path: Path) -> None:
     tail = f'<asset><mesh name="hand" vertex="{vertices}"/></asset>'
     robot = load_robot(str(proposed(tmp_path, two_arms('<geom type="mesh" mesh="hand"/>', tail))), blanks=True)
     assert not any("mesh" in doubt for doubt in inspect_robot(robot).doubts)
+
+
+FAMILIES = [
+    # joints of the left arm: (name, axis, place, role)
+    ("pitch, elbow", [("a", "0 1 0", "0 .2 1", "shoulder_pitch"), ("b", "0 1 0", "0 0 -.2", "elbow")]),
+    ("pitch, roll, stiff", [("a", "0 1 0", "0 .2 1", "shoulder_pitch"), ("b", "1 0 0", "0 .02 0", "shoulder_roll")]),
+    (
+        "roll, pitch, elbow",
+        [("a", "1 0 0", "0 .2 1", "shoulder_roll"), ("b", "0 1 0", "0 0 -.02", "shoulder_pitch"),
+         ("c", "0 1 0", "0 0 -.2", "elbow")],
+    ),
+    (
+        "yaw last, T-pose",
+        [("a", "0 1 0", "0 .2 1", "shoulder_pitch"), ("b", "1 0 0", "0 .03 0", "shoulder_roll"),
+         ("c", "0 1 0", "0 .1 0", "shoulder_yaw"), ("d", "1 0 0", "0 .1 0", "elbow"), ("e", "0 1 0", "0 .05 0", "forearm_yaw"),
+         ("f", "1 0 0", "0 .15 0", "wrist")],
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("joints"), [pytest.param(j, id=name) for name, j in FAMILIES])
+def test_roles_of_each_family_of_arms(tmp_path: Path, joints: list[tuple[str, str, str, str]]) -> None:
+    def arm(side: str, mirror: float) -> str:
+        out = [float(v) for v in joints[-1][2].split()] if len(joints) > 3 else [0.0, 0.0, -0.2]
+        bodies = ""
+        for name, axis, place, _ in joints:
+            x, y, z = (float(v) for v in place.split())
+            bodies += f'<body pos="{x} {mirror * y} {z}"><joint name="{side}_{name}" axis="{axis}"/><geom size=".02"/>'
+        hand = f'<geom size=".01" pos="{out[0]} {mirror * out[1]} {out[2]}"/>'
+        return bodies + hand + "</body>" * len(joints)
+
+    path = tmp_path / "mine.xml"
+    path.write_text(f"<mujoco><worldbody>{arm('left', 1.0)}{arm('right', -1.0)}</worldbody></mujoco>")
+    found = {j.name: j.role for j in find_anatomy(path).joints}
+    assert found == {f"{s}_{name}": f"{s}_{role}" for s in ("left", "right") for name, _, _, role in joints}
 
 
 MIMIC = '<equality><joint joint1="left_elbow" joint2="left_roll" polycoef="0 1 0 0 0"/></equality>'

@@ -71,6 +71,43 @@ def test_goals_without_torque_are_counted_but_not_judged() -> None:
     assert (audit.goals, dict(audit.violations)) == (1, {})
 
 
+def test_goals_faster_than_the_robots_rate_are_a_violation_unless_they_only_waited() -> None:
+    def hurried(period_s: float, n: int, wait_s: float = 0.0) -> bool:
+        audit = Audit(ROBOT)
+        audit.torque(0.0, SERVO.servo_id, True, 2048, 2048)
+        for i in range(n):
+            audit.goal(wait_s + period_s * i, SERVO.servo_id, 2048 + i % 2, True)
+        return "hurry" in audit.violations
+
+    assert not hurried(0.01, 500)
+    assert hurried(0.005, 100), "twice the rate of the robot's file"
+    assert not hurried(0.0015, 25, wait_s=0.25), "what waited in a tty comes at once"
+    assert not hurried(0.02, 200)
+
+
+def test_a_goal_lost_on_the_wire_is_a_step_of_the_wires_and_not_of_the_daemons() -> None:
+    step = int(STEP)
+    audit = Audit(ROBOT)
+    audit.torque(0.0, SERVO.servo_id, True, 2048, 2048)
+    path = [2048 + round(min(i, 40) ** 2 * BEND / 2.2) for i in range(12)]
+    assert path[-1] - path[-3] > step / 2
+    for i, tick in enumerate(path):
+        if i == 9:
+            audit.missed(SERVO.servo_id, tick)
+        else:
+            audit.goal(0.01 * i, SERVO.servo_id, tick, True)
+    assert dict(audit.violations) == {}
+
+
+def test_goals_to_a_tripped_servo_are_counted_after_a_moment_and_asking_it_for_torque_is_a_violation() -> None:
+    audit = Audit(ROBOT)
+    for i in range(30):
+        audit.goal(0.01 * i, SERVO.servo_id, 2048, False, faulted=True)
+    assert audit.report()["writes_in_fault"] == 19 and audit.report()["violations"] == 0
+    audit.torque_in_fault(1.0, SERVO.servo_id)
+    assert audit.report()["violations_by_kind"] == {"torque_in_fault": 1}
+
+
 def test_a_robot_that_touches_itself_is_seen() -> None:
     audit = Audit(ROBOT)
     pose = ROBOT.rest_rad.copy()

@@ -1,93 +1,459 @@
-"""One simulated servo: registers, torque, motion, watchdog."""
+"""One servo of Protocol 2.0 over its wire: what each register does, and the error each mistake earns."""
 
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
-from daemon.bus.packet import ErrorCode
-from retarget.robot import load_robot
-from sim.servo import SimServo
+import pytest
+from servo_bench import TICK_RAD, Bench
 
-SPEC = load_robot("op3").servos[0]  # an XM430-W350
-GOAL, TORQUE, WATCHDOG, RETURN_DELAY = 116, 64, 98, 9
+from daemon.bus import packet
+from daemon.bus.models import MODELS
+from daemon.bus.packet import ErrorCode, FactoryReset
+from sim.faults import Fault
 
-
-def servo() -> SimServo:
-    made = SimServo(SPEC, 0.0)
-    made.advance(0.0)
-    return made
+PROTOCOL_2 = [m.name for m in MODELS.values() if m.protocol == 2.0]
 
 
-def int4(value: int) -> bytes:
-    return value.to_bytes(4, "little", signed=True)
+@pytest.mark.parametrize("name", PROTOCOL_2)
+def test_every_model_answers_with_its_number_and_goes_where_it_is_sent(name: str) -> None:
+    b = Bench(name)
+    answer = b.ask(packet.ping(1))[0].parameters
+    assert int.from_bytes(answer[:2], "little") == b.servo.model.model_number
+    assert answer[2] == b.servo.firmware
+    assert b.write("torque_enable", 1) == 0
+    assert b.write("goal_position", 2548) == 0
+    b.wait(3.0)
+    assert abs(b.read("present_position") - 2548) <= 6, "within half a degree: there is friction and no integral gain"
+    assert b.read("present_velocity") == 0
+    assert b.read("moving") == 0
 
 
-def test_it_answers_for_its_model() -> None:
-    assert servo().get("model_number") == 1020
-    assert servo().get("present_position") == 2048
+@pytest.mark.parametrize(
+    ("name", "value", "torque", "error"),
+    [
+        ("goal_position", 5000, False, ErrorCode.DATA_LIMIT),
+        ("goal_position", 4096, True, ErrorCode.DATA_LIMIT),
+        ("goal_velocity", 201, False, ErrorCode.DATA_LIMIT),
+        ("goal_current", 1194, False, ErrorCode.DATA_LIMIT),
+        ("goal_pwm", 886, False, ErrorCode.DATA_RANGE),
+        ("torque_enable", 7, False, ErrorCode.DATA_RANGE),
+        ("operating_mode", 2, False, ErrorCode.DATA_RANGE),
+        ("baud_rate", 9, False, ErrorCode.DATA_RANGE),
+        ("id", 253, False, ErrorCode.DATA_RANGE),
+        ("position_p_gain", 16384, False, ErrorCode.DATA_RANGE),
+        ("return_delay_time", 5, True, ErrorCode.ACCESS),
+        ("operating_mode", 4, True, ErrorCode.ACCESS),
+        ("present_position", 0, False, ErrorCode.ACCESS),
+        ("model_number", 12, False, ErrorCode.ACCESS),
+        ("bus_watchdog", -1, False, ErrorCode.DATA_RANGE),
+    ],
+)
+def test_each_mistake_earns_its_error_and_changes_nothing(name: str, value: int, torque: bool, error: int) -> None:
+    b = Bench()
+    if torque:
+        assert b.write("torque_enable", 1) == 0
+    before = b.read(name)
+    assert b.write(name, value) == error
+    assert b.read(name) == before
 
 
-def test_without_torque_a_goal_moves_nothing() -> None:
-    s = servo()
-    assert s.write(GOAL, int4(3000)) == ErrorCode.NONE
-    s.advance(1.0)
-    assert s.get("present_position") == 2048
+def test_writes_of_no_item_half_an_item_or_beyond_the_table() -> None:
+    b = Bench()
+    errors = [
+        b.ask(packet.write(1, address, data))[0].error
+        for address, data in ((116, b"\1\2"), (14, b"\1"), (660, b"\0\0\0"))
+    ]
+    assert errors == [ErrorCode.DATA_LENGTH, ErrorCode.ACCESS, ErrorCode.ACCESS]
+    assert b.ask(packet.read(1, 600, 200))[0].error == ErrorCode.ACCESS
+    assert b.ask(packet.read(1, 14, 4))[0].parameters == bytes(4), "an address without an item reads as zero"
 
 
-def test_with_torque_it_goes_there_no_faster_than_it_can() -> None:
-    s = servo()
-    s.write(TORQUE, b"\1")
-    s.write(GOAL, int4(3072))
-    top_tick_s = SPEC.model.no_load_speed_rad_s * 4096 / (2 * math.pi)
-    last = s.position_tick
-    for i in range(1, 200):
-        s.advance(i * 0.01)
-        assert abs(s.position_tick - last) <= top_tick_s * 0.01 + 1e-6
-        last = s.position_tick
-    assert s.get("present_position") == 3072
+def test_one_bad_item_among_several_and_nothing_is_written() -> None:
+    b = Bench()
+    profile = (40000).to_bytes(4, "little") + (50).to_bytes(4, "little") + (2100).to_bytes(4, "little")
+    assert b.ask(packet.write(1, 108, profile))[0].error == ErrorCode.DATA_RANGE
+    assert [b.read(n) for n in ("profile_acceleration", "profile_velocity", "goal_position")] == [0, 0, 2048]
 
 
-def test_eeprom_is_locked_while_torque_is_on() -> None:
-    s = servo()
-    assert s.write(RETURN_DELAY, b"\0") == ErrorCode.NONE
-    s.write(TORQUE, b"\1")
-    assert s.write(RETURN_DELAY, b"\5") == ErrorCode.ACCESS
+def test_the_status_return_level_decides_who_is_answered() -> None:
+    b = Bench()
+    assert b.ask(packet.write(1, 68, b"\1")) == [], "it holds from the write on"
+    assert b.ask(packet.write(1, 65, b"\1")) == []
+    assert b.read("led") == 1
+    b.send(packet.write(1, 68, b"\0"))
+    assert b.ask(packet.read(1, 65, 1)) == [] and len(b.ask(packet.ping(1))) == 1
 
 
-def test_each_mistake_earns_its_error_and_writes_nothing() -> None:
-    s = servo()
-    assert s.write(GOAL, int4(5000)) == ErrorCode.DATA_LIMIT
-    assert s.write(TORQUE, b"\7") == ErrorCode.DATA_RANGE
-    assert s.write(132, int4(0)) == ErrorCode.ACCESS
-    assert s.write(GOAL, b"\1\2") == ErrorCode.DATA_LENGTH
-    assert s.get("goal_position") == 2048
+def test_a_registered_write_waits_for_action() -> None:
+    b = Bench("XM430-W350", "XM430-W350")
+    for servo_id in (1, 2):
+        assert b.ask(packet.reg_write(servo_id, 65, b"\1"))[0].error == 0
+    assert (b.read("led"), b.read("registered_instruction")) == (0, 1)
+    assert b.ask(packet.action()) == [], "a broadcast is not answered"
+    assert [b.read("led", i) for i in (1, 2)] == [1, 1] and b.read("registered_instruction") == 0
 
 
-def test_a_trip_drops_torque_until_a_reboot() -> None:
-    s = servo()
-    s.write(TORQUE, b"\1")
-    s.trip(1 << 5)
-    assert not s.torque
-    assert s.alert() == 0x80
-    assert s.write(TORQUE, b"\1") == ErrorCode.RESULT_FAIL
-    s.reboot()
-    assert s.alert() == 0
-    assert s.write(TORQUE, b"\1") == ErrorCode.NONE
+def test_a_servo_obeys_its_second_id_without_a_word() -> None:
+    b = Bench("XM430-W350", "XM430-W350")
+    assert b.write("secondary_id", 2, servo_id=1) == 0
+    assert len(b.ask(packet.write(2, 65, b"\1"))) == 1
+    assert [b.read("led", i) for i in (1, 2)] == [1, 1]
+
+
+def test_another_id_or_baud_is_followed_at_once() -> None:
+    b = Bench()
+    assert b.write("id", 9) == 0
+    assert b.ask(packet.ping(1)) == [] and b.ask(packet.ping(9))[0].servo_id == 9
+    assert b.write("baud_rate", 1, servo_id=9) == 0
+    assert b.ask(packet.ping(9)) == []
+    b.baud = 57600
+    assert b.ask(packet.ping(9))[0].servo_id == 9
+
+
+@pytest.mark.parametrize(
+    ("name", "firmware", "window"), [("XL330-M288", 51, 224), ("XL330-M288", 52, 208), ("XM430-W350", 45, 634)]
+)
+def test_indirect_addresses_bring_scattered_bytes_in_one_read(name: str, firmware: int, window: int) -> None:
+    b = Bench(name, firmware={1: firmware})
+    address = 578 if window == 634 else 168
+    wanted = [*range(132, 136), 146, 144, 145]
+    for i, target in enumerate(wanted):
+        assert b.ask(packet.write(1, address + 2 * i, target.to_bytes(2, "little")))[0].error == 0
+    data = b.ask(packet.read(1, window, len(wanted)))[0].parameters
+    assert int.from_bytes(data[:4], "little") == b.read("present_position")
+    assert data[4] == b.read("present_temperature")
+    assert int.from_bytes(data[5:7], "little") == b.read("present_input_voltage")
+
+
+def test_a_write_through_indirect_addresses_is_a_write_and_keeps_its_limits() -> None:
+    b = Bench()
+    for i, target in enumerate([65, 116, 117, 118, 119]):
+        b.ask(packet.write(1, 168 + 2 * i, target.to_bytes(2, "little")))
+    assert b.ask(packet.write(1, 224, b"\1" + (2100).to_bytes(4, "little")))[0].error == 0
+    assert (b.read("led"), b.read("goal_position")) == (1, 2100)
+    assert b.ask(packet.write(1, 224, b"\0" + (5000).to_bytes(4, "little")))[0].error == ErrorCode.DATA_LIMIT
+    assert (b.read("led"), b.read("goal_position")) == (1, 2100)
+
+
+def test_a_reboot_loses_ram_and_torque_keeps_eeprom_and_is_silent_for_a_while() -> None:
+    b = Bench()
+    for name, value in (("return_delay_time", 10), ("torque_enable", 1), ("position_p_gain", 77), ("led", 1)):
+        assert b.write(name, value) == 0
+    assert b.ask(packet.reboot(1))[0].error == 0
+    assert b.ask(packet.ping(1)) == []
+    b.wait(0.3)
+    assert [b.read(n) for n in ("return_delay_time", "torque_enable", "position_p_gain", "led")] == [10, 0, 800, 0]
+
+
+@pytest.mark.parametrize(
+    ("keep", "after"),
+    [(FactoryReset.EXCEPT_ID, (7, 1)), (FactoryReset.EXCEPT_ID_AND_BAUD, (7, 3)), (FactoryReset.ALL, (1, 1))],
+)
+def test_a_factory_reset_keeps_what_it_is_told(keep: FactoryReset, after: tuple[int, int]) -> None:
+    b = Bench()
+    b.write("id", 7)
+    b.send(packet.factory_reset(7, keep))
+    assert (b.servo.get("id"), b.servo.get("baud_rate")) == after
+    assert b.servo.get("return_delay_time") == 250
+
+
+def test_a_factory_reset_of_everything_is_refused_when_broadcast() -> None:
+    b = Bench()
+    b.write("led", 1)
+    b.send(packet.factory_reset(254, FactoryReset.ALL))
+    assert b.read("led") == 1
+
+
+def test_backup_and_restore() -> None:
+    b = Bench()
+    b.write("position_p_gain", 640)
+    assert b.ask(packet.restore(1))[0].error == ErrorCode.RESULT_FAIL
+    assert b.ask(packet.backup(1))[0].error == 0
+    b.write("position_p_gain", 100)
+    assert b.ask(packet.restore(1))[0].error == 0
+    assert b.read("position_p_gain") == 640
+
+
+def test_whole_turns_are_lost_by_clear_and_by_a_reboot() -> None:
+    b = Bench()
+    for name, value in (("operating_mode", 4), ("torque_enable", 1), ("goal_position", 9000)):
+        assert b.write(name, value) == 0
+    b.wait(0.5)
+    assert b.ask(packet.clear_multi_turn(1))[0].error == ErrorCode.RESULT_FAIL, "while it turns"
+    b.wait(5.0)
+    b.write("torque_enable", 0)
+    position = b.read("present_position")
+    assert b.ask(packet.clear_multi_turn(1))[0].error == 0
+    assert 0 <= b.read("present_position") < 4096
+    assert (position - b.read("present_position")) % 4096 == 0
+
+
+def test_homing_offset_and_reverse_mode_change_what_positions_mean() -> None:
+    b = Bench()
+    assert b.write("homing_offset", 100) == 0
+    assert b.read("present_position") == 2148
+    b.write("homing_offset", 0)
+    assert b.write("drive_mode", 1) == 0
+    b.write("torque_enable", 1)
+    b.write("goal_position", 2248)
+    b.wait(2.0)
+    assert abs(b.read("present_position") - 2248) <= 3
+    assert b.servo.drives.position_tick[0] == pytest.approx(4096 - 2248, abs=3)
+
+
+def test_torque_by_goal_update() -> None:
+    b = Bench()
+    assert b.write("drive_mode", 8) == 0
+    assert b.write("goal_position", 2100) == 0
+    assert b.read("torque_enable") == 1
+
+
+# Latches.
+
+
+@pytest.mark.parametrize("kind", ["overload", "hot"])
+def test_a_latched_error_drops_torque_shows_in_every_answer_and_needs_a_reboot(kind: str) -> None:
+    b = Bench(faults=(Fault(kind, start_s=1.0),))
+    b.write("torque_enable", 1)
+    b.wait(1.1)
+    answer = b.ask(packet.read(1, 64, 1))[0]
+    assert answer.error == packet.ALERT_BIT and answer.parameters == b"\0"
+    assert b.write("torque_enable", 1) == packet.ALERT_BIT | ErrorCode.RESULT_FAIL
+    b.servo.drives.temperature_c[:] = 30
+    b.ask(packet.reboot(1))
+    b.wait(0.3)
+    assert b.write("torque_enable", 1) == 0
+
+
+def test_an_error_outside_the_shutdown_mask_alerts_but_keeps_torque() -> None:
+    b = Bench(faults=(Fault("encoder", start_s=1.0),))
+    b.write("torque_enable", 1)
+    b.wait(1.1)
+    assert b.ask(packet.ping(1))[0].error == packet.ALERT_BIT
+    assert b.read("torque_enable") == 1 and b.read("hardware_error_status") == 8
+
+
+def test_a_blocked_shaft_overloads_within_seconds() -> None:
+    b = Bench(faults=(Fault("stuck", start_s=0.5),))
+    b.write("torque_enable", 1)
+    b.wait(0.6)
+    b.write("goal_position", 3000)
+    b.wait(1.0)
+    assert b.read("torque_enable") == 1 and b.read("present_current") > 700
+    b.wait(5.0)
+    assert b.read("hardware_error_status") == 1 << 5 and b.read("torque_enable") == 0
+
+
+def test_work_heats_a_servo_and_rest_cools_it() -> None:
+    b = Bench(faults=(Fault("stuck", start_s=0.1, end_s=100.0),))
+    b.write("current_limit", 400)  # 47 % of stall: no overload
+    b.write("torque_enable", 1)
+    b.wait(0.2)
+    b.write("goal_position", 3000)
+    b.wait(90.0)
+    hot = b.read("present_temperature")
+    assert hot > 30
+    b.write("torque_enable", 0)
+    b.wait(600.0)
+    assert 25 <= b.read("present_temperature") < hot
+    assert b.read("hardware_error_status") == 0
+
+
+# Watchdog.
 
 
 def test_the_watchdog_stops_it_refuses_goals_and_is_cleared_by_zero() -> None:
-    s = servo()
-    s.write(TORQUE, b"\1")
-    s.write(WATCHDOG, b"\5")  # 100 ms
-    s.write(GOAL, int4(4000))
-    s.fed(0.0)
-    s.advance(0.09)
-    assert s.get("bus_watchdog") == 5
-    s.advance(0.3)
-    stopped = s.position_tick
-    assert s.get("bus_watchdog") == -1
-    assert s.write(GOAL, int4(2048)) == ErrorCode.DATA_RANGE
-    s.advance(2.0)
-    assert abs(s.position_tick - stopped) < 60, "it stays about where it was when the bus fell silent"
-    assert s.write(WATCHDOG, b"\0") == ErrorCode.NONE
-    assert s.write(GOAL, int4(2048)) == ErrorCode.NONE
+    b = Bench()
+    for name, value in (("torque_enable", 1), ("bus_watchdog", 5), ("goal_position", 4000)):
+        assert b.write(name, value) == 0
+    b.wait(0.09)
+    assert b.servo.get("bus_watchdog") == 5
+    b.wait(0.3)
+    stopped = b.read("present_position")
+    assert 2048 < stopped < 3500 and b.read("bus_watchdog") == -1
+    assert b.write("goal_position", 2048) == ErrorCode.DATA_RANGE
+    b.wait(2.0)
+    assert abs(b.read("present_position") - stopped) < 60, "it stays about where it was when the bus fell silent"
+    assert b.write("bus_watchdog", 0) == 0
+    assert b.write("goal_position", 2048) == 0
+
+
+def test_any_instruction_feeds_the_watchdog_also_one_for_another() -> None:
+    b = Bench("XM430-W350", "XM430-W350")
+    b.write("torque_enable", 1)
+    b.write("bus_watchdog", 5)
+    for _ in range(20):
+        b.wait(0.05)
+        b.ask(packet.ping(2))
+    assert b.read("bus_watchdog") == 5
+
+
+def test_the_watchdog_of_the_330_size_flags_but_does_not_stop_and_old_firmware_has_none() -> None:
+    b = Bench("XL330-M288")
+    for name, value in (("torque_enable", 1), ("bus_watchdog", 5), ("goal_position", 4000)):
+        b.write(name, value)
+    b.wait(1.0)
+    assert b.read("bus_watchdog") == -1 and b.read("present_position") > 3900
+    old = Bench(firmware={1: 37})
+    for name, value in (("torque_enable", 1), ("bus_watchdog", 5), ("goal_position", 3000)):
+        old.write(name, value)
+    old.wait(2.0)
+    assert old.read("bus_watchdog") == 5 and abs(old.read("present_position") - 3000) <= 3
+
+
+def test_with_a_homing_offset_in_extended_mode_the_trip_itself_moves_the_joint() -> None:
+    """DynamixelSDK#584."""
+    b = Bench()
+    for name, value in (("operating_mode", 4), ("homing_offset", 200), ("torque_enable", 1), ("bus_watchdog", 5)):
+        assert b.write(name, value) == 0
+    before = b.read("present_position")
+    b.wait(2.0)
+    assert b.read("present_position") == pytest.approx(before + 200, abs=5)
+
+
+# Motion.
+
+
+@pytest.mark.parametrize("name", ["XM430-W350", "XL330-M288", "XL430-W250", "XM540-W270"])
+def test_without_profile_it_reaches_the_manuals_no_load_speed_and_no_more(name: str) -> None:
+    b = Bench(name)
+    b.write("operating_mode", 16)
+    b.write("torque_enable", 1)
+    b.write("goal_pwm", 885)
+    b.wait(1.0)
+    top = b.servo.spec.model.no_load_speed_rad_s
+    assert b.servo.drives.velocity_tick_s[0] * TICK_RAD == pytest.approx(top, rel=0.03)
+
+
+def test_a_profile_is_a_trapezoid_with_its_speed_and_acceleration() -> None:
+    b = Bench()
+    for name, value in (
+        ("profile_acceleration", 10),
+        ("profile_velocity", 40),
+        ("torque_enable", 1),
+        ("goal_position", 4000),
+    ):
+        assert b.write(name, value) == 0
+    path = [b.servo.drives.live()[6][0]]
+    while len(path) < 2000:
+        b.wait(0.002)
+        path.append(b.servo.drives.live()[6][0])
+    speed = [(y - x) * 500 * TICK_RAD for x, y in pairwise(path)]
+    bend = [(y - x) * 500 for x, y in pairwise(speed)]
+    assert max(speed) == pytest.approx(40 * 0.0239808, rel=0.01)
+    assert max(abs(a) for a in bend) <= 10 * 0.3745 * 1.02
+    assert path[-1] == pytest.approx(4000, abs=0.01)
+    assert b.read("position_trajectory") == 4000 and b.read("velocity_trajectory") == 0
+
+
+def test_a_time_based_profile_takes_its_time() -> None:
+    b = Bench()
+    for name, value in (
+        ("drive_mode", 4),
+        ("profile_acceleration", 300),
+        ("profile_velocity", 1000),
+        ("torque_enable", 1),
+    ):
+        assert b.write(name, value) == 0
+    b.write("goal_position", 3000)
+    b.wait(0.9)
+    assert b.servo.drives.live()[6][0] < 2999
+    b.wait(0.15)
+    assert b.servo.drives.live()[6][0] == pytest.approx(3000, abs=1)
+
+
+def test_velocity_mode_keeps_its_speed_and_ramps_by_the_acceleration() -> None:
+    b = Bench()
+    for name, value in (
+        ("operating_mode", 1),
+        ("profile_acceleration", 5),
+        ("torque_enable", 1),
+        ("goal_velocity", -100),
+    ):
+        assert b.write(name, value) == 0
+    b.wait(0.5)
+    assert -15 > b.read("present_velocity") > -40, "1.9 rad/s2 for half a second is 39 units, and the loop lags"
+    b.wait(3.0)
+    assert b.read("present_velocity") == pytest.approx(-100, abs=2)
+
+
+def test_current_mode_pushes_with_its_current_until_the_speed_takes_it() -> None:
+    b = Bench(faults=(Fault("stuck", start_s=0.1),))
+    for name, value in (("operating_mode", 0), ("torque_enable", 1), ("goal_current", 300)):
+        assert b.write(name, value) == 0
+    b.wait(0.5)
+    assert b.read("present_current") == pytest.approx(300, abs=2)
+
+
+def test_current_based_position_never_pushes_harder_than_its_goal_current() -> None:
+    b = Bench(faults=(Fault("stuck", start_s=0.1),))
+    for name, value in (("operating_mode", 5), ("goal_current", 150), ("torque_enable", 1), ("goal_position", 3500)):
+        assert b.write(name, value) == 0
+    b.wait(1.0)
+    assert b.read("present_current") == pytest.approx(150, abs=2)
+
+
+def test_goal_pwm_limits_how_hard_it_pushes() -> None:
+    b = Bench(faults=(Fault("stuck", start_s=0.1),))
+    for name, value in (("goal_pwm", 200), ("torque_enable", 1), ("goal_position", 3500)):
+        assert b.write(name, value) == 0
+    b.wait(1.0)
+    assert b.read("present_pwm") == 200
+
+
+def test_an_integral_gain_takes_away_what_friction_left() -> None:
+    def end(i_gain: int) -> float:
+        b = Bench("XL330-M288", faults=(Fault("push", start_s=0.1, amount=-0.05),))
+        b.write("position_i_gain", i_gain)
+        b.write("torque_enable", 1)
+        b.write("goal_position", 2500)
+        b.wait(8.0)
+        return abs(b.read("present_position") - 2500)
+
+    assert end(0) > 5
+    assert end(400) <= 2
+
+
+def test_a_heavier_proportional_gain_is_a_stiffer_servo_and_feed_forward_takes_lag() -> None:
+    def lag(**gains: int) -> float:
+        b = Bench()
+        for name, value in (
+            *gains.items(),
+            ("profile_velocity", 80),
+            ("profile_acceleration", 200),
+            ("torque_enable", 1),
+        ):
+            assert b.write(name, value) == 0
+        b.write("goal_position", 4000)
+        b.wait(0.6)
+        return b.read("position_trajectory") - b.read("present_position")
+
+    plain = lag(position_p_gain=800)
+    assert lag(position_p_gain=1600) < 0.7 * plain
+    assert lag(position_p_gain=800, feedforward_1st_gain=15) < 0.8 * plain
+
+
+def test_backlash_is_felt_when_it_turns_round() -> None:
+    b = Bench()
+    b.write("torque_enable", 1)
+    for _ in range(3):
+        b.write("goal_position", 2200)
+        b.wait(1.0)
+        b.write("goal_position", 2100)
+        b.wait(1.0)
+    shaft = b.servo.drives.body.position_rad[0] / TICK_RAD
+    assert 0.5 < abs(shaft - b.servo.drives.position_tick[0]) < 1.5, "half of a quarter of a degree"
+
+
+def test_without_torque_a_goal_moves_nothing_and_voltage_sags_under_load() -> None:
+    b = Bench("XM540-W270", faults=(Fault("stuck", start_s=0.1),))
+    b.write("goal_position", 3000)
+    b.wait(0.5)
+    assert abs(b.read("present_position") - 2048) <= 1
+    idle = b.read("present_input_voltage")
+    b.write("torque_enable", 1)
+    b.wait(0.5)
+    assert b.read("present_input_voltage") < idle
+    assert math.isclose(idle, 120)

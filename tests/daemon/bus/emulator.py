@@ -136,9 +136,10 @@ class FakePort:
 
     def _replies(self, request: Packet, version: float) -> list[tuple[int, bytes]]:
         kind, codec = request.instruction, packet if version == 2.0 else packet1
-        there = {i: s for i, s in self.servos.items() if s.model.protocol == version}
+        there = {s.get("id"): s for s in self.servos.values() if s.model.protocol == version}
         if kind in (Instruction.PING, Instruction.REBOOT):
-            return [(i, r) for i, s in there.items() if request.servo_id == i for r in self._simple(s, kind, codec)]
+            asked = [s for i, s in sorted(there.items()) if request.servo_id in (i, BROADCAST_ID)]
+            return [(s.servo_id, r) for s in asked for r in self._simple(s, kind, codec) * (1 + s.doubled)]
         try:
             wanted = codec.accesses(request)
         except PacketError:
@@ -170,7 +171,7 @@ class FakePort:
         if kind == Instruction.REBOOT:
             servo.reboot()
         data = servo.read(0, 2) + servo.read(6, 1) if codec is packet and kind == Instruction.PING else b""
-        return [codec.status(servo.servo_id, 0, data)]  # type: ignore[attr-defined]
+        return [codec.status(servo.get("id"), 0, data)]  # type: ignore[attr-defined]
 
     @staticmethod
     def _fast(wanted: list[packet.Access], there: dict[int, FakeServo]) -> list[tuple[int, bytes]]:
@@ -193,10 +194,7 @@ class FakePort:
 
 def spec(name: str, servo_id: int) -> ServoSpec:
     """A servo of a robot file."""
-    model = servo_models()[name]
-    return ServoSpec(
-        servo_id, f"joint_{servo_id}", model, 1, 1.0, model.zero_tick, ((servo_id - 1, 1.0),), model.min_tick, model.max_tick
-    )  # fmt: skip
+    return ServoSpec.direct(servo_id, f"joint_{servo_id}", servo_models()[name], servo_id - 1)
 
 
 def fake(*names: str, **port: object) -> tuple[FakePort, list[ServoSpec], VirtualClock]:

@@ -242,6 +242,19 @@ def test_two_servos_with_one_id_are_named() -> None:
     assert event.servo_id == 2 and "mmmd servo" in event.text
 
 
+def test_an_answer_of_the_last_cycle_that_comes_during_this_one_is_late_not_a_second_servo() -> None:
+    bus, far, _ = bus_of(*("2XL430-W250",) * 3)
+    bus.exchange(None)
+    far.servos[2].silent = True
+    bus.exchange(None)
+    far.servos[2].silent = False
+    put(far)
+    far.before = status(2, 0, bytes(10))
+    reading = bus.exchange(None)
+    assert reading.valid.all() and reading.position_tick[1] == 1002, "the newer one counts"
+    assert BusEventKind.DUPLICATE_ID not in kinds(bus) and bus.health.counters.late[1] == 1
+
+
 def test_noise_before_the_answers_costs_nothing_but_time() -> None:
     bus, far, _ = bus_of(*("2XL430-W250",) * 4)
     far.before = b"\xff\xff\xfd\x00\x01\x40\x00\x55" + bytes(30)
@@ -363,7 +376,7 @@ def test_what_is_not_there_is_named() -> None:
 def test_a_servo_without_a_control_table_is_refused() -> None:
     far, servos, clock = fake("XM430-W350")
     strange = replace(servos[0].model, name="XQ-1", model_number=9999)
-    odd = replace(servos[0], model=strange)
+    odd = replace(servos[0], joint_name="arm", model=strange)
     with pytest.raises(ConfigError, match=r"XQ-1.*known: XH430-W350"):
         ServoBus(far, [odd], clock)
 

@@ -49,7 +49,7 @@ def test_lost_and_broken_replies_lose_only_themselves_and_nothing_gets_out_of_st
     answered = np.zeros(16, int)
     for i in range(200):
         for servo in rig.servos.servos.values():
-            servo._position_tick = 1000.0 + i  # a value that belongs to this cycle alone
+            servo.position_tick = 1000.0 + i  # a value that belongs to this cycle alone
         reading = rig.bus.exchange(None)
         answered += reading.valid
         assert (reading.position_tick[reading.valid] == 1000 + i).all(), "a valid value is never an old one"
@@ -60,7 +60,8 @@ def test_lost_and_broken_replies_lose_only_themselves_and_nothing_gets_out_of_st
 def test_answers_that_come_too_late_are_not_taken_for_the_next_ones() -> None:
     """A loaded machine answered after the deadline; every later cycle then read the one before it, for ever."""
     rig = bus_rig()
-    rig.port._arriving.append((0.0, b"\xff\xff\xfd\x00\x01\x0e\x00\x55\x00"))
+    rig.servos.wire.answer(0.0, b"\xff\xff\xfd\x00\x01\x0e\x00\x55\x00", rig.port.baud)
+    rig.clock.sleep_until(0.001)
     assert rig.bus.exchange(None).valid.all()
 
 

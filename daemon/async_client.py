@@ -1,0 +1,292 @@
+"""The client for asyncio: `async with AsyncClient() as robot: await robot.say("wave with your right hand")`.
+
+The same requests, events and errors as `daemon.client`; every call has a time-out, and several may be under way at once.
+ZeroMQ connects again by itself when the daemon comes back.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import time
+import uuid
+from collections.abc import AsyncGenerator
+from types import TracebackType
+from typing import Literal, Self, Unpack
+
+import zmq
+import zmq.asyncio
+
+from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
+from daemon.config import Endpoints
+from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
+from daemon.keys import KeyFolder, connect_curve
+from daemon.requests import (
+    Arm,
+    Cancel,
+    Capabilities,
+    Estop,
+    Gesture,
+    Idle,
+    Look,
+    Park,
+    Play,
+    PlayOptions,
+    Request,
+    Reset,
+    Say,
+    Status,
+    Stop,
+    tag_of,
+)
+from daemon.wire import decode_event, encode
+
+REPLY_TIMEOUT_S = 5.0
+FIRST_REPLY_TIMEOUT_S = 15.0
+MOTION_TIMEOUT_S = 60.0
+
+
+class _Line:
+    """One DEALER socket whose events are handed to whoever waits for their id."""
+
+    def __init__(self, socket: zmq.asyncio.Socket, endpoint: str) -> None:
+        self._socket, self.endpoint = socket, endpoint
+        self._waiting: dict[str, asyncio.Queue[AnyEvent]] = {}
+        self._reader: asyncio.Task[None] | None = None
+
+    @contextlib.asynccontextmanager
+    async def asked(self, request: Request) -> AsyncGenerator[asyncio.Queue[AnyEvent]]:
+        """Send a request; its events come through the queue."""
+        if self._reader is None:
+            self._reader = asyncio.create_task(self._read())
+        heard: asyncio.Queue[AnyEvent] = asyncio.Queue()
+        self._waiting[request.id] = heard
+        request.t_mono = time.monotonic()
+        try:
+            await self._socket.send(encode(request))
+            yield heard
+        finally:
+            self._waiting.pop(request.id, None)
+
+    async def close(self) -> None:
+        """Hear nothing more."""
+        if self._reader is not None:
+            self._reader.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._reader
+        self._socket.close(200)
+
+    async def _read(self) -> None:
+        while True:
+            event = decode_event(await self._socket.recv())
+            if event.id in self._waiting:
+                self._waiting[event.id].put_nowait(event)
+            elif isinstance(event, Refusal) and not event.id:  # a frame that had no id to be named by
+                for heard in self._waiting.values():
+                    heard.put_nowait(event)
+
+
+class AsyncClient:
+    """Talks to one daemon from one event loop.
+
+    Args:
+        endpoints: where the daemon is.
+        timeout_s: longest wait for a reply.
+    """
+
+    def __init__(self, endpoints: Endpoints | None = None, timeout_s: float = REPLY_TIMEOUT_S) -> None:
+        self.endpoints = endpoints or Endpoints()
+        self._timeout_s = timeout_s
+        self._context = zmq.asyncio.Context()
+        self._lines: dict[str, _Line] = {}
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Close the sockets; what was not sent yet has 200 ms."""
+        for line in self._lines.values():
+            await line.close()
+        self._context.destroy(linger=200)
+
+    async def say(
+        self,
+        text: str,
+        *,
+        seed: int = 0,
+        seconds: float | None = None,
+        wait: bool = True,
+        timeout_s: float = MOTION_TIMEOUT_S,
+        **options: Unpack[PlayOptions],
+    ) -> Said:
+        """Move as the text says; arguments and errors as for `daemon.client.Client.say`."""
+        request = Say(id=uuid.uuid4().hex, text=text, seed=seed, seconds=seconds, **options)
+        return await self.play(request, wait=wait, timeout_s=timeout_s)
+
+    async def gesture(
+        self, name: str, *, wait: bool = True, timeout_s: float = MOTION_TIMEOUT_S, **options: Unpack[PlayOptions]
+    ) -> Said:
+        """Play a clip of the library."""
+        return await self.play(Gesture(id=uuid.uuid4().hex, name=name, **options), wait=wait, timeout_s=timeout_s)
+
+    async def play(self, request: Play, *, wait: bool = True, timeout_s: float = MOTION_TIMEOUT_S) -> Said:
+        """Send a request that plays something; return when it has ended, or without `wait` once it is accepted.
+
+        Raises:
+            RefusedError: rejected, failed, or no valid request.
+            CancelledByError: ended by another command, with `wait`.
+            NoAnswerError: not in time.
+        """
+        heard: list[AnyEvent] = []
+        async with contextlib.aclosing(self.events_of(request, timeout_s)) as events:
+            async for event in events:
+                heard.append(event)
+                if isinstance(event, Refusal):
+                    raise RefusedError(event)
+                if not wait:
+                    break
+        last = heard[-1]
+        if wait and not isinstance(last, Done):
+            raise CancelledByError(str(getattr(last, "by", "the daemon")))
+        return Said(request.id, tuple(heard))
+
+    async def events_of(self, request: Play, timeout_s: float = MOTION_TIMEOUT_S) -> AsyncGenerator[AnyEvent]:
+        """Send a request and yield its events as they come, the last one terminal.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        line, asked = self._line(self.endpoints.cmd), f"{tag_of(request)} {request.words[:60]!r}"
+        end_s, limit_s = time.monotonic() + timeout_s, min(timeout_s, FIRST_REPLY_TIMEOUT_S)
+        async with line.asked(request) as heard:
+            while True:
+                event = await _within(heard, limit_s, line.endpoint, asked)
+                yield event
+                if event.terminal:
+                    return
+                limit_s = max(0.0, end_s - time.monotonic())
+
+    async def cancel(self, command_id: str = "") -> Ack:
+        """End a command, all when the id is empty; the robot brakes and holds."""
+        return await self._acknowledged(Cancel(id=uuid.uuid4().hex, command=command_id), self.endpoints.cmd)
+
+    async def look(self, yaw_deg: float | None = None, pitch_deg: float | None = None) -> Ack:
+        """Turn the head left and down, whatever the body does; without angles it is let go again."""
+        request = Look(id=uuid.uuid4().hex, yaw_deg=yaw_deg, pitch_deg=pitch_deg)
+        return await self._acknowledged(request, self.endpoints.cmd)
+
+    async def idle(self, on: bool = True, style: Literal["calm", "lively"] = "calm") -> Ack:
+        """Small movements while there is nothing to play, or none."""
+        return await self._acknowledged(Idle(id=uuid.uuid4().hex, on=on, style=style), self.endpoints.cmd)
+
+    async def capabilities(self) -> CapabilitiesEvent:
+        """What this robot and this daemon can do."""
+        event = await self._ask(Capabilities(id=uuid.uuid4().hex), self.endpoints.cmd)
+        if not isinstance(event, CapabilitiesEvent):
+            raise unexpected(event, "capabilities")
+        return event
+
+    async def stop(self) -> Ack:
+        """Brake within the limits and hold."""
+        return await self._acknowledged(Stop(id=uuid.uuid4().hex), self.endpoints.ctl)
+
+    async def estop(self) -> Ack:
+        """Cut torque at once, latched."""
+        return await self._acknowledged(Estop(id=uuid.uuid4().hex), self.endpoints.ctl)
+
+    async def reset(self) -> Ack:
+        """Leave e-stop or fault; the robot is limp and must be armed."""
+        return await self._acknowledged(Reset(id=uuid.uuid4().hex), self.endpoints.ctl)
+
+    async def arm(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
+        """Torque on over a pinned goal, slow move to the rest pose."""
+        ack = await self._acknowledged(Arm(id=uuid.uuid4().hex), self.endpoints.ctl)
+        if wait:
+            await self.wait_for("idle", "moving", "holding", "fault", "estop", timeout_s=timeout_s)
+        return ack
+
+    async def park(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
+        """Slow move to the park pose, then torque off."""
+        ack = await self._acknowledged(Park(id=uuid.uuid4().hex), self.endpoints.ctl)
+        if wait:
+            await self.wait_for("limp", "fault", "estop", timeout_s=timeout_s)
+        return ack
+
+    async def status(self) -> StateEvent:
+        """The robot and the daemon now, by way of `ctl`."""
+        event = await self._ask(Status(id=uuid.uuid4().hex), self.endpoints.ctl)
+        if not isinstance(event, StateEvent):
+            raise unexpected(event, "status")
+        return event
+
+    async def wait_for(self, *states: str, timeout_s: float) -> StateEvent:
+        """Poll until the robot is in one of `states`.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        end_s = time.monotonic() + timeout_s
+        while True:
+            status = await self.status()
+            if status.state in states:
+                return status
+            if time.monotonic() > end_s:
+                asked = f"wait for {' or '.join(states)} (the robot is in {status.state})"
+                raise NoAnswerError(self.endpoints.ctl, asked, timeout_s)
+            await asyncio.sleep(0.05)
+
+    async def watch(self, *topics: str, timeout_s: float = REPLY_TIMEOUT_S) -> AsyncGenerator[tuple[str, AnyEvent]]:
+        """Yield (topic, event) of `v1/state` and `v1/event` (all when none is named), without end.
+
+        Raises:
+            NoAnswerError: nothing was published for `timeout_s`.
+        """
+        socket = self._context.socket(zmq.SUB)
+        try:
+            self._secure(socket, self.endpoints.pub)
+            for topic in topics or ("v1/",):
+                socket.setsockopt(zmq.SUBSCRIBE, topic.encode())
+            socket.connect(self.endpoints.pub)
+            while True:
+                try:
+                    topic, payload = await asyncio.wait_for(socket.recv_multipart(), timeout_s)
+                except TimeoutError:
+                    asked = f"watch {' '.join(topics) or 'v1/'}"
+                    raise NoAnswerError(self.endpoints.pub, asked, timeout_s) from None
+                yield topic.decode(), decode_event(payload)
+        finally:
+            socket.close(0)
+
+    async def _acknowledged(self, request: Request, endpoint: str) -> Ack:
+        event = await self._ask(request, endpoint)
+        if not isinstance(event, Ack):
+            raise unexpected(event, tag_of(request))
+        return event
+
+    async def _ask(self, request: Request, endpoint: str) -> AnyEvent:
+        async with self._line(endpoint).asked(request) as heard:
+            return await _within(heard, self._timeout_s, endpoint, tag_of(request))
+
+    def _line(self, endpoint: str) -> _Line:
+        if endpoint not in self._lines:
+            socket = self._context.socket(zmq.DEALER)
+            self._secure(socket, endpoint)
+            socket.connect(endpoint)
+            self._lines[endpoint] = _Line(socket, endpoint)
+        return self._lines[endpoint]
+
+    def _secure(self, socket: zmq.asyncio.Socket, endpoint: str) -> None:
+        if self.endpoints.keys is not None and endpoint.startswith("tcp://"):
+            connect_curve(socket, KeyFolder(self.endpoints.keys), "daemon")
+
+
+async def _within(heard: asyncio.Queue[AnyEvent], timeout_s: float, endpoint: str, asked: str) -> AnyEvent:
+    try:
+        return await asyncio.wait_for(heard.get(), timeout_s)
+    except TimeoutError:
+        raise NoAnswerError(endpoint, asked, timeout_s) from None

@@ -1,0 +1,61 @@
+"""A daemon of its own for a measurement: simulated robot, local sockets, a second process that keeps the cores busy."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Generator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from daemon.client import Client
+from daemon.demo import child, free_endpoints, wait_until_ready
+
+_BUSY = "x = 1\nwhile True:\n    x = x * 3 % 1000003\n"
+
+
+@contextlib.contextmanager
+def running_daemon(robot: str, *options: str, audit: Path | None = None) -> Generator[tuple[Client, Path]]:
+    """A client of a daemon that is armed and ready, and the daemon's output; parked at the end."""
+    endpoints = free_endpoints()
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "daemon.log"
+        ends = ["--cmd", endpoints.cmd, "--ctl", endpoints.ctl, "--pub", endpoints.pub]
+        bus = "sim://" if audit is None else f"sim://?audit={audit}"
+        with (
+            child(["run", "--robot", robot, "--bus", bus, *ends, *options], log) as process,
+            Client(replace(endpoints, keys=_keys_among(options))) as client,
+        ):
+            wait_until_ready(client, process, log)
+            client.arm()
+            yield client, log
+            if client.status().state not in ("fault", "estop", "limp"):
+                client.park()
+
+
+def _keys_among(options: Sequence[str]) -> Path | None:
+    return Path(options[options.index("--keys") + 1]) if "--keys" in options else None
+
+
+@contextlib.contextmanager
+def busy_cores() -> Generator[None]:
+    """One process that never rests for each core, at normal priority."""
+    n = len(os.sched_getaffinity(0))
+    hogs = [subprocess.Popen([sys.executable, "-c", _BUSY]) for _ in range(n)]
+    try:
+        yield
+    finally:
+        for hog in hogs:
+            hog.send_signal(signal.SIGKILL)
+            hog.wait(5)
+
+
+def percentile(values: Sequence[float], share: float) -> float | None:
+    """The value that `share` percent do not exceed; None for none."""
+    import numpy as np
+
+    return round(float(np.percentile(values, share)), 2) if len(values) else None

@@ -1,0 +1,141 @@
+"""What happens where motions meet: jerk of the human against real motion, steps of the joints, closure of loops."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bench.daemon_rig import percentile
+from daemon.bench.report import context
+from daemon.bench.texts import draw_texts
+from daemon.cycles import closed, find_loop
+from daemon.idle import IdleScore
+from daemon.planner import FADE_FRAMES
+from daemon.posture import Posture, distance_deg, faded_in, joined, posture_of, standing
+from mmm_core.corpus.cmu import read_clips
+from mmm_core.features import recover
+from mmm_core.motion import FPS
+from retarget.paths import JointState
+from retarget.pipeline import Retargeter
+from retarget.robot import load_robot
+
+Array = NDArray[np.float64]
+
+WINDOW = 20
+"""Frames (one second) around a seam, and of a window of real motion."""
+UPPER = (12, 15, 16, 17, 18, 19, 20, 21)
+_METHOD = (
+    "peak jerk: largest third difference of position times 20^3, m/s3, over neck, head, shoulders, elbows, wrists against the"
+    " pelvis on the common body, in one second around the seam at 20 fps; mean over seams divided by the mean over one-second"
+    " windows of held-out CMU motion (the livelier half); prompts cut in at a random moment, out of idle movements, and"
+    " loops; velocity step: change of the goal's velocity at the seam from one bus period to the next beyond what the path"
+    " itself changes in a period, as a share of the joint's limit; closure: angle between the frame a loop ends in and the"
+    " one before its beginning"
+)
+
+
+def bench_seams(n: int = 60, seed: int = 0, robot: str = "reference", data: str = "../shared/data") -> dict[str, Any]:
+    """`peak_jerk_ratio` (the worst kind of seam), `velocity_step_share`, `loop_closure_deg`, and each kind's own."""
+    from pathlib import Path
+
+    from mmm_core.engine import Engine
+
+    rng = np.random.default_rng(seed)
+    engine = Engine.load(threads=1)
+    motions = [engine.generate(t, seed=seed + i).motion for i, t in enumerate(draw_texts(2 * n, seed))]
+    clips = [posture_of(m) for m in motions if len(m.joints_m) > 2 * WINDOW]
+    real = _real_jerk(Path(data), rng)
+    prompt, steps = _prompt_seams(clips, rng, Retargeter(load_robot(robot)))
+    idle = [_idle_seam(p, rng) for p in clips[:n]]
+    loops = [(p, loop) for p in clips if (loop := find_loop(p)) is not None]
+    rounds = [_peak_jerk(joined([closed(p, loop)] * 3), loop[1] - loop[0]) for p, loop in loops]
+    closure = [_closure_deg(p, loop) for p, loop in loops]
+    kinds = {"prompt_to_prompt": prompt, "idle_to_prompt": idle, "loop": rounds}
+    ratios = {kind: round(float(np.mean(values)) / real, 3) for kind, values in kinds.items()}
+    return {
+        "peak_jerk_ratio": max(ratios.values()),
+        "ratio_of": ratios,
+        "real_peak_jerk_m_s3": round(real, 1),
+        "velocity_step_share": percentile(steps, 100),
+        "loop_closure_deg": percentile(closure, 100),
+        "n": {kind: len(values) for kind, values in kinds.items()},
+        "robot": robot,
+        **context(seed, _METHOD),
+    }
+
+
+def _prompt_seams(
+    clips: list[Posture], rng: np.random.Generator, retargeter: Retargeter
+) -> tuple[list[float], list[float]]:
+    """Peak jerk where one text takes over from another, and the velocity steps of the joints there."""
+    jerk: list[float] = []
+    steps: list[float] = []
+    rate_hz = retargeter.robot.bus.rate_hz
+    limit = retargeter.robot.velocity_limit_rad_s
+    for a, b in zip(clips[::2], clips[1::2], strict=False):
+        k = int(rng.integers(WINDOW // 2, len(a) - WINDOW // 2))
+        after = faded_in(b, a.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
+        jerk.append(_peak_jerk(joined([a[:k], after]), k))
+        first = retargeter.retarget(a.motion())
+        q = first.at_rate(rate_hz)
+        f = min(len(q) - 2, round(k / FPS * rate_hz))
+        t_s = np.array([(f + 1) / rate_hz])
+        second = retargeter.retarget(after.motion(), JointState(q[f], first.velocity_at(t_s)[0])).at_rate(rate_hz)
+        v = np.diff(np.concatenate([q[f - 2 : f + 1], second[:3]]), axis=0) * rate_hz  # two steps before, three after
+        bend = np.abs(np.diff(v, axis=0))
+        steps.append(float((np.maximum(0, bend[1] - np.maximum(bend[0], bend[2])) / limit).max()))
+    return jerk, steps
+
+
+def _idle_seam(p: Posture, rng: np.random.Generator) -> float:
+    """Peak jerk where a text takes over from idle movements."""
+    score = IdleScore("lively", int(rng.integers(1000)))
+    idle = joined([score.next()[0] for _ in range(4)])
+    k = int(rng.integers(WINDOW, len(idle) - FADE_FRAMES))
+    after = faded_in(p, idle.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
+    return _peak_jerk(joined([idle[:k], after]), k)
+
+
+def _closure_deg(p: Posture, loop: tuple[int, int]) -> float:
+    """How far the loop's last frame is from the frame before its first."""
+    return float(distance_deg(closed(p, loop)[-1:], p.at(np.array([loop[0] - 1])))[0])
+
+
+def _peak_jerk(p: Posture, at: int) -> float:
+    """Largest jerk within half a second of frame `at`, m/s3."""
+    joints = _on_common_body(p).motion().joints_m.astype(np.float64)[:, UPPER]
+    around = joints[max(0, at - WINDOW // 2) : at + WINDOW // 2]
+    return float(np.linalg.norm(np.diff(around, n=3, axis=0), axis=-1).max()) * FPS**3
+
+
+def _on_common_body(p: Posture) -> Posture:
+    from dataclasses import replace
+
+    return replace(p, lengths_m=standing().lengths_m)
+
+
+def _real_jerk(folder: Any, rng: np.random.Generator) -> float:
+    """Mean peak jerk of one-second windows of held-out real motion, of the half in which more happens."""
+    peaks: list[float] = []
+    for features, _ in read_clips(folder, "test"):
+        recovered = recover(features)
+        p = _posture_of_joints(recovered)
+        if len(p) > WINDOW + 4:
+            at = int(rng.integers(WINDOW // 2, len(p) - WINDOW // 2))
+            peaks.append(_peak_jerk(p, at))
+        if len(peaks) >= 600:
+            break
+    return float(np.mean(np.sort(peaks)[len(peaks) // 2 :]))
+
+
+def _posture_of_joints(recovered: Any) -> Posture:
+    from mmm_core.motion import N_FEATURES, Motion
+
+    T = len(recovered.joints_m)
+    motion = Motion(
+        recovered.joints_m.astype(np.float32), FPS, recovered.head_quat_wxyz.astype(np.float32),
+        np.zeros((T, 2), np.float32), np.zeros((T, N_FEATURES), np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0,
+    )  # fmt: skip
+    return posture_of(motion)

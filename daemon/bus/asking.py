@@ -1,0 +1,187 @@
+"""Asking single servos over a port: questions and answers, echo, late answers, and the loss of the port."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from daemon.bus.dialect import DIALECTS, Decoder, Dialect
+from daemon.bus.events import BusEvent, BusEventKind, EventLog
+from daemon.bus.feedback import is_status
+from daemon.bus.health import HealthTracker
+from daemon.bus.models import MODELS, BusModel
+from daemon.bus.packet import Packet
+from daemon.bus.port import Port, Reopenable
+from daemon.bus.reading import UNKNOWN, BusReading
+from daemon.bus.timing import MARGIN_S, SETUP_MARGIN_S, Timing
+from daemon.clock import Clock
+from daemon.errors import CommandError, ConfigError, LinkLostError, LinkTimeoutError, ServoFaultError
+from retarget.robot import ServoSpec
+
+TRIES = 3
+_REOPEN_EVERY_S = 0.5
+_ECHO_BYTES = 8
+"""So many bytes of a request come back only by echo: no answer begins like one."""
+
+
+class Asking:
+    """The servos of a port, one question at a time.
+
+    Attributes:
+        port: where they are.
+        servos, ids, models: who they are; rows of everything else follow them.
+        firmware: of each, known once verified; 0 before.
+        timing: how long an exchange may take.
+        reading: what they said last.
+        health: what can be said of each.
+        events: what happened.
+    """
+
+    def __init__(self, port: Port, servos: Sequence[ServoSpec], clock: Clock, *, margin_s: float = MARGIN_S) -> None:
+        self.port, self.servos, self.clock = port, tuple(servos), clock
+        self.ids = tuple(s.servo_id for s in servos)
+        self.models = tuple(_model(s) for s in servos)
+        self.firmware = [0] * len(servos)
+        self.timing = Timing(port.baud, margin_s)
+        self.events = EventLog()
+        self.reading = BusReading.of(len(self.ids))
+        self.health = HealthTracker(len(self.ids))
+        self._row = {servo_id: i for i, servo_id in enumerate(self.ids)}
+        self._decoders: dict[float, Decoder] = {m.protocol: DIALECTS[m.protocol].decoder() for m in self.models}
+        self._torque_expected = False
+        self._echo = 0
+        self._sent = b""
+        self._lost_since_s: float | None = None
+        self._reopen_due_s = 0.0
+
+    def _ask(self, request: bytes, row: int, answer_bytes: int) -> Packet:
+        """Send one instruction and return the servo's answer; asked again when it stays silent.
+
+        Only instructions that may be repeated are sent this way.
+        """
+        for i in range(TRIES):
+            self.health.counters.retries[row] += i > 0
+            answer = self._ask_once(request, row, answer_bytes, SETUP_MARGIN_S)
+            if answer is not None:
+                return answer
+        text = f"servo {self.ids[row]} did not answer {TRIES} times on {self.port.name}; check its cable and power"
+        raise LinkTimeoutError(text)
+
+    def _ask_once(self, request: bytes, row: int, answer_bytes: int | None, margin_s: float) -> Packet | None:
+        """One question; None when nothing came. `answer_bytes` None takes an answer of any length."""
+        self._settle()
+        dialect, servo_id = self._of(row), self.ids[row]
+        decoder = self._decoders[dialect.version]
+        sent_s = self._send(request)
+        n_bytes = len(request) + dialect.status_bytes + (3 if answer_bytes is None else answer_bytes)
+        deadline_s = sent_s + self.timing.longest_s(n_bytes, 1) - self.timing.margin_s + margin_s
+        skip = self._echo * len(request)
+        while (left_s := deadline_s - self.clock.now_s()) > 0:
+            data = self.port.read(256, left_s)
+            if not data:
+                break
+            if not self._echo and self._is_echo(data):
+                skip = len(request)
+            data, skip = data[skip:], max(0, skip - len(data))
+            for p in decoder.feed(data):
+                if p.servo_id != servo_id or not is_status(p):
+                    continue
+                refused = dialect.refusal(p.error)
+                if refused:
+                    raise ServoFaultError(servo_id, f"instruction {request.hex(' ')}", refused)
+                if answer_bytes in (None, len(p.parameters)):  # an answer to something else has another length
+                    return p
+        return None
+
+    def take_events(self) -> list[BusEvent]:
+        """Events since the last call."""
+        return self.events.take()
+
+    def close(self) -> None:
+        """Release the port."""
+        self.port.close()
+
+    def _settle(self) -> None:
+        """Let what is on the wire come home before anything else is sent; nothing here."""
+
+    def _send(self, data: bytes, *, drain: bool = True) -> float:
+        """Write; the time it was written."""
+        try:
+            if self._lost_since_s is not None:
+                self._reopen()
+            if drain:
+                self._drop_late_answers()
+            self._sent = data
+            self.port.write(data)
+        except LinkLostError as error:
+            self._note_loss(error)
+            raise
+        return self.clock.now_s()
+
+    def _drop_late_answers(self) -> None:
+        """Throw away what arrived after its deadline, or this cycle would read the last one's answers for ever."""
+        while late := self.port.read(4096, 0.0):
+            for decoder in self._decoders.values():
+                for p in decoder.feed(late):
+                    if p.servo_id in self._row:
+                        self.health.came_late(self._row[p.servo_id])
+        for decoder in self._decoders.values():
+            decoder.clear()
+
+    def _is_echo(self, data: bytes | bytearray) -> bool:
+        """Whether what came begins with what was sent; noted, and skipped from now on."""
+        head = self._sent[:_ECHO_BYTES]
+        if len(head) < _ECHO_BYTES or not data.startswith(head):
+            return False
+        self._echo = 1
+        text = f"{self.port.name} hears what it sends; it is skipped. Turn the adapter's echo off where it can be"
+        self.events.add(BusEventKind.ECHO, self.clock.now_s(), text)
+        return True
+
+    def _note_loss(self, error: LinkLostError) -> None:
+        if self._lost_since_s is None:
+            self._lost_since_s = self._reopen_due_s = self.clock.now_s()
+            self.events.add(BusEventKind.LOST, self._lost_since_s, str(error))
+
+    def look_again(self) -> None:
+        """Somebody says that the port is back: the next write looks for it, however lately it was looked for."""
+        self._reopen_due_s = 0.0
+
+    def _reopen(self) -> None:
+        """Try to open the port again, by its path or where the same adapter is now; at most twice a second.
+
+        Raises:
+            LinkLostError: it is not back.
+        """
+        now_s = self.clock.now_s()
+        if isinstance(self.port, Reopenable) and now_s >= self._reopen_due_s:
+            self._reopen_due_s = now_s + _REOPEN_EVERY_S
+            self.port.reopen()
+            text = f"{self.port.name} is back after {now_s - (self._lost_since_s or now_s):.1f} s; nothing moves until armed anew"
+            self.events.add(BusEventKind.REPLUGGED, now_s, text)
+            self._expect_torque(on=False)
+        elif isinstance(self.port, Reopenable):
+            raise LinkLostError(f"{self.port.name}: lost; looked for again every {_REOPEN_EVERY_S} s")
+        self._lost_since_s = None
+
+    def _expect_torque(self, *, on: bool) -> None:
+        """From now on torque should be so; what was read before says nothing about it."""
+        self._torque_expected = on
+        self.reading.torque[:] = UNKNOWN
+
+    def _of(self, row: int) -> Dialect:
+        return DIALECTS[self.models[row].protocol]
+
+    def _row_of(self, servo_id: int) -> int:
+        if servo_id not in self._row:
+            raise CommandError(f"no servo {servo_id} on this bus; there are {', '.join(map(str, self.ids))}")
+        return self._row[servo_id]
+
+
+def _model(servo: ServoSpec) -> BusModel:
+    number = servo.model.model_number
+    if number not in MODELS:
+        known = ", ".join(m.name for m in MODELS.values())
+        raise ConfigError(
+            f"servo {servo.servo_id}: no control table for model {number} ({servo.model.name}); known: {known}"
+        )
+    return MODELS[number]

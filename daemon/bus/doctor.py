@@ -1,0 +1,171 @@
+"""What stands between a robot and a good run: rights, adapter, servos, settings, rate; each with the exact remedy."""
+
+from __future__ import annotations
+
+import getpass
+import os
+import resource
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from daemon.bus.adapter import GOOD_LATENCY_MS, adapter_at, latency_remedy, latency_timer_ms
+from daemon.bus.checks import ADVISED, NEEDED, Finding, check_servos, fix
+from daemon.bus.port import Port
+from daemon.bus.servo_bus import ServoBus
+from daemon.clock import Clock
+from daemon.errors import BusMismatchError, ConfigError, DaemonError, PortError
+from retarget.robot import RobotModel
+
+GOOD, ADVICE, BAD = "good", "advice", "bad"
+_FEW = 2
+_LIMITS = "/etc/security/limits.d/99-mmmd.conf"
+
+
+@dataclass(frozen=True)
+class Check:
+    """One thing that was looked at.
+
+    Attributes:
+        what: it was.
+        found: in words.
+        verdict: GOOD, ADVICE (works, but less well) or BAD (does not work).
+        remedy: what to do; empty when good.
+    """
+
+    what: str
+    found: str
+    verdict: str
+    remedy: str = ""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """All checks, and the budget of a cycle where the bus could be reached."""
+
+    checks: tuple[Check, ...]
+    budget: tuple[str, ...] = ()
+
+    @property
+    def bad(self) -> bool:
+        """Whether something does not work."""
+        return any(c.verdict == BAD for c in self.checks)
+
+
+def diagnose(robot: RobotModel, open_port: Callable[[], Port], clock: Clock, *, correct: bool = False) -> Diagnosis:
+    """Look at everything, and with `correct` set right the servos' settings that can be."""
+    checks = [*_rights()]
+    try:
+        port = open_port()
+    except PortError as error:
+        return Diagnosis((*checks, Check("port", error.problem, BAD, error.remedy)))
+    try:
+        checks += _adapter(port)
+        bus = ServoBus(port, robot.servos, clock)
+        try:
+            bus.verify()
+        except BusMismatchError as error:
+            rows = [
+                Check(f"servo {r.servo_id} ({r.joint_name})", r.found, BAD, f"expected {r.expected}")
+                for r in error.rows
+            ]
+            hint = str(error).splitlines()[-1]
+            return Diagnosis((*checks, *rows, Check("servos", f"{len(rows)} are not as in the robot file", BAD, hint)))
+        checks.append(Check("servos", f"all {len(bus.ids)} answer, as in the robot file", GOOD))
+        firmware = ", ".join(sorted({f"{m.name} {f}" for m, f in zip(bus.models, bus.firmware, strict=True)}))
+        checks.append(Check("firmware", firmware, GOOD))
+        checks += _settings(bus, robot, correct=correct)
+        checks += _events(bus)
+        return Diagnosis((*checks, *_rate(bus, robot)), tuple(bus.plan().lines(robot.bus.rate_hz)))
+    except DaemonError as error:
+        return Diagnosis((*checks, Check("bus", str(error), BAD, "check cable and power, then again")))
+    finally:
+        port.close()
+
+
+def _rights() -> list[Check]:
+    """Whether the bus process may run ahead of everything else."""
+    user = getpass.getuser()
+    checks: list[Check] = []
+    for what, limit, key in (
+        ("real-time priority", resource.RLIMIT_RTPRIO, "rtprio 50"),
+        ("locked memory", resource.RLIMIT_MEMLOCK, "memlock unlimited"),
+    ):
+        soft = resource.getrlimit(limit)[0]
+        enough = os.geteuid() == 0 or soft == resource.RLIM_INFINITY or (limit == resource.RLIMIT_RTPRIO and soft >= 40)
+        remedy = f"echo '{user} - {key}' | sudo tee -a {_LIMITS}   and log in again"
+        checks.append(
+            Check(what, "allowed" if enough else "not allowed: late cycles under load", *_good(enough, remedy))
+        )
+    return checks
+
+
+def _good(good: bool, remedy: str) -> tuple[str, str]:
+    return (GOOD, "") if good else (ADVICE, remedy)
+
+
+def _adapter(port: Port) -> list[Check]:
+    device = getattr(port, "device", None)
+    if not isinstance(device, str):
+        return [Check("port", f"{port.name}, {port.baud} baud", GOOD)]
+    adapter = adapter_at(device)
+    kind = f"USB {adapter.vendor}:{adapter.product} {adapter.serial}".strip() if adapter else "no USB adapter"
+    checks = [Check("port", f"{device}, {port.baud} baud, {kind}", GOOD)]
+    if adapter and not adapter.serial:
+        remedy = "after a replug it is found by its path alone: name it by /dev/serial/by-path/"
+        checks.append(Check("adapter's serial number", "none", ADVICE, remedy))
+    timer_ms = latency_timer_ms(device)
+    if timer_ms is not None:
+        checks.append(
+            Check("latency timer", f"{timer_ms} ms", *_good(timer_ms <= GOOD_LATENCY_MS, latency_remedy(device)))
+        )
+    return checks
+
+
+def _settings(bus: ServoBus, robot: RobotModel, *, correct: bool) -> list[Check]:
+    findings = check_servos(bus, robot)
+    fixed: list[Finding] = []
+    if correct:
+        left = fix(bus, findings)
+        fixed = [f for f in findings if f not in left]
+        findings = left
+    checks: list[Check] = []
+    for severity in (NEEDED, ADVISED):
+        for item in dict.fromkeys(f.item for f in findings if f.severity == severity):
+            checks += _of_item([f for f in findings if (f.item, f.severity) == (item, severity)], correct=correct)
+    if fixed:
+        checks.append(Check("settings", f"{len(fixed)} corrected", GOOD))
+    if not findings:
+        checks.append(Check("settings", "as the robot file needs them", GOOD))
+    return checks
+
+
+def _of_item(findings: list[Finding], *, correct: bool) -> list[Check]:
+    """One setting: a row for each servo, or one for all where they are many."""
+    first = findings[0]
+    verdict = BAD if first.severity == NEEDED else ADVICE
+    by_fix = "--fix, or " if first.fix is not None and not correct else ""
+    if len(findings) <= _FEW:
+        return [
+            Check(
+                f"servo {f.servo_id} ({f.joint_name}) {f.item}", f.found, verdict, f"{f.expected}: {by_fix}{f.remedy}"
+            )
+            for f in findings
+        ]
+    what = f"{first.item} of servos {', '.join(str(f.servo_id) for f in findings)}"
+    remedy = f"{first.expected} on servo {first.servo_id}: {by_fix}{first.remedy}, and so on"
+    return [Check(what, ", ".join(dict.fromkeys(f.found for f in findings)), verdict, remedy)]
+
+
+def _events(bus: ServoBus) -> list[Check]:
+    return [Check(e.kind.value, e.text, ADVICE, "") for e in bus.take_events()]
+
+
+def _rate(bus: ServoBus, robot: RobotModel) -> list[Check]:
+    plan, rate_hz = bus.plan(), robot.bus.rate_hz
+    try:
+        fits = plan.require(rate_hz)
+    except ConfigError:
+        remedy = "; ".join(plan.remedies(rate_hz)) or f"bus.rate_hz {int(plan.highest_hz)} or fewer servos on this port"
+        return [Check("rate", f"{rate_hz:g} Hz is impossible, {int(plan.highest_hz)} Hz is not", BAD, remedy)]
+    found = f"{rate_hz:g} Hz, {plan.cycle_s * rate_hz:.0%} of each period used"
+    return [Check("rate", found, *_good(fits, "quicker adapter (latency timer), or a lower bus.rate_hz"))]

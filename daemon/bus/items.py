@@ -1,0 +1,167 @@
+"""Items of the control tables by name, of one servo or of all, and what goes with torque."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.asking import Asking
+from daemon.bus.events import BusEventKind
+from daemon.bus.group import GroupWrite, GroupWrite1
+from daemon.bus.registers import WATCHDOG_TRIPPED, Item, hardware_error_text
+from daemon.errors import CommandError
+
+_GAP_BYTES = 12
+"""Items no farther apart are read in one question."""
+_FULL_EFFORT = {"goal_pwm": 885, "torque_limit": 1023}
+
+
+class Items(Asking):
+    """Reads and writes items of servos of either protocol."""
+
+    def read_item(self, servo_id: int, name: str) -> int:
+        """Value of one item of one servo."""
+        row = self._row_of(servo_id)
+        item = self._item(row, name)
+        answer = self._ask(self._of(row).read(servo_id, item.address, item.size), row, item.size)
+        return item.decode(answer.parameters)
+
+    def read_items(self, servo_id: int, names: Sequence[str]) -> dict[str, int]:
+        """Values of those of the named items that a servo has, neighbours in one question."""
+        row = self._row_of(servo_id)
+        table, values = self.models[row].table, dict[str, int]()
+        items = sorted((table[name] for name in names if name in table), key=lambda item: item.address)
+        while items:
+            span = [items.pop(0)]
+            while items and items[0].address - span[-1].end <= _GAP_BYTES:
+                span.append(items.pop(0))
+            start, length = span[0].address, span[-1].end - span[0].address
+            data = self._ask(self._of(row).read(servo_id, start, length), row, length).parameters
+            values |= {i.name: i.decode(data[i.address - start : i.end - start]) for i in span}
+        return values
+
+    def poll_item(self, servo_id: int, name: str) -> int | None:
+        """Value of one item, asked once and within the cycle; None when the servo did not answer in time."""
+        row = self._row_of(servo_id)
+        item = self._item(row, name)
+        request = self._of(row).read(servo_id, item.address, item.size)
+        answer = self._ask_once(request, row, item.size, self.timing.margin_s)
+        return None if answer is None else item.decode(answer.parameters)
+
+    def write_item(self, servo_id: int, name: str, value: int) -> None:
+        """Set one item of one servo and wait for its answer.
+
+        Raises:
+            CommandError: the item is read only or the value does not fit.
+            ServoFaultError: the servo refused.
+            LinkTimeoutError: it did not answer.
+        """
+        row = self._row_of(servo_id)
+        item = self._item(row, name)
+        if not item.writable:
+            raise CommandError(f"servo {servo_id}: '{name}' is read only")
+        try:
+            data = item.encode(value)
+        except OverflowError:
+            raise CommandError(f"servo {servo_id}: '{name}' = {value} does not fit {item.size} bytes") from None
+        self._ask(self._of(row).write(servo_id, item.address, data), row, 0)
+
+    def write_all(self, name: str, value: int) -> None:
+        """Set one item of every servo, each confirmed; the first refusal is raised."""
+        for servo_id in self.ids:
+            self.write_item(servo_id, name, value)
+        if name == "torque_enable":
+            self._expect_torque(on=bool(value))
+
+    def send_all(self, name: str, value: int) -> None:
+        """Set one item of every servo that has it, with packets that nobody answers."""
+        values = np.full(len(self.ids), value, np.int32)
+        self._send(b"".join(write.frame(values[rows]) for rows, write in self._writers(name)))
+
+    def send_torque_off(self) -> None:
+        """Cut the torque of every servo with packets that nobody has to answer."""
+        self._expect_torque(on=False)
+        self.send_all("torque_enable", 0)
+
+    def set_effort(self, share: float, *, confirmed: bool = False) -> None:
+        """Limit what every servo may exert, as a share of all: goal PWM, or torque limit on protocol 1.0.
+
+        Args:
+            share: 0 to 1.
+            confirmed: each servo is told by itself and has to answer; else all at once, unanswered.
+        """
+        for name, full in _FULL_EFFORT.items():
+            able = [i for i, m in zip(self.ids, self.models, strict=True) if name in m.table]
+            value = round(full * min(1.0, max(0.0, share)))
+            if able and not confirmed:
+                self.send_all(name, value)
+            for servo_id in able if confirmed else ():
+                self.write_item(servo_id, name, value)
+
+    def arm_watchdog(self, units: int) -> tuple[int, ...]:
+        """Arm the bus watchdog (20 ms units) of every servo that has one; the ids of those without, or of no use.
+
+        Firmware of the 330 size that flags the trip but keeps moving is armed as well, and named here.
+        """
+        without: list[int] = []
+        for servo_id, model, firmware in zip(self.ids, self.models, self.firmware, strict=True):
+            if model.has_watchdog(firmware or 255):
+                self.write_item(servo_id, "bus_watchdog", units)
+            if not (model.has_watchdog(firmware or 255) and model.watchdog_stops):
+                without.append(servo_id)
+        return tuple(without)
+
+    def clear_watchdog(self) -> None:
+        """Clear every bus watchdog; a servo that has tripped loses its torque first.
+
+        Cleared under torque it would go on to the goal it was stopped on the way to.
+        """
+        for servo_id in self.tripped_watchdogs():
+            self.events.add(BusEventKind.WATCHDOG_TRIPPED, self.clock.now_s(), f"servo {servo_id}", servo_id)
+            self.write_item(servo_id, "torque_enable", 0)
+        for servo_id, model in zip(self.ids, self.models, strict=True):
+            if "bus_watchdog" in model.table:
+                self.write_item(servo_id, "bus_watchdog", 0)
+
+    def tripped_watchdogs(self) -> list[int]:
+        """Ids of the servos that have stopped by their bus watchdog."""
+        able = [i for i, m in zip(self.ids, self.models, strict=True) if "bus_watchdog" in m.table]
+        return [i for i in able if self.read_item(i, "bus_watchdog") == WATCHDOG_TRIPPED]
+
+    def hardware_error_text(self, servo_id: int) -> str:
+        """What a servo with the alert bit set complains of."""
+        row = self._row_of(servo_id)
+        if "hardware_error_status" in self.models[row].table:
+            self.reading.hardware_error[row] = self.read_item(servo_id, "hardware_error_status")
+        return hardware_error_text(int(self.reading.hardware_error[row]))
+
+    def reboot(self, servo_id: int) -> None:
+        """Restart a servo: a latched error goes, and with it its torque and settings."""
+        row = self._row_of(servo_id)
+        self._ask(self._of(row).reboot(servo_id), row, 0)
+        self.health.faulted[row] = True
+
+    def _writers(self, name: str) -> list[tuple[NDArray[np.intp], GroupWrite | GroupWrite1]]:
+        """One group write for each place at which the item stands, of the servos that have it."""
+        places: dict[tuple[float, int, int], list[int]] = {}
+        for row, model in enumerate(self.models):
+            item = model.table.get(name)
+            if item is not None:
+                places.setdefault((model.protocol, item.address, item.size), []).append(row)
+        if not places:
+            raise CommandError(f"no servo on {self.port.name} has an item '{name}'")
+        return [
+            (
+                np.array(rows, np.intp),
+                (GroupWrite if protocol == 2.0 else GroupWrite1)([self.ids[r] for r in rows], address, size),
+            )
+            for (protocol, address, size), rows in places.items()
+        ]
+
+    def _item(self, row: int, name: str) -> Item:
+        table = self.models[row].table
+        if name not in table:
+            raise CommandError(f"servo {self.ids[row]} has no item '{name}'; it has: {', '.join(table)}")
+        return table[name]

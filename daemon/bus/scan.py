@@ -1,0 +1,144 @@
+"""Who is on a port: every baud, both protocols. Only pings and reads: nothing on the bus changes."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from daemon.bus import packet, packet1
+from daemon.bus.dialect import DIALECTS
+from daemon.bus.models import MODELS
+from daemon.bus.packet import BROADCAST_ID, Packet
+from daemon.bus.port import Port
+from daemon.bus.timing import BITS_PER_BYTE
+from daemon.clock import Clock
+
+BAUDS = (57_600, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 115_200, 9_600, 4_500_000)
+"""In the order in which robots use them: factory, Poppy and OP2, OP3, and the rest."""
+_SILENCE_S = 0.06
+"""After the last answer to a broadcast ping: two periods of an adapter that was never set up, and some."""
+_ANSWER_S = 0.02
+"""For the answer to a single ping: one period of such an adapter."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A servo that answered."""
+
+    baud: int
+    protocol: float
+    servo_id: int
+    model_number: int
+    firmware: int
+
+    @property
+    def model_name(self) -> str:
+        """The maker's name, or the number where it is not known here."""
+        model = MODELS.get(self.model_number)
+        return model.name if model else f"model {self.model_number}"
+
+
+@dataclass(frozen=True)
+class ScanResult:
+    """What a scan found.
+
+    Attributes:
+        found: the servos.
+        garbled_bauds: bauds at which something answered that could not be read: two servos of one id, or servos of the
+            other protocol.
+    """
+
+    found: tuple[Found, ...]
+    garbled_bauds: tuple[int, ...]
+
+
+def scan(
+    open_at: Callable[[int], Port],
+    clock: Clock,
+    *,
+    bauds: Sequence[int] = BAUDS,
+    protocols: Sequence[float] = (2.0, 1.0),
+    ids: Sequence[int] = range(packet.MAX_ID + 1),
+    on_progress: Callable[[int, float, float], None] = lambda _baud, _protocol, _share: None,
+) -> ScanResult:
+    """Look for servos at each baud, in each protocol.
+
+    Args:
+        open_at: opens the port at a baud.
+        clock: of the waiting.
+        bauds: to try.
+        protocols: to try.
+        ids: asked one by one in protocol 1.0, which has no broadcast ping worth waiting for.
+        on_progress: told (baud, protocol, share done of this pair).
+    """
+    found: list[Found] = []
+    garbled: list[int] = []
+    for baud in bauds:
+        with contextlib.closing(open_at(baud)) as port:
+            for protocol in protocols:
+                on_progress(baud, protocol, 0.0)
+                if protocol == 2.0:
+                    answers, clear = _broadcast(port, clock)
+                    found += [Found(baud, 2.0, *answer) for answer in answers]
+                    if not clear:
+                        garbled.append(baud)
+                else:
+                    for i, servo_id in enumerate(ids):
+                        on_progress(baud, protocol, i / len(ids))
+                        found += [Found(baud, 1.0, *answer) for answer in _single(port, clock, servo_id)]
+                on_progress(baud, protocol, 1.0)
+    return ScanResult(tuple(found), tuple(garbled))
+
+
+def _broadcast(port: Port, clock: Clock) -> tuple[list[tuple[int, int, int]], bool]:
+    """(id, model number, firmware) of all that answer one ping to all, and whether nothing else came."""
+    decoder, heard = packet.PacketDecoder(), b""
+    _drain(port)
+    request = packet.ping(BROADCAST_ID)
+    port.write(request)
+    slot_s = 14 * BITS_PER_BYTE / port.baud + 0.001  # servos answer in the order of their ids
+    last_s = clock.now_s() + packet.MAX_ID * slot_s
+    answers: list[tuple[int, int, int]] = []
+    quiet_s = clock.now_s() + _SILENCE_S + 4 * slot_s
+    while (now_s := clock.now_s()) < max(quiet_s, last_s if not heard else 0.0):
+        data = port.read(4096, max(quiet_s, last_s if not heard else 0.0) - now_s)
+        if not data:
+            break
+        heard += data
+        quiet_s = clock.now_s() + _SILENCE_S + 64 * slot_s
+        for p in decoder.feed(data):
+            if p.instruction == packet.Instruction.STATUS and len(p.parameters) == 3:
+                answers.append((p.servo_id, int.from_bytes(p.parameters[:2], "little"), p.parameters[2]))
+    noise = decoder.skipped_bytes > 0 or len(answers) != len({a[0] for a in answers})
+    return sorted(set(answers)), not noise
+
+
+def _single(port: Port, clock: Clock, servo_id: int) -> list[tuple[int, int, int]]:
+    """The servo of this id in protocol 1.0: a ping finds it, a read names it."""
+    if _asked(port, clock, servo_id, packet1.ping(servo_id), 0) is None:
+        return []
+    answer = _asked(port, clock, servo_id, packet1.read(servo_id, 0, 3), 3)
+    if answer is None:
+        return [(servo_id, 0, 0)]
+    return [(servo_id, int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2])]
+
+
+def _asked(port: Port, clock: Clock, servo_id: int, request: bytes, length: int) -> Packet | None:
+    _drain(port)
+    decoder = DIALECTS[1.0].decoder()
+    port.write(request)
+    deadline_s = clock.now_s() + (len(request) + 6 + length) * BITS_PER_BYTE / port.baud + _ANSWER_S
+    while (left_s := deadline_s - clock.now_s()) > 0:
+        data = port.read(256, left_s)
+        if not data:
+            return None
+        for p in decoder.feed(data):
+            if p.servo_id == servo_id and len(p.parameters) == length:
+                return p
+    return None
+
+
+def _drain(port: Port) -> None:
+    while port.read(4096, 0.0):
+        pass

@@ -1,0 +1,133 @@
+"""One servo by itself, without a robot file: found, read, written with guards. For set-up tools."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from daemon.bus.models import MODELS, BusModel
+from daemon.bus.port import Port
+from daemon.bus.registers import Item
+from daemon.bus.servo_bus import ServoBus
+from daemon.clock import Clock
+from daemon.errors import CommandError, LinkTimeoutError
+from retarget.robot import ServoSpec
+from retarget.servos import servo_models
+
+MOVES = ("goal_position", "goal_velocity", "goal_pwm", "goal_current", "moving_speed", "goal_torque", "torque_enable")
+"""Items that can set a joint in motion: the daemon's alone, behind its gate."""
+
+
+@dataclass(frozen=True)
+class SingleServo:
+    """A servo that answered, and a bus with nobody else on it."""
+
+    bus: ServoBus
+    model: BusModel
+    servo_id: int
+    firmware: int
+
+    def get(self, name: str) -> int:
+        """Value of an item."""
+        return self.bus.read_item(self.servo_id, name)
+
+    def item(self, name: str) -> Item:
+        """An item of its table.
+
+        Raises:
+            CommandError: there is none.
+        """
+        if name not in self.model.table:
+            raise CommandError(f"{self.model.name} has no item '{name}'; it has: {', '.join(self.model.table)}")
+        return self.model.table[name]
+
+    def set(self, name: str, value: int) -> None:
+        """Write an item and read it back.
+
+        Raises:
+            CommandError: it would move the joint, is out of range, or needs torque off.
+        """
+        item = self.item(name)
+        if name in MOVES and not (name == "torque_enable" and value == 0):
+            raise CommandError(f"'{name}' can move the joint; that is the daemon's alone (mmmd run, mmmd arm)")
+        if name in ("id", "baud_rate"):
+            raise CommandError(
+                f"'{name}': use `mmmd servo {'id' if name == 'id' else 'baud'}`, which checks the result"
+            )
+        if not item.takes(value):
+            raise CommandError(f"'{name}' = {value} is outside [{item.low}, {item.high}] of {self.model.name}")
+        self._require_free(item)
+        self.bus.write_item(self.servo_id, name, value)
+        found = self.get(name)
+        if found != value:
+            raise CommandError(f"'{name}': wrote {value}, the servo has {found}")
+
+    def set_id(self, new_id: int) -> None:
+        """Give it another id; nobody else may have it.
+
+        Raises:
+            CommandError: the id is taken, out of range, or torque is on.
+        """
+        if not 0 <= new_id <= 252:
+            raise CommandError(f"id {new_id}: allowed are 0 to 252")
+        self._require_free(self.item("id"))
+        try:
+            find(self.bus.port, self.bus.clock, new_id, self.model.protocol)
+        except LinkTimeoutError:
+            pass
+        else:
+            raise CommandError(f"id {new_id} is taken by another servo on this bus")
+        self.bus.write_item(self.servo_id, "id", new_id)
+        find(self.bus.port, self.bus.clock, new_id, self.model.protocol)
+
+    def set_baud(self, baud: int) -> None:
+        """Give it another baud; from then on it is heard only there.
+
+        Raises:
+            CommandError: it cannot, or torque is on.
+        """
+        code = self.model.baud_code(baud)
+        if code is None:
+            known = "57600, 115200, 1000000, 2000000, 3000000, 4000000" if self.model.protocol == 2.0 else "2000000 / n"
+            raise CommandError(f"{self.model.name} has no {baud} baud; allowed: {known}, at most {self.model.max_baud}")
+        self._require_free(self.item("baud_rate"))
+        self.bus.write_item(self.servo_id, "baud_rate", code)
+
+    def reboot(self, *, drop: bool) -> None:
+        """Restart it.
+
+        Raises:
+            CommandError: it holds torque, which would drop, and `drop` was not said.
+        """
+        if self.get("torque_enable") and not drop:
+            raise CommandError(f"servo {self.servo_id} holds torque: a reboot lets its joint fall; --drop to do it")
+        self.bus.reboot(self.servo_id)
+
+    def _require_free(self, item: Item) -> None:
+        if item.eeprom and self.get("torque_enable"):
+            raise CommandError(f"'{item.name}' can be written only with torque off; park the robot first (mmmd park)")
+
+
+def find(port: Port, clock: Clock, servo_id: int, protocol: float | None = None) -> SingleServo:
+    """The servo of this id, in either protocol.
+
+    Raises:
+        LinkTimeoutError: nobody answers.
+    """
+    for version in (2.0, 1.0) if protocol is None else (protocol,):
+        guess = next(m for m in MODELS.values() if m.protocol == version)
+        bus = _bus(port, clock, servo_id, guess)
+        found = bus.ping_all().get(servo_id)
+        if found is not None:
+            number, firmware = found
+            if number not in MODELS:
+                raise CommandError(f"servo {servo_id} is of model {number}, which is not known here")
+            return SingleServo(_bus(port, clock, servo_id, MODELS[number]), MODELS[number], servo_id, firmware)
+    raise LinkTimeoutError(
+        f"servo {servo_id} does not answer at {port.baud} baud on {port.name}; mmmd scan finds who does"
+    )
+
+
+def _bus(port: Port, clock: Clock, servo_id: int, model: BusModel) -> ServoBus:
+    facts = servo_models()[model.name]
+    ends = facts.min_tick, facts.max_tick
+    return ServoBus(port, [ServoSpec(servo_id, "servo", facts, 1, 1.0, facts.zero_tick, ((0, 1.0),), *ends)], clock)

@@ -1,0 +1,48 @@
+"""`mmmd doctor`: what stands between a robot and a good run."""
+
+from __future__ import annotations
+
+import dataclasses
+import json as json_module
+
+
+def doctor(robot: str = "reference", bus: str = "dxl:///dev/ttyUSB0", fix: bool = False, json: bool = False) -> int:
+    """Check rights, adapter, servos, their settings and the rate; every finding comes with the exact remedy.
+
+    Nothing moves. With --fix the servos' return delay, status return level, operating mode, drive mode, shutdown mask
+    and position limits are set as the robot file needs them; torque must be off. Exit status 1 when something does not
+    work.
+
+    Example: mmmd doctor --robot op3 --bus "dxl:///dev/ttyUSB0?baud=2000000"
+    and then: mmmd doctor --robot op3 --bus "dxl:///dev/ttyUSB0?baud=2000000" --fix
+
+    Args:
+        robot: name of a packaged robot, or the path of a robot.toml.
+        bus: where its servos are.
+        fix: correct what can be corrected.
+        json: print one JSON object.
+    """
+    from rich.console import Console
+    from rich.table import Table
+
+    from daemon.bus.doctor import ADVICE, BAD, GOOD, diagnose
+    from daemon.bus.open import PortContext, open_port
+    from daemon.clock import RealClock
+    from retarget.robot import load_robot
+
+    model, clock, console = load_robot(robot), RealClock(), Console()
+    diagnosis = diagnose(model, lambda: open_port(bus, PortContext(model, clock)), clock, correct=fix)
+    if json:
+        checks = [dataclasses.asdict(c) for c in diagnosis.checks]
+        console.out(json_module.dumps({"bad": diagnosis.bad, "checks": checks, "budget": diagnosis.budget}))
+        return int(diagnosis.bad)
+    colours = {GOOD: "green", ADVICE: "yellow", BAD: "red"}
+    table = Table(title=f"{model.name} on {bus}")
+    for column in ("", "what", "found", "remedy"):
+        table.add_column(column, overflow="fold")
+    for c in diagnosis.checks:
+        table.add_row(f"[{colours[c.verdict]}]{c.verdict}[/]", c.what, c.found, c.remedy)
+    console.print(table)
+    for line in diagnosis.budget:
+        console.out(f"  {line}")
+    return int(diagnosis.bad)

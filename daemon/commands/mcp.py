@@ -1,0 +1,24 @@
+"""`mmmd mcp`: tools for a language model."""
+
+from __future__ import annotations
+
+import sys
+
+from tyro.conf import OmitArgPrefixes
+
+from daemon.commands.connection import Connection
+
+
+def mcp(at: OmitArgPrefixes[Connection] = Connection()) -> int:  # noqa: B008
+    """Serve the Model Context Protocol over stdin and stdout: a language model can say, stop and look, within the limits.
+
+    Example, in the settings of a model's host: {"mcpServers": {"robot": {"command": "mmmd", "args": ["mcp"]}}}
+
+    Args:
+        at: where the daemon is.
+    """
+    from daemon.mcp import McpServer
+
+    with at.client() as robot:
+        McpServer(robot).serve(sys.stdin, sys.stdout)
+    return 0

@@ -1,0 +1,86 @@
+"""`mmmd install-service`: a systemd unit and a udev rule for the adapter."""
+
+from __future__ import annotations
+
+import getpass
+import shutil
+import sys
+from pathlib import Path
+
+from daemon.errors import CommandError
+
+_UNIT = """\
+[Unit]
+Description=mmmd: text in, servo motion out
+After=network.target
+
+[Service]
+Type=notify
+User={user}
+ExecStart={mmmd} run --config {config} --log-json
+WatchdogSec=10
+TimeoutStartSec=180
+# SIGTERM parks the robot first: at most park_timeout_s and 10 s more, then torque is off.
+KillMode=mixed
+TimeoutStopSec=45
+# Never by itself after a latched fault (status 3): a person has to look first.
+Restart=on-failure
+RestartPreventExitStatus=2 3
+RestartSec=2
+LimitRTPRIO=50
+LimitMEMLOCK=infinity
+NoNewPrivileges=yes
+ProtectSystem=strict
+ReadWritePaths={state} /dev/shm
+StateDirectory=mmmd
+PrivateTmp=yes
+
+[Install]
+WantedBy=multi-user.target
+"""
+_RULE = """\
+# Adapters of Dynamixel buses (U2D2 and other FTDI; OpenRB-150, OpenCM): readable by group dialout, 1 ms latency timer.
+SUBSYSTEM=="tty", ATTRS{idVendor}=="0403", ATTRS{idProduct}=="6014", GROUP="dialout", MODE="0660", SYMLINK+="dynamixel"
+SUBSYSTEM=="usb-serial", DRIVER=="ftdi_sio", ATTR{latency_timer}="1"
+SUBSYSTEM=="tty", ATTRS{idVendor}=="2f5d", GROUP="dialout", MODE="0660", SYMLINK+="dynamixel"
+"""
+_CONFIG = """\
+# Settings of `mmmd run`; `mmmd config show` lists all and where each value comes from.
+robot = "reference"
+bus = "sim://"
+auto_arm = false
+"""
+
+
+def install_service(root: Path = Path("/"), user: str = "", config: Path = Path("/etc/mmmd/mmmd.toml")) -> int:
+    """Write a systemd unit, a udev rule and a first configuration, and say what to do next.
+
+    Example: sudo mmmd install-service --user pi
+
+    Args:
+        root: folder to write below, for packages and trials.
+        user: who runs the daemon; you when it is not given. Must be in group dialout.
+        config: configuration that the service reads; one that exists is kept.
+    """
+    user = user or getpass.getuser()
+    found = shutil.which("mmmd") or sys.argv[0]
+    files = {
+        Path("etc/systemd/system/mmmd.service"): _UNIT.format(
+            user=user, mmmd=found, config=config, state="/var/lib/mmmd"
+        ),
+        Path("etc/udev/rules.d/60-mmmd.rules"): _RULE,
+        Path(*config.parts[1:]): _CONFIG,
+    }
+    for relative, text in files.items():
+        path = root / relative
+        if text is _CONFIG and path.exists():
+            continue
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, "utf-8")
+        except OSError as error:
+            raise CommandError(f"{path}: cannot be written ({error}); run with sudo, or name another --root") from error
+        sys.stdout.write(f"wrote {path}\n")
+    sys.stdout.write("next: edit the configuration, then\n  sudo udevadm control --reload && sudo udevadm trigger\n")
+    sys.stdout.write("  sudo systemctl daemon-reload && sudo systemctl enable --now mmmd\n")
+    return 0

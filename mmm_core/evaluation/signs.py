@@ -1,0 +1,149 @@
+"""What makes a gesture that gesture: for each family where the palms are, how they move, and what head and trunk do.
+
+A sign is read from joints and head alone, with room for other ways to make the same gesture. Places are (outward, up,
+forward) in metres in the chest frame from the middle between the shoulders, outward for the acting arm. That each sign sees
+its own family, not standing still and hardly any other family, is tested on synthesised motions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.evaluation.checks import PALM_M, Shown, strokes
+from mmm_core.evaluation.sign_tables import DIRECTED, HEAD_TRUNK, ONE_LEADS, SIGNS, Box, Sign
+from mmm_core.motion import FPS
+
+Array = NDArray[np.floating]
+LEAST_FRAMES = 3
+"""How long a palm has to be in a place to have been there: 0.15 s."""
+SLOW_M_S = 0.3
+HELD_FRAMES = 6
+TRANSITION_FRAMES = 7
+"""Left out at both ends of a gesture: the way there and back."""
+_HANGING_M = np.array([0.3, -0.52, 0.1])
+_OTHER = {"left": "right", "right": "left"}
+
+
+@dataclass(frozen=True)
+class Arm:
+    """An arm in its own frame: palm (T, 3), upper and forearm directions (T, 3), bend (T,) degrees, away (T,) from hanging."""
+
+    palm: Array
+    fore: Array
+    bend_deg: Array
+    away: NDArray[np.bool_]
+
+
+def arm_of(s: Shown, side: str) -> Arm:
+    """The arm of a side, outward positive."""
+    out = np.array([1.0 if side == "left" else -1.0, 1, 1])
+    palm = (s.wrists_m[side] + PALM_M * s.fore[side]) * out
+    fore, upper = s.fore[side] * out, s.upper[side] * out
+    bend = np.rad2deg(np.arccos(np.clip((fore * upper).sum(-1), -1, 1)))
+    hanging = palm[0] if palm[0, 1] < -0.42 else _HANGING_M
+    return Arm(palm, fore, bend, (np.linalg.norm(palm - hanging, axis=-1) > 0.12) | (bend > 50))
+
+
+def shows(s: Shown, family: str, side: str = "", direction: str = "") -> bool:
+    """Whether the motion shows a gesture of the family, with the arm of `side` where one is named."""
+    if family == "arms_down":
+        sides = (side,) if side in _OTHER else ("left", "right")
+        return any(_comes_down(s, one) for one in sides) if not side else all(_comes_down(s, one) for one in sides)
+    if family in HEAD_TRUNK:
+        return HEAD_TRUNK[family](s, direction)
+    sign = DIRECTED.get((family, direction)) or SIGNS[family]
+    if side in _OTHER:
+        return _has(s, sign, side)
+    if side in ("both", "alternating") and family not in ONE_LEADS:
+        return _has(s, sign, "left") and _has(s, sign, "right")
+    return _has(s, sign, "left") or _has(s, sign, "right")
+
+
+def _has(s: Shown, sign: Sign, side: str) -> bool:
+    arm, other = arm_of(s, side), arm_of(s, _OTHER[side])
+    core = _core(arm.away)
+    apart = np.linalg.norm(arm.palm - other.palm * np.array([-1.0, 1, 1]), axis=-1)
+    first = _inside(arm.palm, sign.at[0]) & core
+    first &= (arm.bend_deg >= sign.bend_deg[0]) & (arm.bend_deg <= sign.bend_deg[1])
+    first &= (apart >= sign.apart_m[0]) & (apart <= sign.apart_m[1])
+    if sign.fore is not None:
+        direction, least = sign.fore
+        first &= arm.fore @ (np.array(direction) / np.linalg.norm(direction)) > least
+    if sign.other is not None:
+        first &= _inside(other.palm, sign.other)
+    places = [_inside(arm.palm, box) & core for box in sign.at]
+    visited = [(_inside(arm.palm, box) & arm.away).sum() for box in sign.at[1:]]
+    if first.sum() < LEAST_FRAMES or any(n < 2 for n in visited):
+        return False
+    there = first if sign.held or sign.fore is not None else np.any(places, axis=0)
+    if there.sum() < sign.share * core.sum():
+        return False
+    if sign.held and (first & _slow(arm.palm)).sum() < max(HELD_FRAMES, 0.25 * core.sum()):
+        return False
+    used = arm.palm[core]
+    if sign.swing is not None:
+        axis, least = sign.swing
+        way = used[:, axis]
+        if _spread(way) < 0.8 * least or not (strokes(way, least) or strokes(-way, least)):
+            return False
+    if sign.turn is not None:
+        turns = _turns(used[:, [sign.turn[0], sign.turn[1]]])
+        if turns * np.sign(sign.turn[2]) < abs(sign.turn[2]):
+            return False
+    twist = s.twist_rad[side]
+    if sign.twist_rad and twist is not None and np.ptp(twist[core]) < sign.twist_rad:
+        return False
+    both = core & _core(other.away)
+    return all(
+        axis is None or (both.sum() > 5 and way * _correlation(arm.palm[both, axis], other.palm[both, axis]) > 0.3)
+        for axis, way in ((sign.opposed, -1), (sign.together, 1))
+    )
+
+
+def _comes_down(s: Shown, side: str) -> bool:
+    """The arm begins raised and ends hanging."""
+    palm = arm_of(s, side).palm
+    return bool(palm[:3, 1].min() > -0.15 and palm[-3:, 1].max() < -0.4)
+
+
+def _core(away: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Frames of the gesture itself, without the way there and back."""
+    at = np.flatnonzero(away)
+    core = np.zeros_like(away)
+    if len(at):
+        ends = min(TRANSITION_FRAMES, (at[-1] - at[0]) // 4)
+        stays = at[-1] == len(away) - 1
+        core[at[0] + ends : at[-1] + 1 - (0 if stays else ends)] = True
+    return core & away
+
+
+def _slow(palm: Array) -> NDArray[np.bool_]:
+    """Frames in which the palm hardly moves."""
+    return np.linalg.norm(np.gradient(palm, axis=0), axis=-1) * FPS < SLOW_M_S
+
+
+def _spread(x: Array) -> Array:
+    """Travel without the outermost frames."""
+    return np.percentile(x, 95, axis=0) - np.percentile(x, 5, axis=0)
+
+
+def _inside(palm: Array, box: Box) -> NDArray[np.bool_]:
+    low, high = np.array(box[::2]), np.array(box[1::2])
+    return np.all((palm >= low) & (palm <= high), axis=-1)
+
+
+def _turns(path: Array) -> float:
+    """How often a path (T, 2) goes round the middle of its extent, by sign."""
+    if len(path) < 5:
+        return 0.0
+    middle = (np.percentile(path, 90, axis=0) + np.percentile(path, 10, axis=0)) / 2
+    around = np.unwrap(np.arctan2(*(path - middle).T[::-1]))
+    return float((around[-1] - around[0]) / (2 * np.pi))
+
+
+def _correlation(a: Array, b: Array) -> float:
+    a, b = a - a.mean(), b - b.mean()
+    return float((a * b).sum() / max(float(np.sqrt((a * a).sum() * (b * b).sum())), 1e-6))

@@ -1,0 +1,126 @@
+"""The control table of one servo as bytes: items by name, what may be written where, indirect addresses.
+
+Knows addresses, sizes, access rights and ranges; what a value means is the servo's affair. An indirect data byte shows
+the byte whose address stands in its indirect address item (ROBOTIS e-manual, "Indirect Address").
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from daemon.bus.models import BusModel, IndirectWindow
+from daemon.bus.registers import Item
+
+INDIRECT = "indirect_address_"
+
+
+@dataclass(frozen=True)
+class Span:
+    """Items that a write of some length at some address covers, with the offset of each in the data.
+
+    `problem` is "" or what is wrong: "undefined" (no item there), "read only", "short" (an item cut in two).
+    """
+
+    items: tuple[tuple[Item, int], ...]
+    problem: str = ""
+
+
+class Memory:
+    """The bytes of one servo."""
+
+    def __init__(self, model: BusModel, firmware: int) -> None:
+        self.model = model
+        self._windows = model.indirect_windows(firmware)
+        self.items: dict[str, Item] = dict(model.table) | _indirect_items(self._windows)
+        ends = [item.end for item in self.items.values()] + [w.data + w.count for w in self._windows]
+        self.size = max(ends)
+        self.bytes = bytearray(self.size)
+        self._by_address = {item.address: item for item in self.items.values()}
+        self._values: dict[str, int] = {}  # of items that only `set` changes
+        self._spans: dict[tuple[int, int], Span] = {}
+        self._data_first = min((w.data for w in self._windows), default=self.size)
+        for item in self.items.values():
+            self.reset(item)
+
+    def reset(self, item: Item) -> None:
+        """Back to the value from the factory, zero where there is none."""
+        self.set(item.name, item.initial if item.initial is not None else 0)
+
+    def get(self, name: str) -> int:
+        """Value of an item."""
+        value = self._values.get(name)
+        if value is None:
+            item = self.items[name]
+            return item.decode(bytes(self.bytes[item.address : item.end]))
+        return value
+
+    def set(self, name: str, value: int) -> None:
+        """Store an item, unchecked."""
+        item = self.items[name]
+        data = item.encode(value)
+        self.bytes[item.address : item.end] = data
+        if item.writable:
+            self._values[name] = item.decode(data)
+
+    def read(self, address: int, length: int) -> bytes | None:
+        """Bytes as a client sees them; None beyond the end. Addresses without an item read as zero."""
+        end = address + length
+        if length < 1 or end > self.size:
+            return None
+        if end <= self._data_first:
+            return bytes(self.bytes[address:end])
+        return bytes(self.bytes[self.resolve(a)] for a in range(address, end))
+
+    def resolve(self, address: int) -> int:
+        """The address behind an indirect data byte; any other address is itself."""
+        for window in self._windows:
+            if window.data <= address < window.data + window.count:
+                at = window.address + 2 * (address - window.data)
+                target = self.bytes[at] | self.bytes[at + 1] << 8
+                return target if target < self.size else address
+        return address
+
+    def runs(self, address: int, data: bytes) -> list[tuple[int, bytes]]:
+        """A write as writes to real addresses: one run, or several where indirect data bytes point to and fro."""
+        if address + len(data) <= self._data_first:
+            return [(address, data)]
+        found: list[tuple[int, bytearray]] = []
+        for i, byte in enumerate(data):
+            target = self.resolve(address + i)
+            if found and found[-1][0] + len(found[-1][1]) == target:
+                found[-1][1].append(byte)
+            else:
+                found.append((target, bytearray([byte])))
+        return [(start, bytes(part)) for start, part in found]
+
+    def span(self, address: int, length: int) -> Span:
+        """The whole items that a write covers, and what is wrong with it."""
+        key = (address, length)
+        if key not in self._spans:
+            self._spans[key] = self._find_span(address, length)
+        return self._spans[key]
+
+    def _find_span(self, address: int, length: int) -> Span:
+        items: list[tuple[Item, int]] = []
+        at, end = address, address + length
+        while at < end:
+            item = self._by_address.get(at)
+            if item is None:
+                return Span((), "undefined")
+            if not item.writable:
+                return Span((), "read only")
+            if item.end > end:
+                return Span((), "short")
+            items.append((item, at - address))
+            at = item.end
+        return Span(tuple(items), "" if items else "short")
+
+
+def _indirect_items(windows: tuple[IndirectWindow, ...]) -> dict[str, Item]:
+    """The address items of every window; from the factory each points to its own data byte."""
+    found: dict[str, Item] = {}
+    for window in windows:
+        for i in range(window.count):
+            name = f"{INDIRECT}{len(found) + 1}"
+            found[name] = Item(name, window.address + 2 * i, 2, low=64, high=661, initial=window.data + i)
+    return found

@@ -1,0 +1,132 @@
+"""What drives each servo model: electrical and mechanical constants of its motor behind the gears.
+
+Rated voltage, no-load speed, stall torque and stall current: ROBOTIS e-manual (`_data/dxl_x_info.yml`,
+`_data/dxl_mx_info.yml`, pages XM540 and AX); the stall currents of XM540 and AX are not in the shared facts and should
+be checked on a servo. Everything else is our estimate and says so.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from sim.errors import SimSettingError
+
+FRICTION_SHARE = 0.007
+"""Coulomb friction of motor and gears over stall torque; 0.03 N m of an XM430 in ROBOTIS' own OP3 model."""
+VISCOUS_SHARE = 0.25
+"""Viscous friction over the slope of the torque-speed line: ROBOTIS' OP3 model damps an XM430 by 1.08 N m s/rad, of which
+0.85 is that slope (stall torque over no-load speed)."""
+MECHANICAL_TIME_CONSTANT_S = 0.015
+"""In which the unloaded servo reaches 63 % of its speed (our estimate); gives the inertia seen at the output."""
+_THERMAL_TIME_CONSTANT_S = 600.0
+_STALL_RISE_K = 300.0
+"""Heating if stalled for ever: an XM430 passes 80 degrees after about two minutes, 40 % of stall settles near 70."""
+
+
+@dataclass(frozen=True)
+class Motor:
+    """Constants of one servo model, seen at its output shaft.
+
+    Attributes:
+        rated_v, no_load_rad_s, stall_torque_nm, stall_current_a: as the manual says.
+        resistance_ohm: of the winding.
+        torque_nm_per_a, emf_v_s_per_rad: so that stall torque and no-load speed come out with friction taken off.
+        friction_nm, damping_nm_s_per_rad: Coulomb and viscous friction.
+        inertia_kg_m2: of the rotor, times the gear ratio squared.
+        heating_k_per_j: temperature rise of the case per joule.
+        cooling_per_s: share of the difference to the room given off per second.
+    """
+
+    rated_v: float
+    no_load_rad_s: float
+    stall_torque_nm: float
+    stall_current_a: float
+
+    @property
+    def resistance_ohm(self) -> float:
+        """Of the winding."""
+        return self.rated_v / self.stall_current_a
+
+    @property
+    def friction_nm(self) -> float:
+        """Coulomb friction of motor and gears."""
+        return FRICTION_SHARE * self.stall_torque_nm
+
+    @property
+    def damping_nm_s_per_rad(self) -> float:
+        """Viscous friction of motor and gears."""
+        return VISCOUS_SHARE * self.stall_torque_nm / self.no_load_rad_s
+
+    @property
+    def torque_nm_per_a(self) -> float:
+        """Torque at the output per ampere, before friction."""
+        return (self.stall_torque_nm + self.friction_nm) / self.stall_current_a
+
+    @property
+    def emf_v_s_per_rad(self) -> float:
+        """Voltage induced per output speed."""
+        lost_nm = self.friction_nm + self.damping_nm_s_per_rad * self.no_load_rad_s
+        idle_a = lost_nm / self.torque_nm_per_a
+        return (self.rated_v - idle_a * self.resistance_ohm) / self.no_load_rad_s
+
+    @property
+    def inertia_kg_m2(self) -> float:
+        """Rotor inertia times gear ratio squared."""
+        slope = self.torque_nm_per_a * self.emf_v_s_per_rad / self.resistance_ohm + self.damping_nm_s_per_rad
+        return MECHANICAL_TIME_CONSTANT_S * slope
+
+    @property
+    def heating_k_per_j(self) -> float:
+        """Temperature rise of the case per joule of loss."""
+        return _STALL_RISE_K / (_THERMAL_TIME_CONSTANT_S * self.rated_v * self.stall_current_a)
+
+    @property
+    def cooling_per_s(self) -> float:
+        """Share of the difference to the room given off per second."""
+        return 1.0 / _THERMAL_TIME_CONSTANT_S
+
+
+def _motor(rated_v: float, no_load_rpm: float, stall_torque_nm: float, stall_current_a: float) -> Motor:
+    return Motor(rated_v, no_load_rpm * 2 * math.pi / 60, stall_torque_nm, stall_current_a)
+
+
+MOTORS: dict[int, Motor] = {
+    1190: _motor(5.0, 383, 0.215, 1.47),  # XL330-M077
+    1200: _motor(5.0, 103, 0.52, 1.47),  # XL330-M288
+    1230: _motor(5.0, 129, 0.60, 1.80),  # XC330-M181
+    1240: _motor(5.0, 81, 0.93, 1.80),  # XC330-M288
+    1210: _motor(11.1, 104, 0.76, 0.80),  # XC330-T181
+    1220: _motor(11.1, 65, 0.92, 0.80),  # XC330-T288
+    1060: _motor(11.1, 57, 1.4, 1.3),  # XL430-W250
+    1090: _motor(11.1, 57, 1.4, 1.3),  # 2XL430-W250
+    1070: _motor(12.0, 106, 1.6, 1.4),  # XC430-W150
+    1080: _motor(12.0, 70, 1.9, 1.4),  # XC430-W240
+    1160: _motor(12.0, 64, 1.8, 1.4),  # 2XC430-W250
+    1030: _motor(12.0, 77, 3.0, 2.3),  # XM430-W210
+    1020: _motor(12.0, 46, 4.1, 2.3),  # XM430-W350
+    1010: _motor(12.0, 50, 2.5, 1.3),  # XH430-W210
+    1000: _motor(12.0, 30, 3.4, 1.3),  # XH430-W350
+    1130: _motor(12.0, 53, 7.3, 4.4),  # XM540-W150
+    1120: _motor(12.0, 30, 10.6, 4.4),  # XM540-W270
+    30: _motor(12.0, 55, 2.5, 1.4),  # MX-28(2.0)
+    311: _motor(12.0, 63, 6.0, 4.1),  # MX-64(2.0)
+    321: _motor(12.0, 45, 8.4, 5.2),  # MX-106(2.0)
+    29: _motor(12.0, 55, 2.5, 1.4),  # MX-28
+    310: _motor(12.0, 63, 6.0, 4.1),  # MX-64
+    320: _motor(12.0, 45, 8.4, 5.2),  # MX-106
+    12: _motor(12.0, 59, 1.5, 1.5),  # AX-12A
+    18: _motor(12.0, 97, 1.8, 2.2),  # AX-18A
+}
+"""By model number."""
+
+
+def motor_of(model_number: int) -> Motor:
+    """Constants of a model.
+
+    Raises:
+        SimSettingError: a model the simulator does not know.
+    """
+    if model_number not in MOTORS:
+        raise SimSettingError("servo model number", str(model_number), ", ".join(str(n) for n in MOTORS))
+    return MOTORS[model_number]

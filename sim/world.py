@@ -1,0 +1,150 @@
+"""A robot's servos and what they turn, in one time: shared by every port that leads to them."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from daemon.bus.models import MODELS
+from retarget.robot import RobotModel, ServoSpec
+from retarget.ticks import JointServoMap
+from sim.audit import Audit
+from sim.body import Body, PlainBody
+from sim.drive import STEP_S, Drives
+from sim.faults import Fault, FaultSchedule
+from sim.motors import motor_of
+from sim.servo import ENCODER_BIT, OVERLOAD_BIT, RESET_SHARE, SimServo
+from sim.servo1 import SimServo1
+
+log = logging.getLogger(__name__)
+
+BACKLASH_RAD = {"x_current": 0.0044, "mx1": 0.0058, "mx2_current": 0.0058, "mx2_load": 0.0058}
+"""15 and 20 arc minutes (e-manual, "Backlash"); where it says nothing, what our estimate below says."""
+_BACKLASH_OTHER_RAD = 0.0044
+_EPSILON_S = 1e-9
+
+
+class World:
+    """Servos, body, faults and audit of one robot.
+
+    Args:
+        robot: whose servos.
+        faults: what goes wrong; nothing when None.
+        start_rad: (J,) pose to begin in; the park pose when None.
+        body: makes the body from the robot, the motors and the start angles of the shafts; plain shafts when None.
+        firmware: version of single servos, by id.
+        extra: servos on the wire that belong to no joint, such as one with an id that is there twice.
+    """
+
+    def __init__(
+        self,
+        robot: RobotModel,
+        faults: FaultSchedule | None = None,
+        start_rad: Sequence[float] | None = None,
+        body: Callable[..., Body] | None = None,
+        firmware: Mapping[int, int] | None = None,
+        extra: Sequence[ServoSpec] = (),
+    ) -> None:
+        pose = np.array(start_rad, np.float64) if start_rad is not None else robot.park_rad
+        specs = (*robot.servos, *extra)
+        self.robot, self.faults, self.audit = robot, faults or FaultSchedule(), Audit(robot)
+        motors = [motor_of(s.model.model_number) for s in specs]
+        rad_per_tick = [2 * np.pi / s.model.ticks_per_turn for s in specs]
+        ticks = [*JointServoMap(robot).to_ticks(pose).tolist(), *(s.zero_tick for s in extra)]
+        shaft_rad = np.array(ticks, np.float64) * rad_per_tick
+        self.body: Body = PlainBody(motors, shaft_rad) if body is None else body(robot, motors, shaft_rad)
+        families = [MODELS[s.model.model_number].family for s in specs]
+        backlash = [BACKLASH_RAD.get(f, _BACKLASH_OTHER_RAD) / r for f, r in zip(families, rad_per_tick, strict=True)]
+        self.drives = Drives(motors, rad_per_tick, backlash, self.body)
+        versions = firmware or {}
+        self.all = [make_servo(s, self.drives, i, versions.get(s.servo_id)) for i, s in enumerate(specs)]
+        self.servos = {s.servo_id: servo for s, servo in zip(robot.servos, self.all[: len(robot.servos)], strict=True)}
+        for servo in self.all:
+            servo.set_baud(robot.bus.baud)
+        self.t_s = 0.0
+        self.lock = threading.RLock()
+        """Held while anything is asked of the servos: doors may be served by threads of their own."""
+        self.on_clock_jump: Callable[[float], None] | None = None
+        self._steps = 0
+
+    def advance(self, t_s: float) -> None:
+        """Move on to time `t_s`; earlier times change nothing."""
+        while (next_s := (self._steps + 1) * STEP_S) <= t_s + _EPSILON_S:
+            self._steps += 1
+            for fault in self.faults.begin(next_s):
+                self._strike(fault, next_s)
+            if self.drives.step():
+                self._judge(next_s)
+        for fault in self.faults.begin(t_s):
+            self._strike(fault, t_s)
+        self.t_s = max(self.t_s, t_s)
+        for servo in self.all:
+            servo.watch(t_s)
+
+    def _judge(self, t_s: float) -> None:
+        """Every 20 ms: power, latches, watchdogs, and what outlasts no fault."""
+        self._keep_up(t_s)
+        volts = self.drives.voltage_v
+        for servo in self.all:
+            enough = volts[servo.index] >= RESET_SHARE * servo.model.voltage_v[0]
+            if not enough:
+                servo.lose_power()
+            elif not servo.powered:
+                servo.restore_power()
+            servo.watch(t_s)
+            servo.judge()
+        self.audit.body_contacts = self.body.self_contacts
+
+    def _keep_up(self, t_s: float) -> None:
+        """Faults that last: the drives are told what holds now."""
+        share = np.ones(self.drives.n)
+        for fault in self.faults.in_force("brown_out"):
+            share[:] = 0.3 if fault.amount is None else fault.amount
+        stuck = np.zeros(self.drives.n, bool)
+        for fault in self.faults.in_force("stuck"):
+            for servo in self._meant(fault):
+                stuck[servo.index] = True
+        push = [0.0] * self.drives.n
+        for fault in self.faults.in_force("push"):
+            for servo in self._meant(fault):
+                push[servo.index] += fault.amount or 0.0
+        now = (share.tolist(), stuck.tolist(), push)
+        if now != getattr(self, "_lasting", None):
+            self._lasting = now
+            self.drives.supply_share, self.drives.stuck = share, stuck
+            for i, torque_nm in enumerate(push):
+                self.body.push(i, torque_nm)
+            self.drives.touch()
+
+    def _strike(self, fault: Fault, t_s: float) -> None:
+        """What happens at an instant."""
+        for servo in self._meant(fault):
+            i = servo.index
+            if fault.kind in ("overload", "trip"):
+                servo.trip(OVERLOAD_BIT)
+            elif fault.kind == "encoder":
+                servo.trip(ENCODER_BIT)
+            elif fault.kind == "hot":
+                self.drives.temperature_c[i] = 90.0 if fault.amount is None else fault.amount
+                servo.judge()
+            elif fault.kind == "reboot":
+                servo.watch(t_s)
+                servo.reboot()
+            elif fault.kind == "slip":
+                self.drives.place(
+                    i, float(self.drives.position_tick[i]) + (100 if fault.amount is None else fault.amount)
+                )
+        if fault.kind == "clock_jump" and self.on_clock_jump is not None:
+            self.on_clock_jump(1.0 if fault.amount is None else fault.amount)
+
+    def _meant(self, fault: Fault) -> list[SimServo]:
+        return [s for s in self.all if fault.servo_id is None or s.spec.servo_id == fault.servo_id]
+
+
+def make_servo(spec: ServoSpec, drives: Drives, index: int, firmware: int | None = None) -> SimServo:
+    """The servo of a model, for its protocol."""
+    kind = SimServo1 if MODELS[spec.model.model_number].protocol == 1.0 else SimServo
+    return kind(spec, drives, index, firmware)

@@ -1,0 +1,259 @@
+"""Each process killed and frozen in each state: a named safe state within a stated time, and no limit ever broken.
+
+The servos are behind a real tty and outlive the daemon's processes; their audit watches all the time.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+
+from daemon import events as ev
+from daemon.client import CancelledByError, Client, NoAnswerError, RefusedError
+from retarget.robot import load_robot
+from sim.bus import SimBus
+from sim.faults import Fault, FaultSchedule
+from sim.pty import PtyServer
+from tests.end_to_end.harness import RunningDaemon
+from tests.end_to_end.test_start_and_end import child_pid
+
+pytestmark = pytest.mark.timeout(180)
+ROBOT = load_robot("reference")
+FAULT_WITHIN_S = 6.0
+"""From the signal to a robot in a latched fault that can be reset: 1 s of silence, 2.5 s to the kill, the restart."""
+
+
+class Servos:
+    """The simulated robot behind a tty, served by a thread."""
+
+    def __init__(self, folder) -> None:
+        self._link = folder / "servos"
+        self.server = PtyServer(SimBus(ROBOT), self._link)
+        self.url = f"dxl://{folder}/servos?baud={ROBOT.bus.baud}"
+        self._thread = threading.Thread(target=self.server.serve, daemon=True)
+        self._thread.start()
+
+    def assert_kept(self) -> None:
+        report = self.server.bus.audit.report()
+        assert report["violations"] == 0, report["details"]
+
+    @property
+    def torque(self) -> bool:
+        return any(s.torque for s in self.server.bus.servos.values())
+
+    def unplugged(self, on: bool) -> None:
+        self.server.bus.faults = FaultSchedule((Fault("unplug"),) if on else ())
+        within(2.0, "the tty gone or back", lambda: self._link.exists() != on)
+
+    def close(self) -> None:
+        self.server.stop()
+        self._thread.join(5)
+        self.server.close()
+
+
+def within(seconds: float, what: str, condition: Callable[[], bool]) -> None:
+    end_s = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end_s, f"not within {seconds} s: {what}"
+        time.sleep(0.03)
+
+
+def bring_to(client: Client, state: str) -> None:
+    """Lead the robot from anywhere to a state."""
+    now = client.status().state
+    if now in ("fault", "estop"):
+        client.reset()
+        client.wait_for("limp", timeout_s=5)
+    if state in ("limp", "estop"):
+        client.park()
+        if state == "estop":
+            client.estop()
+        return
+    client.arm()
+    status = client.wait_for("idle", "holding", "fault", timeout_s=10)
+    assert status.state != "fault", status.reason
+    if state == "idle":
+        client.say("wave", seconds=0.8)
+        client.wait_for("idle", timeout_s=3)
+        return
+    client.say("wave", seconds=6.0, wait=False)
+    client.wait_for("moving", timeout_s=5)
+    time.sleep(0.3)
+    if state == "holding":
+        client.stop()
+        client.wait_for("holding", timeout_s=3)
+    elif state == "parking":
+        client.park(wait=False)
+        client.wait_for("parking", timeout_s=3)
+
+
+def assert_works(client: Client) -> None:
+    client.arm()
+    status = client.wait_for("idle", "holding", "fault", timeout_s=10)
+    assert status.state != "fault", status.reason
+    assert client.say("wave", seconds=0.8).done
+
+
+@pytest.fixture
+def servos(tmp_path):
+    made = Servos(tmp_path)
+    yield made
+    made.close()
+
+
+def daemon_on(servos: Servos, *options: str, model: bool = False) -> RunningDaemon:
+    return RunningDaemon(*options, bus=servos.url, model=model).until_ready()
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
+def test_the_bus_process_in_each_state_ends_in_a_fault_that_can_be_reset(servos, number):
+    states = (
+        ("limp", "idle", "moving", "holding", "parking", "estop") if number is signal.SIGKILL else ("idle", "moving")
+    )
+    daemon = daemon_on(servos)
+    try:
+        with daemon.client() as client:
+            for state in states:
+                bring_to(client, state)
+                bus = child_pid(daemon, "daemon.bus_process")
+                os.kill(bus, number)
+                began_s = time.monotonic()
+                within(FAULT_WITHIN_S, f"{state}: fault", lambda: client.status().state == "fault")
+                assert client.status().must_arm and client.status().command is None
+                within(FAULT_WITHIN_S, f"{state}: named", lambda: "reset" in client.status().reason)
+                with pytest.raises(RefusedError, match="mmmd reset"):
+                    client.say("wave")
+                client.reset()
+                client.wait_for("limp", timeout_s=3)
+                assert time.monotonic() - began_s < 2 * FAULT_WITHIN_S
+                within(2, f"{state}: no torque", lambda: not servos.torque)
+                servos.assert_kept()
+            assert_works(client)
+        assert daemon.terminate() == 0
+        servos.assert_kept()
+    finally:
+        daemon.close()
+
+
+@pytest.mark.parametrize("state", ["idle", "moving", "holding", "parking", "limp"])
+def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, state):
+    daemon = daemon_on(servos)
+    try:
+        with daemon.client() as client:
+            bring_to(client, state)
+            servos.unplugged(True)
+            if state == "limp":
+                time.sleep(1.0)
+                assert client.status().state in ("limp", "fault")
+            else:
+                within(FAULT_WITHIN_S, "fault", lambda: client.status().state == "fault")
+                assert client.status().reason
+            servos.unplugged(False)
+            client.reset()
+            client.wait_for("limp", timeout_s=5)
+            assert_works(client)
+        assert daemon.terminate() == 0
+        servos.assert_kept()
+    finally:
+        daemon.close()
+
+
+def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_path):
+    """Four daemons at once: hold after 0.5 s, park after 5 s, then the port is given back."""
+    states = ("idle", "moving", "holding", "parking")
+    rigs: list[tuple[Servos, RunningDaemon, int]] = []
+    try:
+        for state in states:
+            folder = tmp_path / state
+            folder.mkdir()
+            servos = Servos(folder)
+            daemon = daemon_on(servos)
+            with daemon.client() as client:
+                bring_to(client, state)
+            rigs.append((servos, daemon, child_pid(daemon, "daemon.bus_process")))
+            daemon.process.kill()
+        for servos, daemon, bus in rigs:
+            within(25, "limp", lambda servos=servos: not servos.torque)
+            within(5, "bus process gone", lambda bus=bus: _gone(bus))
+            daemon.process.wait(5)
+            servos.assert_kept()
+    finally:
+        for servos, daemon, _ in rigs:
+            daemon.close()
+            servos.close()
+
+
+def test_the_recorder_killed_and_frozen_changes_nothing_for_the_robot(servos, tmp_path):
+    daemon = daemon_on(servos, "--log", str(tmp_path / "run.mcap"))
+    try:
+        with daemon.client() as client:
+            bring_to(client, "moving")
+            os.kill(child_pid(daemon, "daemon.recorder"), signal.SIGSTOP)
+            assert client.say("wave", seconds=0.8).done
+            bring_to(client, "moving")
+            os.kill(child_pid(daemon, "daemon.recorder"), signal.SIGKILL)
+            assert client.say("wave", seconds=0.8).done
+            within(3, "said", lambda: "stopped" in client.status().recording)
+        assert daemon.terminate() == 0
+        servos.assert_kept()
+    finally:
+        daemon.close()
+
+
+def test_the_generator_killed_and_frozen_in_each_state_is_started_again(servos):
+    daemon = daemon_on(servos, model=True)
+    try:
+        with daemon.client() as client:
+            for state in ("limp", "idle", "moving", "holding"):
+                bring_to(client, "idle" if state == "limp" else state)
+                if state == "limp":
+                    client.park()
+                number = signal.SIGSTOP if state == "idle" else signal.SIGKILL
+                os.kill(child_pid(daemon, "daemon.generator"), number)
+                within(12, "noticed", lambda: not client.status().generator.startswith("ready"))
+                assert client.status().state in (state, "idle", "moving")  # what was played goes on to its end
+                assert client.gesture("nod").done  # the library needs no generator
+                within(60, "back", lambda: client.status().generator.startswith("ready"))
+            assert client.say("nod twice").done
+        assert daemon.terminate() == 0
+        servos.assert_kept()
+    finally:
+        daemon.close()
+
+
+def test_a_command_under_way_when_the_bus_process_dies_ends_once(servos):
+    daemon = daemon_on(servos)
+    try:
+        with daemon.client() as client, daemon.client() as watcher, contextlib.closing(
+            watcher.watch("v1/event")
+        ) as watched:  # fmt: skip
+            client.arm()
+            client.say("wave", seconds=5.0, wait=False, command_id="dying")
+            client.wait_for("moving", timeout_s=5)
+            os.kill(child_pid(daemon, "daemon.bus_process"), signal.SIGKILL)
+            heard = []
+            with contextlib.suppress(NoAnswerError, CancelledByError):
+                end_s = time.monotonic() + 4
+                while time.monotonic() < end_s:
+                    _, event = next(watched)
+                    heard += [event] if event.id == "dying" and event.terminal else []
+                    if heard and time.monotonic() > end_s - 2:
+                        break
+                    client.status()
+            assert [type(e) for e in heard] == [ev.Failed] and heard[0].code == "fault"
+    finally:
+        daemon.close()
+
+
+def _gone(pid: int) -> bool:
+    try:
+        with open(f"/proc/{pid}/stat") as f:
+            return f.read().rsplit(")", 1)[1].split()[0] == "Z"
+    except OSError:
+        return True

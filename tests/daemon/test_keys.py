@@ -1,0 +1,239 @@
+"""Keys: who is let in, that a stranger learns nothing, and a generator on the other side of a network."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+import zmq
+
+from daemon.client import Client, NoAnswerError
+from daemon.config import Endpoints
+from daemon.demo import free_endpoints
+from daemon.errors import ConfigError
+from daemon.keys import KeyFolder, checked_key
+from daemon.rates import BURST, RATE_HZ, Rates
+from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
+
+pytestmark = pytest.mark.timeout(120)
+
+
+def pair_of_folders(tmp_path) -> tuple[KeyFolder, KeyFolder]:
+    """A daemon's keys and a client's, who know each other."""
+    robot, laptop = KeyFolder(tmp_path / "robot"), KeyFolder(tmp_path / "laptop")
+    robot.allow("laptop", laptop.new().public.decode())
+    laptop.trust("daemon", robot.new().public.decode())
+    return robot, laptop
+
+
+def test_a_key_is_made_once_and_is_ones_own(tmp_path):
+    folder = KeyFolder(tmp_path / "keys")
+    pair = folder.new()
+    assert folder.own() == pair and len(pair.public) == len(pair.secret) == 40
+    assert (tmp_path / "keys" / "own.key").stat().st_mode & 0o777 == 0o600
+    with pytest.raises(ConfigError, match="already"):
+        folder.new()
+    os.chmod(tmp_path / "keys" / "own.key", 0o644)
+    with pytest.raises(ConfigError, match="chmod 600"):
+        folder.own()
+
+
+@pytest.mark.parametrize("text", ["", "short", "x" * 41, "ü" * 40])
+def test_what_is_no_key_is_named(tmp_path, text):
+    with pytest.raises(ConfigError, match="Z85"):
+        checked_key(text)
+    with pytest.raises(ConfigError):
+        KeyFolder(tmp_path).allow("a", text)
+
+
+@pytest.mark.parametrize("name", ["../x", "", "a/b", "n" * 65])
+def test_names_stay_in_the_folder(tmp_path, name):
+    with pytest.raises(ConfigError, match="letters"):
+        KeyFolder(tmp_path).allow(name, zmq.curve_keypair()[0].decode())
+
+
+def test_damaged_keys_are_named_and_left_out(tmp_path):
+    folder = KeyFolder(tmp_path)
+    with pytest.raises(ConfigError, match="mmmd keys new"):
+        folder.own()
+    with pytest.raises(ConfigError, match="keys trust daemon"):
+        folder.server_of("daemon")
+    (tmp_path / "own.key").write_text("nonsense")
+    os.chmod(tmp_path / "own.key", 0o600)
+    with pytest.raises(ConfigError, match="no key pair"):
+        folder.own()
+    folder.allow("good", zmq.curve_keypair()[0].decode())
+    (tmp_path / "allowed" / "bad.pub").write_text("short")
+    assert list(folder.allowed()) == ["good"]
+
+
+def test_addresses_that_others_can_reach_need_keys(tmp_path):
+    with pytest.raises(ConfigError, match="--keys"):
+        Endpoints(cmd="tcp://0.0.0.0:5871")
+    assert Endpoints(cmd="tcp://0.0.0.0:5871", keys=tmp_path).keys == tmp_path
+
+
+@pytest.fixture(scope="module")
+def secured(tmp_path_factory):
+    """A daemon behind CURVE, and its client's keys."""
+    folder = tmp_path_factory.mktemp("keys")
+    robot, laptop = pair_of_folders(folder)
+    ends = free_endpoints()
+    daemon = RunningDaemon(
+        "--keys", str(robot.path), "--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub
+    )  # fmt: skip
+    daemon.endpoints = Endpoints(ends.cmd, ends.ctl, ends.pub, laptop.path)
+    try:
+        yield daemon.until_ready(), robot, laptop
+        assert daemon.terminate() == 0
+    finally:
+        daemon.close()
+
+
+def test_an_allowed_client_does_everything(secured):
+    daemon, _, _ = secured
+    with daemon.client() as client:
+        assert client.say("wave", seconds=0.8).done
+        assert next(client.watch("v1/state"))[0] == "v1/state"
+        client.stop()
+
+
+@pytest.mark.parametrize("who", ["no key", "a key that is not allowed", "the wrong daemon's key"])
+def test_a_stranger_gets_nothing_on_any_socket(secured, tmp_path, who):
+    daemon, robot, _ = secured
+    stranger = KeyFolder(tmp_path / "stranger")
+    stranger.new()
+    stranger.trust("daemon", (zmq.curve_keypair()[0] if "wrong" in who else robot.own().public).decode())
+    ends = daemon.endpoints
+    context = zmq.Context()
+    try:
+        for endpoint, kind in ((ends.cmd, zmq.DEALER), (ends.ctl, zmq.DEALER), (ends.pub, zmq.SUB)):
+            socket = context.socket(kind)
+            if who != "no key":
+                from daemon.keys import connect_curve
+
+                connect_curve(socket, stranger, "daemon")
+            monitor = socket.get_monitor_socket(zmq.EVENT_HANDSHAKE_FAILED_AUTH)
+            socket.connect(endpoint)
+            if kind == zmq.SUB:
+                socket.subscribe(b"")
+            else:
+                socket.send(b'{"type": "status"}')
+            assert not socket.poll(600)
+            assert not monitor.poll(0), "the daemon said that the key was refused"
+            socket.disable_monitor()
+            monitor.close(0)
+            socket.close(0)
+    finally:
+        context.destroy(linger=0)
+    with daemon.client() as client:
+        assert client.status().state in ("limp", "idle", "holding")
+
+
+def test_a_key_can_be_allowed_and_taken_back_while_it_runs(secured, tmp_path):
+    daemon, robot, _ = secured
+    guest = KeyFolder(tmp_path / "guest")
+    public = guest.new().public.decode()
+    guest.trust("daemon", robot.own().public.decode())
+    ends = Endpoints(daemon.endpoints.cmd, daemon.endpoints.ctl, daemon.endpoints.pub, guest.path)
+    with Client(ends, timeout_s=0.5) as client, pytest.raises(NoAnswerError):
+        client.status()
+    robot.allow("guest", public)
+    with Client(ends) as client:
+        assert client.status().robot == "reference"
+    (robot.path / "allowed" / "guest.pub").unlink()
+    with Client(ends, timeout_s=0.5) as client, pytest.raises(NoAnswerError):
+        client.status()
+
+
+def test_keys_by_command(tmp_path):
+    folder = str(tmp_path / "k")
+    made = mmmd("keys", "new", "--keys", folder)
+    assert made.returncode == 0 and len(made.stdout.strip()) == 40
+    other = zmq.curve_keypair()[0].decode()
+    assert mmmd("keys", "allow", "laptop", other, "--keys", folder).returncode == 0
+    assert mmmd("keys", "trust", "generator", other, "--keys", folder).returncode == 0
+    listed = mmmd("keys", "list", "--keys", folder).stdout
+    assert made.stdout.strip() in listed and listed.count(other) == 2 and "laptop" in listed
+    assert mmmd("keys", "new", "--keys", folder).returncode == 2
+    assert mmmd("keys", "allow", "laptop", "--keys", folder).returncode == 2
+    assert mmmd("keys", "trust", "cat", other, "--keys", folder).returncode == 2
+
+
+def test_a_daemon_without_torch_uses_a_generator_over_curve_and_notices_its_loss(tmp_path):
+    """As on a small board: torch cannot be imported; the generator is another process, behind keys."""
+    without = tmp_path / "without_torch"
+    without.mkdir()
+    (without / "torch.py").write_text("raise ImportError('torch is not installed here')")
+    board, server = KeyFolder(tmp_path / "board"), KeyFolder(tmp_path / "server")
+    server.allow("board", board.new().public.decode())
+    board.trust("generator", server.new().public.decode())
+    address = free_endpoints().cmd
+
+    def start_generator() -> subprocess.Popen[bytes]:
+        return subprocess.Popen([*MMMD, "generator", "--bind", address, "--keys", str(server.path)])
+
+    generator = start_generator()
+    paths = os.environ.get("PYTHONPATH", "")
+    os.environ["PYTHONPATH"] = f"{without}{os.pathsep}{paths}"
+    try:
+        daemon = RunningDaemon("--generator", address, "--keys", str(board.path), model=True)
+    finally:
+        os.environ["PYTHONPATH"] = paths
+    try:
+        daemon.until_ready()
+        with daemon.client() as client:
+            assert client.say("wave with your right hand").done
+            client.say("clap your hands", loop=True, wait=False)
+            client.wait_for("moving", timeout_s=5)
+            generator.kill()
+            generator.wait(5)
+            end_s = time.monotonic() + 10
+            while client.status().generator.startswith("ready"):
+                assert time.monotonic() < end_s
+                time.sleep(0.05)
+            assert client.status().state == "moving"  # what is played goes on
+            generator = start_generator()
+            end_s = time.monotonic() + 60
+            while not client.status().generator.startswith("ready"):
+                assert time.monotonic() < end_s
+                time.sleep(0.05)
+            assert client.say("nod twice").done
+        assert daemon.terminate() == 0
+    finally:
+        daemon.close()
+        generator.kill()
+        generator.wait(5)
+
+
+def test_without_torch_and_generator_the_daemon_says_what_to_install(tmp_path):
+    code = (
+        "import importlib.util as u, sys; find = u.find_spec;"
+        "u.find_spec = lambda n, *a: None if n == 'torch' else find(n, *a);"
+        "from daemon.cli import main; sys.exit(main(['run']))"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30, check=False)
+    assert result.returncode == 2 and "mmmd[generate]" in result.stderr
+
+
+def test_another_checkpoint_than_agreed_is_not_used():
+    daemon = RunningDaemon("--model-hash", "0123")
+    try:
+        end_s = time.monotonic() + 20
+        with pytest.raises(AssertionError):  # never ready
+            while time.monotonic() < end_s:
+                if "checkpoint 0123" in daemon.said:
+                    raise AssertionError
+                time.sleep(0.1)
+    finally:
+        daemon.close()
+
+
+def test_rates_bound_each_client_apart():
+    rates = Rates()
+    assert sum(rates.allows(b"a", 0.0) for _ in range(2 * BURST)) == BURST
+    assert rates.allows(b"b", 0.0) and rates.refused == BURST
+    assert sum(rates.allows(b"a", 1.0) for _ in range(1000)) == RATE_HZ

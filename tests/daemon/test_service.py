@@ -1,0 +1,193 @@
+"""The daemon as a service: settings and their sources, readiness, metrics, JSON lines, unit files, logs in turn."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from daemon.demo import free_endpoints
+from daemon.errors import ConfigError
+from daemon.logs import JsonLines
+from daemon.mcap_log import read_log
+from daemon.rotation import RotatingLog
+from daemon.settings import DEFAULTS, config_of, resolve
+from daemon.shared import cycle_dtype
+from retarget.robot import load_robot
+from tests.end_to_end.harness import RunningDaemon, mmmd
+
+pytestmark = pytest.mark.timeout(90)
+
+
+def test_later_sources_win_and_each_value_says_where_it_came_from(tmp_path):
+    file = tmp_path / "mmmd.toml"
+    file.write_text('robot = "op3"\nidle = "calm"\nqueue_s = 0.2\nlog = "~/x.mcap"\n')
+    found = resolve({"robot": "reference", "bus": None}, file, {"MMMD_IDLE": "lively", "MMMD_AUTO_ARM": "no"})
+    assert found["robot"].value == "reference" and found["robot"].source == "--robot"
+    assert found["idle"].value == "lively" and found["idle"].source == "MMMD_IDLE"
+    assert found["queue_s"].value == 0.2 and found["queue_s"].source == str(file)
+    assert found["bus"].source == "default" and found["auto_arm"].value is False
+    config = config_of(found)
+    assert config.robot == "reference" and config.log == Path.home() / "x.mcap" and not config.auto_arm
+
+
+def test_defaults_are_those_of_the_daemon():
+    config = config_of(resolve({}, None, {"XDG_CONFIG_HOME": "/nowhere"}))
+    assert config.robot == "reference" and config.endpoints.cmd == DEFAULTS["cmd"]
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("robto = 1", "unknown robto"),
+        ("queue_s = 'x'", "queue_s"),
+        ("auto_arm = 3", "bool"),
+        ("a = ", "cannot be read"),
+    ],
+)
+def test_a_wrong_file_is_named(tmp_path, text, says):
+    file = tmp_path / "c.toml"
+    file.write_text(text)
+    with pytest.raises(ConfigError, match=says) as caught:
+        resolve({}, file, {})
+    assert str(file) in str(caught.value)
+
+
+def test_a_value_out_of_range_is_named():
+    with pytest.raises(ConfigError, match="queue_s"):
+        config_of(resolve({}, None, {"MMMD_QUEUE_S": "9"}))
+
+
+def test_config_show(tmp_path):
+    file = tmp_path / "c.toml"
+    file.write_text('robot = "op3"\n')
+    shown = json.loads(mmmd("config", "show", "--config", str(file), "--json", MMMD_IDLE="calm").stdout)
+    assert shown["robot"] == {"value": "op3", "source": str(file)} and shown["idle"]["source"] == "MMMD_IDLE"
+    assert set(shown) == set(DEFAULTS)
+    assert str(file) in mmmd("config", "show", "--config", str(file)).stdout
+    assert mmmd("config", "show", "--config", "/no/such").returncode == 2
+
+
+def test_a_json_line_is_one_object():
+    record = logging.LogRecord("daemon.x", logging.WARNING, "", 1, "servo %d\nsilent", (3,), None)
+    line = JsonLines("bus").format(record)
+    assert "\n" not in line
+    assert json.loads(line) | {"t": ""} == {
+        "t": "", "level": "warning", "process": "bus", "module": "daemon.x", "message": "servo 3\nsilent"
+    }  # fmt: skip
+
+
+def test_a_service_tells_systemd_and_prometheus_and_logs_json(tmp_path):
+    """systemd's end is a socket of ours; metrics are read as a scraper would."""
+    inbox = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    inbox.bind(str(tmp_path / "notify"))
+    inbox.settimeout(10)
+    port = int(free_endpoints().cmd.rsplit(":", 1)[1])
+    os.environ |= {"NOTIFY_SOCKET": str(tmp_path / "notify"), "WATCHDOG_USEC": "600000"}
+    try:
+        daemon = RunningDaemon("--metrics", f"127.0.0.1:{port}", "--log-json")
+    finally:
+        for key in ("NOTIFY_SOCKET", "WATCHDOG_USEC"):
+            del os.environ[key]
+    try:
+        daemon.until_ready()
+        assert inbox.recv(500).startswith(b"READY=1\nSTATUS=robot reference")
+        assert inbox.recv(500) == b"WATCHDOG=1"
+        with daemon.client() as client:
+            client.say("wave", seconds=0.8)
+            client.wait_for("idle", timeout_s=3)
+        text = urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=5).read().decode()
+        values = {line.rsplit(" ", 1)[0]: float(line.rsplit(" ", 1)[1]) for line in text.splitlines() if line[0] != "#"}
+        assert values['mmmd_state{robot="reference",state="idle"}'] == 1
+        assert values['mmmd_state{robot="reference",state="fault"}'] == 0
+        assert values['mmmd_events_total{robot="reference",type="done"}'] == 1
+        assert values['mmmd_cycles_total{robot="reference"}'] > 50
+        with pytest.raises(urllib.error.HTTPError, match="404"):
+            urllib.request.urlopen(f"http://127.0.0.1:{port}/other", timeout=5)
+        with socket.create_connection(("127.0.0.1", port), 5) as rude:
+            rude.sendall(b"x" * 20_000)
+        urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=5).close()
+        assert daemon.terminate() == 0
+        inbox.settimeout(2)
+        heard = []
+        while not heard or heard[-1] != b"STOPPING=1":
+            heard.append(inbox.recv(500))
+        lines = [json.loads(line) for line in daemon.said.splitlines()]
+        assert {"front", "bus"} <= {line["process"] for line in lines}
+    finally:
+        daemon.close()
+        inbox.close()
+
+
+def test_install_service_writes_what_systemd_and_udev_read(tmp_path):
+    result = mmmd("install-service", "--root", str(tmp_path), "--user", "pi")
+    assert result.returncode == 0 and "systemctl" in result.stdout
+    unit = (tmp_path / "etc/systemd/system/mmmd.service").read_text()
+    assert "Type=notify" in unit and "User=pi" in unit and "RestartPreventExitStatus=2 3" in unit
+    assert 'latency_timer}="1"' in (tmp_path / "etc/udev/rules.d/60-mmmd.rules").read_text()
+    config = tmp_path / "etc/mmmd/mmmd.toml"
+    assert not config_of(resolve({}, config, {})).auto_arm
+    config.write_text('robot = "op3"\n')
+    mmmd("install-service", "--root", str(tmp_path), "--user", "pi")
+    assert config.read_text() == 'robot = "op3"\n'
+    if verify := next((p for p in ("/usr/bin/systemd-analyze", "/bin/systemd-analyze") if Path(p).exists()), None):
+        subprocess.run([verify, "verify", str(tmp_path / "etc/systemd/system/mmmd.service")], check=False, timeout=20)
+
+
+def records(n: int) -> np.ndarray:
+    robot = load_robot("reference")
+    rows = np.zeros(n, cycle_dtype(robot.n_joints, robot.n_joints))
+    rows["cycle"] = np.arange(n)
+    rows["t_mono_ns"] = time.monotonic_ns() + np.arange(n) * 10_000_000
+    rows["goal_rad"] = np.random.default_rng(0).normal(size=rows["goal_rad"].shape)
+    return rows
+
+
+def test_logs_go_on_in_the_next_file_and_the_oldest_go(tmp_path):
+    path = tmp_path / "run.mcap"
+    rows = records(3000)
+    with RotatingLog(path, load_robot("reference"), size_mb=0.05, total_mb=0.15) as log:
+        for i, row in enumerate(rows):
+            log.cycle(row)
+            if i % 100 == 99:
+                log.flush()
+    files = sorted(tmp_path.glob("*.mcap"), key=lambda p: p.stat().st_mtime_ns)
+    assert len(files) > 2 and not path.exists()
+    assert sum(p.stat().st_size for p in files) < 0.5e6
+    numbers = [c.cycle for p in sorted(files, key=lambda p: int(p.stem.split(".")[1])) for c in read_log(p).cycles]
+    assert numbers == list(range(numbers[0], 3000)) and numbers[0] > 0  # whole files, nothing lost between them
+
+
+def test_a_log_that_does_not_rotate_is_one_file(tmp_path):
+    with RotatingLog(tmp_path / "run.mcap", load_robot("reference"), 0, 0) as log:
+        for row in records(500):
+            log.cycle(row)
+        log.flush()
+    assert [c.cycle for c in read_log(tmp_path / "run.mcap").cycles] == list(range(500))
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full, a device without room")
+def test_a_full_disk_ends_the_recorder_with_one_message(tmp_path):
+    (tmp_path / "run.mcap").symlink_to("/dev/full")
+    from daemon.shared import BusLink
+
+    link = BusLink.create(load_robot("reference").n_joints)
+    try:
+        command = [sys.executable, "-m", "daemon.recorder", "--robot", "reference", "--link", str(link.path)]
+        command += ["--events", f"ipc://{tmp_path}/events", "--out", str(tmp_path / "run.mcap")]
+        process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        _, said = process.communicate(timeout=20)
+        assert process.returncode == 1 and "recording stopped" in said and "Traceback" not in said
+    finally:
+        link.close()

@@ -1,0 +1,196 @@
+"""The servos behind real ttys: other people's drivers, several ports, unplug and replug, and the command."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from dynamixel_sdk import COMM_RX_TIMEOUT, COMM_SUCCESS, GroupSyncRead, PacketHandler, PortHandler
+
+from daemon.bus import packet
+from daemon.bus.serial_port import SerialPort
+from daemon.errors import CommandError, LinkLostError
+from retarget.robot import load_robot
+from sim.bus import SimBus
+from sim.faults import Fault, FaultSchedule
+from sim.pty import PtyServer
+from sim.world import World
+
+ROBOT = load_robot("reference")
+BAUD = ROBOT.bus.baud
+
+
+@contextmanager
+def serving(*servers: PtyServer) -> Iterator[None]:
+    threads = [threading.Thread(target=s.serve) for s in servers]
+    for thread in threads:
+        thread.start()
+    try:
+        yield
+    finally:
+        for server in servers:
+            server.stop()
+        for thread in threads:
+            thread.join(5)
+        for server in servers:
+            server.close()
+
+
+def until(what, seconds: float = 10.0) -> None:
+    end_s = time.monotonic() + seconds
+    while not what():
+        assert time.monotonic() < end_s
+        time.sleep(0.01)
+
+
+def answered(port: SerialPort, servo_id: int) -> bool:
+    """Whether a servo answers one of a few pings: a loaded machine may be late."""
+    decoder = packet.PacketDecoder()
+    for _ in range(10):
+        port.write(packet.ping(servo_id))
+        end_s = time.monotonic() + 0.3
+        while time.monotonic() < end_s:
+            if any(p.servo_id == servo_id for p in decoder.feed(port.read(100, 0.05))):
+                return True
+    return False
+
+
+def test_the_stock_sdk_reads_groups_and_misses_who_is_silent(tmp_path: Path) -> None:
+    faults = FaultSchedule((Fault("silent", servo_id=3),))
+    with serving(PtyServer(SimBus(ROBOT, faults), tmp_path / "servos")):
+        port, handler = PortHandler(str(tmp_path / "servos")), PacketHandler(2.0)
+        assert port.openPort() and port.setBaudRate(BAUD)
+        try:
+            read = GroupSyncRead(port, handler, 132, 4)
+            for servo_id in (1, 2, 4, 5):
+                read.addParam(servo_id)
+            assert read.txRxPacket() == COMM_SUCCESS
+            assert read.getData(1, 132, 4) == 2048
+            assert handler.ping(port, 3)[1] == COMM_RX_TIMEOUT
+            assert handler.reboot(port, 5) == (COMM_SUCCESS, 0)
+            assert handler.broadcastPing(port)[1] == COMM_SUCCESS
+        finally:
+            port.closePort()
+
+
+def test_rustypot_drives_the_servos(tmp_path: Path) -> None:
+    rustypot = pytest.importorskip("rustypot", reason="rustypot is not installed (extra 'bench')")
+    server = PtyServer(SimBus(ROBOT), tmp_path / "servos")
+    with serving(server):
+        driver = rustypot.Xl330PyController(str(tmp_path / "servos"), BAUD, 1.0)
+        ids = [1, 2]  # the head: XL330
+        assert driver.sync_read_present_position(ids) == pytest.approx([0.0, 0.262], abs=0.01)
+        driver.sync_write_torque_enable(ids, [True, True])
+        driver.sync_write_goal_position(ids, [0.2, 0.3])
+        until(lambda: driver.sync_read_present_position(ids) == pytest.approx([0.2, 0.3], abs=0.02))
+        assert driver.ping(1) and all(driver.sync_read_torque_enable(ids))
+
+
+def test_two_ports_lead_to_one_robot(tmp_path: Path) -> None:
+    world = World(ROBOT)
+    halves = {"left": ROBOT.servo_ids[:8], "right": ROBOT.servo_ids[8:]}
+    servers = [PtyServer(SimBus(ROBOT, world=world, servo_ids=ids), tmp_path / name) for name, ids in halves.items()]
+    with serving(*servers):
+        for name, ids in halves.items():
+            port = SerialPort(str(tmp_path / name), BAUD)
+            other = (set(ROBOT.servo_ids) - set(ids)).pop()
+            port.write(packet.ping(other))
+            assert port.read(100, 0.05) == b""
+            assert answered(port, ids[0])
+            port.close()
+
+
+@pytest.mark.parametrize("other_path", [False, True])
+def test_unplugged_the_tty_is_gone_and_comes_back_as_another_one(tmp_path: Path, other_path: bool) -> None:
+    link, again = tmp_path / "servos", tmp_path / ("other" if other_path else "servos")
+    fault = Fault("unplug", start_s=0.4, end_s=0.8, path=str(again) if other_path else None)
+    server = PtyServer(SimBus(ROBOT, FaultSchedule((fault,))), link)
+    with serving(server):
+        first = os.readlink(link)
+        port = SerialPort(str(link), BAUD)
+        assert answered(port, 1)
+        with pytest.raises(LinkLostError, match="lost"):
+            end_s = time.monotonic() + 10
+            while time.monotonic() < end_s:
+                port.write(packet.ping(1))
+                port.read(100, 0.01)
+        port.close()
+        until(lambda: again.is_symlink() and server._master >= 0)
+        assert other_path != link.is_symlink(), "the old link is gone when it comes back under another"
+        assert os.readlink(again).startswith("/dev/pts/") and first.startswith("/dev/pts/")
+        port = SerialPort(str(again), BAUD)
+        assert answered(port, 1)
+        port.close()
+    assert not again.is_symlink()
+
+
+def test_servos_nobody_talks_to_stop_by_their_watchdog_in_real_time(tmp_path: Path) -> None:
+    bus = SimBus(ROBOT)
+    with serving(PtyServer(bus, tmp_path / "servos")):
+        servo = bus.servos[3]
+        with bus.world.lock:
+            servo.write(64, b"\1")
+            servo.write(98, b"\5")
+        until(lambda: servo.get("bus_watchdog") == -1)
+
+
+def test_a_link_that_is_a_file_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "servos").write_text("mine")
+    with pytest.raises(CommandError, match="is no link"):
+        PtyServer(SimBus(ROBOT), tmp_path / "servos")
+    assert (tmp_path / "servos").read_text() == "mine"
+
+
+def run_sim(*arguments: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "daemon.cli", "sim", *arguments]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def test_the_command_serves_two_ports_names_its_faults_and_audits(tmp_path: Path) -> None:
+    schedule, audit = tmp_path / "faults.toml", tmp_path / "audit.json"
+    schedule.write_text('[[fault]]\nkind = "overload"\nservo_id = 2\n')
+    links = [f"{tmp_path / 'left'}=1-8", f"{tmp_path / 'right'}=9-16"]
+    process = run_sim("--port", *links, "--faults", str(schedule), "--audit", str(audit), "--latency-ms", "1")
+    try:
+        until(lambda: (tmp_path / "right").is_symlink() and (tmp_path / "left").is_symlink(), 30)
+        port = SerialPort(str(tmp_path / "left"), BAUD)
+        assert answered(port, 2)
+        port.write(packet.write(3, 64, b"\1"))
+        port.write(packet.write(3, 116, (4000).to_bytes(4, "little")))
+        assert answered(port, 3)
+        port.close()
+        process.send_signal(signal.SIGTERM)
+        out, err = process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.communicate()
+    report = json.loads(audit.read_text())
+    assert process.returncode == 1, "a goal beyond the robot's limits"
+    assert report["violations_by_kind"]["position"] == 1 and report["faults"] == {"overload": 1}
+    assert "8 servos of 'reference' at 1000000 baud on" in out and "fault overload servo 2" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--body", "jelly"], "body = 'jelly'; allowed: plain, mujoco"),
+        (["--latency-ms", "soon"], "latency_ms = 'soon'"),
+        (["--port", "x=1-99"], "servo ids = 17, 18"),
+        (["--pieces", "9-2"], "piece_bytes = (9, 2)"),
+        (["--faults", "none.toml"], "none.toml: file: No such file"),
+    ],
+)
+def test_the_command_refuses_what_cannot_be(arguments: list[str], said: str, capsys) -> None:
+    from daemon.cli import main
+
+    assert main(["sim", *arguments]) in (1, 2)
+    assert said in capsys.readouterr().err

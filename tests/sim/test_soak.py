@@ -1,0 +1,167 @@
+"""Hours of simulated faults in virtual time: `make soak`. MMMD_SOAK_HOURS (10) and MMMD_SOAK_SEEDS (0,1,2) set how long.
+
+The real bus side (streamer, gate, servo bus, codec) against the simulated servos. A person stands by: after each fault
+the servo that tripped is rebooted, the robot reset and armed again. Nothing else may arm it.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import random
+import re
+import resource
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from daemon.bus import packet
+from daemon.shared import BusLink, BusRequest, BusState
+from retarget.robot import RobotModel, load_robot
+from sim.faults import INSTANT_KINDS, PACKET_KINDS, Fault
+from tests.daemon.rig import Rig, swing
+
+HOURS = float(os.environ.get("MMMD_SOAK_HOURS", "10"))
+SEEDS = [int(s) for s in os.environ.get("MMMD_SOAK_SEEDS", "0,1,2").split(",")]
+MEAN_PAUSE_S = 40.0
+REPAIR_S = 3.0
+"""A person's time from a fault to the repair; whatever lasted is over by then or keeps it in fault."""
+LONGEST_FAULT_S = 60.0
+LEAK_BYTES = 24 * 1024 * 1024
+_KINDS = (
+    *(PACKET_KINDS.keys() - {"deaf"}),
+    "silent",
+    "unplug",
+    "brown_out",
+    "stuck",
+    "overload",
+    "hot",
+    "reboot",
+    "slip",
+)
+
+
+def schedule(robot: RobotModel, hours: float, seed: int) -> tuple[Fault, ...]:
+    """Faults one after another, of every kind, with quiet between them."""
+    draw, faults, t_s = random.Random(seed), list[Fault](), 20.0
+    while True:
+        t_s += draw.expovariate(1 / MEAN_PAUSE_S) + 5.0
+        if t_s > hours * 3600 - LONGEST_FAULT_S:
+            return tuple(faults)
+        kind = draw.choice(_KINDS)
+        whom = draw.choice([None, *robot.servo_ids]) if kind in PACKET_KINDS else draw.choice(robot.servo_ids)
+        lasts_s = draw.uniform(0.2, 8.0)
+        if kind in PACKET_KINDS:
+            faults.append(Fault(kind, t_s, t_s + lasts_s, draw.choice([0.001, 0.01, 0.1, 0.5]), whom))
+        elif kind in INSTANT_KINDS:
+            amount = draw.choice([-1, 1]) * draw.uniform(5, 40) if kind == "slip" else None
+            faults.append(Fault(kind, t_s, servo_id=whom, amount=amount))
+        elif kind in ("unplug", "brown_out"):
+            faults.append(Fault(kind, t_s, t_s + draw.uniform(0.02, 5.0)))
+        else:
+            faults.append(Fault(kind, t_s, t_s + lasts_s, servo_id=whom))
+
+
+class Person:
+    """Plays motions while all is well; after a fault repairs, resets and arms, and counts what happened."""
+
+    def __init__(self, r: Rig, seed: int) -> None:
+        self.r, self.draw = r, np.random.default_rng(seed)
+        self.faults, self.armings, self.longest_s = Counter[str](), 0, 0.0
+        self._motions = [swing(r.robot, seconds) for seconds in (1.0, 2.0, 3.0)]
+
+    def work(self, until_s: float) -> None:
+        while self.r.clock.true_s < until_s:
+            if self.r.state is BusState.FAULT:
+                self._repair()
+            elif self.r.state is BusState.LIMP:
+                self._arm()
+            else:
+                self._play()
+            self.r.records.clear()
+
+    def _play(self) -> None:
+        if self.r.state is BusState.HOLDING and self.r.link.queued_frames == 0:
+            q = self._motions[int(self.draw.integers(3))]
+            self.r.link.push(q, 1, 0, self.r.link.epoch, last=True)
+        if self.draw.random() < 0.01:
+            self.r.link.request([BusRequest.STOP, BusRequest.PARK][int(self.draw.integers(2))])
+        self._cycles(20)
+
+    def _arm(self) -> None:
+        assert not any(self.r.torque), "limp is limp"
+        self.armings += 1
+        self.r.link.request(BusRequest.ARM)
+        self._cycles(20)
+
+    def _repair(self) -> None:
+        """Wait, reboot what is latched, reset; arming is the next step. Nothing may come on by itself meanwhile."""
+        since_s = self.r.clock.true_s
+        self.faults[re.sub(r"[\d.]+|\(.*?\)", "", self.r.link.text.split(":")[0])[:40]] += 1
+        assert self.r.link.text, "a fault has a name"
+        had_torque = {s.spec.servo_id for s in self.r.sim.world.all if s.torque}
+        while self.r.clock.true_s < since_s + REPAIR_S:
+            self._cycles(20)
+            assert self.r.state is BusState.FAULT, "a fault stays until a person resets it"
+            assert {s.spec.servo_id for s in self.r.sim.world.all if s.torque} <= had_torque, "torque came on by itself"
+        self.r.link.request(BusRequest.RESET)
+        self._cycles(10)
+        for servo in self.r.sim.world.all:
+            if servo.memory.get("hardware_error_status"):
+                self.r.sim.world.drives.temperature_c[servo.index] = 30.0  # it had time to cool
+                self.r.sim.receive(packet.reboot(servo.servo_id), self.r.clock.true_s + 0.001, self.r.port.baud)
+                self._cycles(40)
+        self.longest_s = max(self.longest_s, self.r.clock.true_s - since_s)
+
+    def _cycles(self, n: int) -> None:
+        self.r.cycle(n)
+
+
+def usage() -> tuple[int, int]:
+    """Bytes resident at most so far, and open descriptors."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, len(os.listdir("/proc/self/fd"))
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("seed", SEEDS)
+def test_hours_of_faults_break_no_limit_and_every_recovery_is_armed_by_a_person(seed: int, caplog) -> None:
+    robot = load_robot("reference")
+    faults = schedule(robot, HOURS, seed)
+    link = BusLink.create(robot.n_joints)
+    named: Counter[str] = Counter()
+    handler = logging.Handler()
+    handler.emit = lambda record: named.update([record.getMessage().split("fault ")[1].split()[0]])
+    logging.getLogger("sim.faults").addHandler(handler)
+    logging.getLogger("sim.faults").setLevel(logging.INFO)
+    logging.getLogger("daemon").setLevel(logging.ERROR)
+    try:
+        r = Rig(robot, link, *faults)
+        person = Person(r, seed)
+        person.work(min(900.0, HOURS * 900))  # caches are warm
+        caplog.clear()
+        before = usage()
+        hour = 1.0
+        while hour <= HOURS + 1e-9:
+            person.work(hour * 3600)
+            r.sim.audit.check_poses()
+            caplog.clear()
+            hour += 1.0
+        person.work(HOURS * 3600)
+        after = usage()
+        report = r.sim.audit.report()
+        begun = Counter(f.kind for f in faults)
+        print(  # noqa: T201 -- what a soak is run for
+            f"\nseed {seed}: {HOURS:g} h, {report['goals']} goals, {sum(begun.values())} faults {dict(begun)}, "
+            f"{person.armings} armings, robot faults {dict(person.faults)}, collisions {r.sim.wire.collisions}, "
+            f"memory {after[0] - before[0]:+d} B, descriptors {after[1] - before[1]:+d}"
+        )
+        assert report["violations"] == 0, report["details"]
+        assert report["self_contacts"] == 0
+        assert named == begun, "every fault is named in the log"
+        assert person.armings > sum(person.faults.values()) * 0.9, "each recovery was armed"
+        assert person.faults and r.state is not BusState.FAULT or person.longest_s < LONGEST_FAULT_S
+        assert after[0] - before[0] < LEAK_BYTES and after[1] == before[1]
+    finally:
+        logging.getLogger("sim.faults").removeHandler(handler)
+        link.close()
