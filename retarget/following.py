@@ -17,7 +17,7 @@ from retarget.lookahead import Bounds, Wish, nearest_path
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-_WINDOW_FRAMES, _AHEAD_FRAMES = 24, 10
+_WINDOW_FRAMES, _AHEAD_FRAMES = 36, 10
 """A long reference is solved in windows, each with so many frames after it in view."""
 _TAIL_WEIGHT = 1e-3
 """Weight of the frames after the last known one, in which the joints come to rest."""

@@ -31,6 +31,8 @@ _SETTLE_FRAMES = 16
 """Time given to reach the last pose; what then still moves, brakes."""
 _STILL_RAD = 1e-5
 _MOST_FPS = 1000
+_BLOCK_FRAMES, _AHEAD_FRAMES = 24, 8
+"""A long motion is made into a path in blocks of so many frames, each with 0.4 s after it in view."""
 _STRETCHES = (1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 """How many times slower is tried, one after another, to keep an error asked for."""
 _WORTH = 0.97
@@ -102,25 +104,49 @@ class Retargeter:
     def _path(
         self, poses: Poses, contacts: HumanContacts, fps: float, start: JointState | None, settle: bool, stretch: float
     ) -> JointPath:
-        """The path of poses that keeps every limit and touches nothing."""
+        """The path of poses that keeps every limit and touches nothing, block by block."""
         period = 1.0 / fps
         begin = self._begin(poses.q_rad, start)
-        eased, interventions = poses.q_rad, 0
-        path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+        T, first, interventions = len(poses.q_rad), 0, 0
+        parts: list[Array] = []
+        while first < T:
+            # A block is solved with some frames after it in view; a rest that is hardly longer is part of it.
+            is_last = first + _BLOCK_FRAMES + _AHEAD_FRAMES >= T
+            last = T if is_last else first + _BLOCK_FRAMES + _AHEAD_FRAMES
+            keep = last - first if is_last else _BLOCK_FRAMES
+            block, changes = self._block(poses.q_rad[max(first - 1, 0) : last], begin, period, keep, settle and is_last, first > 0)
+            interventions += changes
+            block = block if is_last else block[: keep + 2]
+            parts.append(block if first == 0 else block[2:])
+            begin = JointState((block[-2] + block[-1]) / 2, (block[-1] - block[-2]) / period)
+            first += keep
+        path = np.concatenate(parts)
+        ends = self.limits.position_min_rad, self.limits.position_max_rad
+        comparison = self._compare(poses, contacts, path, fps, interventions, stretch)
+        return JointPath(path, self.robot.joint_names, fps, comparison, ends)
+
+    def _block(
+        self, posed: Array, begin: JointState, period: float, keep: int, settle: bool, continued: bool
+    ) -> tuple[Array, int]:
+        """Control points for poses (T, J), safe to cut off and brake after `keep` frames; times they were changed.
+
+        When `continued`, the first pose is the one before the block.
+        """
+        before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
+        eased, interventions = posed, 0
+        path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
         if hit.any():
             eased, interventions = self._avoidance.lead_round(eased, begin.position_rad)
-            path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+            path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
         for strength in STRENGTHS:
             if not hit.any():
                 break
             interventions += stretches(hit)
             eased = self._avoidance.push(eased, path, hit[: len(path) - 2], strength)
-            path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+            path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
         if hit.any():
             path = self._stop_before_contact(path, hit, period)
-        ends = self.limits.position_min_rad, self.limits.position_max_rad
-        comparison = self._compare(poses, contacts, path, fps, interventions, stretch)
-        return JointPath(path, self.robot.joint_names, fps, comparison, ends)
+        return path, interventions
 
     def poses(self, human: HumanPose, start: JointState | None = None) -> Poses:
         """The poses for each frame within the position limits, before limits in time and contacts."""
@@ -166,26 +192,30 @@ class Retargeter:
         return np.array(points)
 
     def _limited(
-        self, eased: Array, posed: Array, start: JointState, period: float, settle: bool
+        self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, keep: int, settle: bool
     ) -> tuple[Array, NDArray[np.bool_]]:
         """Control points of a path near `eased` (T, J) that keeps every limit, and which segments touch.
 
         What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
-        touches when the path brakes at its end counts too.
+        touches when the path brakes after `keep` frames or at its end counts too.
         """
-        wanted, led = _controls(eased), eased - posed
+        wanted, led = _controls(eased, pose_before), eased - posed
         half = start.velocity_rad_s * (period / 2)
         before, position = start.position_rad - half, start.position_rad + half
         if settle:
             wanted, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in (wanted, led))
         points = np.concatenate([[before], self._joined(wanted, led, before, position, period)])
-        if not settle:
-            return points, self.contact.along(np.concatenate([points, self._braking(points, period)]))
-        n = len(points)
-        moving = np.flatnonzero((np.abs(np.diff(points, axis=0)) > _STILL_RAD).any(1))
-        last = max(n - _SETTLE_FRAMES, int(moving[-1]) + 2 if len(moving) else 0)
-        points = self._held(points[:last], period, last + 1)
-        return points, self.contact.along(points)
+        if settle:
+            n = len(points)
+            moving = np.flatnonzero((np.abs(np.diff(points, axis=0)) > _STILL_RAD).any(1))
+            last = max(n - _SETTLE_FRAMES, int(moving[-1]) + 2 if len(moving) else 0)
+            points = self._held(points[:last], period, last + 1)
+            return points, self.contact.along(points)
+        hit = self.contact.along(np.concatenate([points, self._braking(points, period)]))
+        if keep < len(eased):
+            cut = points[: keep + 2]
+            hit[keep - 1] |= self.contact.along(np.concatenate([cut[-2:], self._braking(cut, period)])).any()
+        return points, hit
 
     def _braking(self, control: Array, period: float) -> Array:
         """(n, J) control points after `control` when every joint stops as fast as its acceleration allows."""
@@ -235,10 +265,11 @@ class Retargeter:
         )  # fmt: skip
 
 
-def _controls(frames: Array) -> Array:
+def _controls(frames: Array, before: Array) -> Array:
     """(T, J) control points whose spline passes near frames (T, J): the spline's own smoothing undone to fourth order.
 
-    The path is at frame t half way between two control points, so these are for the times between frames.
+    The path is at frame t half way between two control points, so these are for the times between frames; `before`
+    (1, J) is the frame before the first.
     """
-    more = np.concatenate([frames[:1], frames, frames[-1:], frames[-1:]])
+    more = np.concatenate([before, frames, frames[-1:], frames[-1:]])
     return (5 * (more[1:-2] + more[2:-1]) - more[:-3] - more[3:]) / 8
