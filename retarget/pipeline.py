@@ -31,7 +31,7 @@ _SETTLE_FRAMES = 16
 """Time given to reach the last pose; what then still moves, brakes."""
 _STILL_RAD = 1e-5
 _MOST_FPS = 1000
-_BLOCK_FRAMES, _AHEAD_FRAMES = 24, 8
+BLOCK_FRAMES, _AHEAD_FRAMES = 24, 8
 """A long motion is made into a path in blocks of so many frames, each with 0.4 s after it in view."""
 _STRETCHES = (1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 """How many times slower is tried, one after another, to keep an error asked for."""
@@ -111,10 +111,12 @@ class Retargeter:
         parts: list[Array] = []
         while first < T:
             # A block is solved with some frames after it in view; a rest that is hardly longer is part of it.
-            is_last = first + _BLOCK_FRAMES + _AHEAD_FRAMES >= T
-            last = T if is_last else first + _BLOCK_FRAMES + _AHEAD_FRAMES
-            keep = last - first if is_last else _BLOCK_FRAMES
-            block, changes = self._block(poses.q_rad[max(first - 1, 0) : last], begin, period, keep, settle and is_last, first > 0)
+            is_last = first + BLOCK_FRAMES + _AHEAD_FRAMES >= T
+            last = T if is_last else first + BLOCK_FRAMES + _AHEAD_FRAMES
+            keep = last - first if is_last else BLOCK_FRAMES
+            block, changes = self._block(
+                poses.q_rad[max(first - 1, 0) : last], begin, period, keep, settle and is_last, first > 0
+            )
             interventions += changes
             block = block if is_last else block[: keep + 2]
             parts.append(block if first == 0 else block[2:])

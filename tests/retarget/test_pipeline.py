@@ -200,6 +200,12 @@ BAD_MOTIONS = [
     ("fps", {"fps": float("inf")}, "1 to 1000"),
     ("centimetres", {"joints_m": lambda j: j * 100}, "bones of 0.02 to 0.6 m"),
     ("another order", {"joints_m": lambda j: np.roll(j, 4, axis=1)}, "HumanML3D's order"),
+    ("joints shuffled", {"joints_m": lambda j: j[:, ::-1]}, "HumanML3D's order"),
+    (
+        "an arm of another size",
+        {"joints_m": lambda j: _with(j, 18, j[:, 16] + 2.2 * (j[:, 18] - j[:, 16]))},
+        "one person",
+    ),
     ("a point", {"joints_m": lambda j: j * 0}, "0.0000 m"),
     ("hips in one place", {"joints_m": lambda j: _with(j, 1, j[:, 2])}, "hips"),
 ]
