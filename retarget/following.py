@@ -111,7 +111,9 @@ def _solve(
     first, hessian, linear = (np.concatenate([a, np.repeat(a[:, -1:], tail, 1)], 1) for a in (first, hessian, linear))
     hessian[:, -tail:] *= _TAIL_WEIGHT
     linear[:, -tail:] *= _TAIL_WEIGHT
-    found = nearest_path(Wish(hessian, linear, _PULL), first, position[joints], (velocity * period_s)[joints], bounds)
+    found = nearest_path(
+        Wish(hessian, linear, _PULL), first, position[joints], (velocity * period_s)[joints], bounds, ~changes[joints]
+    )
     if found is not None:
         length = frames.stop - frames.start
         path[frames, joints.ravel()] = found[:, :length].transpose(1, 0, 2).reshape(length, -1)

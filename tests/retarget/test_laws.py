@@ -88,7 +88,7 @@ def test_shifting_time_shifts_the_path_whatever_the_motion(name: str, seed: int,
 @settings(max_examples=6)
 @given(st.integers(0, 10_000), st.integers(1, 30))
 def test_a_gentle_motion_may_be_shifted_by_any_time(seed: int, shift: int) -> None:
-    """Within the limits it does not matter where blocks begin."""
+    """Within the limits it does not matter where blocks begin: elbows, wrists and head are where they were, to half a mm."""
     r = RETARGETERS["reference"]
     rng = np.random.default_rng(seed)
     keys = np.cumsum(rng.uniform(-0.12, 0.12, (12, r.robot.n_joints)), 0)
@@ -107,7 +107,9 @@ def test_a_gentle_motion_may_be_shifted_by_any_time(seed: int, shift: int) -> No
     assume(max(early.report.peak_speed_share, early.report.peak_acceleration_share) < 0.95)
     assume(not early.report.interventions)
     n = len(motion.joints_m)
-    np.testing.assert_allclose(late.q_rad[shift + 24 : shift + n], early.q_rad[24:n], atol=3e-3)
+    seen, seen_late = r.kinematics.places(early.q_rad[24:n]), r.kinematics.places(late.q_rad[shift + 24 : shift + n])
+    np.testing.assert_allclose(seen_late, seen, atol=5e-4)
+    assert np.abs(np.diff(seen, axis=0)).max() > 5e-3  # one frame more or less would be seen
 
 
 @pytest.mark.parametrize("name", list(RETARGETERS))
