@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Literal
 
@@ -17,7 +18,7 @@ from mmm_core.features import Root, recover, recover_from_positions
 from mmm_core.motion import FPS, N_FEATURES, N_JOINTS, Motion
 from mmm_core.packed import Precision, fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
-from mmm_core.scope import ScopeVerdict
+from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
 from mmm_core.text import TextEncoder, TextStates
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
 
@@ -132,17 +133,24 @@ class Engine:
         return self.understand_all([text])[0]
 
     def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
-        """The same of several texts, read together."""
+        """The same of several texts, read together; of a text that is kept in part the states are those of that part."""
         states = self.encoder.encode([text if text.strip() else "." for text in texts])
-        verdicts: list[ScopeVerdict] = []
-        for text, sentence in zip(texts, states.sentence, strict=True):
-            if not text.strip():
-                verdicts.append(ScopeVerdict("rejected", 0.0, "", "the text is empty"))
-            elif self.model.scope is None:
-                verdicts.append(ScopeVerdict("accepted", 1.0, "", ""))
-            else:
-                verdicts.append(self.model.scope.judge(text, sentence))
-        return [(states.row(i), verdict) for i, verdict in enumerate(verdicts)]
+        scope = self.model.scope
+        if scope is None:
+            return [(states.row(i), _without_scope(text)) for i, text in enumerate(texts)]
+        verdicts = [scope.judge(text, sentence) for text, sentence in zip(texts, states.sentence, strict=True)]
+        clauses = [clauses_of(text) if scope.classifier is not None else [] for text in texts]
+        read = [clause for several in clauses for clause in several]
+        if read:
+            parts = map(scope.judge, read, self.encoder.encode(read).sentence)
+            verdicts = [
+                with_clauses(whole, several, list(islice(parts, len(several))))
+                for whole, several in zip(verdicts, clauses, strict=True)
+            ]
+        return [
+            (self.encoder.encode([verdict.kept]) if verdict.kept else states.row(i), verdict)
+            for i, verdict in enumerate(verdicts)
+        ]
 
     def predicted_frames(self, states: TextStates) -> int:
         """Number of frames the length predictor gives for the first text, whole tokens.
@@ -227,6 +235,15 @@ class _Clock:
         now = time.perf_counter()
         self.laps_ms[name] = 1e3 * (now - self._last)
         self._last = now
+
+
+def _without_scope(text: str) -> ScopeVerdict:
+    """An imported model takes every text but an empty one."""
+    return (
+        ScopeVerdict("accepted", 1.0, "", "")
+        if text.strip()
+        else ScopeVerdict("rejected", 0.0, "", "the text is empty")
+    )
 
 
 def no_motion(text: str, seed: int, verdict: ScopeVerdict) -> Motion:
