@@ -71,7 +71,7 @@ def train(
     elif stage == "scope":
         written = out or folder / "model.safetensors"
         if distributed.rank() == 0:
-            renew_scope(folder / "model.safetensors", written)
+            renew_scope(recipe, folder / "model.safetensors", written)
     else:
         stages = Stages(recipe, where, data)
         getattr(stages, stage)

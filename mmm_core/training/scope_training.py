@@ -18,34 +18,38 @@ from mmm_core.corpus.outside import OUTSIDE, outside_texts
 from mmm_core.corpus.synthesis import draw_spec
 from mmm_core.scope import ScopeClassifier, ScopeIndex, clauses_of
 from mmm_core.text import TextEncoder
+from mmm_core.training.recipe import ScopeRecipe
 
 log = logging.getLogger(__name__)
 INDEX_ROWS = 4
 """Known commands of a row of a family that are kept in the index; all twelve and more teach the classifier."""
-N_SENTENCES, N_OUTSIDE = 12_000, 10_000
 HIDDEN, DROPOUT, WEIGHT_DECAY, LEARNING_RATE, EPOCHS, BATCH = 64, 0.3, 0.3, 3e-3, 15, 256
 SEED = 5
 
 
-def build_scope(encoder: TextEncoder, n_sentences: int = N_SENTENCES, n_outside: int = N_OUTSIDE) -> ScopeIndex:
+def build_scope(encoder: TextEncoder, recipe: ScopeRecipe) -> ScopeIndex:
     """The scope of what the corpus teaches, as `encoder` reads it; the same every time."""
     commands = sorted(known_commands(INDEX_ROWS))
-    inside, outside = scope_sentences(n_sentences, n_outside)
+    inside, outside = scope_sentences(recipe)
     log.info("scope: reading %d texts", len(inside) + len(outside))
     can, cannot = sentence_vectors(inside, encoder), sentence_vectors(outside, encoder)
     vectors = sentence_vectors([*commands, *OUTSIDE], encoder)
     return ScopeIndex([*commands, *OUTSIDE], vectors, len(commands), train_classifier(can, cannot))
 
 
-def scope_sentences(n_sentences: int, n_outside: int) -> tuple[list[str], list[str]]:
-    """Texts that can be done, `n_sentences` of the corpus with their clauses and all known commands, and that cannot."""
+def scope_sentences(recipe: ScopeRecipe) -> tuple[list[str], list[str]]:
+    """Texts that can be done, and that cannot.
+
+    The first are sentences of the corpus, clauses of some of them, and as many known commands at most, spread evenly.
+    """
     rng = np.random.default_rng(SEED)
-    inside = sorted(known_commands())
-    for _ in range(n_sentences):
+    known = sorted(known_commands())
+    inside = known[:: -(-len(known) // max(1, recipe.sentences))]
+    for _ in range(recipe.sentences):
         spec = draw_spec(rng)
         said = caption(list(spec.gestures), spec.parallel, rng)
         inside += [said, *(clauses_of(said) if rng.random() < 0.3 else [])]
-    return inside, [*OUTSIDE, *outside_texts(n_outside, rng)]
+    return inside, [*OUTSIDE, *outside_texts(recipe.outside, rng)]
 
 
 def sentence_vectors(texts: list[str], encoder: TextEncoder, batch: int = 64) -> Tensor:

@@ -187,7 +187,7 @@ class Stages:
         synthesised = bool(self.recipe.data.synthesised)
         text = self.text if isinstance(self.text, ClipText) else None
         pose = "humanml3d" if self.folder is not None else "mmmd"
-        scope = build_scope(self.text) if synthesised and text is None else None
+        scope = build_scope(self.text, self.recipe.scope) if synthesised and text is None else None
         return Model(tokenizer, transformer, length, scope, self.provenance(), text, pose)
 
     def provenance(self) -> dict[str, object]:
@@ -246,7 +246,7 @@ def make_model(recipe: Recipe, run: Run, data: Path | None, out: Path) -> None:
         save_model(out, model, half=model.text is None)
 
 
-def renew_scope(made: Path, out: Path) -> None:
+def renew_scope(recipe: Recipe, made: Path, out: Path) -> None:
     """Build the scope again for the finished checkpoint at `made` and write it to `out`; all other weights stay.
 
     Raises:
@@ -255,7 +255,7 @@ def renew_scope(made: Path, out: Path) -> None:
     model = load_model(made)
     if model.text is not None or model.scope is None:
         raise CheckpointError(made, "scope", "a model without one", "a model of synthesised gestures that reads MiniLM")
-    model.scope = build_scope(load_text_encoder())
+    model.scope = build_scope(load_text_encoder(), recipe.scope)
     save_model(out, model)
 
 

@@ -20,8 +20,8 @@ from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError
 from mmm_core.evaluation.scope import auroc, scope_figures
 from mmm_core.scope import ScopeIndex, clauses_of
-from mmm_core.training import scope_training
-from mmm_core.training.scope_training import scope_sentences, sentence_vectors, train_classifier
+from mmm_core.training.recipe import ScopeRecipe
+from mmm_core.training.scope_training import build_scope, scope_sentences
 
 
 def plain(text: str) -> str:
@@ -39,15 +39,7 @@ DEVELOPMENT = [*scope_development.IN_SCOPE, *out_of(scope_development.OUT_OF_SCO
 @pytest.fixture(scope="module")
 def index() -> ScopeIndex:
     """The scope of today's corpus from an eighth of the sentences: what ships sees all of them."""
-    encoder = load_text_encoder()
-    inside, outside = scope_sentences(1500, 1500)
-    n_known = len(known_commands())
-    inside = inside[:n_known:4] + inside[n_known:]
-    commands = sorted(known_commands(scope_training.INDEX_ROWS))
-    classifier = train_classifier(sentence_vectors(inside, encoder), sentence_vectors(outside, encoder))
-    return ScopeIndex(
-        [*commands, *OUTSIDE], sentence_vectors([*commands, *OUTSIDE], encoder), len(commands), classifier
-    )
+    return build_scope(load_text_encoder(), ScopeRecipe(1700, 1700))
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +62,7 @@ class TestPrompts:
         assert len(DEVELOPMENT) >= 400
 
     def test_none_is_said_by_the_grammar_or_stands_outside_in_training(self) -> None:
-        inside, outside = scope_sentences(scope_training.N_SENTENCES, scope_training.N_OUTSIDE)
+        inside, outside = scope_sentences(ScopeRecipe())
         trained = {plain(text) for text in (*known_commands(10_000), *inside, *outside)} - {""}
         assert not trained & {plain(text) for text in HELD_OUT}
 
@@ -197,5 +189,5 @@ class TestCheckpoint:
 
 
 def test_training_texts_are_the_same_every_time() -> None:
-    assert scope_sentences(20, 20) == scope_sentences(20, 20)
+    assert scope_sentences(ScopeRecipe(20, 20)) == scope_sentences(ScopeRecipe(20, 20))
     assert outside_texts(300, np.random.default_rng(1)) != outside_texts(300, np.random.default_rng(2))
