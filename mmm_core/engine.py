@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Literal
@@ -13,8 +13,9 @@ import torch
 from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
+from mmm_core.corpus.mirroring import canonical, mirror_words
 from mmm_core.errors import CheckpointError, GenerationError
-from mmm_core.features import Root, recover, recover_from_positions
+from mmm_core.features import Root, mirror, recover, recover_from_positions
 from mmm_core.motion import FPS, N_FEATURES, N_JOINTS, Motion
 from mmm_core.packed import Precision, fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
@@ -115,7 +116,7 @@ class Engine:
             raise GenerationError(f"{candidates} candidates were asked for", f"1 to {MOST_CANDIDATES}")
         n_frames = None if seconds is None else frames_for_seconds(seconds, FPS)
         clock = _Clock()
-        states, verdict = self.understand(text)
+        states, verdict, is_mirrored = self.understand_fresh(text)
         clock.lap("text")
         if verdict.status == "rejected":
             return Generation(no_motion(text, seed, verdict), _understood(verdict), verdict.reason, clock.laps_ms)
@@ -124,13 +125,26 @@ class Engine:
                 n_frames = self.predicted_frames(states)
             ids = self._best_ids(states, tokens_for_frames(n_frames), seed, candidates)
             clock.lap("decode")
-            motion = self.motion(ids, text, seed, verdict, n_frames)
+            motion = self.motion(ids, text, seed, verdict, n_frames, is_mirrored=is_mirrored)
             clock.lap("motion")
         return Generation(motion, _understood(verdict), verdict.reason, clock.laps_ms)
 
     def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
         """States of a text, and how far it lies from what the model can do."""
         return self.understand_all([text])[0]
+
+    def understand_fresh(self, text: str) -> tuple[TextStates, ScopeVerdict, bool]:
+        """The same for a motion that is made from nothing, and whether that motion is to be mirrored.
+
+        Of a text and its mirror image only one is ever read (`corpus.mirroring.canonical`), so that the mirrored text gives
+        the mirrored motion. Where a motion goes on from another, the other decides what is left and right.
+        """
+        read, is_mirrored = canonical(text) if self.model.rest_pose == "mmmd" else (text, False)
+        states, verdict = self.understand(read)
+        if is_mirrored:
+            words = {key: mirror_words(getattr(verdict, key)) for key in ("nearest", "reason", "kept")}
+            verdict = replace(verdict, **words)
+        return states, verdict, is_mirrored
 
     def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
         """The same of several texts, read together; of a text that is kept in part the states are those of that part."""
@@ -164,10 +178,23 @@ class Engine:
         seconds = min(longest_s, max(SHORTEST_S, self.model.length.seconds(states)[0]))
         return tokens_for_frames(round(seconds * FPS)) * FRAMES_PER_TOKEN
 
-    def motion(self, ids: Tensor, text: str, seed: int, verdict: ScopeVerdict, n_frames: int | None = None) -> Motion:
-        """The motion of a row of ids (L, C), cut to `n_frames`."""
+    def motion(
+        self,
+        ids: Tensor,
+        text: str,
+        seed: int,
+        verdict: ScopeVerdict,
+        n_frames: int | None = None,
+        *,
+        is_mirrored: bool = False,
+    ) -> Motion:
+        """The motion of a row of ids (L, C), cut to `n_frames`; mirrored, its ids are those that its features encode to."""
         with torch.inference_mode():
-            features = self.model.tokenizer.decode(ids[None])[0, :n_frames].numpy()
+            whole = self.model.tokenizer.decode(ids[None])[0]
+            if is_mirrored:
+                whole = torch.from_numpy(mirror(whole.numpy()))
+                ids = self.model.tokenizer.encode(whole[None])[0]
+            features = whole[:n_frames].numpy()
         return self.motion_of_features(features, ids, text, seed, verdict)
 
     def motion_of_features(
