@@ -115,7 +115,16 @@ def test_a_refusal_says_why(engine: Engine, text: str, why: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["wave with your left hand", "clap your hands", "nod twice", "could you play the drums"]
+    "text",
+    [
+        "wave with your left hand",
+        "clap your hands",
+        "nod twice",
+        "could you play the drums",
+        "raise your arm(s)!",
+        "wave 👋",
+        "wave -> bow",
+    ],
 )
 def test_what_was_learnt_is_taken(engine: Engine, text: str) -> None:
     verdict = engine.understand(text)[1]
