@@ -28,7 +28,8 @@ _STORY = ("wave with your right hand", "clap your hands", "nod twice", "bow")
 _METHOD = (
     "mmmd run --bus sim:// with all its processes; the clock starts when the front receives the text and ends at the first"
     " bus cycle whose goal tick of any servo differs; from rest: the robot stands still; idle: idle movements are going on;"
-    " during: a motion is being played; story: a story without end is being told; loaded: from rest, while one busy process for each core runs at normal priority;"
+    " during: a motion is being played; story: a story"
+    " without end is being told; loaded: from rest, while one busy process for each core runs at normal priority;"
     " remote: from rest, generator in another process over loopback TCP with CURVE; {} texts before to warm up"
 )
 
