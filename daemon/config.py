@@ -37,7 +37,7 @@ def check_endpoint(key: str, endpoint: str, *, keys: bool = False) -> None:
     if port is None and not endpoint.endswith(":*"):
         raise config_error(key, f"{endpoint!r} without a port", allowed, "name a host and a port")
     if not keys and host != "localhost" and not _is_loopback(host):
-        do = "give --keys (`mmmd keys --help` shows how), or use an ssh tunnel"
+        do = "give --keys for CURVE (`mmmd keys --help` shows how), or use an ssh tunnel"
         raise config_error(key, f"{endpoint!r}, which other machines can reach without a key", allowed, do)
 
 

@@ -17,7 +17,7 @@ from retarget.lookahead import Bounds, Wish, nearest_path
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-_WINDOW_FRAMES, _AHEAD_FRAMES = 24, 10
+_WINDOW_FRAMES, _AHEAD_FRAMES = 36, 10
 """A long reference is solved in windows, each with so many frames after it in view."""
 _TAIL_WEIGHT = 1e-3
 """Weight of the frames after the last known one, in which the joints come to rest."""
@@ -111,7 +111,9 @@ def _solve(
     first, hessian, linear = (np.concatenate([a, np.repeat(a[:, -1:], tail, 1)], 1) for a in (first, hessian, linear))
     hessian[:, -tail:] *= _TAIL_WEIGHT
     linear[:, -tail:] *= _TAIL_WEIGHT
-    found = nearest_path(Wish(hessian, linear, _PULL), first, position[joints], (velocity * period_s)[joints], bounds)
+    found = nearest_path(
+        Wish(hessian, linear, _PULL), first, position[joints], (velocity * period_s)[joints], bounds, ~changes[joints]
+    )
     if found is not None:
         length = frames.stop - frames.start
         path[frames, joints.ravel()] = found[:, :length].transpose(1, 0, 2).reshape(length, -1)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import Motion
-from mmm_core.skeleton import matrix_from_quat
+from mmm_core.skeleton import JOINT_NAMES, PARENTS, matrix_from_quat
 from retarget.errors import MotionError
 from retarget.kinematics import cross
 
@@ -20,10 +20,17 @@ _TO_ROBOT = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])
 _L_HIP, _R_HIP, _SPINE1, _NECK = 1, 2, 3, 12
 _L_COLLAR, _R_COLLAR, _L_SHOULDER, _R_SHOULDER = 13, 14, 16, 17
 SIDES = ("left", "right")
-_BONE_STARTS, _BONE_ENDS = [16, 17, 18, 19], [18, 19, 20, 21]
-_BONES = ("left upper arm", "right upper arm", "left forearm", "right forearm")
+_ABOVE = np.array(PARENTS[1:], np.int64)
+_ARMS = slice(17, 21)
+"""Where the bones that end in elbows and wrists stand among all, left before right."""
 _SHORTEST_BONE_M, _LONGEST_BONE_M = 0.02, 0.6
 """A forearm of a person of 2.7 m (Robert Wadlow) was under 0.45 m; units other than metres lie far outside."""
+_BONES = ("left upper arm", "right upper arm", "left forearm", "right forearm")
+_LONGEST_LEG_BONE_M = 0.8
+_LIMBS = ((3, 4), (6, 7), (17, 18), (19, 20))
+"""Left and right bones that end in knees, ankles, elbows and wrists."""
+_MOST_UNEQUAL = 2.0
+"""A left bone this many times as long as the right one is no bone of one person: joints in another order."""
 _SQUARE = 1e-6
 
 
@@ -55,10 +62,12 @@ def read_human(motion: Motion) -> HumanPose:
     joints = motion.joints_m.astype(np.float64)
     if len(joints) == 0:
         raise MotionError("joints", "no frames", "at least one frame; a rejected text has none")
-    bones = joints[:, _BONE_ENDS] - joints[:, _BONE_STARTS]  # (T, 4, 3)
-    length = np.sqrt(np.einsum("tbi,tbi->tb", bones, bones))
+    every = joints[:, 1:] - joints[:, _ABOVE]  # (T, 21, 3)
+    every_m = np.sqrt(np.einsum("tbi,tbi->tb", every, every))
+    bones, length = every[:, _ARMS], every_m[:, _ARMS]
     if length.min() < _SHORTEST_BONE_M or length.max() > _LONGEST_BONE_M:
         _refuse_bones(length)
+    _refuse_another_order(every_m.mean(0).tolist())
     pelvis = _frame(joints[:, _L_HIP] - joints[:, _R_HIP], np.array([[0.0, 1, 0]]), "hips")
     across = joints[:, _L_COLLAR] - joints[:, _R_COLLAR] + 0.5 * (joints[:, _L_SHOULDER] - joints[:, _R_SHOULDER])
     chest = _frame(across, joints[:, _NECK] - joints[:, _SPINE1], "shoulders and spine")
@@ -79,6 +88,23 @@ def _refuse_bones(length_m: Array) -> None:
     found = f"a bone of {length_m[frame, bone]:.4f} m in frame {frame}, {int(outside.any(1).sum())} such frames"
     allowed = f"bones of {_SHORTEST_BONE_M} to {_LONGEST_BONE_M} m, joints in metres in HumanML3D's order"
     raise MotionError(_BONES[bone], found, allowed)
+
+
+def _refuse_another_order(mean_m: list[float]) -> None:
+    """Stop where a bone is longer than a thigh, or a left one far longer than the right one; (21,) means over all frames."""
+    longest = max(range(len(mean_m)), key=mean_m.__getitem__)
+    if mean_m[longest] > _LONGEST_LEG_BONE_M:
+        allowed = f"at most {_LONGEST_LEG_BONE_M} m, joints in metres in HumanML3D's order"
+        raise MotionError(_name(longest), f"{mean_m[longest]:.3f} m", allowed)
+    for left, right in _LIMBS:
+        short, long = sorted((mean_m[left], mean_m[right]))
+        if long > _MOST_UNEQUAL * short:
+            found = f"{mean_m[left]:.3f} m, and {mean_m[right]:.3f} m for {_name(right)}"
+            raise MotionError(_name(left), found, "left and right bones of one person, joints in HumanML3D's order")
+
+
+def _name(bone: int) -> str:
+    return f"{JOINT_NAMES[_ABOVE[bone]]} to {JOINT_NAMES[bone + 1]}".replace("_", " ")
 
 
 def _frame(left: Array, up: Array, key: str) -> Array:

@@ -78,7 +78,9 @@ def least_moving(wish: Wish, start: Array) -> Array:
     return np.asarray(x, np.float64).reshape(G, T, w)
 
 
-def nearest_path(wish: Wish, first: Array, start: Array, start_step: Array, bounds: Bounds) -> Array | None:
+def nearest_path(
+    wish: Wish, first: Array, start: Array, start_step: Array, bounds: Bounds, kept: NDArray[np.bool_] | None = None
+) -> Array | None:
     """(G, T, w) best path of a wish that keeps the bounds and comes to rest at its end; None when there is none.
 
     Args:
@@ -87,6 +89,7 @@ def nearest_path(wish: Wish, first: Array, start: Array, start_step: Array, boun
         start: (G, w) where the joints are.
         start_step: (G, w) their last step.
         bounds: bounds, the same in all frames.
+        kept: (G, w) joints that may follow `first` as it is, and do unless the others make them wish for something else.
     """
     G, T, w = first.shape
     rows, pull = _differences(T)
@@ -95,13 +98,17 @@ def nearest_path(wish: Wish, first: Array, start: Array, start_step: Array, boun
     x = first.copy()
     diagonal = np.arange(T, dtype=np.int64)
     known = np.full((G, w, T), np.inf)
-    for _ in range(_ROUNDS):
+    own_wish = (wish.hessian @ first[..., None])[..., 0] - wish.linear
+    own_wish -= np.einsum("gtjj,gtj->gtj", wish.hessian, first)
+    for rounds in range(_ROUNDS):
         for g in range(G):
             for j in range(w):
                 weight = wish.hessian[g, :, j]  # (T, w)
                 own = weight[:, j]
                 # What the others leave to wish for.
                 linear = (weight * x[g]).sum(1) - own * x[g, :, j] - wish.linear[g, :, j]
+                if not rounds and kept is not None and kept[g, j]:
+                    known[g, j] = own_wish[g, :, j]
                 if (np.abs(linear - known[g, j]) < _SAME_WISH_RAD * (own + wish.pull)).all():
                     continue
                 known[g, j] = linear

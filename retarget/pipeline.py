@@ -6,6 +6,7 @@ human -> waist -> neck -> arms -> unseen joints rest -> limits -> self-contact -
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,9 @@ from mmm_core.motion import Motion
 from retarget.arm_chain import ArmChain
 from retarget.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.collision import SelfContact
+from retarget.errors import MotionError
 from retarget.following import Importance, limit_path
+from retarget.hands import Hands, HumanContacts, read_contacts
 from retarget.human import HumanPose, read_human
 from retarget.kinematics import Kinematics
 from retarget.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
@@ -27,6 +30,13 @@ Array = NDArray[np.float64]
 _SETTLE_FRAMES = 16
 """Time given to reach the last pose; what then still moves, brakes."""
 _STILL_RAD = 1e-5
+_MOST_FPS = 1000
+BLOCK_FRAMES, _AHEAD_FRAMES = 24, 8
+"""A long motion is made into a path in blocks of so many frames, each with 0.4 s after it in view."""
+_STRETCHES = (1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
+"""How many times slower is tried, one after another, to keep an error asked for."""
+_WORTH = 0.97
+"""Going slower counts as of use when it leaves at most this share of the error."""
 
 
 class Retargeter:
@@ -38,46 +48,107 @@ class Retargeter:
         contact: its distances to itself.
     """
 
-    def __init__(self, robot: RobotModel, arms_follow: ArmsFollow = "chest") -> None:
-        """Arms keep their directions against the chest, or (`arms_follow`) against the world as the pelvis faces it."""
+    def __init__(self, robot: RobotModel, arms_follow: ArmsFollow = "chest", *, keep_contacts: bool = False) -> None:
+        """Set up for a robot.
+
+        Args:
+            robot: the robot.
+            arms_follow: arms keep their directions against the chest, or against the world as the pelvis faces it.
+            keep_contacts: hands that touch each other or the body touch there on the robot too, whatever its proportions.
+        """
         self.robot = robot
         self.kinematics = Kinematics(robot)
         self.limits = JointLimits.of(robot)
         self._poser = Poser(self.kinematics, self.limits, arms_follow)
         self.arms: tuple[ArmChain, ...] = self._poser.chains
         self.contact = SelfContact(robot)
+        self._hands = Hands(self.kinematics, self.contact, self.limits) if keep_contacts else None
         self._avoidance = Avoidance(robot, self.contact, self.limits)
 
-    def retarget(self, motion: Motion, start: JointState | None = None, *, settle: bool = True) -> JointPath:
+    def retarget(
+        self,
+        motion: Motion,
+        start: JointState | None = None,
+        *,
+        settle: bool = True,
+        most_error_deg: float | None = None,
+    ) -> JointPath:
         """The robot's path for a motion.
 
         Args:
             motion: T frames at `motion.fps`.
             start: what the joints were last told; the path joins on to it. None: at rest in the first frame's pose.
             settle: end at rest, with a few more frames where braking needs them.
+            most_error_deg: where the mean direction error is larger, go slower than the human until it is not, or slower
+                does not help; the report's `time_stretch` says how much.
 
         Raises:
             MotionError: the motion is empty or has bones that no human has.
         """
+        if not 1 <= motion.fps <= _MOST_FPS:
+            raise MotionError("fps", str(motion.fps), f"1 to {_MOST_FPS} frames per second")
         poses = self.poses(read_human(motion), start)
-        period = 1.0 / motion.fps
+        contacts = read_contacts(motion) if self._hands else HumanContacts({})
+        if self._hands and contacts.any:
+            poses = replace(poses, q_rad=self._hands.keep(poses.q_rad, contacts))
+        path = self._path(poses, contacts, motion.fps, start, settle, 1.0)
+        for stretch in _STRETCHES:
+            if most_error_deg is None or path.report.direction_mean_deg <= most_error_deg:
+                break
+            slower = self._path(poses.stretched(stretch), contacts, motion.fps, start, settle, stretch)
+            if slower.report.direction_mean_deg > _WORTH * path.report.direction_mean_deg:
+                break
+            path = slower
+        return path
+
+    def _path(
+        self, poses: Poses, contacts: HumanContacts, fps: float, start: JointState | None, settle: bool, stretch: float
+    ) -> JointPath:
+        """The path of poses that keeps every limit and touches nothing, block by block."""
+        period = 1.0 / fps
         begin = self._begin(poses.q_rad, start)
-        eased, interventions = poses.q_rad, 0
-        path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+        T, first, interventions = len(poses.q_rad), 0, 0
+        parts: list[Array] = []
+        while first < T:
+            # A block is solved with some frames after it in view; a rest that is hardly longer is part of it.
+            is_last = first + BLOCK_FRAMES + _AHEAD_FRAMES >= T
+            last = T if is_last else first + BLOCK_FRAMES + _AHEAD_FRAMES
+            keep = last - first if is_last else BLOCK_FRAMES
+            block, changes = self._block(
+                poses.q_rad[max(first - 1, 0) : last], begin, period, keep, settle and is_last, first > 0
+            )
+            interventions += changes
+            block = block if is_last else block[: keep + 2]
+            parts.append(block if first == 0 else block[2:])
+            begin = JointState((block[-2] + block[-1]) / 2, (block[-1] - block[-2]) / period)
+            first += keep
+        path = np.concatenate(parts)
+        ends = self.limits.position_min_rad, self.limits.position_max_rad
+        comparison = self._compare(poses, contacts, path, fps, interventions, stretch)
+        return JointPath(path, self.robot.joint_names, fps, comparison, ends)
+
+    def _block(
+        self, posed: Array, begin: JointState, period: float, keep: int, settle: bool, continued: bool
+    ) -> tuple[Array, int]:
+        """Control points for poses (T, J), safe to cut off and brake after `keep` frames; times they were changed.
+
+        When `continued`, the first pose is the one before the block.
+        """
+        before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
+        eased, interventions = posed, 0
+        path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
         if hit.any():
             eased, interventions = self._avoidance.lead_round(eased, begin.position_rad)
-            path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+            path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
         for strength in STRENGTHS:
             if not hit.any():
                 break
             interventions += stretches(hit)
             eased = self._avoidance.push(eased, path, hit[: len(path) - 2], strength)
-            path, hit = self._limited(eased, poses.q_rad, begin, period, settle)
+            path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
         if hit.any():
             path = self._stop_before_contact(path, hit, period)
-        ends = self.limits.position_min_rad, self.limits.position_max_rad
-        comparison = self._compare(poses, path, motion.fps, interventions)
-        return JointPath(path, self.robot.joint_names, motion.fps, comparison, ends)
+        return path, interventions
 
     def poses(self, human: HumanPose, start: JointState | None = None) -> Poses:
         """The poses for each frame within the position limits, before limits in time and contacts."""
@@ -123,26 +194,30 @@ class Retargeter:
         return np.array(points)
 
     def _limited(
-        self, eased: Array, posed: Array, start: JointState, period: float, settle: bool
+        self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, keep: int, settle: bool
     ) -> tuple[Array, NDArray[np.bool_]]:
         """Control points of a path near `eased` (T, J) that keeps every limit, and which segments touch.
 
         What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
-        touches when the path brakes at its end counts too.
+        touches when the path brakes after `keep` frames or at its end counts too.
         """
-        wanted, led = _controls(eased), eased - posed
+        wanted, led = _controls(eased, pose_before), eased - posed
         half = start.velocity_rad_s * (period / 2)
         before, position = start.position_rad - half, start.position_rad + half
         if settle:
             wanted, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in (wanted, led))
         points = np.concatenate([[before], self._joined(wanted, led, before, position, period)])
-        if not settle:
-            return points, self.contact.along(np.concatenate([points, self._braking(points, period)]))
-        n = len(points)
-        moving = np.flatnonzero((np.abs(np.diff(points, axis=0)) > _STILL_RAD).any(1))
-        last = max(n - _SETTLE_FRAMES, int(moving[-1]) + 2 if len(moving) else 0)
-        points = self._held(points[:last], period, last + 1)
-        return points, self.contact.along(points)
+        if settle:
+            n = len(points)
+            moving = np.flatnonzero((np.abs(np.diff(points, axis=0)) > _STILL_RAD).any(1))
+            last = max(n - _SETTLE_FRAMES, int(moving[-1]) + 2 if len(moving) else 0)
+            points = self._held(points[:last], period, last + 1)
+            return points, self.contact.along(points)
+        hit = self.contact.along(np.concatenate([points, self._braking(points, period)]))
+        if keep < len(eased):
+            cut = points[: keep + 2]
+            hit[keep - 1] |= self.contact.along(np.concatenate([cut[-2:], self._braking(cut, period)])).any()
+        return points, hit
 
     def _braking(self, control: Array, period: float) -> Array:
         """(n, J) control points after `control` when every joint stops as fast as its acceleration allows."""
@@ -179,20 +254,24 @@ class Retargeter:
     def _importance(self, wanted: Array, led: Array, first: int) -> Callable[[], Sequence[Importance]]:
         return lambda: self._poser.importance(wanted[first:], led[first:])
 
-    def _compare(self, poses: Poses, path: Array, rate_hz: float, interventions: int) -> Comparison:
+    def _compare(
+        self, poses: Poses, contacts: HumanContacts, path: Array, rate_hz: float, interventions: int, stretch: float
+    ) -> Comparison:
         """What came out against what was wanted, frame by frame."""
         T = len(poses.q_rad)
         q = ((path[1:-1] + path[2:]) / 2)[:T]
+        hands = self._hands if stretch == 1.0 else None
         return Comparison(
             self.robot.joint_names, lambda: self.direction_errors_deg(poses, q), poses.q_rad - q, poses.outside, path,
-            rate_hz, self.limits, interventions,
+            rate_hz, self.limits, interventions, lambda: hands.kept(q, contacts) if hands else {}, stretch,
         )  # fmt: skip
 
 
-def _controls(frames: Array) -> Array:
+def _controls(frames: Array, before: Array) -> Array:
     """(T, J) control points whose spline passes near frames (T, J): the spline's own smoothing undone to fourth order.
 
-    The path is at frame t half way between two control points, so these are for the times between frames.
+    The path is at frame t half way between two control points, so these are for the times between frames; `before`
+    (1, J) is the frame before the first.
     """
-    more = np.concatenate([frames[:1], frames, frames[-1:], frames[-1:]])
+    more = np.concatenate([before, frames, frames[-1:], frames[-1:]])
     return (5 * (more[1:-2] + more[2:-1]) - more[:-3] - more[3:]) / 8

@@ -57,6 +57,19 @@ class Poses:
     upper: Array
     fore: Array
 
+    def stretched(self, times: float) -> Poses:
+        """The same, so many times slower."""
+        T = len(self.q_rad)
+        at = np.linspace(0, T - 1, max(2, round(T * times)) if T > 1 else 1)
+        low = np.minimum(at.astype(np.int64), T - 1)
+        high, share = np.minimum(low + 1, T - 1), (at - low)[:, None]
+
+        def between(x: Array) -> Array:
+            return x[..., low, :] * (1 - share) + x[..., high, :] * share
+
+        upper, fore = (d / np.linalg.norm(d, axis=-1, keepdims=True) for d in map(between, (self.upper, self.fore)))
+        return Poses(between(self.q_rad), self.outside[low], upper, fore)
+
 
 class Poser:
     """Solves the poses of one robot."""

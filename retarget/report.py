@@ -38,6 +38,8 @@ class RetargetReport:
         peak_acceleration_share: largest acceleration as a share of the limit.
         speed_headroom: share of the speed limit that was never used, by joint.
         acceleration_headroom: the same for acceleration.
+        contacts: for each contact of the person's hands, frames in which they touch and in how many of those the robot's
+            do; empty unless contacts were to be kept.
         time_stretch: how many times slower than the human, to keep an error asked for; 1 when nothing was asked.
     """
 
@@ -56,6 +58,7 @@ class RetargetReport:
     peak_acceleration_share: float
     speed_headroom: dict[str, float]
     acceleration_headroom: dict[str, float]
+    contacts: dict[str, dict[str, int]]
     time_stretch: float = 1.0
 
     def as_dict(self) -> dict[str, Any]:
@@ -76,6 +79,7 @@ class Comparison:
         rate_hz: their rate.
         limits: the joints' limits.
         interventions: see the report.
+        contacts: gives what the report says of them.
         time_stretch: see the report.
     """
 
@@ -87,6 +91,7 @@ class Comparison:
     rate_hz: float
     limits: JointLimits
     interventions: int
+    contacts: Callable[[], dict[str, dict[str, int]]]
     time_stretch: float = 1.0
 
     def report(self) -> RetargetReport:
@@ -112,6 +117,7 @@ class Comparison:
             peak_acceleration_share=_round(hardest.max(), 4),
             speed_headroom=dict(zip(self.names, (_round(1 - s) for s in fastest), strict=True)),
             acceleration_headroom=dict(zip(self.names, (_round(1 - b) for b in hardest), strict=True)),
+            contacts=self.contacts(),
             time_stretch=_round(self.time_stretch),
         )
 

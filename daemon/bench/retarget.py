@@ -17,8 +17,9 @@ from daemon.bench.contacts import ContactCheck
 from daemon.bench.motions import bench_motions, cut, glued
 from daemon.bench.report import context
 from daemon.bench.retarget_peers import mink_figures
-from mmm_core.motion import Motion
+from mmm_core.motion import FPS, Motion
 from retarget.human import read_human
+from retarget.limits import limit_step
 from retarget.paths import JointPath, JointState
 from retarget.pipeline import Retargeter
 from retarget.robot import RobotModel, list_robots, load_robot
@@ -29,12 +30,15 @@ _CHUNK_FRAMES, _BATCH_FRAMES = 20, 4096
 _SPEED_RAD_S, _ACCELERATION_RAD_S2 = 4.8, 40.0
 _CHECKED_HZ = (20.0, 200.0)
 _CONTACT_HZ = 100.0
+_WRIST_SPEEDS_M_S = (2.0, 3.6, float("inf"))
+"""Clips are told apart by how fast their faster wrist is in 99 of 100 frames; 3.6 m/s is the clips' that peers were measured on."""
 _METHOD = (
     "CPU time of the thread (other work on the machine lengthens wall time, not this); a chunk is 20 frames of a clip that"
     " join on to the path so far, timed from human joints to servo ticks at bus rate; the first frame is the first call of"
     " a new retargeter; direction error is the angle between human and robot bone, both bones of both arms, in every frame"
     " of every clip, after limits and self-contact; violations are samples at 20 and 200 Hz outside a position, velocity or"
-    " acceleration bound; collisions are frames at 100 Hz in which MuJoCo finds bodies in contact"
+    " acceleration bound; collisions are frames at 100 Hz in which MuJoCo finds bodies in contact; causal is the same poses under"
+    " the same bounds one frame after another without a look ahead and without self-contact"
 )
 
 
@@ -74,24 +78,59 @@ def _fidelity(retargeter: Retargeter, motions: Iterable[Motion]) -> dict[str, An
     check = ContactCheck(retargeter.robot)
     errors: list[Array] = []
     reach: list[Array] = []
+    causal: list[Array] = []
+    speeds_m_s: list[float] = []
     violations = collisions = interventions = 0
     for motion in motions:
         path = retargeter.retarget(motion)
         poses = retargeter.poses(read_human(motion))
         errors.append(retargeter.direction_errors_deg(poses, path.q_rad[: len(motion.joints_m)]))
         reach.append(retargeter.direction_errors_deg(poses, poses.q_rad))
+        causal.append(retargeter.direction_errors_deg(poses, _causal(poses.q_rad, retargeter)))
+        speeds_m_s.append(_wrist_speed_m_s(motion))
         violations += sum(_violations(path, retargeter, rate_hz) for rate_hz in _CHECKED_HZ)
         collisions += check.frames(path.at_rate(_CONTACT_HZ))
         interventions += path.report.interventions
     every = np.concatenate([e.ravel() for e in errors])
+    by_speed: list[dict[str, float]] = []
+    for most in _WRIST_SPEEDS_M_S:
+        some = [e for e, speed in zip(errors, speeds_m_s, strict=True) if speed <= most]
+        if some:
+            by_speed.append(
+                {"wrist_m_s": most if np.isfinite(most) else round(max(speeds_m_s), 1), "clips": len(some)}
+                | _angles(some)
+            )
     return {
-        "direction_mean_deg": round(float(every.mean()), 3),
-        "direction_p95_deg": round(float(np.percentile(every, 95)), 3),
+        **_angles(errors), "by_wrist_speed": by_speed, "causal": _angles(causal),
         "direction_median_deg": round(float(np.median(every)), 3),
         "clip_mean_median_deg": round(float(np.median([e.mean() for e in errors])), 3),
         "reach_mean_deg": round(float(np.concatenate([e.ravel() for e in reach]).mean()), 3),
         "violations": violations, "collisions": collisions, "interventions": interventions,
     }  # fmt: skip
+
+
+def _angles(errors_deg: list[Array]) -> dict[str, float]:
+    every = np.concatenate([e.ravel() for e in errors_deg])
+    return {
+        "direction_mean_deg": round(float(every.mean()), 3),
+        "direction_p95_deg": round(float(np.percentile(every, 95)), 3),
+    }
+
+
+def _causal(wanted_rad: Array, retargeter: Retargeter) -> Array:
+    """(T, J) poses followed from rest in the first, each step knowing only the next."""
+    position, velocity, period = wanted_rad[0], np.zeros(wanted_rad.shape[1]), 1 / FPS
+    path = np.empty_like(wanted_rad)
+    for t, wanted in enumerate(wanted_rad):
+        path[t] = limit_step(wanted, position, velocity, retargeter.limits, period)
+        position, velocity = path[t], (path[t] - position) / period
+    return path
+
+
+def _wrist_speed_m_s(motion: Motion) -> float:
+    """Speed that the faster wrist keeps below in 99 of 100 frames."""
+    moved = np.diff(motion.joints_m[:, (20, 21)].astype(np.float64), axis=0)
+    return float(np.percentile(np.linalg.norm(moved, axis=-1).max(-1), 99) * motion.fps)
 
 
 def _violations(path: JointPath, retargeter: Retargeter, rate_hz: float) -> int:

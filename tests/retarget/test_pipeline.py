@@ -193,3 +193,50 @@ def test_the_command_names_a_file_it_cannot_use(tmp_path: Path, capsys: pytest.C
     assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 1
     assert "(T, 22, 3)" in capsys.readouterr().err
     assert not (tmp_path / "out.npz").exists()
+
+
+BAD_MOTIONS = [
+    ("fps", {"fps": 0.5}, "1 to 1000"),
+    ("fps", {"fps": float("inf")}, "1 to 1000"),
+    ("centimetres", {"joints_m": lambda j: j * 100}, "bones of 0.02 to 0.6 m"),
+    ("another order", {"joints_m": lambda j: np.roll(j, 4, axis=1)}, "HumanML3D's order"),
+    ("joints shuffled", {"joints_m": lambda j: j[:, ::-1]}, "HumanML3D's order"),
+    (
+        "an arm of another size",
+        {"joints_m": lambda j: _with(j, 18, j[:, 16] + 2.2 * (j[:, 18] - j[:, 16]))},
+        "one person",
+    ),
+    ("a point", {"joints_m": lambda j: j * 0}, "0.0000 m"),
+    ("hips in one place", {"joints_m": lambda j: _with(j, 1, j[:, 2])}, "hips"),
+]
+
+
+def _with(joints: np.ndarray, j: int, value: np.ndarray) -> np.ndarray:
+    changed = joints.copy()
+    changed[:, j] = value
+    return changed
+
+
+@pytest.mark.parametrize(("change", "said"), [pytest.param(c, s, id=n) for n, c, s in BAD_MOTIONS])
+def test_what_is_no_human_is_named(change: dict[str, object], said: str) -> None:
+    good = random_motion(0, 30, "smooth")
+    fields = {f: getattr(good, f) for f in good.__dataclass_fields__}
+    fields |= {k: v(fields[k]) if callable(v) else v for k, v in change.items()}
+    with pytest.raises(MotionError) as caught:
+        RETARGETERS["reference"].retarget(Motion(**fields))
+    assert said in str(caught.value), str(caught.value)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_motion_with_a_value_that_is_none_is_never_made(bad: float) -> None:
+    good = random_motion(0, 30, "smooth")
+    joints = good.joints_m.copy()
+    joints[3, 20, 1] = bad
+    with pytest.raises(ValueError, match="finite"):
+        Motion(**({f: getattr(good, f) for f in good.__dataclass_fields__} | {"joints_m": joints}))
+
+
+def test_one_frame_is_a_path() -> None:
+    for r in RETARGETERS.values():
+        path = r.retarget(random_motion(4, 1, "noise"), at_rest(r))
+        check_bounds(path, at_rest(r), r, 200.0)

@@ -1,0 +1,68 @@
+"""Hands that touch on the person touch on the robot."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from gestures import gesture
+
+from retarget.hands import read_contacts
+from retarget.pipeline import Retargeter
+from retarget.robot import load_robot
+
+CLAPPING = ("reference", "toddlerbot", "poppy_torso", "op3")
+"""Robots whose arms are long and fast enough; FFW turns at 2 rad/s, OP2's and Reachy's hands do not meet in front."""
+
+
+@pytest.fixture(scope="module")
+def retargeters():
+    return {name: Retargeter(load_robot(name), keep_contacts=True) for name in CLAPPING}
+
+
+def test_contacts_are_seen_on_the_person() -> None:
+    clap, hips, wave = (read_contacts(gesture(n)).share for n in ("clap", "hands_on_hips", "wave"))
+    claps = np.diff((clap["left", "other hand"] >= 1).astype(int))
+    assert (claps == 1).sum() == 3
+    assert hips["left", "hip"].max() == 1 and hips["right", "hip"].max() == 1 and not hips["left", "other hand"].any()
+    assert not any(s.max() >= 1 for s in wave.values())
+
+
+@pytest.mark.parametrize("name", CLAPPING)
+def test_a_clap_claps_as_often_on_the_robot(name: str, retargeters: dict[str, Retargeter]) -> None:
+    motion = gesture("clap", count=3)
+    path = retargeters[name].retarget(motion)
+    counts = path.report.contacts["left hand to other hand"]
+    assert counts["robot"] >= 0.6 * counts["human"], counts
+    hands = retargeters[name]._hands
+    gap, _ = retargeters[name].contact.nearest(path.q_rad, hands._pairs["left", "other hand"])
+    share = read_contacts(motion).share["left", "other hand"]
+    starts, ends = (np.flatnonzero(np.diff((share >= 1).astype(int), prepend=0) == s) for s in (1, -1))
+    assert len(starts) == 3
+    for start, end in zip(starts, ends, strict=True):
+        assert gap[start - 2 : end + 2].min() < 0.025
+    for end, start in zip(ends, starts[1:], strict=False):
+        assert gap[end:start].max() > 0.025, "the hands part between two claps"
+
+
+@pytest.mark.parametrize("what", ["pray", "hands_on_hips", "sternum_fist"])
+def test_held_contacts_are_held_on_the_reference_robot(what: str, retargeters: dict[str, Retargeter]) -> None:
+    report = retargeters["reference"].retarget(gesture(what)).report
+    assert report.contacts
+    for name, n in report.contacts.items():
+        assert n["robot"] >= 0.9 * n["human"], (name, n)
+    assert report.direction_mean_deg < 3
+
+
+def test_without_contacts_nothing_changes(retargeters: dict[str, Retargeter]) -> None:
+    motion = gesture("point")
+    plain = Retargeter(load_robot("reference")).retarget(motion)
+    np.testing.assert_array_equal(retargeters["reference"].retarget(motion).control_rad, plain.control_rad)
+    assert plain.report.contacts == {}
+
+
+def test_a_contact_out_of_reach_is_not_gone_for() -> None:
+    """OP2's hands cannot meet in front of it: drawing them together would only spoil the gesture."""
+    robot = load_robot("op2")
+    motion = gesture("pray")
+    plain, kept = (Retargeter(robot, keep_contacts=k).retarget(motion).report for k in (False, True))
+    assert kept.direction_mean_deg < plain.direction_mean_deg + 1

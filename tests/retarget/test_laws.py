@@ -1,0 +1,125 @@
+"""Laws for every packaged robot: chunks that join, stops, long motions in blocks, time shifts; checked by MuJoCo alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from random_motions import random_motion
+from test_pipeline import at_rest, check_bounds
+
+from daemon.bench.contacts import ContactCheck
+from daemon.bench.motions import cut
+from mmm_core.motion import Motion
+from retarget.as_human import joints_of_path
+from retarget.human import read_human
+from retarget.paths import JointState
+from retarget.pipeline import BLOCK_FRAMES, Retargeter
+from retarget.robot import list_robots, load_robot
+
+RETARGETERS = {name: Retargeter(load_robot(name)) for name in list_robots()}
+CHECKS = {name: ContactCheck(r.robot) for name, r in RETARGETERS.items()}
+names = st.sampled_from(list(RETARGETERS))
+kinds = st.sampled_from(["noise", "teleport", "smooth"])
+
+
+def end_of(path) -> JointState:
+    at = np.array([path.duration_s])
+    return JointState(path.at(at)[0], path.velocity_at(at)[0])
+
+
+@settings(max_examples=14)
+@given(names, st.integers(0, 10_000), kinds)
+def test_chunks_join_keep_every_bound_and_touch_nothing(name: str, seed: int, kind: str) -> None:
+    """As a stream comes: each chunk knows only itself, and may be the last; then the robot brakes."""
+    r, check = RETARGETERS[name], CHECKS[name]
+    motion, state = random_motion(seed, 45, kind), at_rest(r)
+    for start, end in ((0, 20), (20, 21), (21, 41), (41, 45)):
+        path = r.retarget(cut(motion, start, end), state, settle=False)
+        for rate_hz in (20.0, 200.0):
+            check_bounds(path, state, r, rate_hz)
+        assert check.frames(path.at_rate(100.0)[::3]) == 0
+        state = end_of(path)
+    stopped = r.retarget(cut(motion, 44, 45), state)
+    check_bounds(stopped, state, r, 200.0)
+    assert check.frames(stopped.at_rate(100.0)[::3]) == 0
+    assert not end_of(stopped).velocity_rad_s.any()
+
+
+@settings(max_examples=7)
+@given(names, st.integers(0, 10_000), kinds)
+def test_a_long_motion_keeps_every_bound_across_its_blocks(name: str, seed: int, kind: str) -> None:
+    r = RETARGETERS[name]
+    path = r.retarget(random_motion(seed, 90, kind), at_rest(r))
+    assert len(path.control_rad) >= 92
+    for rate_hz in (20.0, 200.0):
+        check_bounds(path, at_rest(r), r, rate_hz)
+    assert CHECKS[name].frames(path.at_rate(100.0)[::4]) == 0
+
+
+def held_before(motion: Motion, n: int) -> Motion:
+    """The motion after `n` frames in which its first frame is held."""
+    fields = {f: getattr(motion, f) for f in motion.__dataclass_fields__}
+    for key in ("joints_m", "head_quat_wxyz", "forearm_twist_rad", "features"):
+        fields[key] = np.concatenate([np.repeat(fields[key][:1], n, 0), fields[key]])
+    return Motion(**fields)
+
+
+@settings(max_examples=7)
+@given(names, st.integers(0, 10_000), kinds, st.integers(1, 2))
+def test_shifting_time_shifts_the_path_whatever_the_motion(name: str, seed: int, kind: str, blocks: int) -> None:
+    """Limits, contacts and interventions included: held for whole blocks more, the same path comes that much later.
+
+    While the first frame is held, joints that hardly show come from the rest pose; motions where they still do are left out.
+    """
+    r, motion = RETARGETERS[name], random_motion(seed, 50, kind)
+    shift = blocks * BLOCK_FRAMES
+    before, after = held_before(motion, BLOCK_FRAMES), held_before(motion, BLOCK_FRAMES + shift)
+    wanted, wanted_late = (r.poses(read_human(m)).q_rad for m in (before, after))
+    assume(np.abs(wanted_late[BLOCK_FRAMES + shift :] - wanted[BLOCK_FRAMES:]).max() < 1e-6)
+    early, late = r.retarget(before).q_rad, r.retarget(after).q_rad
+    n = BLOCK_FRAMES + 50
+    np.testing.assert_allclose(late[shift + BLOCK_FRAMES : shift + n], early[BLOCK_FRAMES:n], atol=1e-5)
+
+
+@settings(max_examples=6)
+@given(st.integers(0, 10_000), st.integers(1, 30))
+def test_a_gentle_motion_may_be_shifted_by_any_time(seed: int, shift: int) -> None:
+    """Within the limits it does not matter where blocks begin: elbows, wrists and head are where they were, to half a mm."""
+    r = RETARGETERS["reference"]
+    rng = np.random.default_rng(seed)
+    keys = np.cumsum(rng.uniform(-0.12, 0.12, (12, r.robot.n_joints)), 0)
+    at = np.arange(60)[:, None] / 6
+    k = np.minimum(at.astype(int)[:, 0], 9)
+    a, b, c, u = keys[k], keys[k + 1], keys[k + 2], at - k[:, None]
+    q = r.robot.rest_rad + (a + b) / 2 + (b - a) * u + (c - 2 * b + a) * u * u / 2
+    joints, head = joints_of_path(r.kinematics, np.clip(q, r.limits.position_min_rad, r.limits.position_max_rad))
+    still = random_motion(0, 60, "smooth")
+    motion = replace(
+        still, joints_m=joints.astype(np.float32), head_quat_wxyz=head.astype(np.float32),
+        forearm_twist_rad=np.zeros((60, 2), np.float32),
+    )  # fmt: skip
+    motion = held_before(motion, 24)  # before that, joints that hardly show come from the rest pose
+    early, late = r.retarget(motion), r.retarget(held_before(motion, shift))
+    assume(max(early.report.peak_speed_share, early.report.peak_acceleration_share) < 0.95)
+    assume(not early.report.interventions)
+    n = len(motion.joints_m)
+    seen, seen_late = r.kinematics.places(early.q_rad[24:n]), r.kinematics.places(late.q_rad[shift + 24 : shift + n])
+    np.testing.assert_allclose(seen_late, seen, atol=5e-4)
+    assert np.abs(np.diff(seen, axis=0)).max() > 5e-3  # one frame more or less would be seen
+
+
+@pytest.mark.parametrize("name", list(RETARGETERS))
+def test_a_start_too_fast_or_outside_comes_back_inside(name: str) -> None:
+    """Speed towards a position limit that no braking can hold: it is passed by as little as braking allows, and left."""
+    r = RETARGETERS[name]
+    position = r.limits.position_max_rad - 1e-3
+    start = JointState(position, 0.5 * r.limits.velocity_rad_s)
+    path = r.retarget(random_motion(1, 40, "smooth"), start)
+    q = path.at_rate(100.0)
+    assert (q[-1] <= r.limits.position_max_rad + 1e-9).all() and (q[-1] >= r.limits.position_min_rad - 1e-9).all()
+    bend = np.abs(np.diff(q, n=2, axis=0))
+    assert (bend <= r.limits.acceleration_rad_s2 * 1e-4 * (1 + 1e-6) + 1e-12).all()
