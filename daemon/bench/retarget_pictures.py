@@ -119,7 +119,7 @@ def _in_time(plt: Any, errors: list[_Errors]) -> Any:
     """The error of the worst bone in each frame of the clip whose causal clamp errs most."""
     worst = max(errors, key=lambda e: float(e.causal.mean()))
     figure, axes = plt.subplots(figsize=(7, 2.4))
-    t: Array = np.arange(worst.whole.shape[1]) / FPS
+    t = np.arange(worst.whole.shape[1], dtype=np.float64) / FPS
     axes.plot(t, worst.causal.max(0), color=_ORANGE, lw=1, label="clamped frame by frame")
     axes.plot(t, worst.whole.max(0), color=_BLUE, lw=1.2, label="with look-ahead")
     axes.plot(t, worst.reach.max(0), color=_GREY, lw=1, label="without limits")
