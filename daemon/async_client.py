@@ -10,13 +10,14 @@ import asyncio
 import contextlib
 import time
 import uuid
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Coroutine
 from types import TracebackType
-from typing import Literal, Self, Unpack
+from typing import Any, Literal, Self, Unpack
 
 import zmq
 import zmq.asyncio
 
+from daemon.client_compositions import CompositionCalls, patience_s
 from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
@@ -43,7 +44,7 @@ from daemon.wire import decode_event, encode
 
 REPLY_TIMEOUT_S = 5.0
 FIRST_REPLY_TIMEOUT_S = 15.0
-MOTION_TIMEOUT_S = 60.0
+LONGEST_WAIT_S = 1e9
 
 
 class _Line:
@@ -86,7 +87,7 @@ class _Line:
                     heard.put_nowait(event)
 
 
-class AsyncClient:
+class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
     """Talks to one daemon from one event loop.
 
     Args:
@@ -121,7 +122,7 @@ class AsyncClient:
         seed: int = 0,
         seconds: float | None = None,
         wait: bool = True,
-        timeout_s: float = MOTION_TIMEOUT_S,
+        timeout_s: float | None = None,
         **options: Unpack[PlayOptions],
     ) -> Said:
         """Move as the text says; arguments and errors as for `daemon.client.Client.say`."""
@@ -129,12 +130,12 @@ class AsyncClient:
         return await self.play(request, wait=wait, timeout_s=timeout_s)
 
     async def gesture(
-        self, name: str, *, wait: bool = True, timeout_s: float = MOTION_TIMEOUT_S, **options: Unpack[PlayOptions]
+        self, name: str, *, wait: bool = True, timeout_s: float | None = None, **options: Unpack[PlayOptions]
     ) -> Said:
         """Play a clip of the library."""
         return await self.play(Gesture(id=uuid.uuid4().hex, name=name, **options), wait=wait, timeout_s=timeout_s)
 
-    async def play(self, request: Play, *, wait: bool = True, timeout_s: float = MOTION_TIMEOUT_S) -> Said:
+    async def play(self, request: Play, *, wait: bool = True, timeout_s: float | None = None) -> Said:
         """Send a request that plays something; return when it has ended, or without `wait` once it is accepted.
 
         Raises:
@@ -155,13 +156,14 @@ class AsyncClient:
             raise CancelledByError(str(getattr(last, "by", "the daemon")))
         return Said(request.id, tuple(heard))
 
-    async def events_of(self, request: Play, timeout_s: float = MOTION_TIMEOUT_S) -> AsyncGenerator[AnyEvent]:
+    async def events_of(self, request: Play, timeout_s: float | None = None) -> AsyncGenerator[AnyEvent]:
         """Send a request and yield its events as they come, the last one terminal.
 
         Raises:
             NoAnswerError: not in time.
         """
         line, asked = self._line(self.endpoints.cmd), f"{tag_of(request)} {request.words[:60]!r}"
+        timeout_s = patience_s(request) if timeout_s is None else timeout_s
         end_s, limit_s = time.monotonic() + timeout_s, min(timeout_s, FIRST_REPLY_TIMEOUT_S)
         async with line.asked(request) as heard:
             while True:
@@ -287,6 +289,6 @@ class AsyncClient:
 
 async def _within(heard: asyncio.Queue[AnyEvent], timeout_s: float, endpoint: str, asked: str) -> AnyEvent:
     try:
-        return await asyncio.wait_for(heard.get(), timeout_s)
+        return await asyncio.wait_for(heard.get(), timeout_s if timeout_s < LONGEST_WAIT_S else None)
     except TimeoutError:
         raise NoAnswerError(endpoint, asked, timeout_s) from None

@@ -25,6 +25,7 @@ class BusView:
         valid: (S,) whether each servo's last reading is from the newest cycle.
         error: (S,) error bits of the last replies.
         at_rest: whether the last cycle moved no goal.
+        passed: states of the cycles that the last update brought, each once, in order.
         index: cycles published so far, as far as they have been read.
         lost: cycles that were overwritten before they were read.
     """
@@ -36,6 +37,7 @@ class BusView:
         self.at_rest = True
         self._last_cycle_s: float | None = None
         self.state = BusState.LIMP
+        self.passed: list[BusState] = []
         self.goal_rad: Array = robot.park_rad.copy()
         self.present_rad: Array = robot.park_rad.copy()
         self.valid = np.zeros(robot.n_servos, bool)
@@ -60,6 +62,8 @@ class BusView:
             self.underruns += int((records["underrun"] != 0).sum())
             self.at_rest = not np.any(last["velocity_rad_s"])
             self.state = BusState(int(last["state"]))
+        states = [int(state) for state in records["state"]]
+        self.passed = [BusState(s) for i, s in enumerate(states) if i == 0 or s != states[i - 1]]
         return records, lost
 
     def begin(self, state: BusState = BusState.LIMP) -> None:

@@ -29,6 +29,8 @@ COMMANDS: dict[str, CommandEntry] = {
     "config": CommandEntry("daemon.commands.run:config", "the settings of `run` and where each comes from"),
     "install-service": CommandEntry("daemon.commands.service:install_service", "systemd unit and udev rule"),
     "say": CommandEntry("daemon.commands.say:say", "tell the robot what to do"),
+    "story": CommandEntry("daemon.commands.story:story", "several things in one motion, for as long as you like"),
+    "inbetween": CommandEntry("daemon.commands.story:inbetween", "poses at given times; the middle is generated"),
     "gesture": CommandEntry("daemon.commands.gesture:gesture", "play, list, record and add named gestures"),
     "look": CommandEntry("daemon.commands.layers:look", "turn the head, whatever the body does"),
     "idle": CommandEntry("daemon.commands.layers:idle", "small movements while there is nothing to play"),
@@ -52,7 +54,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "sim": CommandEntry("daemon.commands.sim:sim", "simulated servos behind a real tty"),
     "robot": CommandEntry("daemon.commands.robot:robot", "list, check and show robots"),
     "generate": CommandEntry("daemon.commands.generate:generate", "text to human motion: .npz and .bvh"),
-    "edit": CommandEntry("daemon.commands.edit:edit", "a stretch, an end or a body part of a motion made again"),
+    "edit": CommandEntry("daemon.commands.edit:edit", "a part of a motion made again: file or robot"),
     "import-official": CommandEntry(
         "daemon.commands.import_official:import_official", "the MMM authors' checkpoints as one file of ours"
     ),

@@ -10,6 +10,7 @@ from typing import Literal, Self, Unpack
 
 import zmq
 
+from daemon.client_compositions import CompositionCalls, patience_s
 from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
@@ -40,14 +41,14 @@ REPLY_TIMEOUT_S = 5.0
 """For a reply that no motion has to be waited for."""
 FIRST_REPLY_TIMEOUT_S = 15.0
 """For the first word about a text: longer than the daemon waits for its generator."""
+LONGEST_POLL_S = 60.0
+"""A wait without limit is polled in turns: what ZeroMQ takes is a whole number of milliseconds."""
 _NOT_MOVING = ("limp", "idle", "holding", "fault", "estop")
-MOTION_TIMEOUT_S = 60.0
-"""For a motion to end: the longest is 10 s, before which the robot may have to be armed."""
 
 __all__ = ["CancelledByError", "Client", "NoAnswerError", "RefusedError", "Said"]
 
 
-class Client:
+class Client(CompositionCalls[Said]):
     """Talks to one daemon. Not for several threads at once.
 
     Args:
@@ -81,7 +82,7 @@ class Client:
         seed: int = 0,
         seconds: float | None = None,
         wait: bool = True,
-        timeout_s: float = MOTION_TIMEOUT_S,
+        timeout_s: float | None = None,
         command_id: str = "",
         **options: Unpack[PlayOptions],
     ) -> Said:
@@ -92,7 +93,7 @@ class Client:
             seed: the same text, seed and seconds give the same motion.
             seconds: length of the motion; None lets the model choose.
             wait: return when the motion has ended; else once it is accepted.
-            timeout_s: longest wait for the end.
+            timeout_s: longest wait for the end; None takes one that fits the request.
             command_id: the same id twice is one command; empty chooses one.
             options: tempo, amplitude, mirror, repeat, loop, hold, when, at_s, deadline_s; see `daemon.requests.Play`.
 
@@ -109,7 +110,7 @@ class Client:
         name: str,
         *,
         wait: bool = True,
-        timeout_s: float = MOTION_TIMEOUT_S,
+        timeout_s: float | None = None,
         command_id: str = "",
         **options: Unpack[PlayOptions],
     ) -> Said:
@@ -121,7 +122,7 @@ class Client:
         request = Gesture(id=command_id or uuid.uuid4().hex, name=name, **options)
         return self.play(request, wait=wait, timeout_s=timeout_s)
 
-    def play(self, request: Play, *, wait: bool = True, timeout_s: float = MOTION_TIMEOUT_S) -> Said:
+    def play(self, request: Play, *, wait: bool = True, timeout_s: float | None = None) -> Said:
         """Send a request that plays something; return when it has ended, or without `wait` once it is accepted.
 
         Raises:
@@ -139,7 +140,7 @@ class Client:
             raise CancelledByError(str(getattr(last, "by", "the daemon")))
         return Said(request.id, tuple(heard))
 
-    def events_of(self, request: Play, timeout_s: float = MOTION_TIMEOUT_S) -> Iterator[AnyEvent]:
+    def events_of(self, request: Play, timeout_s: float | None = None) -> Iterator[AnyEvent]:
         """Send a text and yield its events as they come, the last one terminal.
 
         Raises:
@@ -148,6 +149,7 @@ class Client:
         socket = self._cmd_socket()
         self._send(socket, request, self.endpoints.cmd)
         began_s, asked = time.monotonic(), f"{tag_of(request)} {request.words[:60]!r}"
+        timeout_s = patience_s(request) if timeout_s is None else timeout_s
         limit_s = min(timeout_s, FIRST_REPLY_TIMEOUT_S)
         while True:
             event = self._receive(socket, began_s, limit_s, self.endpoints.cmd, asked)
@@ -342,9 +344,9 @@ class Client:
     def _receive(
         self, socket: zmq.Socket[bytes], began_s: float, timeout_s: float, endpoint: str, asked: str
     ) -> AnyEvent:
-        left_s = max(0.0, began_s + timeout_s - time.monotonic())
-        if not socket.poll(int(1000 * left_s)):
-            raise NoAnswerError(endpoint, asked, timeout_s)
+        while not socket.poll(int(1000 * min(LONGEST_POLL_S, max(0.0, began_s + timeout_s - time.monotonic())))):
+            if time.monotonic() >= began_s + timeout_s:
+                raise NoAnswerError(endpoint, asked, timeout_s)
         return decode_event(socket.recv())
 
     def _cmd_socket(self) -> zmq.Socket[bytes]:

@@ -37,7 +37,7 @@ def check_endpoint(key: str, endpoint: str, *, keys: bool = False) -> None:
     if port is None and not endpoint.endswith(":*"):
         raise config_error(key, f"{endpoint!r} without a port", allowed, "name a host and a port")
     if not keys and host != "localhost" and not _is_loopback(host):
-        do = "give --keys (`mmmd keys --help` shows how), or use an ssh tunnel"
+        do = "give --keys for CURVE (`mmmd keys --help` shows how), or use an ssh tunnel"
         raise config_error(key, f"{endpoint!r}, which other machines can reach without a key", allowed, do)
 
 
@@ -93,6 +93,7 @@ class DaemonConfig:
         auto_arm: whether the first text may arm the robot.
         idle: style of the movements while there is nothing to play: off, calm or lively.
         gestures: folder of the user's own gestures; None takes the user's data folder.
+        motions: folder in which `edit` looks for files; None takes the folder the daemon was started in.
         model_hash: beginning of the checkpoint's hash that the generator must have; empty takes any.
         metrics: HOST:PORT of Prometheus metrics, empty for none.
         queue_s: setpoints kept ready in the bus process.
@@ -112,6 +113,7 @@ class DaemonConfig:
     auto_arm: bool = True
     idle: str = "off"
     gestures: Path | None = None
+    motions: Path | None = None
     model_hash: str = ""
     metrics: str = ""
     queue_s: float = 0.1

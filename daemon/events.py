@@ -36,7 +36,7 @@ class Accepted(Event, tag="accepted"):
         understood: nearest known command and its score.
         reason: why it is degraded, else empty.
         scope_score: how near the text lies to what the model can do.
-        duration_s: length of the generated motion.
+        duration_s: length of the generated motion; 0 for a story, of which only the first part is known.
         generate_ms: time the generator took.
     """
 
@@ -51,17 +51,32 @@ class Accepted(Event, tag="accepted"):
 
 
 class Progress(Event, tag="progress"):
-    """A stage was reached: `arming` (waiting for torque and rest pose) or `moving` (the first servo moves).
+    """A stage was reached.
+
+    `arming`: waiting for torque and rest pose; `moving`: the first servo moves; `scene`: a part of a story is played next,
+    or was left out.
 
     Attributes:
         plan_id: number of the plan, 0 before there is one.
         stage: the stage.
         first_motion_ms: text to first changed servo goal, once `moving`.
+        scene: number of the part, from 1 in each round.
+        text: of the part.
+        status: accepted, degraded, or rejected when the part was left out.
+        reason: why it is not accepted.
+        understood: nearest known command and its score.
+        scope_score: how near the part lies to what the model can do.
     """
 
     plan_id: int
     stage: str
     first_motion_ms: float | None = None
+    scene: int | None = None
+    text: str = ""
+    status: str = ""
+    reason: str = ""
+    understood: str = ""
+    scope_score: float | None = None
 
 
 class Done(Event, tag="done"):

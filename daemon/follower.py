@@ -36,8 +36,8 @@ class Follower:
         self.idling = False
         self._epoch, self._settled_at = planner.epoch, 0
 
-    def update(self) -> RobotState | None:
-        """Heartbeat, setpoints, records, state; the new state when it changed."""
+    def update(self) -> list[RobotState]:
+        """Heartbeat, setpoints, records, state; the states that the robot went through since the last call."""
         self._link.heartbeat()
         self._planner.pump()
         if self._planner.epoch != self._epoch:
@@ -45,7 +45,8 @@ class Follower:
         self._planner.read_cycles()
         if self.machine.state is RobotState.FAULT and self.bus_alive and self._view.message:
             self.fault_reason = self._view.message  # the bus process is back and knows better
-        return self._follow(self._report())
+        reports = [self._report(state) for state in self._view.passed] or [self._report(self._view.state)]
+        return [state for report in reports if (state := self._follow(report)) is not None]
 
     @property
     def can_take_over(self) -> bool:
@@ -62,10 +63,10 @@ class Follower:
         """Whether no goal moves."""
         return self._view.at_rest
 
-    def _report(self) -> Trigger:
+    def _report(self, state: BusState) -> Trigger:
         if not self.bus_alive or self._view.silent_s > BUS_SILENT_S:
             return Trigger.BUS_LOST
-        report = REPORTS[self._view.state]
+        report = REPORTS[state]
         if report is Trigger.BUS_HOLDING and self.stopped:
             return Trigger.BUS_STOPPED
         if report is Trigger.BUS_PLAYING and self.idling:

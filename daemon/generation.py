@@ -1,7 +1,6 @@
-"""What the front and the generator say to each other, and the front's side of it. Holds no torch.
+"""The front's side of the generator: asks without blocking the event loop. Holds no torch.
 
-msgpack messages over ZeroMQ, one each way per request: `generate` or `ping` to the generator; `generated`, `failure` or
-`pong` back with the same `id`. The generator is a ROUTER, its clients are DEALERs.
+The generator is a ROUTER, its clients are DEALERs; the messages are in `daemon.generation_messages`.
 """
 
 from __future__ import annotations
@@ -11,190 +10,39 @@ import contextlib
 import itertools
 import logging
 import time
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
 
 import msgspec
-import numpy as np
 import zmq
 import zmq.asyncio
-from numpy.typing import NDArray
 
-from daemon.errors import DaemonError
+from daemon.generation_messages import (
+    MIN_FRAMES,
+    BetweenMessage,
+    EditMessage,
+    FailureMessage,
+    FromGenerator,
+    Generated,
+    GeneratedMessage,
+    GenerateMessage,
+    GeneratorError,
+    PingMessage,
+    PongMessage,
+    SceneMessage,
+    ToGenerator,
+    arrays_of,
+    bad_motion,
+    decode_reply,
+    encode,
+    generated_from,
+)
 from daemon.keys import KeyFolder, connect_curve
-from mmm_core.motion import N_FEATURES, N_JOINTS, Motion
+from mmm_core.motion import Motion
 
 log = logging.getLogger(__name__)
 
-GENERATION_VERSION = 1
 START_TIMEOUT_S = 10.0
 """Longest wait of a text for a generator that is being started."""
-MIN_FRAMES = 2
-"""A motion of fewer frames is no motion."""
-
-
-class GeneratorError(DaemonError):
-    """The generator gave no usable motion: why, and what to do."""
-
-    def __init__(self, code: str, asked: str, found: str, allowed: str, do: str) -> None:
-        self.code, self.asked, self.found, self.allowed, self.do = code, asked, found, allowed, do
-        super().__init__(f"{asked}: {found}; allowed: {allowed}; {do}")
-
-
-class GenerateMessage(msgspec.Struct, tag="generate", kw_only=True):
-    """Ask for a motion."""
-
-    v: int = GENERATION_VERSION
-    id: int
-    text: str
-    seed: int = 0
-    seconds: float | None = None
-
-
-class PingMessage(msgspec.Struct, tag="ping", kw_only=True):
-    """Ask whether the generator lives."""
-
-    v: int = GENERATION_VERSION
-    id: int
-
-
-class PongMessage(msgspec.Struct, tag="pong", kw_only=True):
-    """It lives, with this checkpoint."""
-
-    id: int
-    checkpoint_hash: str
-    version: str = ""
-
-
-class FailureMessage(msgspec.Struct, tag="failure", kw_only=True):
-    """It could not."""
-
-    id: int
-    code: str
-    found: str
-    allowed: str
-
-
-class GeneratedMessage(msgspec.Struct, tag="generated", kw_only=True):
-    """A motion: arrays as little-endian bytes, T frames."""
-
-    id: int
-    n_frames: int
-    joints_m: bytes
-    fps: float
-    head_quat_wxyz: bytes
-    forearm_twist_rad: bytes
-    features: bytes
-    tokens: bytes
-    text: str
-    seed: int
-    status: str
-    scope_score: float
-    understood: str
-    reason: str
-    timings_ms: dict[str, float]
-    checkpoint_hash: str
-
-
-ToGenerator = GenerateMessage | PingMessage
-FromGenerator = GeneratedMessage | FailureMessage | PongMessage
-_ENCODER = msgspec.msgpack.Encoder()
-_TO_DECODER = msgspec.msgpack.Decoder(ToGenerator)
-_FROM_DECODER = msgspec.msgpack.Decoder(FromGenerator)
-
-
-@dataclass(frozen=True)
-class Generated:
-    """A motion as the generator gave it.
-
-    Attributes:
-        motion: the motion; of length zero when rejected.
-        understood: nearest known command and its score.
-        reason: why degraded or rejected, else empty.
-        timings_ms: the generator's stages.
-        checkpoint_hash: the weights it used.
-    """
-
-    motion: Motion
-    understood: str
-    reason: str
-    timings_ms: dict[str, float]
-    checkpoint_hash: str
-
-
-def encode(message: ToGenerator | FromGenerator) -> bytes:
-    """The bytes of a message."""
-    return _ENCODER.encode(message)
-
-
-def decode_request(frame: bytes) -> ToGenerator:
-    """What a client asks.
-
-    Raises:
-        msgspec.MsgspecError: no such message.
-    """
-    return _TO_DECODER.decode(frame)
-
-
-def generated_message(request_id: int, generated: Generated) -> GeneratedMessage:
-    """The message of a motion."""
-    m = generated.motion
-    return GeneratedMessage(
-        id=request_id,
-        n_frames=len(m.joints_m),
-        joints_m=m.joints_m.astype("<f4").tobytes(),
-        fps=m.fps,
-        head_quat_wxyz=m.head_quat_wxyz.astype("<f4").tobytes(),
-        forearm_twist_rad=m.forearm_twist_rad.astype("<f4").tobytes(),
-        features=m.features.astype("<f4").tobytes(),
-        tokens=m.tokens.astype("<i4").tobytes(),
-        text=m.text,
-        seed=m.seed,
-        status=m.status,
-        scope_score=m.scope_score,
-        understood=generated.understood,
-        reason=generated.reason,
-        timings_ms=generated.timings_ms,
-        checkpoint_hash=generated.checkpoint_hash,
-    )
-
-
-def generated_from(message: GeneratedMessage) -> Generated:
-    """The motion in a message, checked.
-
-    Raises:
-        GeneratorError: wrong sizes, not finite, or too few frames.
-    """
-    n = message.n_frames
-    try:
-        motion = Motion(
-            joints_m=_array(message.joints_m, "<f4", (n, N_JOINTS, 3)),
-            fps=message.fps,
-            head_quat_wxyz=_array(message.head_quat_wxyz, "<f4", (n, 4)),
-            forearm_twist_rad=_array(message.forearm_twist_rad, "<f4", (n, 2)),
-            features=_array(message.features, "<f4", (n, N_FEATURES)),
-            tokens=_array(message.tokens, "<i4", (-1,)),
-            text=message.text,
-            seed=message.seed,
-            status=message.status,  # type: ignore[arg-type]  # checked by Motion
-            scope_score=message.scope_score,
-        )
-    except ValueError as error:
-        raise _bad_motion(message.text, str(error)) from error
-    if motion.status != "rejected" and n < MIN_FRAMES:
-        raise _bad_motion(message.text, f"{n} frames")
-    return Generated(motion, message.understood, message.reason, message.timings_ms, message.checkpoint_hash)
-
-
-def _bad_motion(text: str, found: str) -> GeneratorError:
-    allowed = f"at least {MIN_FRAMES} frames, all finite"
-    return GeneratorError(
-        "bad_motion", f"a motion for {text!r}", found, allowed, "say it in other words or with another seed"
-    )
-
-
-def _array(data: bytes, dtype: str, shape: tuple[int, ...]) -> NDArray[Any]:
-    return np.frombuffer(data, dtype).reshape(shape)
 
 
 class GeneratorClient:
@@ -253,15 +101,65 @@ class GeneratorClient:
         Raises:
             GeneratorError: it failed, gave no usable motion, or not in time (`code` tells which).
         """
-        await self._until_ready(f"a motion for {text!r}")
-        request = GenerateMessage(id=next(self._ids), text=text, seed=seed, seconds=seconds)
-        reply = await self._ask(request, timeout_s, f"a motion for {text!r}")
+        asked = f"a motion for {text!r}"
+        await self._until_ready(asked)
+        return await self._motion(
+            GenerateMessage(id=next(self._ids), text=text, seed=seed, seconds=seconds), timeout_s, asked
+        )
+
+    async def scene(
+        self, text: str | None, seed: int, seconds: float | None, told: bytes, timeout_s: float, *, last: bool
+    ) -> Generated:
+        """The next piece of a story, which may have no frames; `told` is what the one before gave.
+
+        Raises:
+            GeneratorError: as `generate`.
+        """
+        asked = "the end of a story" if text is None else f"a scene for {text!r}"
+        await self._until_ready(asked)
+        request = SceneMessage(id=next(self._ids), text=text, seconds=seconds, seed=seed, told=told, last=last)
+        return await self._motion(request, timeout_s, asked, min_frames=0)
+
+    async def edit(
+        self, motion: Motion, text: str, seed: int, parts: Sequence[str], start_s: float, end_s: float | None,
+        timeout_s: float,
+    ) -> Generated:  # fmt: skip
+        """`motion` with a stretch or some parts made again for `text`.
+
+        Raises:
+            GeneratorError: as `generate`; `bad_edit` when it does not fit the motion or the model.
+        """
+        asked = f"an edit for {text!r}"
+        await self._until_ready(asked)
+        request = EditMessage(
+            id=next(self._ids), motion=arrays_of(motion), text=text, seed=seed, parts=list(parts), start_s=start_s,
+            end_s=end_s,
+        )  # fmt: skip
+        return await self._motion(request, timeout_s, asked)
+
+    async def between(self, poses: Motion, at_s: Sequence[float], text: str, seed: int, timeout_s: float) -> Generated:
+        """A motion that shows each frame of `poses` at its time.
+
+        Raises:
+            GeneratorError: as `generate`; `bad_keyframes` when the times do not fit.
+        """
+        asked = f"a motion through {len(at_s)} poses"
+        await self._until_ready(asked)
+        request = BetweenMessage(id=next(self._ids), poses=arrays_of(poses), at_s=list(at_s), text=text, seed=seed)
+        return await self._motion(request, timeout_s, asked)
+
+    async def _motion(
+        self, request: ToGenerator, timeout_s: float, asked: str, min_frames: int = MIN_FRAMES
+    ) -> Generated:
+        reply = await self._ask(request, timeout_s, asked)
         if isinstance(reply, FailureMessage):
             do = "see the daemon's output; say it in other words or with another seed"
-            raise GeneratorError(reply.code, f"a motion for {text!r}", reply.found, reply.allowed, do)
+            if reply.code in ("bad_edit", "bad_keyframes"):
+                do = "correct it"
+            raise GeneratorError(reply.code, asked, reply.found, reply.allowed, do)
         if not isinstance(reply, GeneratedMessage):
-            raise _bad_motion(text, f"the answer '{type(reply).__name__}'")
-        return generated_from(reply)
+            raise bad_motion(asked, f"the answer '{type(reply).__name__}'")
+        return generated_from(reply, min_frames)
 
     async def ping(self, timeout_s: float) -> str:
         """The hash of the generator's checkpoint.
@@ -299,14 +197,7 @@ class GeneratorClient:
                 return await answer
         except TimeoutError:
             self.timeouts += 1
-            do = "it is started again; say it once more"
-            raise GeneratorError(
-                "generator_timeout",
-                asked,
-                f"no answer from the generator in {timeout_s:g} s",
-                "an answer in that time",
-                do,
-            ) from None
+            raise no_answer(asked, timeout_s) from None
         finally:
             self._open.pop(request.id, None)
 
@@ -314,7 +205,7 @@ class GeneratorClient:
         while True:
             frame = await self._socket.recv()
             try:
-                reply = _FROM_DECODER.decode(frame)
+                reply = decode_reply(frame)
             except msgspec.MsgspecError as error:
                 log.warning("the generator sent what is no message: %s", error)
                 continue
@@ -329,3 +220,9 @@ class GeneratorClient:
             with contextlib.suppress(asyncio.CancelledError):
                 await self._reader
         self._socket.close(0)
+
+
+def no_answer(asked: str, timeout_s: float) -> GeneratorError:
+    """The error of a generator that was silent."""
+    found, do = f"no answer from the generator in {timeout_s:g} s", "it is started again; say it once more"
+    return GeneratorError("generator_timeout", asked, found, "an answer in that time", do)

@@ -12,20 +12,26 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Protocol
 
 import msgspec
 import zmq
 
 from daemon.config import check_endpoint
 from daemon.errors import ConfigError
-from daemon.generation import (
+from daemon.generation_messages import (
     GENERATION_VERSION,
+    BetweenMessage,
+    EditMessage,
     FailureMessage,
     FromGenerator,
     Generated,
+    GenerateMessage,
     PingMessage,
     PongMessage,
+    SceneMessage,
     ToGenerator,
+    UnfitRequestError,
     decode_request,
     encode,
     generated_message,
@@ -38,10 +44,29 @@ log = logging.getLogger(__name__)
 
 NICENESS = 5
 POLL_MS = 200
-Generate = Callable[[str, int, float | None], Generated]
 
 
-def answer(request: ToGenerator, generate: Generate, checkpoint_hash: str) -> FromGenerator:
+class Maker(Protocol):
+    """What makes motions: `daemon.maker` with the model, others in tests."""
+
+    def generate(self, request: GenerateMessage) -> Generated:
+        """A motion."""
+        ...
+
+    def scene(self, request: SceneMessage) -> Generated:
+        """The next piece of a story."""
+        ...
+
+    def edit(self, request: EditMessage) -> Generated:
+        """A motion of which a part is new."""
+        ...
+
+    def between(self, request: BetweenMessage) -> Generated:
+        """A motion through poses."""
+        ...
+
+
+def answer(request: ToGenerator, maker: Maker, checkpoint_hash: str) -> FromGenerator:
     """The reply to one request; an error of the model becomes a `failure`, never the end of the process."""
     if request.v != GENERATION_VERSION:
         found, allowed = f"version {request.v} of the generator's protocol", f"version {GENERATION_VERSION}"
@@ -49,13 +74,25 @@ def answer(request: ToGenerator, generate: Generate, checkpoint_hash: str) -> Fr
     if isinstance(request, PingMessage):
         return PongMessage(id=request.id, checkpoint_hash=checkpoint_hash, version=importlib.metadata.version("mmmd"))
     try:
-        return generated_message(request.id, generate(request.text, request.seed, request.seconds))
+        return generated_message(request.id, _made(request, maker))
+    except UnfitRequestError as error:
+        return FailureMessage(id=request.id, code=error.code, found=error.found, allowed=error.allowed)
     except Exception as error:  # whatever the model raises, the next text must still be answered
         log.exception("generating %r failed", request.text)
         return FailureMessage(id=request.id, code="generator_error", found=str(error), allowed="a motion")
 
 
-def serve(socket: zmq.Socket[bytes], generate: Generate, checkpoint_hash: str, alive: Callable[[], bool]) -> None:
+def _made(request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage, maker: Maker) -> Generated:
+    if isinstance(request, SceneMessage):
+        return maker.scene(request)
+    if isinstance(request, EditMessage):
+        return maker.edit(request)
+    if isinstance(request, BetweenMessage):
+        return maker.between(request)
+    return maker.generate(request)
+
+
+def serve(socket: zmq.Socket[bytes], maker: Maker, checkpoint_hash: str, alive: Callable[[], bool]) -> None:
     """Answer requests on a ROUTER socket, one after the other, while `alive()`."""
     while alive():
         if not socket.poll(POLL_MS):
@@ -66,22 +103,7 @@ def serve(socket: zmq.Socket[bytes], generate: Generate, checkpoint_hash: str, a
         except (msgspec.MsgspecError, UnicodeDecodeError) as error:
             log.warning("dropped a frame that is no request: %s", error)
             continue
-        socket.send_multipart([*route, encode(answer(request, generate, checkpoint_hash))])
-
-
-def load(model: Path | None, threads: int) -> tuple[Generate, str]:
-    """The model's function and the hash of its checkpoint, warmed up."""
-    from mmm_core.engine import Engine
-
-    engine = Engine.load(model, threads=threads)
-
-    def generate(text: str, seed: int, seconds: float | None) -> Generated:
-        made = engine.generate(text, seed=seed, seconds=seconds)
-        return Generated(made.motion, made.understood, made.reason, made.timings_ms, engine.checkpoint_hash)
-
-    for seconds in (None, 9.8):  # the first calls allocate
-        generate("wave with your right hand", 0, seconds)
-    return generate, engine.checkpoint_hash
+        socket.send_multipart([*route, encode(answer(request, maker, checkpoint_hash))])
 
 
 def run(
@@ -94,7 +116,10 @@ def run(
     """
     check_endpoint("bind", bind, keys=keys is not None)
     os.nice(NICENESS)
-    generate, checkpoint_hash = load(model, threads)
+    from daemon.maker import EngineMaker
+
+    maker = EngineMaker.load(model, threads)
+    checkpoint_hash = maker.checkpoint_hash
     context = zmq.Context()
     socket = context.socket(zmq.ROUTER)
     folder = KeyFolder(keys) if keys is not None else None
@@ -102,7 +127,7 @@ def run(
     try:
         bind_socket(socket, "bind", bind, folder)
         log.info("generator ready on %s with checkpoint %s", bind, checkpoint_hash[:12])
-        serve(socket, generate, checkpoint_hash, lambda: parent_pid is None or os.getppid() == parent_pid)
+        serve(socket, maker, checkpoint_hash, lambda: parent_pid is None or os.getppid() == parent_pid)
     finally:
         if doorkeeper is not None:
             doorkeeper.close()

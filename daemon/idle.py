@@ -50,6 +50,11 @@ class IdleScore:
         self._frame = 0
         self._finishing = False
 
+    @property
+    def ready(self) -> bool:
+        """Always."""
+        return True
+
     def finish(self) -> None:
         """The next stretch leads to stillness and is the last."""
         self._finishing = True

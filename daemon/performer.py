@@ -135,7 +135,13 @@ class Performer:
 
     def tick(self) -> None:
         """Follow the bus process, end what is over, feed what goes on, idle."""
-        state = self.follower.update()
+        for state in self.follower.update():
+            self._entered(state)
+        self._player.watch(finish_loop=self._waiting.someone_waits_after)
+        self._player.idle(free=not len(self._waiting))
+
+    def _entered(self, state: RobotState) -> None:
+        """End what a state of the robot ends."""
         if state is RobotState.FAULT:
             do = "find the cause, then `mmmd reset` and `mmmd arm`"
             self.end_all("fault", failed("fault", self.follower.fault_reason, "a robot without fault", do))
@@ -143,8 +149,6 @@ class Performer:
             self.end_all("estop")
         elif state in (RobotState.LIMP, RobotState.PARKING):
             self._player.end("park")  # a command on its way is refused or arms again by itself
-        self._player.watch(finish_loop=self._waiting.someone_waits_after)
-        self._player.idle(free=not len(self._waiting))
 
     def _overtake(self, newest: Pending) -> None:
         for pending in self._waiting.overtaken_by(newest):
@@ -160,9 +164,10 @@ class Performer:
     async def _perform(self, pending: Pending) -> None:
         entry = pending.entry
         try:
-            prepared = await self._sources.prepare(entry)
+            prepared = await self._sources.prepare(entry, lambda: self.planner.raw_now)
             self._check_deadline(entry)
             plan_id = self.planner.new_plan_id()
+            self._sources.kept.number(entry.id, plan_id)
             self._ledger.emit(entry, prepared.accepted(entry, plan_id))
             await self._turn(pending)
             await self._until_armed(entry, plan_id)

@@ -14,17 +14,18 @@ from typing import Any
 
 import numpy as np
 
-from daemon.events import Cancelled, CurrentCommand, Failed, Progress
+from daemon.events import Cancelled, CurrentCommand, Failed, Progress, Rejected
 from daemon.follower import Follower
 from daemon.idle import IdleScore
 from daemon.layers import Layers
 from daemon.ledger import Entry, Ledger
 from daemon.planner import FADE_FRAMES, HandOver, Planner
 from daemon.posture import Posture, distance_deg, faded_in
-from daemon.replies import ending, failed
+from daemon.replies import NotPlayableError, as_failure, ending, failed
 from daemon.requests import tag_of
 from daemon.score import ClipScore, Score
 from daemon.state import RobotState
+from daemon.story_score import StoryScore
 from retarget.errors import RetargetError
 from retarget.paths import JointPath
 
@@ -70,20 +71,21 @@ class Player:
             RetargetError: its motion does not fit the robot; what was played goes on.
         """
         async with self._lock:
+            stretch: tuple[Posture, bool] | None = None
             while True:
                 if self._planner.dry:
                     await self._until_at_rest()  # it brakes: from rest on nothing can be missed
                 if not alive():
                     return False
                 start = self._planner.hand_over()
-                raw, last = await asyncio.to_thread(score.next)
+                stretch = stretch or await asyncio.to_thread(score.next)
+                raw, last = stretch
                 posture, path = await asyncio.to_thread(self._made, raw, start, last, entry is None)
                 if not alive():
                     self._planner.give_up()
                     return False
                 if not self._planner.hand_over_missed:
                     break
-                score = _Begun(raw, last, score)
             before, previous = self.entry, self._planner.current
             self._begin(entry, score)
             t_received_ns = entry.t_received_ns if entry is not None else time.monotonic_ns()
@@ -123,10 +125,13 @@ class Player:
             self._moving_told = True
             first_ms = round(statistics.first_motion_ms, 2)
             self._ledger.emit(entry, Progress(plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms))
-        if finish_loop and isinstance(self._score, ClipScore):
+        self._tell_scenes(plan.plan_id)
+        if finish_loop and isinstance(self._score, (ClipScore, StoryScore)):
             self._score.finish()
         if not plan.complete:
-            if self._planner.ahead_s < FEED_AHEAD_S and not self._feeding and plan.epoch == self._planner.epoch:
+            ready = self._score.ready
+            due = self._planner.ahead_s < FEED_AHEAD_S and plan.epoch == self._planner.epoch
+            if ready and due and not self._feeding:
                 self._feeding = True
                 self.start(self._feed())
             return
@@ -199,7 +204,7 @@ class Player:
         epoch, entry, halted = self._planner.epoch, self.entry, self._follower.stopped
         if score is None:
             held = self._planner.raw_now
-            score = _Begun(held.at(np.zeros(round(GAZE_S * held.fps), np.intp)), True, None)
+            score = _Pose(held.at(np.zeros(round(GAZE_S * held.fps), np.intp)))
 
         def alive() -> bool:
             same = self.entry is entry and epoch == self._planner.epoch and halted == self._follower.stopped
@@ -212,20 +217,51 @@ class Player:
             log.error("idle movements could not be made: %s", error)
 
     async def _feed(self) -> None:
-        """Make the next stretch and append it."""
+        """Make the next stretch and append it; one that cannot be made ends the command."""
+        score = self._score
         try:
-            async with self._lock:
-                plan, score = self._planner.current, self._score
-                if plan is None or score is None or plan.complete or plan.end is not None:
-                    return
-                raw, last = await asyncio.to_thread(score.next)
-                start = HandOver(plan.state_at(plan.n_frames - 1), raw, plan.n_frames - 1)
-                posture, path = await asyncio.to_thread(self._made, raw, start, last, False)
-                if plan is self._planner.current and score is self._score and plan.epoch == self._planner.epoch:
-                    plan.append(path, posture, complete=last, raw=raw)
-                    self._planner.pump()
+            await self._append()
+        except NotPlayableError as error:
+            self._give_up(score, error.event)
+        except RetargetError as error:
+            self._give_up(
+                score, failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
+            )
+        except Exception as error:
+            self._give_up(score, failed("internal", str(error), "", "see the daemon's log"))
+            raise
         finally:
             self._feeding = False
+
+    async def _append(self) -> None:
+        async with self._lock:
+            plan, score = self._planner.current, self._score
+            if plan is None or score is None or plan.complete or plan.end is not None:
+                return
+            raw, last = await asyncio.to_thread(score.next)
+            start = HandOver(plan.state_at(plan.n_frames - 1), raw, plan.n_frames - 1)
+            posture, path = await asyncio.to_thread(self._made, raw, start, last, False)
+            if plan is self._planner.current and score is self._score and plan.epoch == self._planner.epoch:
+                plan.append(path, posture, complete=last, raw=raw)
+                self._planner.pump()
+
+    def _give_up(self, score: Score | None, event: Rejected | Failed) -> None:
+        """End the command whose next stretch failed; what is in the bus process is played, then it brakes and holds."""
+        entry, plan = self.entry, self._planner.current
+        if score is None or score is not self._score:
+            return
+        self._forget()
+        self._planner.drop()
+        if entry is not None:
+            self._ledger.emit(entry, ending(plan.plan_id if plan is not None else 0, "", as_failure(event)))
+
+    def _tell_scenes(self, plan_id: int) -> None:
+        while self.entry is not None and isinstance(self._score, StoryScore) and self._score.news:
+            n = self._score.news.popleft()
+            self._ledger.emit(self.entry, Progress(
+                plan_id=plan_id, stage="scene", scene=n.number, text=n.text, status=n.status, reason=n.reason,
+                understood=n.understood, scope_score=round(n.scope_score, 4),
+            ))  # fmt: skip
 
     async def _replan(self) -> None:
         """What is left of the plan, made again with the layers as they now are."""
@@ -262,17 +298,14 @@ class Player:
             await asyncio.sleep(0.005)
 
 
-class _Begun:
-    """A score whose next stretch is known already."""
+class _Pose:
+    """A pose that is held."""
 
-    def __init__(self, stretch: Posture, last: bool, rest: Score | None) -> None:
-        self._first: tuple[Posture, bool] | None = (stretch, last)
-        self._rest = rest
+    ready = True
+
+    def __init__(self, stretch: Posture) -> None:
+        self._stretch = stretch
 
     def next(self) -> tuple[Posture, bool]:
-        """The next stretch, and whether it is the last."""
-        first, self._first = self._first, None
-        if first is not None:
-            return first
-        assert self._rest is not None, "not asked again after the last stretch"
-        return self._rest.next()
+        """All of it."""
+        return self._stretch, True

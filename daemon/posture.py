@@ -157,9 +157,13 @@ def scaled(p: Posture, amplitude: float) -> Posture:
 def at_tempo(p: Posture, tempo: float) -> Posture:
     """`tempo` times as fast, at the same rate of frames."""
     n = max(2, round((len(p) - 1) / tempo) + 1)
-    place = np.linspace(0, len(p) - 1, n)
-    before = np.floor(place).astype(np.intp)
-    return mixed(p.at(before), p.at(before + 1), place - before)
+    return at_steps(p, np.linspace(0, len(p) - 1, n))
+
+
+def at_steps(p: Posture, places: Array) -> Posture:
+    """`p` at (n,) places between its frames, counted in frames."""
+    before = np.floor(places).astype(np.intp)
+    return mixed(p.at(before), p.at(before + 1), places - before)
 
 
 def smooth_step(n: int) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from daemon.events import Cancelled, Failed, Rejected
+from daemon.generation_messages import GeneratorError
 from daemon.ledger import Entry
 from daemon.requests import tag_of
 from daemon.state import CommandRefusedError
@@ -43,9 +44,20 @@ def too_late(entry: Entry, found: str) -> NotPlayableError:
     return NotPlayableError(kind(code="deadline", asked=asked, found=found, allowed="a beginning in time", do=do))
 
 
+def generator_failed(error: GeneratorError, state: str) -> Failed:
+    """The event of a command for which the generator, which is in `state`, gave no motion."""
+    found = f"{error.found} (generator: {state})"
+    return Failed(code=error.code, asked=error.asked, found=found, allowed=error.allowed, do=error.do)
+
+
 def ending(plan_id: int, by: str, failure: Failed | None) -> Cancelled | Failed:
     """The event that ends a command; each gets its own, for the ledger fills in its id."""
     return Cancelled(plan_id=plan_id, by=by) if failure is None else msgspec.structs.replace(failure, plan_id=plan_id)
+
+
+def as_failure(event: Rejected | Failed) -> Failed:
+    """The event of a command that was accepted before this came."""
+    return Failed(code=event.code, asked=event.asked, found=event.found, allowed=event.allowed, do=event.do)
 
 
 def failed(code: str, found: str, allowed: str, do: str) -> Failed:

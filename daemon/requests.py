@@ -1,101 +1,94 @@
 """What may be asked of the daemon: one struct for each request. Sans-I/O.
 
-`say`, `gesture` and their like share the options of `Play`; a new way to get a motion is one more such struct.
+`say`, `gesture`, `story`, `inbetween` and `edit` share the options of `Play` (`daemon.request_base`); a new way to get a
+motion is one more such struct.
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypedDict
+from typing import Annotated, Literal
 
-import msgspec
 from msgspec import Meta
 
-PROTOCOL_VERSION = 1
-MAX_TEXT_CHARS = 2000
-MAX_ID_CHARS = 128
-MAX_SEED = 2**31 - 1
-SHORTEST_S, LONGEST_S = 0.2, 9.8
-"""Lengths of motion that may be asked for: one token and a whole window of the model."""
-LEAST_TEMPO, MOST_TEMPO = 0.5, 2.0
-LEAST_AMPLITUDE, MOST_AMPLITUDE = 0.3, 1.2
-MOST_REPEATS = 1000
-IDLE_STYLES = ("calm", "lively")
+from daemon.compositions import (
+    MOST_POSES,
+    MOST_SCENES,
+    SHORTEST_GAP_S,
+    Edit,
+    Inbetween,
+    KeyPoseOf,
+    SceneOf,
+    Story,
+)
+from daemon.request_base import (
+    IDLE_STYLES,
+    LEAST_AMPLITUDE,
+    LEAST_TEMPO,
+    LONGEST_S,
+    MAX_ID_CHARS,
+    MAX_SEED,
+    MAX_TEXT_CHARS,
+    MOST_AMPLITUDE,
+    MOST_REPEATS,
+    MOST_TEMPO,
+    PROTOCOL_VERSION,
+    SHORTEST_S,
+    Id,
+    Name,
+    Play,
+    PlayOptions,
+    Request,
+    Text,
+    tag_of,
+)
 
-Id = Annotated[str, Meta(max_length=MAX_ID_CHARS, description="chosen by the sender; the same id twice is one command")]
-Text = Annotated[str, Meta(min_length=1, max_length=MAX_TEXT_CHARS)]
-Name = Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9_]{0,63}$", description="lower case letters, digits and _")]
-
-
-class Request(msgspec.Struct, tag_field="type", forbid_unknown_fields=True, kw_only=True):
-    """What every request may carry.
-
-    Attributes:
-        v: version of the protocol.
-        id: chosen by the sender, returned in every event; empty lets the daemon choose.
-        seq: the sender's count of messages; kept in the log.
-        t_mono: the sender's monotonic clock in seconds; kept in the log.
-    """
-
-    v: int = PROTOCOL_VERSION
-    id: Id = ""
-    seq: int | None = None
-    t_mono: float | None = None
-
-
-class Play(Request, kw_only=True):
-    """How a motion is to be played, whatever it comes from.
-
-    Attributes:
-        tempo: how much faster than it was made, where the servos can follow.
-        amplitude: every deviation from standing, times this.
-        mirror: left for right.
-        repeat: how often; a part that can go round goes round, else the whole is done again.
-        loop: go round until something ends it.
-        hold: stop in the pose that says most, and stay.
-        when: now (takes over from what is played), after (what is played and what waits already), or at `at_s`.
-        at_s: when to take over, on the daemon's clock as in `t_mono` of its events.
-        deadline_s: a motion that cannot begin so many seconds after its request came is not played.
-    """
-
-    tempo: Annotated[float, Meta(ge=LEAST_TEMPO, le=MOST_TEMPO)] = 1.0
-    amplitude: Annotated[float, Meta(ge=LEAST_AMPLITUDE, le=MOST_AMPLITUDE)] = 1.0
-    mirror: bool = False
-    repeat: Annotated[int, Meta(ge=1, le=MOST_REPEATS)] = 1
-    loop: bool = False
-    hold: bool = False
-    when: Literal["now", "after", "at"] = "now"
-    at_s: float | None = None
-    deadline_s: Annotated[float, Meta(ge=0, le=3600)] | None = None
-
-    def __post_init__(self) -> None:
-        """Refuse options that contradict each other.
-
-        Raises:
-            ValueError: which becomes one `error` event.
-        """
-        if (self.at_s is not None) != (self.when == "at"):
-            raise ValueError('`when` "at" and `at_s` belong together: give both or none')
-        if self.loop and (self.repeat > 1 or self.hold):
-            raise ValueError("`loop` goes round until it is ended: leave out `repeat` and `hold`")
-
-    @property
-    def words(self) -> str:
-        """What it is, in a word or a sentence."""
-        raise NotImplementedError
-
-
-class PlayOptions(TypedDict, total=False):
-    """The options of `Play`, for keyword arguments."""
-
-    tempo: float
-    amplitude: float
-    mirror: bool
-    repeat: int
-    loop: bool
-    hold: bool
-    when: Literal["now", "after", "at"]
-    at_s: float | None
-    deadline_s: float | None
+__all__ = [
+    "CMD_TYPES",
+    "CTL_TYPES",
+    "IDLE_STYLES",
+    "LEAST_AMPLITUDE",
+    "LEAST_TEMPO",
+    "LONGEST_S",
+    "MAX_ID_CHARS",
+    "MAX_SEED",
+    "MAX_TEXT_CHARS",
+    "MOST_AMPLITUDE",
+    "MOST_POSES",
+    "MOST_REPEATS",
+    "MOST_SCENES",
+    "MOST_TEMPO",
+    "PROTOCOL_VERSION",
+    "REQUESTS",
+    "SHORTEST_GAP_S",
+    "SHORTEST_S",
+    "Arm",
+    "Cancel",
+    "Capabilities",
+    "CmdRequest",
+    "CtlRequest",
+    "Edit",
+    "Estop",
+    "Gesture",
+    "Id",
+    "Idle",
+    "Inbetween",
+    "KeyPoseOf",
+    "Look",
+    "Name",
+    "Park",
+    "Play",
+    "PlayOptions",
+    "Record",
+    "Request",
+    "Reset",
+    "Say",
+    "SceneOf",
+    "Status",
+    "Stop",
+    "Story",
+    "Text",
+    "tag_of",
+]
 
 
 class Say(Play, tag="say", kw_only=True):
@@ -206,13 +199,10 @@ class Park(Request, tag="park"):
     """Move to the park pose, then torque off."""
 
 
-CmdRequest = Say | Gesture | Record | Look | Idle | Cancel | Status | Capabilities
+CmdRequest = Say | Story | Inbetween | Edit | Gesture | Record | Look | Idle | Cancel | Status | Capabilities
 CtlRequest = Stop | Estop | Reset | Arm | Park | Status
-CMD_TYPES: tuple[type[Request], ...] = (Say, Gesture, Record, Look, Idle, Cancel, Status, Capabilities)
+CMD_TYPES: tuple[type[Request], ...] = (
+    Say, Story, Inbetween, Edit, Gesture, Record, Look, Idle, Cancel, Status, Capabilities,
+)  # fmt: skip
 CTL_TYPES: tuple[type[Request], ...] = (Stop, Estop, Reset, Arm, Park, Status)
 REQUESTS: tuple[type[Request], ...] = (*CMD_TYPES, *CTL_TYPES[:-1])
-
-
-def tag_of(kind: type[msgspec.Struct] | msgspec.Struct) -> str:
-    """The `type` of a message."""
-    return str(kind.__struct_config__.tag)

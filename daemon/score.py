@@ -24,6 +24,11 @@ LOOP_STRETCH_S = 1.5
 class Score(Protocol):
     """Stretches of posture in order."""
 
+    @property
+    def ready(self) -> bool:
+        """Whether `next` has something without waiting; asked often, in the event loop."""
+        ...
+
     def next(self) -> tuple[Posture, bool]:
         """The next stretch, and whether it is the last; not called again after that."""
         ...
@@ -56,6 +61,11 @@ class ClipScore:
         self._posture, self._play = posture, play
         self._rounds_left = -1 if play.loop else play.repeat - 1
         self._begun = False
+
+    @property
+    def ready(self) -> bool:
+        """Always: the clip is there."""
+        return True
 
     def next(self) -> tuple[Posture, bool]:
         """The next stretch, and whether it is the last."""

@@ -20,11 +20,12 @@ _CONFIG = DaemonConfig("reference", "sim://")
 DEFAULTS: dict[str, Any] = {
     "robot": "reference", "bus": "sim://", "log": None, "log_size_mb": _CONFIG.log_size_mb,
     "log_total_mb": _CONFIG.log_total_mb, "generator": None, "model": None, "model_hash": "", "auto_arm": True,
-    "idle": "off", "gestures": None, "cmd": _ENDPOINTS.cmd, "ctl": _ENDPOINTS.ctl, "pub": _ENDPOINTS.pub, "keys": None,
+    "idle": "off", "gestures": None, "motions": None,
+    "cmd": _ENDPOINTS.cmd, "ctl": _ENDPOINTS.ctl, "pub": _ENDPOINTS.pub, "keys": None,
     "metrics": "", "queue_s": _CONFIG.queue_s, "state_rate_hz": _CONFIG.state_rate_hz,
     "generate_timeout_s": _CONFIG.generate_timeout_s, "park_timeout_s": _CONFIG.park_timeout_s, "log_json": False,
 }  # fmt: skip
-_PATHS = ("log", "model", "gestures", "keys")
+_PATHS = ("log", "model", "gestures", "motions", "keys")
 _ENDPOINT_KEYS = ("cmd", "ctl", "pub", "keys")
 _LOG_JSON = "log_json"
 """Read by `mmmd run` itself."""

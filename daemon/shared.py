@@ -1,14 +1,15 @@
 """Memory shared between front and bus process: setpoints down, requests down, cycles up. No locks.
 
 One file in memory, mapped by both. Each ring has one writer; indices are 64-bit words that only their owner moves, so a
-reader never waits and a stuck peer never blocks the bus. Requests are counters, one for each kind: an e-stop never
-queues behind anything.
+reader never waits and a stuck peer never blocks the bus. Each kind of request has a word, which holds the number of its
+newest one: an e-stop never queues behind anything, and what was given before it is not carried out after it.
 """
 
 from __future__ import annotations
 
 import os
 import tempfile
+import threading
 import time
 from contextlib import suppress
 from dataclasses import dataclass
@@ -50,6 +51,22 @@ class BusRequest(IntEnum):
     ESTOP = 11
     RESET = 12
     SHUTDOWN = 13
+
+
+def valid_requests(asked: list[BusRequest]) -> list[BusRequest]:
+    """`asked`, in order, without what a later one made void.
+
+    An e-stop voids everything before it, a stop what would move the robot: a reset or an arm that was given before an
+    e-stop must not undo it because both came in the same cycle.
+    """
+    valid: list[BusRequest] = []
+    for kind in asked:
+        if kind is BusRequest.ESTOP:
+            valid = [k for k in valid if k is BusRequest.SHUTDOWN]
+        elif kind is BusRequest.STOP:
+            valid = [k for k in valid if k not in (BusRequest.ARM, BusRequest.PARK)]
+        valid.append(kind)
+    return valid
 
 
 class _Word(IntEnum):
@@ -118,6 +135,7 @@ class BusLink:
         parts = [memory[a:b] for a, b in pairwise(starts)]
         self._words = parts[0].view(np.uint64)
         self._setpoints, self._cycles, self._text = parts[1].view(setpoints), parts[2].view(cycles), parts[3]
+        self._asking = threading.Lock()
         self._seen = {request: int(self._words[request]) for request in BusRequest}
         if owner:
             self._words[_Word.MAGIC] = _MAGIC
@@ -170,9 +188,10 @@ class BusLink:
 
     def request(self, kind: BusRequest) -> None:
         """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before."""
-        if kind in (BusRequest.STOP, BusRequest.ESTOP, BusRequest.PARK):
-            self._words[_Word.EPOCH] += np.uint64(1)
-        self._words[kind] += np.uint64(1)
+        with self._asking:  # the ctl thread and the event loop both ask
+            if kind in (BusRequest.STOP, BusRequest.ESTOP, BusRequest.PARK):
+                self._words[_Word.EPOCH] += np.uint64(1)
+            self._words[kind] = 1 + max(int(self._words[k]) for k in BusRequest)
 
     def heartbeat(self) -> None:
         """Say that the front is alive."""
@@ -212,21 +231,11 @@ class BusLink:
         self._words[_Word.POPPED] = self._words[_Word.PUSHED]
 
     def take_requests(self) -> list[BusRequest]:
-        """Requests since the last call, e-stop first."""
-        fresh: list[BusRequest] = []
-        for request in (
-            BusRequest.ESTOP,
-            BusRequest.STOP,
-            BusRequest.RESET,
-            BusRequest.PARK,
-            BusRequest.ARM,
-            BusRequest.SHUTDOWN,
-        ):
-            count = int(self._words[request])
-            if count != self._seen[request]:
-                self._seen[request] = count
-                fresh.append(request)
-        return fresh
+        """Requests since the last call in the order in which they were given, without those that a later one made void."""
+        asked = {kind: int(self._words[kind]) for kind in BusRequest}
+        fresh = sorted((number, kind) for kind, number in asked.items() if number != self._seen[kind])
+        self._seen = asked
+        return valid_requests([kind for _, kind in fresh])
 
     @property
     def heartbeat_age_s(self) -> float:

@@ -23,7 +23,7 @@ from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.clock import Clock
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
-from daemon.shared import BusLink, BusRequest, BusState, Readiness
+from daemon.shared import BusLink, BusRequest, BusState, Readiness, valid_requests
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
 
@@ -76,6 +76,7 @@ class Streamer:
         self._pwm: int | None = None
         self._front_lost_s: float | None = None
         self._torque_off_left = 0
+        self._asked: list[BusRequest] = []
         self._fed_s = clock.now_s()
 
     def run(self) -> None:
@@ -101,8 +102,9 @@ class Streamer:
     def cycle(self) -> None:
         """One bus period."""
         try:
-            for request in self._link.take_requests():
-                self._serve(request)
+            self._asked = valid_requests([*self._asked, *self._link.take_requests()])
+            if self._asked:  # one a cycle, so that the front sees each state; an e-stop is always the first
+                self._serve(self._asked.pop(0))
             self._repeat_torque_off()
             self._watch_heartbeat()
             self._check_stall()

@@ -23,7 +23,8 @@ from daemon.children import Child
 from daemon.config import DaemonConfig, config_error
 from daemon.errors import DaemonError
 from daemon.front import Front
-from daemon.generation import GeneratorClient, GeneratorError
+from daemon.generation import GeneratorClient
+from daemon.generation_messages import GeneratorError
 from daemon.keys import KeyFolder
 from daemon.metrics import MetricsServer, exposition
 from daemon.notify import Notifier

@@ -23,7 +23,7 @@ from torch import Tensor, nn
 from mmm_core.clip import ClipConfig, ClipText
 from mmm_core.errors import CheckpointError
 from mmm_core.length import LengthPredictor
-from mmm_core.scope import ScopeIndex
+from mmm_core.scope import ScopeClassifier, ScopeIndex
 from mmm_core.text import MiniLm, MiniLmConfig
 from mmm_core.tokenizer import PartConfig, Tokenizer, TokenizerConfig
 from mmm_core.transformer import MotionTransformer, TransformerConfig
@@ -80,6 +80,8 @@ def save_model(path: Path, model: Model, *, half: bool = True) -> None:
     if model.scope is not None:
         tensors["scope.commands"] = model.scope.vectors
         metadata["scope"] = json.dumps({"commands": model.scope.commands, "n_known": model.scope.n_known})
+        if model.scope.classifier is not None:
+            tensors |= {f"scope.classifier.{name}": t for name, t in model.scope.classifier.state_dict().items()}
     if model.text is not None:
         config["text"] = asdict(model.text.config)
         if model.text.word_pieces is not None:
@@ -111,11 +113,15 @@ def load_model(path: Path | None = None) -> Model:
         )
         if "scope" in metadata:
             names = json.loads(metadata["scope"])
-            model.scope = ScopeIndex(names["commands"], tensors.pop("scope.commands").float(), names["n_known"])
+            vectors, weights = tensors.pop("scope.commands").float(), _with_prefix(tensors, "scope.classifier.")
+            classifier = ScopeClassifier(vectors.shape[1], len(weights["hidden.bias"])) if weights else None
+            model.scope = ScopeIndex(names["commands"], vectors, names["n_known"], classifier)
     except (KeyError, TypeError, ValueError) as error:
         raise CheckpointError(path, "config", f"not readable ({error})", "what `save_model` writes") from error
     for name, module in model.modules.items():
         _fill(module, _with_prefix(tensors, name + "."), path, name + ".")
+    if model.scope is not None and model.scope.classifier is not None:
+        _fill(model.scope.classifier, _with_prefix(tensors, "scope.classifier."), path, "scope.classifier.")
     return model
 
 

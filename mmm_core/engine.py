@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import Literal
 
@@ -12,12 +13,13 @@ import torch
 from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
+from mmm_core.corpus.mirroring import canonical, mirror_words
 from mmm_core.errors import CheckpointError, GenerationError
-from mmm_core.features import Root, recover, recover_from_positions
+from mmm_core.features import Root, mirror, recover, recover_from_positions
 from mmm_core.motion import FPS, N_FEATURES, N_JOINTS, Motion
 from mmm_core.packed import Precision, fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
-from mmm_core.scope import ScopeVerdict
+from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
 from mmm_core.text import TextEncoder, TextStates
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
 
@@ -114,7 +116,7 @@ class Engine:
             raise GenerationError(f"{candidates} candidates were asked for", f"1 to {MOST_CANDIDATES}")
         n_frames = None if seconds is None else frames_for_seconds(seconds, FPS)
         clock = _Clock()
-        states, verdict = self.understand(text)
+        states, verdict, is_mirrored = self.understand_fresh(text)
         clock.lap("text")
         if verdict.status == "rejected":
             return Generation(no_motion(text, seed, verdict), _understood(verdict), verdict.reason, clock.laps_ms)
@@ -123,7 +125,7 @@ class Engine:
                 n_frames = self.predicted_frames(states)
             ids = self._best_ids(states, tokens_for_frames(n_frames), seed, candidates)
             clock.lap("decode")
-            motion = self.motion(ids, text, seed, verdict, n_frames)
+            motion = self.motion(ids, text, seed, verdict, n_frames, is_mirrored=is_mirrored)
             clock.lap("motion")
         return Generation(motion, _understood(verdict), verdict.reason, clock.laps_ms)
 
@@ -131,18 +133,38 @@ class Engine:
         """States of a text, and how far it lies from what the model can do."""
         return self.understand_all([text])[0]
 
+    def understand_fresh(self, text: str) -> tuple[TextStates, ScopeVerdict, bool]:
+        """The same for a motion that is made from nothing, and whether that motion is to be mirrored.
+
+        Of a text and its mirror image only one is ever read (`corpus.mirroring.canonical`), so that the mirrored text gives
+        the mirrored motion. Where a motion goes on from another, the other decides what is left and right.
+        """
+        read, is_mirrored = canonical(text) if self.model.rest_pose == "mmmd" else (text, False)
+        states, verdict = self.understand(read)
+        if is_mirrored:
+            words = {key: mirror_words(getattr(verdict, key)) for key in ("nearest", "reason", "kept")}
+            verdict = replace(verdict, **words)
+        return states, verdict, is_mirrored
+
     def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
-        """The same of several texts, read together."""
+        """The same of several texts, read together; of a text that is kept in part the states are those of that part."""
         states = self.encoder.encode([text if text.strip() else "." for text in texts])
-        verdicts: list[ScopeVerdict] = []
-        for text, sentence in zip(texts, states.sentence, strict=True):
-            if not text.strip():
-                verdicts.append(ScopeVerdict("rejected", 0.0, "", "the text is empty"))
-            elif self.model.scope is None:
-                verdicts.append(ScopeVerdict("accepted", 1.0, "", ""))
-            else:
-                verdicts.append(self.model.scope.judge(text, sentence))
-        return [(states.row(i), verdict) for i, verdict in enumerate(verdicts)]
+        scope = self.model.scope
+        if scope is None:
+            return [(states.row(i), _without_scope(text)) for i, text in enumerate(texts)]
+        verdicts = [scope.judge(text, sentence) for text, sentence in zip(texts, states.sentence, strict=True)]
+        clauses = [clauses_of(text) if scope.classifier is not None else [] for text in texts]
+        read = [clause for several in clauses for clause in several]
+        if read:
+            parts = map(scope.judge, read, self.encoder.encode(read).sentence)
+            verdicts = [
+                with_clauses(whole, several, list(islice(parts, len(several))))
+                for whole, several in zip(verdicts, clauses, strict=True)
+            ]
+        return [
+            (self.encoder.encode([verdict.kept]) if verdict.kept else states.row(i), verdict)
+            for i, verdict in enumerate(verdicts)
+        ]
 
     def predicted_frames(self, states: TextStates) -> int:
         """Number of frames the length predictor gives for the first text, whole tokens.
@@ -156,10 +178,23 @@ class Engine:
         seconds = min(longest_s, max(SHORTEST_S, self.model.length.seconds(states)[0]))
         return tokens_for_frames(round(seconds * FPS)) * FRAMES_PER_TOKEN
 
-    def motion(self, ids: Tensor, text: str, seed: int, verdict: ScopeVerdict, n_frames: int | None = None) -> Motion:
-        """The motion of a row of ids (L, C), cut to `n_frames`."""
+    def motion(
+        self,
+        ids: Tensor,
+        text: str,
+        seed: int,
+        verdict: ScopeVerdict,
+        n_frames: int | None = None,
+        *,
+        is_mirrored: bool = False,
+    ) -> Motion:
+        """The motion of a row of ids (L, C), cut to `n_frames`; mirrored, its ids are those that its features encode to."""
         with torch.inference_mode():
-            features = self.model.tokenizer.decode(ids[None])[0, :n_frames].numpy()
+            whole = self.model.tokenizer.decode(ids[None])[0]
+            if is_mirrored:
+                whole = torch.from_numpy(mirror(whole.numpy()))
+                ids = self.model.tokenizer.encode(whole[None])[0]
+            features = whole[:n_frames].numpy()
         return self.motion_of_features(features, ids, text, seed, verdict)
 
     def motion_of_features(
@@ -227,6 +262,15 @@ class _Clock:
         now = time.perf_counter()
         self.laps_ms[name] = 1e3 * (now - self._last)
         self._last = now
+
+
+def _without_scope(text: str) -> ScopeVerdict:
+    """An imported model takes every text but an empty one."""
+    return (
+        ScopeVerdict("accepted", 1.0, "", "")
+        if text.strip()
+        else ScopeVerdict("rejected", 0.0, "", "the text is empty")
+    )
 
 
 def no_motion(text: str, seed: int, verdict: ScopeVerdict) -> Motion:

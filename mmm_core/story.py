@@ -8,7 +8,7 @@ a moving window, so motion begins with the first segment and a story may last fo
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import islice, pairwise
 
 import torch
@@ -77,6 +77,79 @@ def tell(engine: Engine, scenes: Iterable[Scene], *, seed: int = 0) -> Iterator[
     rest = decoder.finish().numpy()
     if last is not None and len(rest):
         yield engine.motion_of_features(rest, last.ids[:0], last.scene.text, seed, last.verdict, root)
+
+
+@dataclass(frozen=True)
+class Told:
+    """Where a story stands after some of its scenes: all that the next one needs, however much was told before.
+
+    Attributes:
+        n_scenes: scenes so far, those left out included.
+        text: of the last one that was not left out.
+        segment: its ids, L rows of C.
+        window: ids that the decoder still needs, rows of C.
+        n_context: how many of these have their frames already.
+    """
+
+    n_scenes: int = 0
+    text: str = ""
+    segment: list[list[int]] = field(default_factory=list)
+    window: list[list[int]] = field(default_factory=list)
+    n_context: int = 0
+
+
+def tell_on(
+    engine: Engine, scene: Scene | None, told: Told, *, seed: int = 0, last: bool = False
+) -> tuple[Motion, Told, ScopeVerdict]:
+    """One scene more of a story: its next piece, where it stands then, how the text was taken.
+
+    Piece by piece this gives the ids that `tell` gives, without anything being kept between the calls: whoever asks keeps
+    `Told`, so a story goes on with another engine when the first is gone. A piece may have no frames (a rejected scene, or
+    one too short for the decoder's halo). Joints start at the origin in each piece.
+
+    Args:
+        engine: the model.
+        scene: what comes next; None only leads to the end.
+        told: what the call before gave; `Told()` for the first.
+        seed: of the story.
+        last: whether the story ends here; its last frames are then given too.
+
+    Raises:
+        GenerationError: seed or seconds out of range, or ids in `told` that this model does not have.
+    """
+    check_seed(seed)
+    n_codebooks = engine.model.tokenizer.n_codebooks
+    before, window = (
+        _ids_of(rows, n_codebooks, engine.model.transformer.ids.n_codes) for rows in (told.segment, told.window)
+    )
+    decoder = StreamingDecoder(engine.model.tokenizer, window, told.n_context)
+    text, segment, new = told.text, before, before[:0]
+    verdict = ScopeVerdict("accepted", 1.0, "", "")
+    if scene is not None:
+        made = _segments(engine, [(told.n_scenes, scene)], seed)[0]
+        verdict = made.verdict
+        if len(made.ids):
+            text, segment, new = scene.text, made.ids, made.ids
+            if len(before):
+                left = _Segment(Scene(told.text), verdict, engine.understand(told.text)[0], before)
+                new = torch.cat([*_transitions(engine, [left, made], seed), made.ids])
+    features = torch.cat([decoder.push(new), *([decoder.finish()] if last else [])]).numpy()
+    name = text if scene is None else scene.text
+    some = len(features) > 0
+    piece = engine.motion_of_features(features, new, name, seed, verdict) if some else no_motion(name, seed, verdict)
+    after = Told(
+        told.n_scenes + (scene is not None), text, segment.tolist(), decoder.window.tolist(), decoder.n_context
+    )
+    return piece, after, verdict
+
+
+def _ids_of(rows: list[list[int]], n_codebooks: int, n_codes: int) -> Tensor:
+    """(L, C) ids, checked."""
+    if any(len(row) != n_codebooks or not all(0 <= i < n_codes for i in row) for row in rows):
+        raise GenerationError(
+            "a story of another model's ids was to go on", f"{n_codebooks} ids below {n_codes} a token"
+        )
+    return torch.tensor(rows, dtype=torch.int64).reshape(len(rows), n_codebooks)
 
 
 def _transitions(engine: Engine, segments: list[_Segment], seed: int) -> list[Tensor]:

@@ -16,13 +16,30 @@ from mmm_core.vqvae import VqVae
 
 
 class StreamingDecoder:
-    """Feed ids with `push`, end with `finish`; both return (n, F) features, all in order and each once."""
+    """Feed ids with `push`, end with `finish`; both return (n, F) features, all in order and each once.
 
-    def __init__(self, tokenizer: Tokenizer | VqVae) -> None:
+    Args:
+        tokenizer: decodes.
+        kept: the `window` of a decoder that this one goes on for.
+        n_context: the same decoder's `n_context`.
+    """
+
+    def __init__(self, tokenizer: Tokenizer | VqVae, kept: Tensor | None = None, n_context: int = 0) -> None:
         self._tokenizer = tokenizer
         self._halo = tokenizer.halo_tokens()
-        self._kept = torch.zeros(0, tokenizer.n_codebooks, dtype=torch.int64)  # ids from the first still needed on
-        self._n_context = 0  # of those, how many stand before the first token without frames
+        none = torch.zeros(0, tokenizer.n_codebooks, dtype=torch.int64)
+        self._kept = none if kept is None else kept  # ids from the first still needed on
+        self._n_context = n_context  # of those, how many stand before the first token without frames
+
+    @property
+    def window(self) -> Tensor:
+        """(n, C) ids that later frames still need."""
+        return self._kept
+
+    @property
+    def n_context(self) -> int:
+        """How many of the window's ids have their frames already."""
+        return self._n_context
 
     def push(self, ids: Tensor) -> Tensor:
         """Features that (n, C) new ids make final."""

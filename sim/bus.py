@@ -99,7 +99,7 @@ class SimBus:
         with self.world.lock:
             self.world.advance(t_s)
             start_s, byte_s, heard = self.wire.talk(t_s, data, baud, patient=patient)
-            if heard != data:
+            if bytes(heard) != data:
                 self._note_lost(data)
             if self.faults.in_force("echo"):
                 self.wire.echo(start_s, data, byte_s)

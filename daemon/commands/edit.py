@@ -1,20 +1,23 @@
-"""`mmmd edit`: a stretch, an end or a body part of a motion made again."""
+"""`mmmd edit`: a stretch, an end or a body part of a motion made again, into a file or on the robot."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import tyro
+from tyro.conf import OmitArgPrefixes
 
+from daemon.commands.connection import Connection
+from daemon.commands.playing import PlayFlags, built, play
 from daemon.errors import CommandError
 
 
 def edit(
-    motion: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="F.npz")],
+    motion: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="F.npz|gesture:NAME|command:ID|plan:N")],
     text: Annotated[str, tyro.conf.Positional],
-    out: Path,
+    out: Path | None = None,
     start_s: float | None = None,
     end_s: float | None = None,
     part: tuple[str, ...] = (),
@@ -25,8 +28,14 @@ def edit(
     bvh: Path | None = None,
     model: Path | None = None,
     threads: int = 1,
+    how: OmitArgPrefixes[PlayFlags] = PlayFlags(),  # noqa: B008
+    wait: bool = True,
+    json: bool = False,
+    at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
 ) -> int:
-    """Make a part of a motion again for a text and keep the rest.
+    """Make a part of a motion again for a text and keep the rest: into a file with --out, else on the robot.
+
+    Example, on the robot: mmmd edit gesture:wave_right "raise your left arm" --part left_arm
 
     Example, the middle: mmmd edit wave.npz "clap your hands" --start-s 1 --end-s 2.5 --out edited.npz
 
@@ -37,9 +46,10 @@ def edit(
     Example, between two: mmmd edit wave.npz "turn to the left" --then clap.npz --after-s 1 --out joined.npz
 
     Args:
-        motion: .npz written by `mmmd generate` (others need their `features`).
+        motion: .npz written by `mmmd generate` (others need their `features`); on the robot one in the daemon's folder of
+            motions, or a gesture, or what a command or plan played.
         text: what the new part is to be.
-        out: .npz file to write.
+        out: .npz file to write; without it the daemon plays the result.
         start_s: where the new stretch begins, seconds; with neither --start-s nor --end-s all of it.
         end_s: where it ends.
         part: body parts to make again; the others keep what they do. The shipped model has left_arm, right_arm, rest.
@@ -50,7 +60,17 @@ def edit(
         bvh: BVH file to write as well.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
+        how: on the robot: how it is to be played.
+        wait: on the robot: return when the motion has ended; --no-wait returns once it is accepted.
+        json: on the robot: print each event as one JSON object a line.
+        at: on the robot: where the daemon is.
     """
+    if out is None:
+        if before_s or after_s or then or bvh or model:
+            raise CommandError(
+                "edit: --before-s, --after-s, --then, --bvh and --model need --out, the .npz file to write"
+            )
+        return play(_request(motion, text, part, start_s, end_s, seed, how), at, wait=wait, json=json)
     from mmm_core.bvh import save_bvh
     from mmm_core.editing import Edit, extend, in_between
     from mmm_core.editing import edit as edit_motion
@@ -67,7 +87,7 @@ def edit(
     for path in filter(None, (out, bvh)):
         if not path.parent.is_dir():
             raise CommandError(f"edit: {path}: no folder '{path.parent}'; make it, or choose another")
-    first = load_npz(motion)
+    first = load_npz(Path(motion))
     second = None if then is None else load_npz(then)
     engine = Engine.load(model, threads=threads)
     if second is not None:
@@ -81,3 +101,26 @@ def edit(
         save_bvh(made, bvh)
     sys.stdout.write(f"{out}: {len(made.joints_m)} frames at {made.fps:g} fps\n")
     return 0
+
+
+def _request(
+    motion: str, text: str, part: tuple[str, ...], start_s: float | None, end_s: float | None, seed: int, how: PlayFlags
+) -> Any:
+    """The request for the daemon.
+
+    Raises:
+        CommandError: a value is not allowed.
+    """
+    from daemon.requests import MAX_SEED, Edit
+
+    if not 0 <= seed <= MAX_SEED:
+        raise CommandError(f"--seed {seed}; allowed: 0 to {MAX_SEED}")
+    kind, _, name = motion.partition(":")
+    source: dict[str, Any] = {"file": motion}
+    if kind in ("gesture", "command"):
+        source = {kind: name}
+    elif kind == "plan":
+        if not name.isdigit():
+            raise CommandError(f"edit: {motion!r}; allowed: plan:N with the plan's number, for example plan:3")
+        source = {"plan": int(name)}
+    return built(Edit, how, text=text, parts=list(part), start_s=start_s or 0.0, end_s=end_s, seed=seed, **source)

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from mmm_core.motion import Motion
 
 PROBE_ROBOTS = ("reference", "op3")
-EvalName = Literal["probes", "real", "paper"]
+EvalName = Literal["probes", "scope", "real", "paper"]
+MIRRORED_SEEDS = 2
+"""Seeds with which each probe that names a side is compared with its mirror image."""
 MOST_REPEATS = 1000
 TABLE_WIDTH = 150
 """Characters a line, where no terminal says otherwise: a table in a file is not cut."""
@@ -42,7 +44,10 @@ def eval(
     """Measure the model.
 
     probes: side, limb, count (within one) and direction of motions for commands in words it was not trained on, as
-    generated and as two robots' paths show them.
+    generated and as two robots' paths show them; and how far the mirrored text's motion is from the mirrored motion.
+
+    scope: refusals on 487 prompts kept apart, half of which the model can do: AUROC of the score, false refusals, false
+    acceptances by kind, milliseconds a decision (docs/scope.md).
 
     real: against held-out motion of people with the evaluator of this repository: R-precision of generated against real,
     FID of generated against the tokenizer's own. --data is the folder of docs/DATA.md.
@@ -51,6 +56,8 @@ def eval(
     time, 5 upper body, 6 ablations (over steps, and over several --model). docs/evaluation.md says how all is measured.
 
     Example: mmmd eval probes --json
+
+    Example: mmmd eval scope --json
 
     Example: mmmd eval real --data ../shared/data --json
 
@@ -77,6 +84,8 @@ def eval(
 
     if name == "probes":
         figures, shown = _probes(model[0] if model else None, seeds)
+    elif name == "scope":
+        figures = shown = _scope(model[0] if model else None)
     else:
         figures = shown = _measured(
             name, _data_folder(name, data), split, model, (evaluator, glove, evaluator_mean, evaluator_std),
@@ -102,6 +111,7 @@ def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, A
     from daemon.bench.report import context
     from mmm_core.corpus.heldout import PROBES
     from mmm_core.engine import Engine
+    from mmm_core.evaluation.mirrored import mirrored_figures
     from mmm_core.evaluation.probes import evaluate
     from retarget.as_human import shown_on_a_person
     from retarget.pipeline import Retargeter
@@ -127,12 +137,32 @@ def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, A
             bar.reset(task, description=name, total=len(PROBES) * seeds)
             found = evaluate(on_robot, range(seeds), lambda n: bar.update(task, completed=n))
             figures.setdefault("retargeted", {})[name] = found
+
+    def again(text: str, seed: int) -> Motion:
+        return motions[text, seed] if (text, seed) in motions else engine.generate(text, seed=seed).motion
+
+    figures["mirrored"] = mirrored_figures(again, [p.text for p in PROBES], range(min(seeds, MIRRORED_SEEDS)))
     method = (
         "held-out probes (mmm_core/corpus/heldout.py), kinematic checks on generated joints, and on the joints that a robot's "
         "path shows (retarget/as_human.py); refused counts as wrong"
     )
     figures |= {"n": figures["generated"]["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
-    return figures, {"generated": figures["generated"], **figures["retargeted"]}
+    return figures, {"generated": figures["generated"], **figures["retargeted"], "mirrored": figures["mirrored"]}
+
+
+def _scope(model: Path | None) -> dict[str, Any]:
+    """Held-out prompts, one at a time, as a command comes in."""
+    from daemon.bench.report import context
+    from mmm_core.corpus.scope_prompts import IN_SCOPE, MIXED, OUT_OF_SCOPE
+    from mmm_core.engine import Engine
+    from mmm_core.evaluation.scope import scope_figures
+
+    engine = Engine.load(model)
+    if engine.model.scope is None:
+        raise CommandError("eval scope: the model has no scope (imported ones have none); take one of mmmd train")
+    method = "held-out prompts (mmm_core/corpus/scope_prompts.py), read one at a time; docs/scope.md"
+    figures = scope_figures(engine, IN_SCOPE, OUT_OF_SCOPE, list(MIXED))
+    return {**figures, "checkpoint": engine.checkpoint_hash, **context(0, method)}
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What `mmmd say` and `mmmd gesture play` share: options, sending, and printing what happens."""
+"""What `mmmd say`, `story`, `inbetween`, `edit` and `gesture play` share: options, sending, and printing what happens."""
 
 from __future__ import annotations
 
@@ -62,12 +62,13 @@ def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
     try:
         return kind(id=how.id or uuid.uuid4().hex, **fields, **how.options())
     except ValueError as error:
-        raise CommandError(f"{error}; leave out one of the options") from None
+        raise CommandError(str(error)) from None
 
 
 def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
     """Send a request and print its events; the exit status."""
-    from daemon.client import FIRST_REPLY_TIMEOUT_S, MOTION_TIMEOUT_S
+    from daemon.client import FIRST_REPLY_TIMEOUT_S
+    from daemon.client_compositions import patience_s
     from daemon.events import Accepted, Cancelled, Failed, Refusal
     from daemon.wire import WireError, check_request, encode
 
@@ -77,11 +78,7 @@ def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
         sys.stderr.write(f"mmmd: {error}\n")
         return 2
     status = 0
-    timeout_s = FIRST_REPLY_TIMEOUT_S if not wait else float("inf") if request.loop else MOTION_TIMEOUT_S
-    if wait and not request.loop:
-        timeout_s *= max(1.0, request.repeat / request.tempo)
-    if request.when != "now":
-        timeout_s = float("inf")
+    timeout_s = patience_s(request) if wait else FIRST_REPLY_TIMEOUT_S
     with at.client() as robot:
         for event in robot.events_of(request, timeout_s):
             if json:
@@ -106,8 +103,12 @@ def describe(event: object) -> str:
 
     if isinstance(event, Accepted):
         reason = f" ({event.reason})" if event.reason else ""
-        return f"{event.status}: understood as {event.understood}{reason}; {event.duration_s:.1f} s"
+        length = f"; {event.duration_s:.1f} s" if event.duration_s else ""
+        return f"{event.status}: understood as {event.understood}{reason}{length}"
     if isinstance(event, Progress):
+        if event.scene is not None:
+            taken = "left out" if event.status == "rejected" else event.status
+            return f"scene {event.scene}: {event.text} ({taken}{': ' if event.reason else ''}{event.reason})"
         if event.first_motion_ms is None:
             return f"{event.stage} ..."
         return f"{event.stage}: first servo frame {event.first_motion_ms:.0f} ms after the text"

@@ -23,6 +23,7 @@ def run(
     auto_arm: bool = True,
     idle: Literal["off", "calm", "lively"] | None = None,
     gestures: Path | None = None,
+    motions: Path | None = None,
     cmd: str | None = None,
     ctl: str | None = None,
     pub: str | None = None,
@@ -53,6 +54,7 @@ def run(
         auto_arm: the first text arms the robot; --no-auto-arm waits for `mmmd arm`.
         idle: small movements while there is nothing to play.
         gestures: folder of your own gestures; your data folder when it is not given.
+        motions: folder in which `edit` looks for files; the current one when it is not given.
         cmd: endpoint of requests.
         ctl: endpoint of stop, estop, reset, arm, park, status.
         pub: endpoint of state and events.

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator"]
+Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator", "scope"]
 
 
 def train(
@@ -35,10 +35,12 @@ def train(
 
     Example, the paper's tokenizer: mmmd train tokenizer --config paper --data HumanML3D --device cuda --precision bf16
 
+    Example, only the scope of a finished run anew: mmmd train scope --run runs/compact --out model.safetensors
+
     Example, two processes: torchrun --nproc-per-node 2 -m daemon.cli train --config my.toml --run-dir runs/my
 
     Args:
-        stage: all of them and a checkpoint, or one.
+        stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint.
         config: name of a recipe that ships, or a TOML file (docs/training.md).
         data: folder with clips.jsonl, or a HumanML3D or KIT-ML folder; stands for the recipe's data.folder.
         run_dir: folder of the run: corpus, states, CSV logs, samples; runs/NAME when it is not given.
@@ -55,7 +57,7 @@ def train(
     from mmm_core import distributed
     from mmm_core.training.recipe import read_recipe
     from mmm_core.training.run import Run
-    from mmm_core.training.stages import Stages, make_model
+    from mmm_core.training.stages import Stages, make_model, renew_scope
 
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     torch.set_num_threads(threads)
@@ -66,6 +68,10 @@ def train(
     if stage == "all":
         written = out or folder / "model.safetensors"
         make_model(recipe, where, data, written)
+    elif stage == "scope":
+        written = out or folder / "model.safetensors"
+        if distributed.rank() == 0:
+            renew_scope(recipe, folder / "model.safetensors", written)
     else:
         stages = Stages(recipe, where, data)
         getattr(stages, stage)

@@ -26,9 +26,9 @@ _IN_TURNS = (" one after the other", " alternately", " in turns", " with alterna
 _PRETEND = ("pretend to {v}", "act as if you {v}", "mime how you {v}", "make believe that you {v}", "do as if you {v}", "show me how you {v}")  # fmt: skip
 _PRETENDING = ("pretend", "act", "be", "imitate", "do", "show", "dance", "perform")
 """Verbs of phrases that already say it."""
-_REQUESTS = ("please {v}", "could you {v}", "can you {v}", "{v} please", "robot, {v}", "now {v}", "I want you to {v}", "go ahead and {v}", "you should {v}", "try to {v}", "would you {v}", "I would like you to {v}", "hey, {v}", "ok, {v}", "hey robot, {v}", "robot please {v}", "can you please {v}", "could you {v} for me", "would you mind and {v}", "I need you to {v}", "just {v}", "um, {v}", "uh {v}", "ok so {v}", "well, {v}", "you can {v} now", "will you {v}", "{v}, thanks", "{v} for me", "{v} now", "kindly {v}", "come on, {v}", "mate, {v}", "you must {v}")  # fmt: skip
+REQUESTS = ("please {v}", "could you {v}", "can you {v}", "{v} please", "robot, {v}", "now {v}", "I want you to {v}", "go ahead and {v}", "you should {v}", "try to {v}", "would you {v}", "I would like you to {v}", "hey, {v}", "ok, {v}", "hey robot, {v}", "robot please {v}", "can you please {v}", "could you {v} for me", "would you mind and {v}", "I need you to {v}", "just {v}", "um, {v}", "uh {v}", "ok so {v}", "well, {v}", "you can {v} now", "will you {v}", "{v}, thanks", "{v} for me", "{v} now", "kindly {v}", "come on, {v}", "mate, {v}", "you must {v}")  # fmt: skip
 _ABOUT_THE_ROBOT = ("have the robot {v}", "let the robot {v}", "make the robot {v}", "tell the robot to {v}", "the robot should {v}", "the robot must {v}")  # fmt: skip
-_PERSONS = ("a person {v}", "someone {v}", "the person {v}", "a man {v}", "a woman {v}", "the robot {v}", "a figure {v}", "the character {v}", "he {v}", "she {v}", "somebody {v}", "the humanoid {v}", "a human {v}", "a standing person {v}", "this person {v}")  # fmt: skip
+PERSONS = ("a person {v}", "someone {v}", "the person {v}", "a man {v}", "a woman {v}", "the robot {v}", "a figure {v}", "the character {v}", "he {v}", "she {v}", "somebody {v}", "the humanoid {v}", "a human {v}", "a standing person {v}", "this person {v}")  # fmt: skip
 _GERUNDS = ("a person {v}", "someone {v}", "a person is {v}", "the robot is {v}", "{v}", "start {v}", "a motion of {v}", "show {v}", "a man is {v}", "begin {v}", "someone who is {v}")  # fmt: skip
 _SLOW = ("slowly", "gently", "in slow motion", "calmly", "at a slow pace", "carefully", "very slowly", "unhurriedly")
 _FAST = ("quickly", "fast", "rapidly", "briskly", "at a fast pace", "in a hurry", "energetically", "very fast", "hastily")  # fmt: skip
@@ -181,7 +181,7 @@ def caption(gestures: list[Gesture], parallel: bool, rng: np.random.Generator) -
         joined = plain(_joined(clauses, ("{a}, then {b}", "{a} and then {b}", "{a} and {b}"), rng))
         if style > 0.66:
             return _finish(_pick(_ABOUT_THE_ROBOT, rng).replace("{v}", persons_words(joined, "its")), rng)
-        return _finish(_pick(_REQUESTS, rng).replace("{v}", joined), rng)
+        return _finish(_pick(REQUESTS, rng).replace("{v}", joined), rng)
     if style < 0.88 or len(clauses) > 1:
         third = [third_person(c, pronoun) for c in clauses]
         return _finish(_person(_joined(third, _THEN_THIRD, rng), pronoun, rng), rng)
@@ -196,14 +196,14 @@ def _at_once(a: str, b: str, style: float, pronoun: str, rng: np.random.Generato
             f"while you {b}, {a}", f"{a} as you {b}", f"at the same time {a} and {b}",
         )  # fmt: skip
         sentence = plain(_pick(forms, rng))
-        return _pick(_REQUESTS, rng).replace("{v}", sentence) if style < 0.15 else sentence
+        return _pick(REQUESTS, rng).replace("{v}", sentence) if style < 0.15 else sentence
     return _person(f"{third_person(a, pronoun)} while {gerund(b, pronoun)}", pronoun, rng)
 
 
 def _person(verbs: str, pronoun: str, rng: np.random.Generator) -> str:
     """Somebody, of the sex that the pronoun has, does it."""
     excluded = {"his": ("a woman", "she"), "her": ("a man", "he"), "their": ("he", "she")}[pronoun]
-    subjects = [p for p in _PERSONS if p.removesuffix(" {v}") not in excluded]
+    subjects = [p for p in PERSONS if p.removesuffix(" {v}") not in excluded]
     return _pick(subjects, rng).replace("{v}", verbs)
 
 

@@ -27,6 +27,8 @@ _NOT_A_SIDE = re.compile(
 )  # fmt: skip
 _WORDS = re.compile(rf"\b(?:{'|'.join(sorted(_SWAPS, key=len, reverse=True))})\b", re.IGNORECASE)
 
+_CANONICAL = re.compile(r"right|(?<!anti-)(?<!counter-)(?<!anti)(?<!counter)clockwise|\bcw\b", re.IGNORECASE)
+
 
 def mirror_words(sentence: str) -> str:
     """The sentence for the mirrored motion.
@@ -42,6 +44,20 @@ def mirror_words(sentence: str) -> str:
 
     swapped = _WORDS.sub(_swap, _NOT_A_SIDE.sub(put_aside, sentence))
     return re.sub("\x00(\\d+)\x00", lambda m: kept[int(m[1])], swapped)
+
+
+def canonical(sentence: str) -> tuple[str, bool]:
+    """The one of a sentence and its mirror image that names the right (or clockwise) first, and whether it is the image.
+
+    A sentence without sides is its own. So is one whose image reads differently ("turn left as she came": "right as" is the
+    idiom), since the way back is lost.
+    """
+    image = mirror_words(sentence)
+    back = mirror_words(image)
+    if image in (sentence, back) or mirror_words(back) != image:
+        return sentence, False
+    first = next(ours for ours, theirs in zip(sentence.split(), image.split(), strict=False) if ours != theirs)
+    return (sentence, False) if _CANONICAL.search(first) else (image, True)
 
 
 def _swap(match: re.Match[str]) -> str:

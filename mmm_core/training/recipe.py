@@ -103,6 +103,14 @@ class TransformerRecipe:
 
 
 @dataclass(frozen=True)
+class ScopeRecipe:
+    """What the classifier behind refusals reads (docs/scope.md): sentences of the corpus, and texts that cannot be done."""
+
+    sentences: int = 12_000
+    outside: int = 10_000
+
+
+@dataclass(frozen=True)
 class Recipe:
     """Everything; see the files in `recipes` for two whole ones.
 
@@ -114,6 +122,7 @@ class Recipe:
         transformer: text to ids.
         length: schedule of the length predictor.
         evaluator: schedule of the evaluation's feature extractors.
+        scope: texts that refusals are learnt from; models of synthesised gestures alone have them.
     """
 
     seed: int = 0
@@ -123,6 +132,7 @@ class Recipe:
     transformer: TransformerRecipe = field(default_factory=TransformerRecipe)
     length: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3, save_every=500))
     evaluator: Schedule = field(default_factory=lambda: Schedule(steps=1500, learning_rate=3e-4))
+    scope: ScopeRecipe = field(default_factory=ScopeRecipe)
 
     def seeded(self) -> Recipe:
         """The same with the recipe's seed in every stage that has none of its own."""

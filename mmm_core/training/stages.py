@@ -20,20 +20,17 @@ import torch
 from torch import Tensor, nn
 
 from mmm_core import distributed
-from mmm_core.checkpoint import Model, load_text_encoder, save_model
+from mmm_core.checkpoint import Model, load_model, load_text_encoder, save_model
 from mmm_core.clip import ClipText, read_clip
-from mmm_core.corpus.grammar import known_commands
-from mmm_core.corpus.outside import OUTSIDE
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.datasets import MotionFolder, open_folder
-from mmm_core.errors import TrainingDataError
+from mmm_core.errors import CheckpointError, TrainingDataError
 from mmm_core.evaluation.extractors import OURS, Evaluator, save_evaluator
 from mmm_core.features import joints_from_positions, recover
 from mmm_core.kit import joints_from_kit
 from mmm_core.length import LengthPredictor
 from mmm_core.motion import FPS, N_FEATURES
 from mmm_core.sampling import SamplingSettings, empty_row, fill
-from mmm_core.scope import ScopeIndex
 from mmm_core.text import TextEncoder, TextStates
 from mmm_core.tokenizer import Tokenizer
 from mmm_core.training.batches import (
@@ -49,6 +46,7 @@ from mmm_core.training.evaluator_training import train_evaluator
 from mmm_core.training.recipe import Recipe
 from mmm_core.training.run import Run
 from mmm_core.training.samples import draw_rows
+from mmm_core.training.scope_training import build_scope
 from mmm_core.training.tokenizer_training import train_tokenizer, tune_decoder
 from mmm_core.training.transformer_training import train_length, train_transformer
 from mmm_core.transformer import MotionTransformer
@@ -189,7 +187,7 @@ class Stages:
         synthesised = bool(self.recipe.data.synthesised)
         text = self.text if isinstance(self.text, ClipText) else None
         pose = "humanml3d" if self.folder is not None else "mmmd"
-        scope = scope_index(self.text) if synthesised and text is None else None
+        scope = build_scope(self.text, self.recipe.scope) if synthesised and text is None else None
         return Model(tokenizer, transformer, length, scope, self.provenance(), text, pose)
 
     def provenance(self) -> dict[str, object]:
@@ -248,12 +246,17 @@ def make_model(recipe: Recipe, run: Run, data: Path | None, out: Path) -> None:
         save_model(out, model, half=model.text is None)
 
 
-def scope_index(encoder: TextEncoder) -> ScopeIndex:
-    """What the model was taught to follow, in plain words, and what it cannot do."""
-    commands = sorted(known_commands())
-    texts = [*commands, *OUTSIDE]
-    vectors = [encoder.encode(texts[i : i + 64]).sentence for i in range(0, len(texts), 64)]
-    return ScopeIndex(texts, torch.cat(vectors), len(commands))
+def renew_scope(recipe: Recipe, made: Path, out: Path) -> None:
+    """Build the scope again for the finished checkpoint at `made` and write it to `out`; all other weights stay.
+
+    Raises:
+        CheckpointError: `made` is missing, or an imported model, which has no scope.
+    """
+    model = load_model(made)
+    if model.text is not None or model.scope is None:
+        raise CheckpointError(made, "scope", "a model without one", "a model of synthesised gestures that reads MiniLM")
+    model.scope = build_scope(load_text_encoder(), recipe.scope)
+    save_model(out, model)
 
 
 def _last_losses(folder: Path) -> dict[str, dict[str, float]]:

@@ -8,11 +8,20 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import zmq
 
-from daemon.generation import Generated
+from daemon.generation_messages import (
+    BetweenMessage,
+    EditMessage,
+    Generated,
+    GenerateMessage,
+    SceneMessage,
+    UnfitRequestError,
+    motion_from,
+)
 from daemon.generator import serve
 from mmm_core.motion import Motion
 from mmm_core.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
@@ -70,6 +79,39 @@ def generate(text: str, seed: int, seconds: float | None) -> Generated:
     return Generated(motion, f"raise the {side} arm (0.90)", "", {"decode": 2.0}, "kinematic")
 
 
+class KinematicMaker:
+    """Answers every kind of request by the motion that `answer` gives for its text."""
+
+    def __init__(self, answer: Callable[[str, int, float | None], Generated] = generate) -> None:
+        self._answer = answer
+
+    def generate(self, request: GenerateMessage) -> Generated:
+        return self._answer(request.text, request.seed, request.seconds)
+
+    def scene(self, request: SceneMessage) -> Generated:
+        """One motion a scene; `told` counts them, and a generator that does not get it back refuses."""
+        told = int(request.told or b"0")
+        if request.text is None:
+            return Generated(raised_arm("", 0.4, 0.1), "", "", {}, "kinematic", b"end")
+        made = self._answer(request.text, request.seed, request.seconds)
+        return replace(made, told=str(told + 1).encode())
+
+    def edit(self, request: EditMessage) -> Generated:
+        """As long as the original; what is edited where is told by `understood`."""
+        original = motion_from(request.motion)
+        if "tail" in request.parts:
+            raise UnfitRequestError("bad_edit", "the part 'tail' was asked for", "left_arm, right_arm, rest")
+        made = self._answer(request.text, request.seed, original.duration_s)
+        where = f"{'+'.join(request.parts) or 'all'} {request.start_s:g}-{request.end_s}"
+        return replace(made, understood=f"{original.text}: {where}")
+
+    def between(self, request: BetweenMessage) -> Generated:
+        """A raised arm of the right length, whatever the poses are; the front leads it through them."""
+        assert len(motion_from(request.poses).joints_m) == len(request.at_s)
+        made = self._answer(request.text or "right", request.seed, max(request.at_s))
+        return replace(made, understood=f"{len(request.at_s)} poses until {request.at_s[-1]:g} s")
+
+
 class KinematicGenerator:
     """Serves `generate` at an endpoint, in a thread."""
 
@@ -80,7 +122,9 @@ class KinematicGenerator:
         self._socket.bind(endpoint)
         self._stopping = threading.Event()
         self._thread = threading.Thread(
-            target=serve, args=(self._socket, answer, "kinematic", lambda: not self._stopping.is_set()), daemon=True
+            target=serve,
+            args=(self._socket, KinematicMaker(answer), "kinematic", lambda: not self._stopping.is_set()),
+            daemon=True,
         )
         self._thread.start()
 

@@ -17,11 +17,12 @@ import zmq.asyncio
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon import generation
-from daemon.generation import Generated, GeneratorClient, GeneratorError
+from daemon import generation_messages as generation
+from daemon.generation import GeneratorClient
+from daemon.generation_messages import Generated, GeneratorError
 from daemon.generator import answer
 from mmm_core.checkpoint import MODEL_FILE
-from tests.daemon.kinematic import KinematicGenerator, generate, raised_arm
+from tests.daemon.kinematic import KinematicGenerator, KinematicMaker, raised_arm
 
 needs_model = pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout")
 
@@ -97,7 +98,7 @@ def test_any_bytes_either_decode_or_are_refused(frame):
 
 
 def test_an_error_of_the_model_is_answered():
-    reply = answer(generation.GenerateMessage(id=3, text="broken"), generate, "k")
+    reply = answer(generation.GenerateMessage(id=3, text="broken"), KinematicMaker(), "k")
     assert isinstance(reply, generation.FailureMessage) and reply.id == 3 and "broke" in reply.found
 
 

@@ -82,7 +82,12 @@ def test_random_sequences_keep_to_the_table(seed):
                     expected |= {"moving", "idle"}
                 end_s = time.monotonic() + 5
                 while settled(client) not in expected:
-                    assert time.monotonic() < end_s, (told, settled(client), expected)
+                    assert time.monotonic() < end_s, (
+                        told[-8:],
+                        settled(client),
+                        expected,
+                        "".join(daemon.said)[-1500:],
+                    )
                     time.sleep(0.02)
                 if rng.random() < 0.3:
                     time.sleep(rng.uniform(0, 1.5))

@@ -107,6 +107,19 @@ def test_a_late_front_makes_it_slow_down_and_go_on():
         r.assert_limits_kept()
 
 
+def test_a_reset_and_an_arm_that_came_before_an_e_stop_do_not_undo_it():
+    """Requests of one cycle were once served by kind: e-stop, reset, arm; the robot was armed again after its e-stop."""
+    with rig() as r:
+        r.arm()
+        for request in (BusRequest.RESET, BusRequest.ARM, BusRequest.ESTOP):
+            r.link.request(request)
+        r.cycle(5)
+        assert r.state is BusState.ESTOP and not any(r.torque)
+        for request in (BusRequest.ESTOP, BusRequest.RESET, BusRequest.ARM):  # given after it they are carried out
+            r.link.request(request)
+        assert [BusState(int(r.cycle()["state"])) for _ in range(3)] == [BusState.ESTOP, BusState.LIMP, BusState.ARMING]
+
+
 @pytest.mark.parametrize("state", ["arming", "holding", "playing", "stopping", "parking"])
 def test_e_stop_cuts_torque_in_its_cycle_and_is_latched(state):
     with rig() as r:

@@ -25,6 +25,25 @@ GOOD_CMD = [
         b'{"v": 1, "id": "a", "seq": 3, "t_mono": 1.5, "type": "say", "text": "bow", "seed": 7, "seconds": 2}',
         requests.Say(v=1, id="a", seq=3, t_mono=1.5, text="bow", seed=7, seconds=2.0),
     ),
+    (
+        "story",
+        b'{"type": "story", "scenes": [{"text": "wave"}, {"text": "bow", "seconds": 2}], "seed": 3, "loop": true}',
+        requests.Story(
+            scenes=[requests.SceneOf(text="wave"), requests.SceneOf(text="bow", seconds=2)], seed=3, loop=True
+        ),
+    ),
+    (
+        "inbetween",
+        b'{"type": "inbetween", "poses": [{"at_s": 1, "gesture": "bow"}, {"at_s": 2.5, "standing": true}]}',
+        requests.Inbetween(
+            poses=[requests.KeyPoseOf(at_s=1, gesture="bow"), requests.KeyPoseOf(at_s=2.5, standing=True)]
+        ),
+    ),
+    (
+        "edit",
+        b'{"type": "edit", "text": "wave", "plan": 3, "parts": ["upper"], "start_s": 1, "end_s": 2}',
+        requests.Edit(text="wave", plan=3, parts=["upper"], start_s=1, end_s=2),
+    ),
     ("status", b'{"type":"status","id":"s"}', requests.Status(id="s")),
     ("cancel", b'{"type":"cancel","command":"a"}', requests.Cancel(command="a")),
 ]
@@ -39,7 +58,7 @@ BAD_CMD = [
     ("a JSON list", b'["say", "wave"]', "bad_json", ["list"]),
     ("deep nesting", b"[" * 60_000, "bad_json", ["nested"]),
     ("no type", b'{"text": "wave"}', "unknown_type", ["no 'type'", "say"]),
-    ("unknown type", b'{"type": "dance", "id": "x"}', "unknown_type", ["'dance'", "say, gesture", "cancel, status"]),
+    ("unknown type", b'{"type": "dance", "id": "x"}', "unknown_type", ["'dance'", "say, story", "cancel, status"]),
     ("type of another kind", b'{"type": 5}', "unknown_type", ["5"]),
     ("a ctl verb on cmd", b'{"type": "stop"}', "unknown_type", ["ctl socket"]),
     ("unknown field", b'{"type": "say", "text": "wave", "speed": 3}', "unknown_field", ["'speed'", "seconds"]),
@@ -53,6 +72,24 @@ BAD_CMD = [
     ("another version", b'{"v": 2, "type": "say", "text": "wave", "id": "x"}', "version", ["version 2", "version 1"]),
     ("a version that is text", b'{"v": "1.0", "type": "say", "text": "wave"}', "version", ["'1.0'", "version 1"]),
     ("a version that is true", b'{"v": true, "type": "say", "text": "wave"}', "version", ["True"]),
+    ("a story of nothing", b'{"type": "story", "scenes": []}', "bad_value", ["scenes", ">= 1"]),
+    ("a story of 1001", b'{"type": "story", "scenes": [' + b'{"text": "a"},' * 1000 + b'{"text": "a"}]}', "bad_value", ["1000"]),
+    ("a scene without words", b'{"type": "story", "scenes": [{"text": "a"}, {"text": " "}]}', "bad_value", ["scene 2"]),
+    ("a scene too long", b'{"type": "story", "scenes": [{"text": "a", "seconds": 99}]}', "bad_value", ["9.8"]),
+    ("a scene with more", b'{"type": "story", "scenes": [{"text": "a", "x": 1}]}', "bad_value", ["`x`"]),
+    ("a story that holds", b'{"type": "story", "scenes": [{"text": "a"}], "hold": true}', "bad_value", ["`hold`"]),
+    ("no pose", b'{"type": "inbetween", "poses": []}', "bad_value", ["poses"]),
+    ("a pose of nothing", b'{"type": "inbetween", "poses": [{"at_s": 1}]}', "bad_value", ["pose 1", "`gesture`"]),
+    ("a pose of two", b'{"type": "inbetween", "poses": [{"at_s": 1, "gesture": "a", "standing": true}]}', "bad_value", ["one of"]),
+    ("poses too near", b'{"type": "inbetween", "poses": [{"at_s": 1, "gesture": "a"}, {"at_s": 1.1, "gesture": "b"}]}',
+     "bad_value", ["pose 2", "0.2 s"]),
+    ("poses out of order", b'{"type": "inbetween", "poses": [{"at_s": 2, "gesture": "a"}, {"at_s": 1, "gesture": "b"}]}',
+     "bad_value", ["pose 2"]),
+    ("poses that end at once", b'{"type": "inbetween", "poses": [{"at_s": 0, "gesture": "a"}]}', "bad_value", ["last pose"]),
+    ("an edit of nothing", b'{"type": "edit", "text": "wave"}', "bad_value", ["`gesture`, `command`, `plan` and `file`"]),
+    ("an edit of two", b'{"type": "edit", "text": "wave", "plan": 1, "gesture": "a"}', "bad_value", ["one of"]),
+    ("an edit that ends first", b'{"type": "edit", "text": "a", "plan": 1, "start_s": 2, "end_s": 1}', "bad_value", ["`end_s` 1"]),
+    ("an edit without words", b'{"type": "edit", "text": " ", "plan": 1}', "bad_value", ["`text`"]),
     ("an id too long", b'{"type": "status", "id": "' + b"i" * 200 + b'"}', "bad_value", ["128"]),
 ]  # fmt: skip
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from daemon.client import Client, NoAnswerError
 from daemon.config import Endpoints
-from daemon.generation import Generated
+from daemon.generation_messages import Generated
 from tests.daemon.kinematic import KinematicGenerator, generate
 
 Answer = Callable[[str, int, float | None], Generated]

@@ -135,7 +135,7 @@ def test_a_faster_recording_is_resampled() -> None:
         (("Frame Time: 0.05", "Frame Time: 0"), r"Frame Time"),
         (("Frames: ", "Frames: 9"), r"MOTION.*values"),
         (("OFFSET", "SHIFT"), r"HIERARCHY.*SHIFT"),
-        (("left_wrist", "hook"), r"left_wrist"),
+        (("left_elbow", "hook"), r"left_elbow"),
     ],
 )
 def test_broken_bvh_is_named(tmp_path: Path, change: tuple[str, str], message: str) -> None:

@@ -16,13 +16,15 @@ import pytest
 import torch
 
 from daemon.cli import main
-from mmm_core.checkpoint import load_model
+from mmm_core.checkpoint import load_model, save_model
+from mmm_core.corpus.grammar import known_commands
 from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, TrainingDataError
 from mmm_core.evaluation.extractors import load_evaluator
 from mmm_core.training.recipe import known_recipes, read_recipe
 from mmm_core.training.run import Run, Schedule
 from mmm_core.training.run import train as run_stage
+from mmm_core.training.scope_training import INDEX_ROWS
 from tests.mmm_core.folders import make_folder
 
 SCHEDULE = "steps = {steps}\nlearning_rate = 1e-3\nwarmup_steps = 2\nsave_every = 3\n"
@@ -57,6 +59,9 @@ part_share = 0.5
 {schedule}
 [evaluator]
 {schedule}
+[scope]
+sentences = 100
+outside = 100
 """
 
 
@@ -90,6 +95,22 @@ def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path
     engine = Engine.load(out, threads=None)
     if layout != "halves":
         assert engine.generate("wave with your right hand", seed=1, seconds=1).motion.joints_m.shape == (20, 22, 3)
+
+
+def test_the_scope_of_a_finished_run_is_built_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    config, run, out = small(tmp_path / "small.toml"), tmp_path / "run", tmp_path / "again.safetensors"
+    old = load_model()
+    run.mkdir()
+    save_model(run / "model.safetensors", old)
+    assert main(["train", "scope", "--config", str(config), "--run", str(run), "--out", str(out)]) == 0
+    model = load_model(out)
+    assert model.scope is not None and model.scope.classifier is not None
+    assert model.scope.commands[: model.scope.n_known] == sorted(known_commands(INDEX_ROWS))
+    assert torch.equal(model.transformer.head.weight, old.transformer.head.weight)
+    old.scope = None
+    save_model(run / "model.safetensors", old)
+    assert main(["train", "scope", "--config", str(config), "--run", str(run)]) != 0
+    assert "a model without one" in capsys.readouterr().err
 
 
 def test_an_evaluator_is_trained_and_written(tmp_path: Path) -> None:

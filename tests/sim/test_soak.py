@@ -160,7 +160,7 @@ def test_hours_of_faults_break_no_limit_and_every_recovery_is_armed_by_a_person(
         assert report["self_contacts"] == 0
         assert named == begun, "every fault is named in the log"
         assert person.armings > sum(person.faults.values()) * 0.9, "each recovery was armed"
-        assert person.faults and r.state is not BusState.FAULT or person.longest_s < LONGEST_FAULT_S
+        assert (person.faults and r.state is not BusState.FAULT) or person.longest_s < LONGEST_FAULT_S
         assert after[0] - before[0] < LEAK_BYTES and after[1] == before[1]
     finally:
         logging.getLogger("sim.faults").removeHandler(handler)

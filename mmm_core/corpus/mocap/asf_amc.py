@@ -6,6 +6,7 @@ each applied x first, then y, then z (Acclaim skeleton format).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -64,7 +65,7 @@ def read_asf_amc(asf: Path, amc: Path, unit_m: float = CMU_UNIT_M, fps: float = 
     return Recording(amc, tuple(ends), positions, fps)
 
 
-def _turn(angles_deg: dict[str, Array]) -> Array:
+def _turn(angles_deg: Mapping[str, Array]) -> Array:
     """(T, 3, 3) rotations: x first, then y, then z."""
     x, y, z = (rotation_about(axis, np.deg2rad(angles_deg[k])) for axis, k in zip(_AXES, _ORDER, strict=True))
     return z @ y @ x

@@ -20,17 +20,17 @@ _MIDDLE = {
     "spine2": ("spine2", "spine1", "upperback", "chest"),
     "spine3": ("spine3", "spine3_neck", "spine2", "thorax", "chest2", "neck"),
     "neck": ("neck", "neck1", "lowerneck"),
-    "head": ("upperneck", "head"),
+    "head": ("upperneck", "head", "neck_end"),
 }
 _SIDED = {
     "hip": ("{side}_hip", "{side}upleg", "{side}hip", "{s}hipjoint"),
     "knee": ("{side}_knee", "{side}leg", "{side}knee", "{s}femur"),
     "ankle": ("{side}_ankle", "{side}foot", "{side}ankle", "{s}tibia"),
-    "foot": ("{side}_foot", "{side}toebase", "{side}toe", "{s}foot"),
+    "foot": ("{side}_foot", "{side}toebase", "{side}toe", "{s}foot", "{side}_ankle_end"),
     "collar": ("{side}_collar", "{side}shoulder", "{side}collar"),
     "shoulder": ("{side}_shoulder", "{side}arm", "{side}uparm", "{s}clavicle"),
     "elbow": ("{side}_elbow", "{side}forearm", "{side}lowarm", "{s}humerus"),
-    "wrist": ("{side}_wrist", "{side}hand", "{s}radius"),
+    "wrist": ("{side}_wrist", "{side}hand", "{s}radius", "{side}_elbow_end"),
 }
 """Names, lower case, that other skeletons have for our joints: ours, those of BVH files, the ends of CMU's ASF bones."""
 

@@ -1,0 +1,79 @@
+"""What the scope score is made of: the index of known and outside commands, and the classifier that parts the two.
+
+The classifier sees sentences as the corpus says them, their clauses and the known commands against `outside_texts`; none of the
+prompts that choose its thresholds or measure it (docs/scope.md). About two minutes on one core, most of it reading the texts.
+"""
+
+from __future__ import annotations
+
+import logging
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from torch import Tensor
+
+from mmm_core.corpus.grammar import caption, known_commands
+from mmm_core.corpus.outside import OUTSIDE, outside_texts
+from mmm_core.corpus.synthesis import draw_spec
+from mmm_core.scope import ScopeClassifier, ScopeIndex, clauses_of
+from mmm_core.text import TextEncoder
+from mmm_core.training.recipe import ScopeRecipe
+
+log = logging.getLogger(__name__)
+INDEX_ROWS = 4
+"""Known commands of a row of a family that are kept in the index; all twelve and more teach the classifier."""
+HIDDEN, DROPOUT, WEIGHT_DECAY, LEARNING_RATE, EPOCHS, BATCH = 64, 0.3, 0.3, 3e-3, 15, 256
+SEED = 5
+
+
+def build_scope(encoder: TextEncoder, recipe: ScopeRecipe) -> ScopeIndex:
+    """The scope of what the corpus teaches, as `encoder` reads it; the same every time."""
+    commands = sorted(known_commands(INDEX_ROWS))
+    inside, outside = scope_sentences(recipe)
+    log.info("scope: reading %d texts", len(inside) + len(outside))
+    can, cannot = sentence_vectors(inside, encoder), sentence_vectors(outside, encoder)
+    vectors = sentence_vectors([*commands, *OUTSIDE], encoder)
+    return ScopeIndex([*commands, *OUTSIDE], vectors, len(commands), train_classifier(can, cannot))
+
+
+def scope_sentences(recipe: ScopeRecipe) -> tuple[list[str], list[str]]:
+    """Texts that can be done, and that cannot.
+
+    The first are sentences of the corpus, clauses of some of them, and as many known commands at most, spread evenly.
+    """
+    rng = np.random.default_rng(SEED)
+    known = sorted(known_commands())
+    inside = known[:: -(-len(known) // max(1, recipe.sentences))]
+    for _ in range(recipe.sentences):
+        spec = draw_spec(rng)
+        said = caption(list(spec.gestures), spec.parallel, rng)
+        inside += [said, *(clauses_of(said) if rng.random() < 0.3 else [])]
+    return inside, [*OUTSIDE, *outside_texts(recipe.outside, rng)]
+
+
+def sentence_vectors(texts: list[str], encoder: TextEncoder, batch: int = 64) -> Tensor:
+    """(N, D) unit vectors; texts of like length are read together, so that little is padded."""
+    order = sorted(range(len(texts)), key=lambda i: len(texts[i]))
+    read = [encoder.encode([texts[i] for i in order[j : j + batch]]).sentence for j in range(0, len(order), batch)]
+    vectors = torch.cat(read)
+    return vectors[torch.argsort(torch.tensor(order))].clone()
+
+
+def train_classifier(can: Tensor, cannot: Tensor) -> ScopeClassifier:
+    """A classifier of sentence vectors (N, D), the two classes with the same weight."""
+    x = torch.cat([can, cannot])
+    y = torch.cat([torch.ones(len(can)), torch.zeros(len(cannot))])
+    weight = torch.where(y > 0, 0.5 * len(y) / len(can), 0.5 * len(y) / len(cannot))
+    with torch.random.fork_rng(devices=[]):
+        torch.manual_seed(SEED)
+        classifier = ScopeClassifier(x.shape[1], HIDDEN)
+        optimiser = torch.optim.AdamW(classifier.parameters(), lr=LEARNING_RATE, weight_decay=WEIGHT_DECAY)
+        for _ in range(EPOCHS):
+            for rows in torch.randperm(len(x)).split(BATCH):
+                kept = F.dropout(x[rows], DROPOUT)
+                loss = F.binary_cross_entropy_with_logits(classifier(kept), y[rows], weight[rows])
+                optimiser.zero_grad()
+                loss.backward()
+                optimiser.step()
+    return classifier.eval().requires_grad_(False)

@@ -1,0 +1,152 @@
+"""Story, inbetween and edit with the shipped model, from the socket to the simulated servos and their audit."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import time
+
+import pytest
+
+from daemon import events as ev
+from daemon.client import CancelledByError, RefusedError
+from daemon.requests import KeyPoseOf, SceneOf, Story
+from mmm_core.checkpoint import MODEL_FILE
+from tests.end_to_end.harness import RunningDaemon
+from tests.end_to_end.test_start_and_end import child_pid
+
+pytestmark = [
+    pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout"),
+    pytest.mark.timeout(180),
+]
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """The tests of this module share a daemon; its audit must be clean at the end."""
+    daemon = RunningDaemon("--motions", str(tmp_path_factory.mktemp("motions")), model=True)
+    try:
+        yield daemon.until_ready()
+        assert daemon.terminate() == 0
+        audit = json.loads(daemon.audit.read_text())
+        assert audit["goals"] > 0 and audit["violations"] == 0 and audit["self_contacts"] == 0
+    finally:
+        daemon.close()
+
+
+def test_a_story_moves_with_its_first_part_and_leaves_out_what_it_cannot_do(run):
+    with run.client() as robot:
+        robot.arm()
+        said = robot.story(
+            [("wave with your right hand", 1.6), "swim across the lake", ("nod twice", 1.6), ("bow", 2.0)]
+        )
+        done = said.done
+        assert done is not None and done.underruns == 0 and done.gate_clipped_frames == 0
+        seconds = 1.6 + 1.6 + 2.0 + 2 * 0.4  # two transitions
+        assert done.frames == pytest.approx(seconds * 100, abs=40)
+        scenes = [e for e in said.events if isinstance(e, ev.Progress) and e.stage == "scene"]
+        assert [(s.scene, s.status) for s in scenes] == [
+            (1, "accepted"), (2, "rejected"), (3, "accepted"), (4, "accepted")
+        ]  # fmt: skip
+        assert scenes[1].reason and scenes[1].scope_score < 1
+        moving = next(e for e in said.events if isinstance(e, ev.Progress) and e.stage == "moving")
+        assert moving.t_mono < scenes[3].t_mono  # it moved before the last part was made
+
+
+def test_a_text_barges_into_a_story_and_a_stop_ends_one(run):
+    with run.client() as robot, run.client() as other:
+        scenes = [SceneOf(text="clap your hands"), SceneOf(text="bow")]
+        events = robot.events_of(Story(id="endless", scenes=scenes, loop=True))
+        while getattr(next(events), "stage", "") != "moving":
+            pass
+        time.sleep(3.0)
+        said = other.say("nod", seconds=1.0)
+        assert said.done is not None and said.done.underruns == 0
+        rest = list(events)
+        assert isinstance(rest[-1], ev.Cancelled) and rest[-1].by == f"say {said.id}"
+        again = other.story(["wave", "bow"], loop=True, wait=False)
+        other.wait_for("moving", timeout_s=5)
+        other.stop()
+        assert other.status().command is None and other.status().state == "holding"
+        assert again.events
+
+
+def test_a_story_outlives_its_generator(run):
+    """Killed in the middle: the robot brakes and holds, and goes on where the story was when there is a new one."""
+    with run.client() as robot:
+        events = robot.events_of(Story(id="long", scenes=[SceneOf(text="clap your hands", seconds=2.0)] * 8), 100)
+        while getattr(next(events), "stage", "") != "moving":
+            pass
+        os.kill(child_pid(run, "daemon.generator"), signal.SIGKILL)
+        heard = list(events)
+        assert isinstance(heard[-1], ev.Done), heard[-1]
+        assert [e.scene for e in heard if isinstance(e, ev.Progress) and e.scene is not None][-1] == 8
+        assert heard[-1].frames == pytest.approx((8 * 2.0 + 7 * 0.4) * 100, abs=60)
+
+
+def test_poses_are_met_in_time(run):
+    with run.client() as robot:
+        robot.gesture("raise_left", hold=True)
+        held = robot.wait_for("idle", "holding", timeout_s=5).goal_rad
+        robot.say("bow", seconds=2.0)
+        said = robot.inbetween([KeyPoseOf(at_s=1.0, standing=True), KeyPoseOf(at_s=2.5, gesture="raise_left")])
+        assert said.done is not None and said.done.frames == pytest.approx(250, abs=30)
+        reached = robot.wait_for("idle", "holding", timeout_s=5).goal_rad
+        assert max(abs(a - b) for a, b in zip(held, reached, strict=True)) < 0.15
+        with pytest.raises(RefusedError) as caught:
+            robot.inbetween([KeyPoseOf(at_s=1.0, gesture="raise_left", time_s=9.0)])
+        assert caught.value.code == "bad_keyframes"
+
+
+def test_an_edit_of_one_arm_moves_that_arm_and_a_bad_one_says_why(run):
+    with run.client() as robot:
+        first = robot.gesture("wave_right")
+        plan = first.events[0].plan_id
+        done = robot.edit("raise your left arm", plan=plan, parts=["left_arm"]).done
+        assert done is not None and done.frames == pytest.approx(first.done.frames, abs=30)
+        assert robot.edit("bow", command=first.id, start_s=1.0, end_s=2.0).done
+        for fields, code in (
+            ({"plan": plan, "parts": ["tail"]}, "bad_edit"),
+            ({"plan": plan, "start_s": 9.0}, "bad_edit"),
+            ({"plan": 9999}, "unknown_motion"),
+            ({"command": "never"}, "unknown_motion"),
+            ({"gesture": "nothing_like_it"}, "unknown_gesture"),
+            ({"file": "missing.npz"}, "bad_file"),
+            ({"file": "../../etc/passwd"}, "bad_file"),
+        ):
+            with pytest.raises(RefusedError) as caught:
+                robot.edit("bow", **fields)
+            assert caught.value.code == code, caught.value
+        with pytest.raises(RefusedError) as caught:
+            robot.edit("swim across the lake", plan=plan)
+        assert caught.value.code == "out_of_scope"
+
+
+def test_the_commands_of_the_shell(run, tmp_path):
+    story = run.mmmd("story", "nod", "bow", "--tempo", "2")
+    assert story.returncode == 0 and "scene 2: bow" in story.stdout and "done" in story.stdout
+    assert run.mmmd("inbetween", "bow@0.8", "standing@1.6").returncode == 0
+    assert run.mmmd("edit", "gesture:nod", "shake your head").returncode == 0
+    for bad in (["story"], ["story", ""], ["story", "a", "--hold"], ["inbetween", "bow"], ["edit", "plan:x", "bow"]):
+        assert run.mmmd(*bad).returncode == 2, bad
+    scenes = tmp_path / "s.jsonl"
+    scenes.write_text('{"text": "nod", "seconds": 1}\n{"txt": "bow"}\n')
+    assert "line 2" in run.mmmd("story", "--scenes", str(scenes)).stderr
+
+
+def test_a_story_that_is_replaced_from_asyncio(run):
+    import asyncio
+
+    from daemon.async_client import AsyncClient
+
+    async def main() -> None:
+        async with AsyncClient(run.endpoints) as robot:
+            telling = asyncio.create_task(robot.story(["clap your hands", "bow"], loop=True))
+            await robot.wait_for("moving", timeout_s=10)
+            assert (await robot.edit("bow", gesture="nod")).done
+            with pytest.raises(CancelledByError, match="edit"):
+                await telling
+            assert (await robot.inbetween([KeyPoseOf(at_s=1.0, standing=True)])).done
+
+    asyncio.run(main())
