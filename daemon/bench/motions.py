@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import FPS, N_FEATURES, Motion
-from mmm_core.skeleton import quat_wxyz
+from mmm_core.skeleton import facing_yaw_rad, forward_kinematics, local_rotations, quat_wxyz
 
 _BESIDE_CHECKOUT = Path(__file__).parents[3] / "shared" / "data"
 _SHORTEST_FRAMES = 40
@@ -20,7 +20,7 @@ def bench_motions(n: int | None, seed: int) -> tuple[str, list[Motion]]:
     """What the motions are, and at most `n` of them.
 
     Recordings are the held-out CMU clips of docs/DATA.md in `$MMMD_SHARED/data` or in `shared/data` beside the checkout:
-    fast runs, dances and karate among them, with the head held still since recordings show none.
+    fast runs, dances and karate among them. Recordings show no head turning: it follows the body.
     """
     folder = Path(os.environ["MMMD_SHARED"]) / "data" if "MMMD_SHARED" in os.environ else _BESIDE_CHECKOUT
     if (folder / "clips.jsonl").is_file():
@@ -33,7 +33,14 @@ def _recorded(folder: Path) -> list[Motion]:
     clips = [json.loads(line) for line in (folder / "clips.jsonl").read_text().splitlines()]
     with np.load(folder / "motions_common_skeleton.npz") as data:
         cuts = [data[c["trial"]][c["start"] : c["end"]] for c in clips if c["split"] != "train"]
-    return [_motion(cut, None, None) for cut in cuts if len(cut) >= _SHORTEST_FRAMES]
+    return [_motion(cut, _head_with_body(cut), None) for cut in cuts if len(cut) >= _SHORTEST_FRAMES]
+
+
+def _head_with_body(joints_m: NDArray[np.floating]) -> NDArray[np.floating]:
+    """(T, 4) orientation of a head that turns with the neck, for joints (T, 22, 3)."""
+    joints = np.asarray(joints_m, np.float64)
+    local = local_rotations(joints, facing_yaw_rad(joints), None, None)
+    return quat_wxyz(forward_kinematics(local, joints[:, 0])[1][:, 15])
 
 
 def _synthesised(n: int, seed: int) -> list[Motion]:
@@ -44,13 +51,10 @@ def _synthesised(n: int, seed: int) -> list[Motion]:
     return [_motion(b.joints_m, quat_wxyz(b.head_R_world), b.forearm_twist_rad) for b in bodies]
 
 
-def _motion(
-    joints_m: NDArray[np.floating], head: NDArray[np.floating] | None, twist: NDArray[np.floating] | None
-) -> Motion:
+def _motion(joints_m: NDArray[np.floating], head: NDArray[np.floating], twist: NDArray[np.floating] | None) -> Motion:
     T = len(joints_m)
-    still = np.tile(np.array([1, 0, 0, 0], np.float32), (T, 1))
     return Motion(
-        joints_m.astype(np.float32), FPS, still if head is None else head.astype(np.float32),
+        joints_m.astype(np.float32), FPS, head.astype(np.float32),
         np.zeros((T, 2), np.float32) if twist is None else twist.astype(np.float32),
         np.zeros((T, N_FEATURES), np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0,
     )  # fmt: skip

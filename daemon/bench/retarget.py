@@ -57,14 +57,14 @@ def bench_retarget(n: int | None = None, seed: int = 0, robots: tuple[str, ...] 
 
 def _robot_figures(robot: RobotModel, motions: list[Motion], console: Console) -> dict[str, Any]:
     own = _fidelity(Retargeter(robot), track(motions, robot.name, console=console))
-    common = _fidelity(Retargeter(_with_limits(robot)), motions)
+    common = _fidelity(Retargeter(with_common_limits(robot)), motions)
     figures = {**common, "own_limits": own}
     for key in ("violations", "collisions"):
         figures[key] = common[key] + own[key]
     return {**figures, **_times(robot, motions)}
 
 
-def _with_limits(robot: RobotModel) -> RobotModel:
+def with_common_limits(robot: RobotModel) -> RobotModel:
     """The robot with the speed and acceleration that peers were measured at."""
     joints = tuple(
         dataclasses.replace(j, velocity_limit_rad_s=_SPEED_RAD_S, acceleration_limit_rad_s2=_ACCELERATION_RAD_S2)
@@ -86,8 +86,8 @@ def _fidelity(retargeter: Retargeter, motions: Iterable[Motion]) -> dict[str, An
         poses = retargeter.poses(read_human(motion))
         errors.append(retargeter.direction_errors_deg(poses, path.q_rad[: len(motion.joints_m)]))
         reach.append(retargeter.direction_errors_deg(poses, poses.q_rad))
-        causal.append(retargeter.direction_errors_deg(poses, _causal(poses.q_rad, retargeter)))
-        speeds_m_s.append(_wrist_speed_m_s(motion))
+        causal.append(retargeter.direction_errors_deg(poses, causal_path(poses.q_rad, retargeter)))
+        speeds_m_s.append(wrist_speed_m_s(motion))
         violations += sum(_violations(path, retargeter, rate_hz) for rate_hz in _CHECKED_HZ)
         collisions += check.frames(path.at_rate(_CONTACT_HZ))
         interventions += path.report.interventions
@@ -117,7 +117,7 @@ def _angles(errors_deg: list[Array]) -> dict[str, float]:
     }
 
 
-def _causal(wanted_rad: Array, retargeter: Retargeter) -> Array:
+def causal_path(wanted_rad: Array, retargeter: Retargeter) -> Array:
     """(T, J) poses followed from rest in the first, each step knowing only the next."""
     position, velocity, period = wanted_rad[0], np.zeros(wanted_rad.shape[1]), 1 / FPS
     path = np.empty_like(wanted_rad)
@@ -127,7 +127,7 @@ def _causal(wanted_rad: Array, retargeter: Retargeter) -> Array:
     return path
 
 
-def _wrist_speed_m_s(motion: Motion) -> float:
+def wrist_speed_m_s(motion: Motion) -> float:
     """Speed that the faster wrist keeps below in 99 of 100 frames."""
     moved = np.diff(motion.joints_m[:, (20, 21)].astype(np.float64), axis=0)
     return float(np.percentile(np.linalg.norm(moved, axis=-1).max(-1), 99) * motion.fps)

@@ -59,6 +59,11 @@ def _mink(retargeter: Retargeter, human: list[HumanPose], steps: int, speed_rad_
     limits: list[Any] = [mink.ConfigurationLimit(model)]
     if speed_rad_s is not None:
         limits.append(mink.VelocityLimit(model, dict.fromkeys(robot.joint_names, speed_rad_s)))
+    # The targets are for a chest that stands still: all but the arms is kept where it is.
+    still = [
+        int(model.joint(j.name).dofadr[0]) for j in robot.joints if not j.role.startswith(tuple(f"{side}_" for side in SIDES))
+    ]
+    frozen = [mink.DofFreezingTask(model, still)] if still else None
     points = {p.name: p for p in kinematics.key_points}
     tasks: dict[str, Any] = {}
     for chain in retargeter.arms:
@@ -88,11 +93,12 @@ def _mink(retargeter: Retargeter, human: list[HumanPose], steps: int, speed_rad_
                     tasks[f"{side}_{part}"].set_target(mink.SE3.from_translation(place))
             for _ in range(steps):
                 dt_s = _PERIOD_S / steps
-                velocity = mink.solve_ik(configuration, list(tasks.values()), dt_s, "daqp", 1e-4, limits=limits)
+                velocity = mink.solve_ik(
+                    configuration, list(tasks.values()), dt_s, "daqp", 1e-4, limits=limits, constraints=frozen
+                )
                 configuration.integrate_inplace(velocity, dt_s)
             q[t] = configuration.q[address]
         took_s += time.thread_time() - began_s
-        q[:, [j for j in range(robot.n_joints) if "waist" in robot.joints[j].role]] = 0.0
         solved.append(q)
     return _figures(retargeter, human, solved, took_s)
 

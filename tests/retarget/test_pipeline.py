@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import mujoco
@@ -240,3 +241,30 @@ def test_one_frame_is_a_path() -> None:
     for r in RETARGETERS.values():
         path = r.retarget(random_motion(4, 1, "noise"), at_rest(r))
         check_bounds(path, at_rest(r), r, 200.0)
+
+
+BAD_FILES = [
+    ("no fps", {"fps": None}, "fps"),
+    ("fps of nothing", {"fps": 0.0}, "fps"),
+    ("not a number", {"joints": lambda j: _with(j, 20, np.full_like(j[:, 20], np.nan))}, "finite|NaN"),
+    ("infinite", {"joints": lambda j: _with(j, 20, np.full_like(j[:, 20], np.inf))}, "finite|NaN"),
+    ("a joint short", {"joints": lambda j: j[:, :21]}, r"22, 3"),
+    ("empty", {"joints": lambda j: j[:0]}, "T >= 1"),
+    ("no length", {"joints": lambda j: _with(j, 20, j[:, 18])}, "left forearm"),
+    ("arms of a giant", {"joints": lambda j: 4 * j}, "0.6 m"),
+]
+
+
+@pytest.mark.parametrize(("change", "said"), [pytest.param(c, s, id=n) for n, c, s in BAD_FILES])
+def test_a_bad_file_is_named_with_its_key(
+    change: dict[str, object], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from daemon.cli import main
+
+    fields: dict[str, object] = {"joints": random_motion(0, 30, "smooth").joints_m, "fps": 20.0}
+    fields |= {k: v(fields[k]) if callable(v) else v for k, v in change.items()}
+    np.savez(tmp_path / "bad.npz", **{k: np.asarray(v) for k, v in fields.items() if v is not None})
+    assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 1
+    error = capsys.readouterr().err
+    assert re.search(said, error) and "Traceback" not in error, error
+    assert not (tmp_path / "out.npz").exists()
