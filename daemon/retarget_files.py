@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from daemon.errors import CommandError
-from daemon.inputs.files import read_motion
 from mmm_core.motion import Motion
+from mmm_core.recordings.files import read_motion
 from mmm_core.skeleton import quat_wxyz
 from retarget.errors import RetargetError
 from retarget.paths import JointPath

@@ -79,8 +79,8 @@ def _folder(settings: Settings, folder: Path, out: Path, jobs: int, dask: str | 
     from rich.progress import track
 
     from daemon.errors import CommandError
-    from daemon.inputs.files import KINDS, find_motions
     from daemon.retarget_files import on_cores, on_dask, start_folder
+    from mmm_core.recordings.files import KINDS, find_motions
     from retarget.robot import load_robot
 
     load_robot(settings.robot)  # a wrong name is one error, not one a file

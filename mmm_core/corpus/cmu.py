@@ -1,9 +1,11 @@
-"""Real motion: the `clips.jsonl` + `motions_common_skeleton.npz` layout, CMU recordings only (docs/DATA.md)."""
+"""Real motion: `clips.jsonl` beside the recordings it cuts, CMU's only (docs/DATA.md)."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,8 @@ from numpy.typing import NDArray
 from mmm_core.corpus.mirroring import mirror_words
 from mmm_core.errors import TrainingDataError
 from mmm_core.features import features_from_joints, mirror
+from mmm_core.recordings.common_body import on_common_body
+from mmm_core.recordings.files import read_motion
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 
 LONGEST_FRAMES = MAX_TOKENS * FRAMES_PER_TOKEN
@@ -22,26 +26,26 @@ SHORTEST_FRAMES = 24
 def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.float32], list[str]]]:
     """Features and sentences of the usable clips of `split`, each followed by its mirror image.
 
-    Used: recordings under CMU's own terms, sentences that are not KIT-ML's, upright frames outside `bad_frames`.
+    Used: recordings under CMU's own terms, sentences that are not KIT-ML's, upright frames outside `bad_frames`. The
+    recordings are those of `motions_common_skeleton.npz`, or where there is none, TRIAL.bvh or TRIAL.amc (with its .asf).
 
     Raises:
         TrainingDataError: a file is missing or a clip lies outside its recording.
+        MotionFileError: a recording cannot be read.
     """
     trials = {t["trial"]: t for t in _json_lines(folder / "trials.jsonl")}
-    path = folder / "motions_common_skeleton.npz"
-    if not path.is_file():
-        raise TrainingDataError(path, "", "no such file", "the motions that clips.jsonl cuts")
-    with np.load(path) as motions:
+    with ExitStack() as stack:
+        recording = _recordings(folder, stack)
         for clip in _json_lines(folder / "clips.jsonl"):
             trial = trials.get(clip["trial"])
-            if trial is None or clip["trial"] not in motions.files:
+            joints = None if trial is None else recording(clip["trial"])
+            if trial is None or joints is None:
                 raise TrainingDataError(
                     folder, clip["clip"], f"trial {clip['trial']!r} is unknown", "a trial of trials.jsonl"
                 )
             if clip["split"] != split or trial["terms"] != "CMU":
                 continue
             captions = [c for c, s in zip(clip["captions"], clip["caption_source"], strict=True) if s != "KIT-ML"]
-            joints = motions[clip["trial"]]
             if not 0 <= clip["start"] < clip["end"] <= len(joints) + 1:
                 found = f"frames {clip['start']} to {clip['end']}"
                 raise TrainingDataError(folder, clip["clip"], found, f"within the recording's {len(joints)} frames")
@@ -52,6 +56,21 @@ def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.
                 features = features_from_joints(joints[start : start + LONGEST_FRAMES])
                 yield features, captions
                 yield mirror(features), [mirror_words(c) for c in captions]
+
+
+def _recordings(folder: Path, stack: ExitStack) -> Callable[[str], NDArray[Any] | None]:
+    """Gives (T, 22, 3) metres at 20 fps of a trial on the common body, None where there is none; the last is kept."""
+    path = folder / "motions_common_skeleton.npz"
+    if path.is_file():
+        motions = stack.enter_context(np.load(path))
+        return lambda trial: motions[trial] if trial in motions.files else None
+
+    @lru_cache(maxsize=1)
+    def read(trial: str) -> NDArray[Any] | None:
+        found = next((p for kind in (".bvh", ".amc") if (p := folder / f"{trial}{kind}").is_file()), None)
+        return None if found is None else on_common_body(found, read_motion(found))
+
+    return read
 
 
 def _upright(joints_m: NDArray[np.float64]) -> bool:

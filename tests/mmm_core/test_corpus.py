@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mmm_core.bvh import save_bvh
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.grammar import caption, known_commands, plain_phrases
@@ -18,8 +19,9 @@ from mmm_core.corpus.mirroring import mirror_words
 from mmm_core.corpus.score import REST_ARM, Score
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.corpus.synthesis import ClipSpec, draw_spec, synthesise, synthesise_spec
-from mmm_core.errors import TrainingDataError
+from mmm_core.errors import MotionFileError, TrainingDataError
 from mmm_core.features import recover
+from mmm_core.motion import Motion
 
 SHARED = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared"))
 
@@ -184,4 +186,38 @@ def test_an_unknown_recording_is_named(tmp_path: Path) -> None:
 
 def test_a_folder_without_files_is_named(tmp_path: Path) -> None:
     with pytest.raises(TrainingDataError, match=r"trials\.jsonl"):
+        list(read_clips(tmp_path))
+
+
+def test_clips_are_cut_from_bvh_files_where_there_is_no_array(tmp_path: Path) -> None:
+    """The same person of another size, 30 cm higher: on the common body, on the floor, followed by the mirror image."""
+    made = synthesise_spec(ClipSpec((Gesture("wave", "right", 3),)), np.random.default_rng(0))
+    assert made is not None
+    r, n, f32 = recover(made.features), len(made.features), np.float32
+    motion = Motion(
+        r.joints_m.astype(f32) * 1.2 + np.array([0, 0.3, 0], f32), 20.0, r.head_quat_wxyz.astype(f32),
+        r.forearm_twist_rad.astype(f32), made.features, np.zeros(n // 4, np.int32), "x", 0, "accepted", 1.0,
+    )  # fmt: skip
+    clip = {
+        "trial": "01_01",
+        "clip": "c",
+        "start": 0,
+        "end": n,
+        "split": "train",
+        "captions": ["wave right"],
+        "caption_source": ["us"],
+    }
+    (tmp_path / "trials.jsonl").write_text(json.dumps({"trial": "01_01", "terms": "CMU", "bad_frames": []}))
+    (tmp_path / "clips.jsonl").write_text(json.dumps(clip))
+    save_bvh(motion, tmp_path / "01_01.bvh")
+    (features, captions), (_, mirrored) = read_clips(tmp_path)
+    assert (captions, mirrored) == (["wave right"], ["wave left"])
+    joints, original = recover(features).joints_m, r.joints_m[: len(features)]
+    for j, parent in ((18, 16), (19, 17), (20, 18), (21, 19)):
+        bones = [m[:, j] - m[:, parent] for m in (joints, original)]
+        assert np.abs(bones[0] - bones[1]).max() < 0.02
+    assert abs(np.percentile(joints[:, (10, 11), 1], 2)) < 0.03
+
+    (tmp_path / "01_01.bvh").write_text("HIERARCHY\nnonsense")
+    with pytest.raises(MotionFileError, match=r"01_01\.bvh"):
         list(read_clips(tmp_path))

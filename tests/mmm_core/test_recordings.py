@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from daemon.inputs.asf_amc import read_amc
-from daemon.inputs.files import find_motions, read_motion
 from mmm_core.bvh import save_bvh
 from mmm_core.errors import MotionFileError
 from mmm_core.motion import Motion
+from mmm_core.recordings.asf_amc import read_amc
+from mmm_core.recordings.files import find_motions, read_motion
 from retarget.human import read_human
 from tests.retarget.gestures import gesture
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from daemon.inputs.asf_amc import read_amc
-from daemon.inputs.bvh import read_bvh
-from daemon.inputs.skeletons import motion_of
 from mmm_core.errors import MotionFileError
 from mmm_core.features import joints_from_positions
 from mmm_core.motion import FPS, N_FEATURES, Motion, load_npz
+from mmm_core.recordings.asf_amc import read_amc
+from mmm_core.recordings.bvh import read_bvh
+from mmm_core.recordings.skeletons import motion_of
 from mmm_core.skeleton import JOINT_NAMES
 
 KINDS = (".npz", ".npy", ".bvh", ".amc")

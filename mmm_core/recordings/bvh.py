@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.inputs.skeletons import find_joints, motion_of, rest_frame
 from mmm_core.errors import MotionFileError
 from mmm_core.motion import Motion
+from mmm_core.recordings.skeletons import find_joints, motion_of, rest_frame
 from mmm_core.skeleton import rotation_about
 
 Array = NDArray[np.float64]
