@@ -61,7 +61,9 @@ def _mink(retargeter: Retargeter, human: list[HumanPose], steps: int, speed_rad_
         limits.append(mink.VelocityLimit(model, dict.fromkeys(robot.joint_names, speed_rad_s)))
     # The targets are for a chest that stands still: all but the arms is kept where it is.
     still = [
-        int(model.joint(j.name).dofadr[0]) for j in robot.joints if not j.role.startswith(tuple(f"{side}_" for side in SIDES))
+        int(model.joint(j.name).dofadr[0])
+        for j in robot.joints
+        if not j.role.startswith(tuple(f"{side}_" for side in SIDES))
     ]
     frozen = [mink.DofFreezingTask(model, still)] if still else None
     points = {p.name: p for p in kinematics.key_points}
