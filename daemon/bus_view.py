@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.derating import DeratedBy
 from daemon.shared import BusLink, BusState
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
@@ -84,6 +85,7 @@ class BusView:
 
     def counters(self) -> dict[str, Any]:
         """What `status` tells about the bus process."""
+        share, by, servo_id = self._link.derating
         fifo, locked = self._link.has_realtime
         invalid = [self._robot.servo_ids[i] for i in np.flatnonzero(~self.valid)] if self.index else []
         alerts = [self._robot.servo_ids[i] for i in np.flatnonzero(self.error)]
@@ -97,4 +99,6 @@ class BusView:
             "locked_memory": locked,
             "servos_not_answering": invalid,
             "servos_with_error": alerts,
+            "speed_share": share,
+            "derated_by": f"{DeratedBy(by).name.lower()} of servo {servo_id}" if by else "",
         }

@@ -1,4 +1,4 @@
-"""Calls that both clients have for motion that is put together: story, inbetween, edit."""
+"""Calls that both clients have for motion that is put together or played again: story, inbetween, edit, replay."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import uuid
 from collections.abc import Sequence
 from typing import Generic, TypeVar, Unpack
 
-from daemon.requests import Edit, Inbetween, KeyPoseOf, Play, PlayOptions, SceneOf, Story
+from daemon.requests import Edit, Inbetween, KeyPoseOf, Play, PlayOptions, Replay, SceneOf, Story
 
 R = TypeVar("R")
 MOTION_TIMEOUT_S = 60.0
@@ -119,6 +119,26 @@ class CompositionCalls(Generic[R]):
             id=command_id or uuid.uuid4().hex, text=text, gesture=gesture, command=command, plan=plan, file=file,
             parts=list(parts), start_s=start_s, end_s=end_s, seed=seed, **options,
         )  # fmt: skip
+        return self.play(request, wait=wait, timeout_s=timeout_s)
+
+    def replay(
+        self,
+        *,
+        command: str | None = None,
+        plan: int | None = None,
+        file: str | None = None,
+        wait: bool = True,
+        timeout_s: float | None = None,
+        command_id: str = "",
+        **options: Unpack[PlayOptions],
+    ) -> R:
+        """Play a motion once more: that of a command, of a plan, or of a file in the daemon's folder of motions.
+
+        Raises:
+            RefusedError, CancelledByError, NoAnswerError: as for `say`.
+            ValueError: fields that contradict each other.
+        """
+        request = Replay(id=command_id or uuid.uuid4().hex, command=command, plan=plan, file=file, **options)
         return self.play(request, wait=wait, timeout_s=timeout_s)
 
 

@@ -169,3 +169,32 @@ class Edit(Play, tag="edit", kw_only=True):
     def words(self) -> str:
         """The text."""
         return self.text
+
+
+class Replay(Play, tag="replay", kw_only=True):
+    """Play a motion once more, as it was made. One of `command`, `plan` and `file` says which; needs no generator.
+
+    Attributes:
+        command: id of a command that was played.
+        plan: number of its plan, as in its events.
+        file: an .npz of `mmmd generate`, within the daemon's folder of motions (`--motions`).
+    """
+
+    command: Annotated[str, Meta(min_length=1, max_length=MAX_ID_CHARS)] | None = None
+    plan: Annotated[int, Meta(ge=1)] | None = None
+    file: Annotated[str, Meta(min_length=1, max_length=1024)] | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse fields that contradict each other.
+
+        Raises:
+            ValueError: which becomes one `error` event.
+        """
+        super().__post_init__()
+        if sum(source is not None for source in (self.command, self.plan, self.file)) != 1:
+            raise ValueError("say what is played: give one of `command`, `plan` and `file`")
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return self.file or self.command or f"plan {self.plan}"

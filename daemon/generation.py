@@ -51,7 +51,7 @@ class GeneratorClient:
     Attributes:
         state: what people are told about the generator; `mark_ready` and `mark_down` set it.
         checkpoint_hash: of the weights it said it uses last, empty before.
-        timeouts: requests that were not answered in time.
+        timeouts: requests that were not answered in time by the generator they were sent to.
     """
 
     def __init__(
@@ -73,6 +73,7 @@ class GeneratorClient:
         self.state = "starting"
         self.checkpoint_hash = ""
         self.timeouts = 0
+        self._lives = 0
 
     def mark_ready(self, checkpoint_hash: str) -> None:
         """The generator answers."""
@@ -84,6 +85,7 @@ class GeneratorClient:
         """The generator is being started; requests wait for it."""
         self.state, self._down_reason = "starting", ""
         self._ready.clear()
+        self._lives += 1
 
     def mark_down(self, reason: str) -> None:
         """The generator is gone; requests fail at once."""
@@ -191,12 +193,13 @@ class GeneratorClient:
             self._reader = asyncio.create_task(self._read())
         answer: asyncio.Future[FromGenerator] = asyncio.get_running_loop().create_future()
         self._open[request.id] = answer
+        life = self._lives
         try:
             async with asyncio.timeout(timeout_s):
                 await self._socket.send(encode(request))
                 return await answer
         except TimeoutError:
-            self.timeouts += 1
+            self.timeouts += life == self._lives  # one that was started since is not to blame
             raise no_answer(asked, timeout_s) from None
         finally:
             self._open.pop(request.id, None)

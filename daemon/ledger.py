@@ -11,12 +11,14 @@ from dataclasses import dataclass, field
 
 import msgspec
 
-from daemon.events import Accepted, Event
+from daemon.events import Accepted, Event, Progress
 from daemon.requests import Play, tag_of
 from daemon.wire import WireError
 
 KEPT = 1024
 """Commands that are remembered, so that the same id is the same command."""
+KEPT_SCENES = 8
+"""Newest scenes of a story that a later asker hears of."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,14 @@ class Entry:
     def accepted(self) -> bool:
         """Whether it was accepted."""
         return any(isinstance(event, Accepted) for event in self.events)
+
+    def keep(self, event: Event) -> None:
+        """Remember an event for those who ask later; of a story's scenes only the newest, for it has any number."""
+        if isinstance(event, Progress) and event.scene is not None:
+            scenes = [e for e in self.events if isinstance(e, Progress) and e.scene is not None]
+            if len(scenes) >= KEPT_SCENES:
+                self.events.remove(scenes[0])
+        self.events.append(event)
 
     @property
     def deadline_s(self) -> float:
@@ -120,7 +130,7 @@ class Ledger:
             return
         event.id = entry.id
         self.stamp(event)
-        entry.events.append(event)
+        entry.keep(event)
         entry.ended = event.terminal
         for route in list(entry.routes):
             self._send(route, event)

@@ -14,7 +14,7 @@ from daemon.kept_motions import KeptMotion, KeptMotions
 from daemon.keyposes import KeyPose
 from daemon.posture import standing
 from daemon.replies import NotPlayableError
-from daemon.requests import Edit, KeyPoseOf
+from daemon.requests import Edit, KeyPoseOf, Replay
 from daemon.score import marks_of
 from mmm_core.errors import MotionFileError
 from mmm_core.motion import Motion, load_npz
@@ -53,13 +53,13 @@ class Originals:
             event = Failed(code="bad_gesture", asked=f"gesture {name!r}", found=str(error), allowed="", do="")
             raise NotPlayableError(event) from error
 
-    def motion(self, request: Edit) -> Motion:
-        """What is to be edited; may read a file.
+    def motion(self, request: Edit | Replay) -> Motion:
+        """What is to be edited or played again; may read a file.
 
         Raises:
             NotPlayableError: it is not there, or no motion.
         """
-        if request.gesture is not None:
+        if isinstance(request, Edit) and request.gesture is not None:
             return self.clip(request.gesture).posture.motion(text=request.gesture)
         if request.file is not None:
             return self._file(request.file)

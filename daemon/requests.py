@@ -1,6 +1,6 @@
 """What may be asked of the daemon: one struct for each request. Sans-I/O.
 
-`say`, `gesture`, `story`, `inbetween` and `edit` share the options of `Play` (`daemon.request_base`); a new way to get a
+`say`, `gesture`, `story`, `inbetween`, `edit` and `replay` share the options of `Play` (`daemon.request_base`); a new way to get a
 motion is one more such struct.
 """
 
@@ -17,6 +17,7 @@ from daemon.compositions import (
     Edit,
     Inbetween,
     KeyPoseOf,
+    Replay,
     SceneOf,
     Story,
 )
@@ -79,6 +80,7 @@ __all__ = [
     "Play",
     "PlayOptions",
     "Record",
+    "Replay",
     "Request",
     "Reset",
     "Say",
@@ -199,10 +201,10 @@ class Park(Request, tag="park"):
     """Move to the park pose, then torque off."""
 
 
-CmdRequest = Say | Story | Inbetween | Edit | Gesture | Record | Look | Idle | Cancel | Status | Capabilities
+CmdRequest = Say | Story | Inbetween | Edit | Replay | Gesture | Record | Look | Idle | Cancel | Status | Capabilities
 CtlRequest = Stop | Estop | Reset | Arm | Park | Status
 CMD_TYPES: tuple[type[Request], ...] = (
-    Say, Story, Inbetween, Edit, Gesture, Record, Look, Idle, Cancel, Status, Capabilities,
+    Say, Story, Inbetween, Edit, Replay, Gesture, Record, Look, Idle, Cancel, Status, Capabilities,
 )  # fmt: skip
 CTL_TYPES: tuple[type[Request], ...] = (Stop, Estop, Reset, Arm, Park, Status)
 REQUESTS: tuple[type[Request], ...] = (*CMD_TYPES, *CTL_TYPES[:-1])

@@ -80,6 +80,9 @@ class _Word(IntEnum):
     TEXT_LENGTH = 7
     REALTIME = 24
     MEMORY_LOCKED = 25
+    SPEED_PERMILLE = 26
+    DERATED_BY = 27
+    DERATED_SERVO = 28
 
 
 class Readiness(IntEnum):
@@ -212,6 +215,13 @@ class BusLink:
         """Whether the bus process got FIFO priority and locked memory."""
         return bool(self._words[_Word.REALTIME]), bool(self._words[_Word.MEMORY_LOCKED])
 
+    @property
+    def derating(self) -> tuple[float, int, int]:
+        """Share of full speed, its cause (`daemon.derating.DeratedBy`), and the id of the servo that needs it most."""
+        words = (_Word.SPEED_PERMILLE, _Word.DERATED_BY, _Word.DERATED_SERVO)
+        permille, by, servo_id = (int(self._words[word]) for word in words)
+        return (permille / 1000 if permille else 1.0), by, servo_id
+
     # Bus process's side.
 
     def take_setpoint(self) -> Setpoint | None:
@@ -256,6 +266,11 @@ class BusLink:
     def set_realtime(self, fifo: bool, locked: bool) -> None:
         """Tell the front which rights the bus process got."""
         self._words[_Word.REALTIME], self._words[_Word.MEMORY_LOCKED] = int(fifo), int(locked)
+
+    def set_derating(self, share: float, by: int, servo_id: int) -> None:
+        """Tell the front how fast the robot may move, and why."""
+        self._words[_Word.SPEED_PERMILLE] = max(1, round(1000 * share))
+        self._words[_Word.DERATED_BY], self._words[_Word.DERATED_SERVO] = by, servo_id
 
     def next_record(self) -> np.void:
         """The slot of the next cycle; fill it, then `publish`."""

@@ -24,7 +24,7 @@ from daemon.ledger import Entry
 from daemon.originals import Originals
 from daemon.posture import Posture, joined, posture_of
 from daemon.replies import NotPlayableError, generator_failed, too_late
-from daemon.requests import Edit, Gesture, Inbetween, Play, Say, Story, tag_of
+from daemon.requests import Edit, Gesture, Inbetween, Play, Replay, Say, Story, tag_of
 from daemon.score import ClipScore, Marks, Score, varied
 from daemon.story_score import SceneNews, StoryScore
 from mmm_core.motion import Motion
@@ -85,6 +85,11 @@ class Sources:
             return await self._inbetween(entry, request, now())
         if isinstance(request, Edit):
             return await self._edit(entry, request)
+        if isinstance(request, Replay):
+            motion = await asyncio.to_thread(self._originals.motion, request)
+            posture = await asyncio.to_thread(posture_of, motion)
+            score = await self._score(entry, posture, motion)
+            return Prepared(score, _duration_s(posture, request), understood=motion.text or request.words)
         if isinstance(request, Gesture):
             clip = self._originals.clip(request.name)
             motion = clip.posture.motion(text=clip.name)

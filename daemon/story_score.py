@@ -27,9 +27,11 @@ PIECES_AHEAD = 2
 """Pieces kept ready; a `say` that barges in waits for one request of a scene at most."""
 SHORTEST_FRAMES = 16
 """Scenes that give less are joined to the next one."""
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
 """How long a story waits for a generator that is lost."""
 RETRY_S = 0.2
+AFTER_TIMEOUT_S = 2.0
+"""One that left a scene unanswered is started again within a second or so: asked sooner it would leave that one, too."""
 _LOST = ("generator_down", "generator_timeout")
 
 
@@ -129,7 +131,7 @@ class StoryScore:
 
     async def _make_patiently(self) -> None:
         """Make a piece; wait for a generator that is lost."""
-        began_s = time.monotonic()
+        began_s, said = time.monotonic(), ""
         while True:
             try:
                 await self._make()
@@ -138,8 +140,10 @@ class StoryScore:
                 if error.code not in _LOST or time.monotonic() - began_s > PATIENCE_S:
                     self._failure = NotPlayableError(generator_failed(error, self._generator.state))
                     return
-                log.warning("the story waits for the generator: %s", error.found)
-                await asyncio.sleep(RETRY_S)
+                if error.found != said:
+                    said = error.found
+                    log.warning("the story waits for the generator: %s", said)
+                await asyncio.sleep(AFTER_TIMEOUT_S if error.code == "generator_timeout" else RETRY_S)
             except Exception as error:  # of the motion that came: it ends the story, not the daemon
                 log.exception("a piece of a story could not be made")
                 bad = GeneratorError("internal", "a piece of a story", str(error), "a motion", "see the daemon's log")

@@ -21,6 +21,7 @@ from daemon.bus.packet import ALERT_BIT
 from daemon.bus.reading import BusReading
 from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.clock import Clock
+from daemon.derating import Derating, SlowedSetpoints, read_limits
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
 from daemon.shared import BusLink, BusRequest, BusState, Readiness, valid_requests
@@ -76,6 +77,8 @@ class Streamer:
         self._pwm: int | None = None
         self._front_lost_s: float | None = None
         self._torque_off_left = 0
+        self._derating = Derating(robot.n_servos, robot.bus.period_s)
+        self._setpoints = SlowedSetpoints(link)
         self._asked: list[BusRequest] = []
         self._fed_s = clock.now_s()
 
@@ -113,6 +116,7 @@ class Streamer:
                 self._goal_tick = np.rint(self._ticks.to_ticks(goal_rad)).astype(np.int32)
             reading = self._bus.exchange(self._goal_tick if self._torque else None)
             self._judge(reading)
+            self._derate(reading)
         except (LinkError, ServoFaultError) as error:
             if isinstance(error, LinkLostError):
                 self._goal_tick = (
@@ -168,6 +172,7 @@ class Streamer:
                 return
             present = reading.position_tick.copy()
             self._refuse_hardware_errors(reading)
+            self._derating.limits = read_limits(self._bus)
             for servo_id, tick in zip(self._bus.ids, present, strict=True):
                 self._bus.write_item(servo_id, "goal_position", int(tick))
                 pinned = self._bus.read_item(servo_id, "goal_position")
@@ -242,9 +247,10 @@ class Streamer:
         """Between plans a record belongs to no plan."""
         if self.state is not BusState.PLAYING:
             self._plan_id, self._frame, self._last = 0, 0, True
+            self._setpoints.reset()
 
     def _play(self) -> NDArray[np.float64]:
-        setpoint = self._link.take_setpoint()
+        setpoint = self._setpoints.take(self._derating.share)
         if setpoint is not None:
             self._plan_id, self._frame, self._last = setpoint.plan_id, setpoint.frame, setpoint.last
             self._setpoint_rad = setpoint.q_rad
@@ -338,6 +344,19 @@ class Streamer:
                 self._fault(
                     f"servo {self._bus.ids[row]} ({self.robot.servos[row].joint_name}) lost its torque; it may have rebooted"
                 )
+
+    def _derate(self, reading: BusReading) -> None:
+        """Slow down what is played before a servo trips."""
+        d = self._derating
+        if d.update(reading):
+            servo = self.robot.servos[d.row]
+            cause = (
+                "full speed again"
+                if not d.by
+                else f"slower: {d.by.name.lower()} of servo {servo.servo_id} ({servo.joint_name})"
+            )
+            log.warning("%s", cause)
+        self._link.set_derating(d.share, d.by, self._bus.ids[d.row])
 
     def _fault(self, text: str) -> None:
         """Latch a fault: what still has torque comes to rest and holds; nothing re-arms by itself. An e-stop stays one."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import Literal
@@ -16,7 +15,8 @@ from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_t
 from mmm_core.corpus.mirroring import canonical, mirror_words
 from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.features import Root, mirror, recover, recover_from_positions
-from mmm_core.motion import FPS, N_FEATURES, N_JOINTS, Motion
+from mmm_core.generation import Clock, Generation, no_motion, understood
+from mmm_core.motion import FPS, Motion
 from mmm_core.packed import Precision, fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
@@ -27,33 +27,6 @@ SHORTEST_S = 0.8
 MOST_CANDIDATES = 64
 CANDIDATE_STRIDE = 7_919_999
 """Between the seeds of candidates, so that neighbouring seeds do not share any."""
-
-
-@dataclass(frozen=True)
-class Generation:
-    """A motion and how the text was taken.
-
-    Attributes:
-        motion: the motion; of length zero when rejected.
-        understood: the nearest known command and its score.
-        reason: why the text was degraded or rejected, else empty.
-        timings_ms: milliseconds spent in each stage.
-    """
-
-    motion: Motion
-    understood: str
-    reason: str
-    timings_ms: dict[str, float]
-
-    @property
-    def status(self) -> str:
-        """accepted, degraded or rejected."""
-        return self.motion.status
-
-    @property
-    def scope_score(self) -> float:
-        """How near the text lies to what the model can do."""
-        return self.motion.scope_score
 
 
 class Engine:
@@ -115,11 +88,11 @@ class Engine:
         if not 1 <= candidates <= MOST_CANDIDATES:
             raise GenerationError(f"{candidates} candidates were asked for", f"1 to {MOST_CANDIDATES}")
         n_frames = None if seconds is None else frames_for_seconds(seconds, FPS)
-        clock = _Clock()
+        clock = Clock()
         states, verdict, is_mirrored = self.understand_fresh(text)
         clock.lap("text")
         if verdict.status == "rejected":
-            return Generation(no_motion(text, seed, verdict), _understood(verdict), verdict.reason, clock.laps_ms)
+            return Generation(no_motion(text, seed, verdict), understood(verdict), verdict.reason, clock.laps_ms)
         with torch.inference_mode():
             if n_frames is None:
                 n_frames = self.predicted_frames(states)
@@ -127,7 +100,7 @@ class Engine:
             clock.lap("decode")
             motion = self.motion(ids, text, seed, verdict, n_frames, is_mirrored=is_mirrored)
             clock.lap("motion")
-        return Generation(motion, _understood(verdict), verdict.reason, clock.laps_ms)
+        return Generation(motion, understood(verdict), verdict.reason, clock.laps_ms)
 
     def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
         """States of a text, and how far it lies from what the model can do."""
@@ -251,19 +224,6 @@ def check_seed(seed: int) -> None:
         raise GenerationError(f"seed {seed} was asked for", "0 to 2147483647")
 
 
-class _Clock:
-    """Milliseconds between laps."""
-
-    def __init__(self) -> None:
-        self.laps_ms: dict[str, float] = {}
-        self._last = time.perf_counter()
-
-    def lap(self, name: str) -> None:
-        now = time.perf_counter()
-        self.laps_ms[name] = 1e3 * (now - self._last)
-        self._last = now
-
-
 def _without_scope(text: str) -> ScopeVerdict:
     """An imported model takes every text but an empty one."""
     return (
@@ -271,23 +231,3 @@ def _without_scope(text: str) -> ScopeVerdict:
         if text.strip()
         else ScopeVerdict("rejected", 0.0, "", "the text is empty")
     )
-
-
-def no_motion(text: str, seed: int, verdict: ScopeVerdict) -> Motion:
-    """The record of a rejected text: no frames."""
-    return Motion(
-        joints_m=np.zeros((0, N_JOINTS, 3), np.float32),
-        fps=FPS,
-        head_quat_wxyz=np.zeros((0, 4), np.float32),
-        forearm_twist_rad=np.zeros((0, 2), np.float32),
-        features=np.zeros((0, N_FEATURES), np.float32),
-        tokens=np.zeros(0, np.int32),
-        text=text,
-        seed=seed,
-        status="rejected",
-        scope_score=verdict.score,
-    )
-
-
-def _understood(verdict: ScopeVerdict) -> str:
-    return f"{verdict.nearest} ({verdict.score:.2f})" if verdict.nearest else ""

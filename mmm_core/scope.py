@@ -46,7 +46,7 @@ _BETWEEN_CLAUSES = re.compile(
     re.IGNORECASE | re.VERBOSE,
 )
 _LATIN_WORD = re.compile(r"[A-Za-z]{2,}")
-_CODE = re.compile(r"[{}<>\\$|=]|://|\w\(|\.\./|--\w")
+_CODE = re.compile(r"[{}<\\$|=]|(?<!-)>|://|\w\((?!s\))|\.\./|--\w")
 """What programs, addresses and paths have and sentences do not."""
 MOST_CLAUSES, MOST_WORDS = 4, 30
 """Texts of more are judged as a whole, so that a decision stays below 30 ms."""

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,21 +22,27 @@ from daemon.requests import Say
 
 N_WARM = 5
 REST_S = 0.3
+STORY_S = 1.0
+"""A story is told so long before a text interrupts it."""
+_STORY = ("wave with your right hand", "clap your hands", "nod twice", "bow")
 _METHOD = (
     "mmmd run --bus sim:// with all its processes; the clock starts when the front receives the text and ends at the first"
     " bus cycle whose goal tick of any servo differs; from rest: the robot stands still; idle: idle movements are going on;"
-    " during: a motion is being played; loaded: from rest, while one busy process for each core runs at normal priority;"
+    " during: a motion is being played; story: a story"
+    " without end is being told; loaded: from rest, while one busy process for each core runs at normal priority;"
     " remote: from rest, generator in another process over loopback TCP with CURVE; {} texts before to warm up"
 )
 
 
 def bench_first_motion(n: int = 50, seed: int = 0, robot: str = "reference") -> dict[str, Any]:
-    """`p50_ms`, `p95_ms` and `n` from rest; the same under `idle`, `during`, `loaded` and `remote`."""
+    """`p50_ms`, `p95_ms` and `n` from rest; the same under `idle`, `during`, `story`, `loaded` and `remote`."""
     texts = draw_texts(N_WARM + n, seed)
     with running_daemon(robot, "--quiet") as (client, _):
         _times(client, texts[:N_WARM], seed, "warm")
         rest = _times(client, texts[N_WARM:], seed, "rest")
         during = _times(client, texts[N_WARM:], seed, "during", stop=False)
+        client.stop()
+        story = _times(client, texts[N_WARM:], seed, "story", stop=False, before=_STORY)
         client.stop()
         client.idle(True, "lively")
         idle = _times(client, texts[N_WARM:], seed, "idle", cancel=False)
@@ -50,6 +56,7 @@ def bench_first_motion(n: int = 50, seed: int = 0, robot: str = "reference") -> 
         **rest,
         "idle": idle,
         "during": during,
+        "story": story,
         "loaded": loaded,
         "remote": remote,
         "robot": robot,
@@ -58,13 +65,27 @@ def bench_first_motion(n: int = 50, seed: int = 0, robot: str = "reference") -> 
 
 
 def _times(
-    client: Client, texts: list[str], seed: int, name: str, *, stop: bool = True, cancel: bool = True
+    client: Client,
+    texts: list[str],
+    seed: int,
+    name: str,
+    *,
+    stop: bool = True,
+    cancel: bool = True,
+    before: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Say each text; with `stop` from stillness, else while the one before is played, or (without `cancel`) once it idles."""
+    """Say each text; with `stop` from stillness, else while the one before is played, or (without `cancel`) once it idles.
+
+    With `before` each text interrupts a story of these scenes.
+    """
     first_s: list[float] = []
     generate_s: list[float] = []
     refused: list[str] = []
     for i, text in enumerate(texts):
+        if before:
+            client.story(before, loop=True, seed=seed + i, wait=False)
+            client.wait_for("moving", timeout_s=10)
+            time.sleep(STORY_S)
         first_ms, generate_ms = _first_motion(client, f"{name}-{i}", text, seed + i)
         if first_ms is None:
             refused.append(text)

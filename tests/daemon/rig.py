@@ -21,14 +21,20 @@ class Rig:
     """One robot on a simulated bus, with the front's end of the shared memory in `link`."""
 
     def __init__(
-        self, robot: RobotModel, link: BusLink, *faults: Fault, start_rad: np.ndarray | None = None, watch_front=False
+        self,
+        robot: RobotModel,
+        link: BusLink,
+        *faults: Fault,
+        start_rad: np.ndarray | None = None,
+        watch_front=False,
+        slow_every=0,
     ) -> None:
         self.robot, self.link = robot, link
         self.clock = VirtualClock()
         start = None if start_rad is None else start_rad.tolist()
         self.sim = SimBus(robot, FaultSchedule(tuple(faults)), start)
         self.port = SimPort(self.sim, self.clock)
-        self.bus = ServoBus(self.port, robot.servos, self.clock)
+        self.bus = ServoBus(self.port, robot.servos, self.clock, slow_every=slow_every)
         self.streamer = Streamer(robot, self.bus, link, self.clock, watch_front=watch_front)
         self.records: list[np.void] = []
         self._due_s = 0.0

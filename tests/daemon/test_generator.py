@@ -112,6 +112,21 @@ def test_a_generator_that_is_silent_is_a_named_failure(endpoint):
     assert ask(endpoint, call).code == "generator_timeout"
 
 
+def test_a_generator_that_was_started_since_is_not_blamed_for_what_the_one_before_left(endpoint):
+    """It was killed right after its start: the supervisor restarts a generator that leaves a text unanswered."""
+
+    async def call(client):
+        asking = asyncio.create_task(client.generate("wave", 0, None, 0.2))
+        await asyncio.sleep(0.05)
+        client.mark_starting()
+        client.mark_ready("k")
+        with pytest.raises(GeneratorError):
+            await asking
+        return client.timeouts
+
+    assert ask(endpoint, call) == 0
+
+
 def test_a_generator_that_is_down_fails_at_once(endpoint):
     async def call(client):
         client.mark_down("ended with status 1")

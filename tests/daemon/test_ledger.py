@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.events import Accepted, Cancelled, Done
-from daemon.ledger import Ledger, Route, split_route
-from daemon.requests import Say
+from daemon.events import Accepted, Cancelled, Done, Progress
+from daemon.ledger import KEPT_SCENES, Ledger, Route, split_route
+from daemon.requests import Say, SceneOf, Story
 from daemon.wire import WireError
 
 DEALER, REQ = Route((b"d",), once=False), Route((b"r", b""), once=True)
@@ -84,3 +84,13 @@ def test_memory_is_bounded(ledger):
     for i in range(3000):
         ledger.emit(ledger.open(Say(id=str(i), text="wave"), DEALER, 0), done())
     assert len(ledger._entries) <= 1025
+
+
+def test_a_story_without_end_fills_no_memory(ledger, heard):
+    """Every scene is told as it comes; who asks later hears the first word and the newest scenes."""
+    entry = ledger.open(Story(id="s", scenes=[SceneOf(text="nod")], loop=True), DEALER, 0)
+    ledger.emit(entry, accepted())
+    for n in range(1000):
+        ledger.emit(entry, Progress(plan_id=1, stage="scene", scene=1, text=f"nod {n}", status="accepted"))
+    assert len(heard) == 1001 and len(entry.events) == 1 + KEPT_SCENES
+    assert isinstance(entry.events[0], Accepted) and entry.events[-1].text == "nod 999"

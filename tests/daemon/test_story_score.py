@@ -150,6 +150,7 @@ def test_tempo_steps_over_the_borders_of_pieces_as_within(tempo, sizes):
 @pytest.mark.parametrize("code", ["generator_down", "generator_timeout"])
 def test_a_generator_that_is_lost_and_comes_back_loses_no_scene(code, monkeypatch):
     monkeypatch.setattr(story_score, "RETRY_S", 0.001)
+    monkeypatch.setattr(story_score, "AFTER_TIMEOUT_S", 0.001)
 
     async def run() -> None:
         teller = Teller()

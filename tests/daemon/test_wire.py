@@ -44,6 +44,7 @@ GOOD_CMD = [
         b'{"type": "edit", "text": "wave", "plan": 3, "parts": ["upper"], "start_s": 1, "end_s": 2}',
         requests.Edit(text="wave", plan=3, parts=["upper"], start_s=1, end_s=2),
     ),
+    ("replay", b'{"type": "replay", "file": "a.npz"}', requests.Replay(file="a.npz")),
     ("status", b'{"type":"status","id":"s"}', requests.Status(id="s")),
     ("cancel", b'{"type":"cancel","command":"a"}', requests.Cancel(command="a")),
 ]
@@ -90,6 +91,7 @@ BAD_CMD = [
     ("an edit of two", b'{"type": "edit", "text": "wave", "plan": 1, "gesture": "a"}', "bad_value", ["one of"]),
     ("an edit that ends first", b'{"type": "edit", "text": "a", "plan": 1, "start_s": 2, "end_s": 1}', "bad_value", ["`end_s` 1"]),
     ("an edit without words", b'{"type": "edit", "text": " ", "plan": 1}', "bad_value", ["`text`"]),
+    ("a replay of nothing", b'{"type": "replay"}', "bad_value", ["`command`, `plan` and `file`"]),
     ("an id too long", b'{"type": "status", "id": "' + b"i" * 200 + b'"}', "bad_value", ["128"]),
 ]  # fmt: skip
 

@@ -13,7 +13,7 @@ from daemon import events as ev
 from daemon.client import CancelledByError, RefusedError
 from daemon.requests import KeyPoseOf, SceneOf, Story
 from mmm_core.checkpoint import MODEL_FILE
-from tests.end_to_end.harness import RunningDaemon
+from tests.end_to_end.harness import RunningDaemon, mmmd
 from tests.end_to_end.test_start_and_end import child_pid
 
 pytestmark = [
@@ -25,7 +25,9 @@ pytestmark = [
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """The tests of this module share a daemon; its audit must be clean at the end."""
-    daemon = RunningDaemon("--motions", str(tmp_path_factory.mktemp("motions")), model=True)
+    motions = tmp_path_factory.mktemp("motions")
+    daemon = RunningDaemon("--motions", str(motions), model=True)
+    daemon.motions = motions
     try:
         yield daemon.until_ready()
         assert daemon.terminate() == 0
@@ -121,6 +123,22 @@ def test_an_edit_of_one_arm_moves_that_arm_and_a_bad_one_says_why(run):
         with pytest.raises(RefusedError) as caught:
             robot.edit("swim across the lake", plan=plan)
         assert caught.value.code == "out_of_scope"
+
+
+def test_what_was_played_is_played_again_and_so_is_a_file(run):
+    with run.client() as robot:
+        first = robot.say("nod twice", seconds=2.0)
+        again = robot.replay(plan=first.events[0].plan_id)
+        assert again.done is not None and again.done.frames == pytest.approx(first.done.frames, abs=30)
+        assert robot.replay(command=first.id, tempo=2.0).done.frames < 0.7 * first.done.frames
+        made = mmmd("generate", "bow", "--seconds", "2", "--out", str(run.motions / "bow.npz"))
+        assert made.returncode == 0, made.stderr
+        assert robot.replay(file="bow.npz").done.frames == pytest.approx(200, abs=30)
+        (run.motions / "broken.npz").write_bytes(b"no motion")
+        for file in ("broken.npz", "../bow.npz", "nothing.npz"):
+            with pytest.raises(RefusedError) as caught:
+                robot.replay(file=file)
+            assert caught.value.code == "bad_file"
 
 
 def test_the_commands_of_the_shell(run, tmp_path):

@@ -121,6 +121,6 @@ class TestTheMeasure:
 def mirror_image(m: Motion) -> Motion:
     flip = np.array([-1, 1, 1], np.float32)
     return Motion(
-        m.joints_m[:, list(MIRROR)] * flip, m.fps, m.head_quat_wxyz * np.array([1, 1, -1, -1], np.float32), -m.forearm_twist_rad[:, ::-1],
-        mirror(m.features), m.tokens, m.text, m.seed, m.status, m.scope_score,
+        m.joints_m[:, list(MIRROR)] * flip, m.fps, m.head_quat_wxyz * np.array([1, 1, -1, -1], np.float32),
+        -m.forearm_twist_rad[:, ::-1], mirror(m.features), m.tokens, m.text, m.seed, m.status, m.scope_score,
     )  # fmt: skip

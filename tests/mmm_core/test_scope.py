@@ -115,11 +115,23 @@ def test_a_refusal_says_why(engine: Engine, text: str, why: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["wave with your left hand", "clap your hands", "nod twice", "could you play the drums"]
+    "text",
+    [
+        "wave with your left hand",
+        "clap your hands",
+        "nod twice",
+        "could you play the drums",
+        "raise your arm(s)!",
+        "wave -> bow",
+    ],
 )
 def test_what_was_learnt_is_taken(engine: Engine, text: str) -> None:
     verdict = engine.understand(text)[1]
     assert verdict.status == "accepted" and verdict.score > 0.9 and not verdict.reason
+
+
+def test_a_picture_beside_words_is_no_reason_to_refuse(engine: Engine) -> None:
+    assert engine.understand("wave 👋")[1].status != "rejected"
 
 
 class TestPartOfACommand:

@@ -1,0 +1,191 @@
+"""Slower before a servo trips: by temperature, by supply voltage, by lasting current. Part of the bus process; no I/O.
+
+What is played slows down along its own path, for all joints alike, so that it stays free of self-contact and comes to its
+end later; stops and the gate are as quick as ever. The share of full speed changes slowly, and `status` tells it with its
+cause.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.reading import UNKNOWN, BusReading
+from daemon.errors import CommandError
+from daemon.shared import Setpoint
+
+Array = NDArray[np.float64]
+
+LEAST_SHARE = 0.3
+"""Slower than this helps little: gravity heats a raised arm that stands still as well."""
+HOT_C, HOTTEST_C = 10.0, 3.0
+"""Below the servo's temperature limit: where slowing begins, and where it is greatest."""
+LOW_V, LOWEST_V = 0.5, 0.1
+"""The same above the servo's lower voltage limit."""
+HIGH_CURRENT, HIGHEST_CURRENT = 0.7, 0.95
+"""The same as shares of the current limit (of full load where a servo measures no current)."""
+CURRENT_S, VOLTAGE_S = 2.0, 0.5
+"""Time constants of the means that are judged: a start or a stop takes more for a moment, and may."""
+CHANGE_PER_S = 0.5
+FULL_LOAD = 1000
+
+
+class DeratedBy(IntEnum):
+    """What slows the robot down."""
+
+    NOTHING = 0
+    TEMPERATURE = 1
+    VOLTAGE = 2
+    CURRENT = 3
+
+
+@dataclass(frozen=True)
+class ServoLimits:
+    """Limits of S servos as their own registers say; infinite or zero where a servo has none.
+
+    Attributes:
+        temperature_c: (S,) at which it trips.
+        voltage_raw: (S,) below which it trips, 0.1 V.
+        current_raw: (S,) unit of its reading.
+    """
+
+    temperature_c: Array
+    voltage_raw: Array
+    current_raw: Array
+
+    @classmethod
+    def none(cls, n: int) -> ServoLimits:
+        """Nothing is known, nothing slows."""
+        return cls(np.full(n, np.inf), np.zeros(n), np.full(n, np.inf))
+
+
+class Registers(Protocol):
+    """What `read_limits` needs of a bus."""
+
+    @property
+    def ids(self) -> Sequence[int]:
+        """Of its servos, in the order of the reading."""
+        ...
+
+    def read_item(self, servo_id: int, name: str) -> int:
+        """The value of a register."""
+        ...
+
+
+def read_limits(bus: Registers) -> ServoLimits:
+    """What the servos' registers say; a servo without one of them has no limit there, or full load.
+
+    Raises:
+        LinkError, ServoFaultError: a servo does not answer, or with an error.
+    """
+
+    def values(name: str, without: float) -> Array:
+        found: list[float] = []
+        for servo_id in bus.ids:
+            try:
+                found.append(float(bus.read_item(servo_id, name)) or without)
+            except CommandError:
+                found.append(without)
+        return np.array(found)
+
+    return ServoLimits(
+        values("temperature_limit", np.inf), values("min_voltage_limit", 0.0), values("current_limit", FULL_LOAD)
+    )
+
+
+class Derating:
+    """The share of full speed, brought up to date once a cycle.
+
+    Attributes:
+        share: 1 is full speed.
+        by: what it is lowered for.
+        row: of the servo that needs it most.
+    """
+
+    def __init__(self, n_servos: int, period_s: float) -> None:
+        self._period_s = period_s
+        self.limits = ServoLimits.none(n_servos)
+        self._current = np.zeros(n_servos)
+        self._voltage = np.full(n_servos, np.nan)
+        self.share, self.by, self.row = 1.0, DeratedBy.NOTHING, 0
+
+    def update(self, reading: BusReading) -> bool:
+        """Judge a reading; whether the cause has changed."""
+        known_v = reading.voltage_raw != UNKNOWN
+        fresh = np.isnan(self._voltage) & known_v
+        self._voltage[fresh] = reading.voltage_raw[fresh]
+        self._voltage += (self._period_s / VOLTAGE_S) * np.where(known_v, reading.voltage_raw - self._voltage, 0.0)
+        load = np.where(reading.valid, np.abs(reading.current_raw), self._current)
+        self._current += (self._period_s / CURRENT_S) * (load - self._current)
+        hot = reading.temperature_c != UNKNOWN
+        below_c = np.where(hot, self.limits.temperature_c - reading.temperature_c, np.inf)
+        above_v = np.where(np.isnan(self._voltage), np.inf, 0.1 * (self._voltage - self.limits.voltage_raw))
+        shares = np.stack([
+            _between(below_c, HOTTEST_C, HOT_C),
+            _between(above_v, LOWEST_V, LOW_V),
+            _between(-self._current / self.limits.current_raw, -HIGHEST_CURRENT, -HIGH_CURRENT),
+        ])  # fmt: skip
+        worst, row = divmod(int(shares.argmin()), shares.shape[1])
+        wanted = float(shares[worst, row])
+        before = self.by
+        self.by, self.row = (DeratedBy(worst + 1), row) if wanted < 1.0 else (DeratedBy.NOTHING, 0)
+        step = CHANGE_PER_S * self._period_s
+        self.share += min(step, max(-step, wanted - self.share))
+        return self.by is not before
+
+
+def _between(x: Array, low: float, high: float) -> Array:
+    """Shares that fall from 1 at `high` to `LEAST_SHARE` at `low`."""
+    return LEAST_SHARE + (1 - LEAST_SHARE) * np.clip((x - low) / (high - low), 0.0, 1.0)
+
+
+class Source(Protocol):
+    """Where setpoints come from."""
+
+    def take_setpoint(self) -> Setpoint | None:
+        """The next one; None when there is none."""
+        ...
+
+
+class SlowedSetpoints:
+    """Setpoints at a share of their rate, between two of them where a cycle falls between.
+
+    At full speed they pass as they are, so that a replay is the same bit for bit.
+    """
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self._pair: tuple[Setpoint, Setpoint] | None = None
+        self._phase = 0.0
+
+    def reset(self) -> None:
+        """A new motion begins."""
+        self._pair, self._phase = None, 0.0
+
+    def take(self, share: float) -> Setpoint | None:
+        """The setpoint of this cycle; None when it has not come yet."""
+        if self._pair is None:
+            first = self._source.take_setpoint()
+            if share >= 1.0 or first is None or first.last:
+                return first
+            second = self._source.take_setpoint()
+            if second is None:
+                return first
+            self._pair, self._phase = (first, second), 0.0
+            return first
+        self._phase += share
+        while self._phase >= 1.0:
+            before = self._pair[1]
+            following = None if before.last else self._source.take_setpoint()
+            if following is None:  # the end, or the front is late: from here it goes on as from anywhere
+                self.reset()
+                return before
+            self._pair, self._phase = (before, following), self._phase - 1.0
+        a, b = self._pair
+        q_rad = a.q_rad + self._phase * (b.q_rad - a.q_rad)
+        return Setpoint(a.plan_id, a.frame, False, q_rad)
