@@ -68,21 +68,27 @@ def held_before(motion: Motion, n: int) -> Motion:
     return Motion(**fields)
 
 
-@settings(max_examples=7)
-@given(names, st.integers(0, 10_000), kinds, st.integers(1, 2))
-def test_shifting_time_shifts_the_path_whatever_the_motion(name: str, seed: int, kind: str, blocks: int) -> None:
-    """Limits, contacts and interventions included: held for whole blocks more, the same path comes that much later.
+@pytest.mark.parametrize("name", list(RETARGETERS))
+def test_shifting_time_shifts_the_path_whatever_the_motion(name: str) -> None:
+    """Limits, contacts and interventions included: held for a block more, the same path comes that much later.
 
-    While the first frame is held, joints that hardly show come from the rest pose; motions where they still do are left out.
+    Left out are motions whose hold does not bring the robot to one place: joints that hardly show still come from the
+    rest pose, or the robot is too slow to have arrived.
     """
-    r, motion = RETARGETERS[name], random_motion(seed, 50, kind)
-    shift = blocks * BLOCK_FRAMES
-    before, after = held_before(motion, BLOCK_FRAMES), held_before(motion, BLOCK_FRAMES + shift)
-    wanted, wanted_late = (r.poses(read_human(m)).q_rad for m in (before, after))
-    assume(np.abs(wanted_late[BLOCK_FRAMES + shift :] - wanted[BLOCK_FRAMES:]).max() < 1e-6)
-    early, late = r.retarget(before).q_rad, r.retarget(after).q_rad
-    n = BLOCK_FRAMES + 50
-    np.testing.assert_allclose(late[shift + BLOCK_FRAMES : shift + n], early[BLOCK_FRAMES:n], atol=1e-5)
+    r, compared = RETARGETERS[name], 0
+    for seed in range(4):
+        for kind in ("smooth", "teleport"):
+            motion = random_motion(seed, 50, kind)
+            before, after = held_before(motion, BLOCK_FRAMES), held_before(motion, 2 * BLOCK_FRAMES)
+            wanted, wanted_late = (r.poses(read_human(m)).q_rad[BLOCK_FRAMES:] for m in (before, after))
+            early, late = r.retarget(before).q_rad, r.retarget(after).q_rad[BLOCK_FRAMES:]
+            arrived = slice(BLOCK_FRAMES - 2, BLOCK_FRAMES)
+            same_start = np.abs(late[arrived] - early[arrived]).max() < 1e-9
+            if same_start and np.abs(wanted_late[BLOCK_FRAMES:] - wanted).max() < 1e-9:
+                path = slice(BLOCK_FRAMES, BLOCK_FRAMES + 50)
+                np.testing.assert_allclose(late[path], early[path], atol=1e-5)
+                compared += 1
+    assert compared >= 3
 
 
 @settings(max_examples=6)
