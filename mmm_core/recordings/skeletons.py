@@ -70,7 +70,10 @@ def find_joints(path: Path, names: Sequence[str], parents: Sequence[int]) -> dic
     while joint >= 0 and joint != found["pelvis"]:
         spine.insert(0, joint)
         joint = parents[joint]
-    if spine:
+    named = [[joint for joint in spine if plain[joint] in (f"spine{i}", f"spine{i}neck")] for i in (1, 2, 3)]
+    if all(named):
+        found |= {f"spine{i}": joints[0] for i, joints in enumerate(named, 1)}
+    elif spine:
         found |= {"spine1": spine[0], "spine2": spine[len(spine) // 2], "spine3": spine[-1]}
     return found
 
