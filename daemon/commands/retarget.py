@@ -36,10 +36,11 @@ def retarget(
     A folder is gone through on all cores. Cut short, it goes on where it was when called again. Files that cannot be used
     are listed at the end and in failed.jsonl.
 
-    Examples:
-        mmmd retarget wave.npz --robot op3 --out ticks.npz
-        mmmd retarget HumanML3D --robot toddlerbot --out paths --jobs 8
-        mmmd retarget HumanML3D --robot toddlerbot --out paths --dask tcp://10.0.0.5:8786
+    Example: mmmd retarget wave.npz --robot op3 --out ticks.npz
+
+    Example, a data set: mmmd retarget HumanML3D --robot toddlerbot --out paths --jobs 8
+
+    Example, on a Dask cluster: mmmd retarget HumanML3D --robot toddlerbot --out paths --dask tcp://10.0.0.5:8786
 
     Args:
         motion: the file, or the folder.
