@@ -27,6 +27,7 @@ FAULT_GRACE_S = 0.1
 _CONTACT_EVERY = 5
 _MAX_DETAILS = 20
 _MAX_POSES = 500_000
+_POSES_AT_ONCE = 1000
 
 
 @dataclass
@@ -156,7 +157,8 @@ class Audit:
             self._contact = SelfContact(self.robot, margin_m=0.0)
         ticks = np.array(self._poses, np.int32).reshape(-1, len(self._tracks))
         poses = self._ticks.tick_to_rad(ticks)
-        self._contacts += int(self._contact.frames(poses).sum())
+        for start in range(0, len(poses), _POSES_AT_ONCE):
+            self._contacts += int(self._contact.frames(poses[start : start + _POSES_AT_ONCE]).sum())
         self._poses_checked += len(poses)
         self._poses = array("i")
 
