@@ -143,12 +143,12 @@ def audited_plans(log: Log, robot: RobotModel) -> dict[int, tuple[int, int]]:
     counts: dict[int, tuple[int, int]] = {}
     torque = False
     for cycle in log.cycles:
-        before = (audit.goals, sum(audit.violations.values()))
+        before, t_s = (audit.goals, sum(audit.violations.values())), cycle.t_mono_ns * 1e-9
         for servo, tick, present in zip(robot.servos, cycle.goal_tick, cycle.present_tick, strict=True):
             if cycle.torque != torque:
-                audit.torque(0.0, servo.servo_id, cycle.torque, tick, present)
+                audit.torque(t_s, servo.servo_id, cycle.torque, tick, present)
             if cycle.torque:
-                audit.goal(0.0, servo.servo_id, tick, True)
+                audit.goal(t_s, servo.servo_id, tick, True)
         torque = cycle.torque
         goals, violations = counts.get(cycle.plan_id, (0, 0))
         after = (audit.goals, sum(audit.violations.values()))

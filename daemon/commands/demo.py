@@ -90,6 +90,7 @@ def demo(
     console.print(f"replay: {replay['same']} of {replay['goals']} goal sets: {same}")
     console.print("written: " + ", ".join(str(p) for p in (log_file, *pictures, audit_file)))
     good = daemon_status == 0 and replay["identical"] and not audit["violations"] and not audit["self_contacts"]
+    good = good and not any(violations for _, violations in audited.values())
     return 0 if good and all(one.accepted is not None for one in shown) else 1
 
 
