@@ -28,8 +28,8 @@ def bench(
     each robot, bounds and contacts checked again. first-motion: text to first moving servo frame, warm, through the
     daemon. barge-in: overlapping commands and stops at random instants. seams: jerk and steps where motions meet, and
     closure of loops. estop: e-stop to torque-off bytes with busy cores. audit: many texts through the daemon's bus side
-    on two robots, every goal checked against the limits. bus: codec and servo bus against a wire kept on a pty, beside
-    other drivers where they are installed.
+    on every robot, also under faults, every goal checked against the limits. bus: codec and servo bus against a wire
+    kept on a pty, beside other drivers where they are installed.
 
     Example: mmmd bench first-motion --json
 
