@@ -17,7 +17,7 @@ from typing import Any, Literal, Self, Unpack
 import zmq
 import zmq.asyncio
 
-from daemon.client_compositions import CompositionCalls, patience_s
+from daemon.client_compositions import FIRST_REPLY_TIMEOUT_S, REPLY_TIMEOUT_S, CompositionCalls, patience_s
 from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
@@ -42,8 +42,6 @@ from daemon.requests import (
 )
 from daemon.wire import decode_event, encode
 
-REPLY_TIMEOUT_S = 5.0
-FIRST_REPLY_TIMEOUT_S = 15.0
 LONGEST_WAIT_S = 1e9
 
 

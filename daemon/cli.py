@@ -100,12 +100,7 @@ def _guarded(name: str, arguments: list[str]) -> int:
 
 def _load(name: str) -> Callable[..., int | None]:
     module_name, _, function_name = COMMANDS[name].target.partition(":")
-    try:
-        return getattr(importlib.import_module(module_name), function_name)
-    except ModuleNotFoundError as error:
-        if error.name == module_name:
-            raise NotImplementedError(f"`mmmd {name}` is not part of this version") from None
-        raise
+    return getattr(importlib.import_module(module_name), function_name)
 
 
 def _run(name: str, command: Callable[..., int | None], arguments: list[str]) -> int:
@@ -125,7 +120,7 @@ def _explain(error: Exception) -> int:
 
     if isinstance(error, (CommandError, ConfigError, RobotFileError, UnknownRobotError)):
         return _failed(str(error), BAD_USE)
-    if isinstance(error, (DaemonError, MmmError, RetargetError, NotImplementedError)):
+    if isinstance(error, (DaemonError, MmmError, RetargetError)):
         return _failed(str(error), int(getattr(error, "exit_status", FAILED)))
     if isinstance(error, OSError):
         return _failed(str(error), FAILED)

@@ -10,7 +10,7 @@ from typing import Literal, Self, Unpack
 
 import zmq
 
-from daemon.client_compositions import CompositionCalls, patience_s
+from daemon.client_compositions import FIRST_REPLY_TIMEOUT_S, REPLY_TIMEOUT_S, CompositionCalls, patience_s
 from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
@@ -37,10 +37,6 @@ from daemon.requests import (
 )
 from daemon.wire import decode_event, encode
 
-REPLY_TIMEOUT_S = 5.0
-"""For a reply that no motion has to be waited for."""
-FIRST_REPLY_TIMEOUT_S = 15.0
-"""For the first word about a text: longer than the daemon waits for its generator."""
 LONGEST_POLL_S = 60.0
 """A wait without limit is polled in turns: what ZeroMQ takes is a whole number of milliseconds."""
 _NOT_MOVING = ("limp", "idle", "holding", "fault", "estop")

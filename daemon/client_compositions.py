@@ -9,6 +9,10 @@ from typing import Generic, TypeVar, Unpack
 from daemon.requests import Edit, Inbetween, KeyPoseOf, Play, PlayOptions, Replay, SceneOf, Story
 
 R = TypeVar("R")
+REPLY_TIMEOUT_S = 5.0
+"""For a reply that no motion has to be waited for."""
+FIRST_REPLY_TIMEOUT_S = 15.0
+"""For the first word about a text: longer than the daemon waits for its generator."""
 MOTION_TIMEOUT_S = 60.0
 """For a motion to end: the longest is 10 s, before which the robot may have to be armed."""
 

@@ -111,10 +111,8 @@ def _request(
     Raises:
         CommandError: a value is not allowed.
     """
-    from daemon.requests import MAX_SEED, Edit
+    from daemon.requests import Edit
 
-    if not 0 <= seed <= MAX_SEED:
-        raise CommandError(f"--seed {seed}; allowed: 0 to {MAX_SEED}")
     kind, _, name = motion.partition(":")
     source: dict[str, Any] = {"file": motion}
     if kind in ("gesture", "command"):

@@ -57,8 +57,13 @@ def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
     """A request with the flags of the command line.
 
     Raises:
-        CommandError: the flags contradict each other.
+        CommandError: the flags contradict each other, or the seed is none.
     """
+    from daemon.requests import MAX_SEED
+
+    seed = fields.get("seed", 0)
+    if not 0 <= seed <= MAX_SEED:
+        raise CommandError(f"--seed {seed}; allowed: 0 to {MAX_SEED}")
     try:
         return kind(id=how.id or uuid.uuid4().hex, **fields, **how.options())
     except ValueError as error:
@@ -67,8 +72,7 @@ def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
 
 def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
     """Send a request and print its events; the exit status."""
-    from daemon.client import FIRST_REPLY_TIMEOUT_S
-    from daemon.client_compositions import patience_s
+    from daemon.client_compositions import FIRST_REPLY_TIMEOUT_S, patience_s
     from daemon.events import Accepted, Cancelled, Failed, Refusal
     from daemon.wire import WireError, check_request, encode
 

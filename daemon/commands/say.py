@@ -9,7 +9,6 @@ from tyro.conf import OmitArgPrefixes
 
 from daemon.commands.connection import Connection
 from daemon.commands.playing import PlayFlags, built, play
-from daemon.errors import CommandError
 
 
 def say(
@@ -36,8 +35,6 @@ def say(
         json: print each event as one JSON object a line.
         at: where the daemon is.
     """
-    from daemon.requests import MAX_SEED, Say
+    from daemon.requests import Say
 
-    if not 0 <= seed <= MAX_SEED:
-        raise CommandError(f"--seed {seed}; allowed: 0 to {MAX_SEED}")
     return play(built(Say, how, text=text, seed=seed, seconds=seconds), at, wait=wait, json=json)

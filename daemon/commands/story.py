@@ -42,12 +42,10 @@ def story(
         json: print each event as one JSON object a line.
         at: where the daemon is.
     """
-    from daemon.requests import MAX_SEED, SceneOf, Story
+    from daemon.requests import SceneOf, Story
 
     if bool(texts) == (scenes is not None):
         raise CommandError('story: give texts or --scenes; example: mmmd story "wave" "bow"')
-    if not 0 <= seed <= MAX_SEED:
-        raise CommandError(f"--seed {seed}; allowed: 0 to {MAX_SEED}")
     parts = [SceneOf(text=text) for text in texts] if scenes is None else _scenes(scenes)
     return play(built(Story, how, scenes=parts, seed=seed), at, wait=wait, json=json)
 
@@ -76,10 +74,8 @@ def inbetween(
         json: print each event as one JSON object a line.
         at: where the daemon is.
     """
-    from daemon.requests import MAX_SEED, Inbetween
+    from daemon.requests import Inbetween
 
-    if not 0 <= seed <= MAX_SEED:
-        raise CommandError(f"--seed {seed}; allowed: 0 to {MAX_SEED}")
     request = built(Inbetween, how, poses=[_pose(asked) for asked in poses], text=text, seed=seed)
     return play(request, at, wait=wait, json=json)
 
