@@ -20,6 +20,7 @@ from mmm_core.motion import FPS, Motion
 from mmm_core.packed import Precision, fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
+from mmm_core.sequence import COMMAND_STRIDE, commands_of, joined
 from mmm_core.text import TextEncoder, TextStates
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
 
@@ -94,9 +95,13 @@ class Engine:
         if verdict.status == "rejected":
             return Generation(no_motion(text, seed, verdict), understood(verdict), verdict.reason, clock.laps_ms)
         with torch.inference_mode():
-            if n_frames is None:
-                n_frames = self.predicted_frames(states)
-            ids = self._best_ids(states, tokens_for_frames(n_frames), seed, candidates)
+            done = verdict.kept or text
+            commands = commands_of(self, mirror_words(done) if is_mirrored else done, states, n_frames)
+            rows = [
+                self._best_ids(c.states, c.n_tokens, (seed + i * COMMAND_STRIDE) % 2**31, candidates)
+                for i, c in enumerate(commands)
+            ]
+            ids = joined(self, commands, rows, seed)
             clock.lap("decode")
             motion = self.motion(ids, text, seed, verdict, n_frames, is_mirrored=is_mirrored)
             clock.lap("motion")

@@ -8,8 +8,8 @@ a moving window, so motion begins with the first segment and a story may last fo
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
-from itertools import islice, pairwise
+from dataclasses import dataclass, field
+from itertools import islice
 
 import torch
 from torch import Tensor
@@ -18,14 +18,13 @@ from mmm_core.engine import Engine, check_seed, no_motion
 from mmm_core.errors import GenerationError
 from mmm_core.features import Root, root_after
 from mmm_core.motion import FPS, Motion
-from mmm_core.sampling import SamplingSettings, empty_row, fill
+from mmm_core.sampling import empty_row, fill
 from mmm_core.scope import ScopeVerdict
+from mmm_core.sequence import COMMAND_STRIDE, Command, commands_of, joined, transitions
 from mmm_core.streaming import StreamingDecoder
 from mmm_core.text import TextStates
-from mmm_core.tokens import MAX_TOKENS, frames_for_seconds, tokens_for_frames
+from mmm_core.tokens import frames_for_seconds
 
-TRANSITION_TOKENS = 2
-"""Generated between two segments: 0.4 s, as in the released model."""
 READ_AHEAD = 8
 """Segments made in one batch once the first is on its way."""
 SCENE_STRIDE = 104_729
@@ -44,8 +43,8 @@ class Scene:
 class _Segment:
     scene: Scene
     verdict: ScopeVerdict
-    text: TextStates
-    ids: Tensor  # (L, C); none when rejected
+    commands: list[Command]  # none when rejected
+    ids: Tensor  # (L, C)
 
 
 def tell(engine: Engine, scenes: Iterable[Scene], *, seed: int = 0) -> Iterator[Motion]:
@@ -63,7 +62,7 @@ def tell(engine: Engine, scenes: Iterable[Scene], *, seed: int = 0) -> Iterator[
     for batch in _batches(scenes):
         segments = _segments(engine, batch, seed)
         taken = [s for s in segments if len(s.ids)]
-        between = iter(_transitions(engine, [last, *taken] if last else taken, seed))
+        between = iter(_between(engine, [last, *taken] if last else taken, seed))
         for segment in segments:
             if not len(segment.ids):
                 yield no_motion(segment.scene.text, seed, segment.verdict)
@@ -86,6 +85,7 @@ class Told:
     Attributes:
         n_scenes: scenes so far, those left out included.
         text: of the last one that was not left out.
+        command: the last of that text's commands.
         segment: its ids, L rows of C.
         window: ids that the decoder still needs, rows of C.
         n_context: how many of these have their frames already.
@@ -93,6 +93,7 @@ class Told:
 
     n_scenes: int = 0
     text: str = ""
+    command: str = ""
     segment: list[list[int]] = field(default_factory=list)
     window: list[list[int]] = field(default_factory=list)
     n_context: int = 0
@@ -123,22 +124,23 @@ def tell_on(
         _ids_of(rows, n_codebooks, engine.model.transformer.ids.n_codes) for rows in (told.segment, told.window)
     )
     decoder = StreamingDecoder(engine.model.tokenizer, window, told.n_context)
-    text, segment, new = told.text, before, before[:0]
+    text, command, segment, new = told.text, told.command, before, before[:0]
     verdict = ScopeVerdict("accepted", 1.0, "", "")
     if scene is not None:
         made = _segments(engine, [(told.n_scenes, scene)], seed)[0]
         verdict = made.verdict
         if len(made.ids):
-            text, segment, new = scene.text, made.ids, made.ids
+            text, command, segment, new = scene.text, made.commands[-1].text, made.ids, made.ids
             if len(before):
-                left = _Segment(Scene(told.text), verdict, engine.understand(told.text)[0], before)
-                new = torch.cat([*_transitions(engine, [left, made], seed), made.ids])
+                said = Command(told.command, engine.understand(told.command)[0], len(before))
+                left = _Segment(Scene(told.text), verdict, [said], before)
+                new = torch.cat([*_between(engine, [left, made], seed), made.ids])
     features = torch.cat([decoder.push(new), *([decoder.finish()] if last else [])]).numpy()
     name = text if scene is None else scene.text
     some = len(features) > 0
     piece = engine.motion_of_features(features, new, name, seed, verdict) if some else no_motion(name, seed, verdict)
     after = Told(
-        told.n_scenes + (scene is not None), text, segment.tolist(), decoder.window.tolist(), decoder.n_context
+        told.n_scenes + (scene is not None), text, command, segment.tolist(), decoder.window.tolist(), decoder.n_context
     )
     return piece, after, verdict
 
@@ -152,33 +154,9 @@ def _ids_of(rows: list[list[int]], n_codebooks: int, n_codes: int) -> Tensor:
     return torch.tensor(rows, dtype=torch.int64).reshape(len(rows), n_codebooks)
 
 
-def _transitions(engine: Engine, segments: list[_Segment], seed: int) -> list[Tensor]:
-    """(2, C) ids between neighbours, for the left one's text: half of each row is the context. One step, one batch."""
-    if len(segments) < 2:
-        return []
-    transformer = engine.model.transformer
-    rows = [transition_row(a.ids, b.ids, transformer.ids.mask) for a, b in pairwise(segments)]
-    text = TextStates.stacked([s.text for s in segments[:-1]])
-    settings = replace(engine.settings, fewest_steps=1, most_steps=1)
-    filled = fill(transformer, text, rows, [seed] * len(rows), settings)
-    return [new[(row == transformer.ids.mask).any(-1)] for new, row in zip(filled, rows, strict=True)]
-
-
-def transition_row(left: Tensor, right: Tensor, mask_id: int) -> Tensor:
-    """End of `left`, [MASK]s, beginning of `right`."""
-    hole = left.new_full((TRANSITION_TOKENS, left.shape[1]), mask_id)
-    return torch.cat([left[len(left) - _half(left) :], hole, right[: _half(right)]])
-
-
-def official_transition_settings(settings: SamplingSettings) -> SamplingSettings:
-    """As the released code fills transitions: one step at temperature 1."""
-    return replace(settings, official=True, most_steps=1, fewest_steps=1, temperature=1.0)
-
-
-def _half(ids: Tensor) -> int:
-    """Half of a row, as context; the longest rows give one token less, so that both halves and the hole fit."""
-    half = len(ids) // 2
-    return half - 1 if 2 * half >= MAX_TOKENS - 1 else half
+def _between(engine: Engine, segments: list[_Segment], seed: int) -> list[Tensor]:
+    """(2, C) ids between neighbouring segments."""
+    return transitions(engine, [s.ids for s in segments], [s.commands[-1].states for s in segments], seed)
 
 
 def _batches(scenes: Iterable[Scene]) -> Iterator[list[tuple[int, Scene]]]:
@@ -191,22 +169,29 @@ def _batches(scenes: Iterable[Scene]) -> Iterator[list[tuple[int, Scene]]]:
 
 
 def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> list[_Segment]:
-    """A segment for each scene, made in one batch."""
+    """A segment for each scene; all their commands are made in one batch."""
     understood = engine.understand_all([scene.text for _, scene in scenes])
-    rows, seeds, texts = [], [], []
-    for (number, scene), (text, verdict) in zip(scenes, understood, strict=True):
-        if verdict.status != "rejected":
-            n_frames = (
-                engine.predicted_frames(text) if scene.seconds is None else frames_for_seconds(scene.seconds, FPS)
-            )
-            rows.append(empty_row(engine.model.transformer, tokens_for_frames(n_frames)))
-            seeds.append((seed + SCENE_STRIDE * number) % 2**31)
-            texts.append(text)
+    asked: list[list[Command]] = []
+    seeds: list[int] = []
+    for (number, scene), (states, verdict) in zip(scenes, understood, strict=True):
+        if verdict.status == "rejected":
+            asked.append([])
+            continue
+        n_frames = None if scene.seconds is None else frames_for_seconds(scene.seconds, FPS)
+        asked.append(commands_of(engine, verdict.kept or scene.text, states, n_frames))
+        seeds += [(seed + SCENE_STRIDE * number + COMMAND_STRIDE * i) % 2**31 for i in range(len(asked[-1]))]
+    rows = [empty_row(engine.model.transformer, c.n_tokens) for commands in asked for c in commands]
+    texts = [c.states for commands in asked for c in commands]
     made = iter(fill(engine.model.transformer, TextStates.stacked(texts), rows, seeds, engine.settings) if rows else [])
     nothing = torch.zeros(0, engine.model.tokenizer.n_codebooks, dtype=torch.int64)
     return [
-        _Segment(scene, verdict, text, nothing if verdict.status == "rejected" else next(made))
-        for (_, scene), (text, verdict) in zip(scenes, understood, strict=True)
+        _Segment(
+            scene,
+            verdict,
+            commands,
+            joined(engine, commands, [next(made) for _ in commands], seed) if commands else nothing,
+        )
+        for (_, scene), (_, verdict), commands in zip(scenes, understood, asked, strict=True)
     ]
 
 

@@ -39,7 +39,7 @@ def channel_weights() -> Tensor:
     weight[:4] = 1.0
     weight[67:193] = 1.0
     weight[list(rotation_channels((13, 14, 16, 17, 18, 19, 20, 21)))] = 4.0  # collars, arms, forearm twist
-    weight[list(rotation_channels((12, 15)))] = 4.0  # neck and head
+    weight[list(rotation_channels((3, 6, 9, 12, 15)))] = 4.0  # spine, neck and head; with 1 the trunk lost all its roll
     weight[list(rotation_channels((1, 2, 4, 5, 7, 8, 10, 11)))] = 0.3  # legs: the robot has none
     weight[193:] = 0.1
     return weight / weight.mean()

@@ -28,7 +28,7 @@ from mmm_core.official_names import rename_tokenizer, rename_transformer
 from mmm_core.quantizer import OfficialRuleQuantizer, perplexity
 from mmm_core.sampling import OFFICIAL_SAMPLING, empty_row, fill
 from mmm_core.schedule import official_counts
-from mmm_core.story import official_transition_settings, transition_row
+from mmm_core.sequence import official_transition_settings, transition_row
 from mmm_core.streaming import StreamingDecoder
 from mmm_core.text import TextStates
 from mmm_core.transformer import OFFICIAL, MotionTransformer

@@ -242,5 +242,5 @@ SOCIAL: dict[str, Family] = {
     "traffic": Family(_traffic, Words(
         ("direct (the |)traffic {n}", "act like a traffic (cop|policeman|officer) {n}", "regulate the traffic {n}", "wave the cars through {n}", "control the traffic {n}", "guide the cars {n}", "let the cars pass {n}", "play traffic police", "manage a crossing {n}", "send the cars on {n}", "stop one lane and ^wave the other through {n}", "(guide|route|direct) the (vehicles|cars) {n}", "stand in for the traffic lights {n}")), sides=BOTH, counts=(2, 3)),
     "pat_back": Family(strokes(ArmPose((0.25, -0.35, 0.9), (0.0, 0.3, 1.0), -0.8), ArmPose((0.2, -0.3, 0.95), (-0.1, -0.1, 1.0), -0.8), 0.6), Words(
-        ("pat (me on the (back|shoulder)|a friend on the back|the dog|a child on the head) {n}", "pet (the dog|a cat|the horse) {n}", "stroke the (cat|dog) {n}", "comfort me with a pat {n}", "clap me on the shoulder {n}", "give me {N} pats")), sides=ONE, counts=(2, 3)),
+        ("pat (me on the back|me on the shoulder|a friend on the back|the dog|a child on the head) {n}", "pet (the dog|a cat|the horse) {n}", "stroke the (cat|dog) {n}", "comfort me with a pat {n}", "clap me on the shoulder {n}", "give me {N} pats")), sides=ONE, counts=(2, 3)),
 }  # fmt: skip
