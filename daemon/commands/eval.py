@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mmm_core.motion import Motion
 
 PROBE_ROBOTS = ("reference", "op3")
-EvalName = Literal["probes", "scope", "real", "paper"]
+EvalName = Literal["probes", "scope", "tokenizer", "real", "paper"]
 MIRRORED_SEEDS = 2
 """Seeds with which each probe that names a side is compared with its mirror image."""
 MOST_REPEATS = 1000
@@ -48,6 +48,9 @@ def eval(
 
     scope: refusals on 487 prompts kept apart, half of which the model can do: AUROC of the score, false refusals, false
     acceptances by kind, milliseconds a decision (docs/scope.md).
+
+    tokenizer: what is left of the corpus's own motions once they are encoded and decoded: the amplitude of head and trunk, and
+    what the probes expect; the gate that `mmmd train` keeps before anything is trained on a tokenizer.
 
     real: against held-out motion of people with the evaluator of this repository: R-precision of generated against real,
     FID of generated against the tokenizer's own. --data is the folder of docs/DATA.md.
@@ -84,6 +87,8 @@ def eval(
 
     if name == "probes":
         figures, shown = _probes(model[0] if model else None, seeds)
+    elif name == "tokenizer":
+        figures = shown = _tokenizer(model[0] if model else None)
     elif name == "scope":
         figures = shown = _scope(model[0] if model else None)
     else:
@@ -163,6 +168,21 @@ def _scope(model: Path | None) -> dict[str, Any]:
     method = "held-out prompts (mmm_core/corpus/scope_prompts.py), read one at a time; docs/scope.md"
     figures = scope_figures(engine, IN_SCOPE, OUT_OF_SCOPE, list(MIXED))
     return {**figures, "checkpoint": engine.checkpoint_hash, **context(0, method)}
+
+
+def _tokenizer(model: Path | None) -> dict[str, Any]:
+    """The corpus's motions, encoded and decoded."""
+    from daemon.bench.report import context
+    from mmm_core.checkpoint import MODEL_FILE, file_hash, load_model
+    from mmm_core.evaluation.kept import tokenizer_figures
+    from mmm_core.tokenizer import Tokenizer
+
+    path = model or MODEL_FILE
+    tokenizer = load_model(path).tokenizer
+    if not isinstance(tokenizer, Tokenizer):
+        raise CommandError("eval tokenizer: the model's tokenizer is one of the paper's; take one by body parts")
+    method = "motions of the gesture corpus, encoded and decoded (mmm_core/evaluation/kept.py)"
+    return {**tokenizer_figures(tokenizer), "checkpoint": file_hash(path), **context(0, method)}
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,7 @@ class TokenizerRecipe:
         reset_rule: what becomes of dead codes; "official" never resets one that was used once.
         schedule: how long.
         decoder: further training of the decoder alone; 0 steps for none (layout "parts").
+        gate: stop unless it keeps the corpus's motions (layout "parts"; `mmmd eval tokenizer`).
     """
 
     layout: Literal["parts", "whole", "halves"] = "parts"
@@ -70,6 +71,7 @@ class TokenizerRecipe:
     reset_rule: Literal["for_good", "official"] = "for_good"
     schedule: Schedule = field(default_factory=lambda: Schedule(steps=2600, learning_rate=1e-3))
     decoder: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3))
+    gate: bool = False
 
     def config(self, n_features: int) -> TokenizerConfig | VqVaeConfig:
         """Sizes for features of that width."""

@@ -26,6 +26,7 @@ from mmm_core.corpus.stream import make_corpus
 from mmm_core.datasets import MotionFolder, open_folder
 from mmm_core.errors import CheckpointError, TrainingDataError
 from mmm_core.evaluation.extractors import OURS, Evaluator, save_evaluator
+from mmm_core.evaluation.kept import tokenizer_figures
 from mmm_core.features import joints_from_positions, recover
 from mmm_core.kit import joints_from_kit
 from mmm_core.length import LengthPredictor
@@ -127,13 +128,25 @@ class Stages:
 
     @cached_property
     def corpus(self) -> TokenCorpus:
-        """Ids and caption states of the clips; caption states are kept in the run's folder."""
+        """Ids and caption states of the clips; caption states are kept in the run's folder.
+
+        Raises:
+            TrainingDataError: the tokenizer loses what the recipe's gate asks it to keep.
+        """
+        self._check_tokenizer()
         captions = sorted({c for clip in self.clips for c in clip.captions})
         row = {caption: i for i, caption in enumerate(captions)}
         rows = [[row[c] for c in clip.captions] for clip in self.clips]
         is_real = np.array([c.is_real for c in self.clips])
         states = self._caption_states(captions, self.text, "captions.pt")
         return TokenCorpus(encode_clips(self.clips, self.tokenizer), rows, states, is_real)
+
+    def _check_tokenizer(self) -> None:
+        """The gate, before anything is trained on the tokenizer."""
+        if self.recipe.tokenizer.gate and isinstance(self.tokenizer, Tokenizer) and distributed.rank() == 0:
+            if faults := tokenizer_figures(self.tokenizer)["faults"]:
+                path = self.run.folder / "tokenizer.pt"
+                raise TrainingDataError(path, "tokenizer.gate", "; ".join(faults), "more steps, or gate = false")
 
     def _caption_states(self, captions: list[str], encoder: TextEncoder, name: str) -> CaptionStates:
         path = self.run.folder / name

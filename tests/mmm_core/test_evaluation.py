@@ -12,10 +12,11 @@ from mmm_core.corpus.grammar import known_commands
 from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, Probe
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthesise_spec
 from mmm_core.evaluation import checks
-from mmm_core.evaluation.checks import Shown, look_at
+from mmm_core.evaluation.checks import Shown
+from mmm_core.evaluation.kept import performed, shown
 from mmm_core.evaluation.probes import judge
 from mmm_core.evaluation.signs import shows
-from mmm_core.features import mirror, recover
+from mmm_core.features import mirror
 
 LIMB_FAMILIES = (
     "wave", "raise", "point", "clap", "bow", "nod", "shake_head", "look", "tilt_head", "lean",
@@ -24,11 +25,6 @@ LIMB_FAMILIES = (
 SHOWN_AS = {"alternating": "both"}
 COUNTED = ("wave", "clap", "nod", "bow", "punch", "beckon")
 DIRECTED = ("look", "point", "lean", "twist", "tilt_head")
-
-
-def shown(features: np.ndarray) -> Shown:
-    motion = recover(features)
-    return look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 
 def gestures(name: str, n: int = 12) -> list[tuple[Gesture, np.ndarray]]:
@@ -220,27 +216,10 @@ def test_slow_and_fast_are_told_apart(name: str) -> None:
             assert not judge(Probe("", name, limb, side, tempo=other), shown(clip.features))["tempo"]
 
 
-def performed(probe: Probe, seed: int, in_a_mirror: bool = False) -> Shown:
-    """What is shown when the corpus itself performs what a probe asks."""
-
-    def gesture(p: Probe) -> Gesture:
-        family = FAMILIES[p.family]
-        side = p.side or ("right" if "right" in family.sides else "".join(family.sides[:1]))
-        count = p.count or (3 if p.tempo else family.counts[0] if family.counts else 1)
-        where = p.direction or ("" if "" in family.directions else (family.directions or ("",))[0])
-        tempo = {"slow": 0.65, "fast": 1.4}.get(p.tempo, 1.0)
-        return Gesture(p.family, side, count, where, tempo=tempo, hold_s=p.hold_s)
-
-    asked = (probe, probe.then) if probe.then else (probe,)
-    clip = synthesise_spec(ClipSpec(tuple(gesture(p) for p in asked)), np.random.default_rng(seed))
-    assert clip is not None, probe.text
-    return shown(mirror(clip.features) if in_a_mirror else clip.features)
-
-
 def test_what_the_corpus_performs_passes_the_whole_suite() -> None:
     met: dict[str, list[bool]] = {}
     for i, probe in enumerate(PROBES):
-        for key, ok in judge(probe, performed(probe, i), with_pose=True).items():
+        for key, ok in judge(probe, shown(performed(probe, i)), with_pose=True).items():
             met.setdefault(key, []).append(ok)
     assert set(met) == {"limb", "pose", "side", "count", "count_exact", "direction", "hold", "tempo", "order"}
     shares = {key: np.mean(values) for key, values in met.items()}
@@ -255,4 +234,4 @@ def test_standing_still_and_the_mirror_image_fail_the_suite() -> None:
     still = shown(stands.features)
     assert not any(all(judge(p, still, with_pose=True).values()) for p in PROBES)
     one_sided = [p for p in PROBES if p.side in ("left", "right") and p.then is None]
-    assert not any(judge(p, performed(p, i, in_a_mirror=True))["side"] for i, p in enumerate(one_sided))
+    assert not any(judge(p, shown(mirror(performed(p, i))))["side"] for i, p in enumerate(one_sided))
