@@ -33,6 +33,7 @@ class Corruption:
 
     Attributes:
         masked_share: the least share of positions masked; drawn from U(masked_share, 1).
+        full_share: share of motions that are masked whole, as they are when generation begins: there the text alone tells.
         kept_share: the least probability that a visible id is kept and not replaced; U(kept_share, 1) for each motion.
         no_text_share: share of motions trained without their text.
         real_share: share of motions made by a person, where there are both kinds.
@@ -41,6 +42,7 @@ class Corruption:
     """
 
     masked_share: float = 0.4
+    full_share: float = 0.0
     kept_share: float = 0.5
     no_text_share: float = 0.1
     real_share: float = 0.12
@@ -67,6 +69,8 @@ def corrupt(
     replaced = motion & (torch.rand(B, L, generator=generator) > keep)
     random_ids = torch.randint(n_codes, ids.shape, generator=generator)
     share = how.masked_share + (1 - how.masked_share) * torch.rand(B, generator=generator)
+    if how.full_share:
+        share[torch.rand(B, generator=generator) < how.full_share] = 1.0
     n_masked = (share * n_tokens).round().clamp_min(1)
     order = torch.rand(B, L, generator=generator).masked_fill(~motion, 2.0).argsort(dim=1).argsort(dim=1)
     masked = (order < n_masked[:, None])[..., None].expand(B, L, P)

@@ -71,3 +71,5 @@ def test_corruption_masks_at_least_its_share_and_leaves_end_and_padding(seed: in
         assert masked >= max(1, round(0.4 * n) - 1)
         assert (out[row, :n][out[row, :n, 0] != K + 2] < K).all()
         assert torch.equal(out[row, n:], ids[row, n:])
+    whole = corrupt(ids, n_tokens, K, Corruption(full_share=1.0), torch.Generator().manual_seed(seed))
+    assert all((whole[row, :n] == K + 2).all() for row, n in enumerate((a, b)))
