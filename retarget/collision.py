@@ -35,6 +35,18 @@ class SelfContact(PairDistances):
         """(T,) smallest distance of each frame of (T, J)."""
         return self.distances_m(q_rad).min(1, initial=np.inf)
 
+    def rooms_m(self, q_rad: Array) -> Array:
+        """(T, P) what each pair has beyond the share of its margin that paths keep, in each pose of (T, J)."""
+        return self.distances_m(q_rad) - _KEPT * self._margin_m
+
+    def room_m(self, q_rad: Array) -> Array:
+        """(P,) the same in one pose (J,)."""
+        return self.rooms_m(q_rad[None])[0]
+
+    def within_room(self, room_m: Array, moved_rad: Array) -> bool:
+        """Whether every pair keeps that share wherever the joints are within (J,) `moved_rad` of where it has `room_m` (P,)."""
+        return bool((room_m > self._sweep_m @ moved_rad).all())
+
     def pairs(self, q_rad: Array) -> list[tuple[str, str]]:
         """Names of the bodies that touch in one pose (J,)."""
         touching = self._pairs[self.distances_m(q_rad[None])[0] < self._margin_m]
