@@ -17,8 +17,15 @@ from typing import Any, Literal, Self, Unpack
 import zmq
 import zmq.asyncio
 
-from daemon.client_compositions import FIRST_REPLY_TIMEOUT_S, REPLY_TIMEOUT_S, CompositionCalls, patience_s
+from daemon.client_compositions import (
+    FIRST_REPLY_TIMEOUT_S,
+    MOTION_TIMEOUT_S,
+    REPLY_TIMEOUT_S,
+    CompositionCalls,
+    patience_s,
+)
 from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
+from daemon.client_streams import AsyncStream, LeaseNews, begun
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
 from daemon.keys import KeyFolder, connect_curve
@@ -29,10 +36,12 @@ from daemon.requests import (
     Estop,
     Gesture,
     Idle,
+    Lease,
     Look,
     Park,
     Play,
     PlayOptions,
+    Release,
     Request,
     Reset,
     Say,
@@ -183,6 +192,30 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
     async def idle(self, on: bool = True, style: Literal["calm", "lively"] = "calm") -> Ack:
         """Small movements while there is nothing to play, or none."""
         return await self._acknowledged(Idle(id=uuid.uuid4().hex, on=on, style=style), self.endpoints.cmd)
+
+    @contextlib.asynccontextmanager
+    async def stream(
+        self, holder: str = "", *, silence_s: float | None = None, timeout_s: float = MOTION_TIMEOUT_S
+    ) -> AsyncGenerator[AsyncStream]:
+        """A lease on the robot's joints, once it has begun; arguments and errors as for `daemon.client.Client.stream`."""
+        request, cmd = Lease(id=uuid.uuid4().hex, holder=holder, silence_s=silence_s), self.endpoints.cmd
+        news, socket = LeaseNews(request.id), self._context.socket(zmq.PUB)
+        try:
+            self._secure(socket, self.endpoints.stream)
+            socket.connect(self.endpoints.stream)
+            async with self._line(cmd).asked(request) as heard:
+                stream = AsyncStream(news, socket, heard)
+                await stream.until(begun, timeout_s, cmd)
+                try:
+                    yield stream
+                except BaseException:
+                    await self._ask(Cancel(id=uuid.uuid4().hex, command=request.id), cmd)
+                    raise
+                if news.end is None:
+                    await self._ask(Release(id=uuid.uuid4().hex, lease=request.id), cmd)
+                await stream.until(lambda event: event.terminal, timeout_s, cmd)
+        finally:
+            socket.close(0)
 
     async def capabilities(self) -> CapabilitiesEvent:
         """What this robot and this daemon can do."""

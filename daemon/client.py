@@ -4,14 +4,22 @@ from __future__ import annotations
 
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Literal, Self, Unpack
 
 import zmq
 
-from daemon.client_compositions import FIRST_REPLY_TIMEOUT_S, REPLY_TIMEOUT_S, CompositionCalls, patience_s
+from daemon.client_compositions import (
+    FIRST_REPLY_TIMEOUT_S,
+    MOTION_TIMEOUT_S,
+    REPLY_TIMEOUT_S,
+    CompositionCalls,
+    patience_s,
+)
 from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
+from daemon.client_streams import LeaseNews, Stream, begun
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
 from daemon.keys import KeyFolder, connect_curve
@@ -23,11 +31,13 @@ from daemon.requests import (
     Estop,
     Gesture,
     Idle,
+    Lease,
     Look,
     Park,
     Play,
     PlayOptions,
     Record,
+    Release,
     Request,
     Reset,
     Say,
@@ -180,6 +190,43 @@ class Client(CompositionCalls[Said]):
             NoAnswerError: not in time.
         """
         return self._command(Idle(id=uuid.uuid4().hex, on=on, style=style))
+
+    @contextmanager
+    def stream(
+        self, holder: str = "", *, silence_s: float | None = None, timeout_s: float = MOTION_TIMEOUT_S
+    ) -> Generator[Stream]:
+        """A lease on the robot's joints, once it has begun: `with robot.stream() as s: s.send(q_rad)`, again and again.
+
+        Args:
+            holder: who asks, in a word or two; a second asker is told.
+            silence_s: without a target for so long the robot brakes and holds; None takes the daemon's time.
+            timeout_s: longest wait for the lease to begin (the robot may have to be armed) and to end.
+
+        Raises:
+            RefusedError: somebody else holds it, the robot's state forbids it, or the lease has failed.
+            CancelledByError: a stop or another command ended it.
+            NoAnswerError: not in time.
+        """
+        request = Lease(id=uuid.uuid4().hex, holder=holder, silence_s=silence_s)
+        news, cmd = LeaseNews(request.id), self._connect(self.endpoints.cmd)
+        socket = self._context.socket(zmq.PUB)
+        try:
+            self._secure(socket, self.endpoints.stream)
+            socket.connect(self.endpoints.stream)
+            self._send(cmd, request, self.endpoints.cmd)
+            stream = Stream(news, socket, cmd)
+            stream.until(begun, timeout_s, self.endpoints.cmd)
+            try:
+                yield stream
+            except BaseException:
+                self._send(cmd, Cancel(id=uuid.uuid4().hex, command=request.id), self.endpoints.cmd)
+                raise
+            if news.end is None:
+                self._send(cmd, Release(id=uuid.uuid4().hex, lease=request.id), self.endpoints.cmd)
+            stream.until(lambda event: event.terminal, timeout_s, self.endpoints.cmd)
+        finally:
+            socket.close(0)
+            cmd.close(200)
 
     def record(self, name: str, command_id: str = "") -> Ack:
         """Keep the motion of a command, the newest when no id is given, as a gesture.

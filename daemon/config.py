@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import ipaddress
+from collections.abc import Set
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import urlsplit
 
 from daemon.errors import ConfigError
-from daemon.requests import IDLE_STYLES
+from daemon.requests import IDLE_STYLES, LONGEST_SILENCE_S, SHORTEST_SILENCE_S
 
-CMD_PORT, CTL_PORT, PUB_PORT = 5871, 5872, 5873
+CMD_PORT, CTL_PORT, PUB_PORT, STREAM_PORT = 5871, 5872, 5873, 5875
 
 
 def config_error(key: str, found: str, allowed: str, do: str) -> ConfigError:
@@ -41,6 +42,21 @@ def check_endpoint(key: str, endpoint: str, *, keys: bool = False) -> None:
         raise config_error(key, f"{endpoint!r}, which other machines can reach without a key", allowed, do)
 
 
+def stream_beside(cmd: str, taken: Set[str] = frozenset()) -> str:
+    """Where `stream` is when nobody says: four ports after `cmd` (5875), or the first free of `taken` after that.
+
+    With ipc:// it is the path of `cmd` with `.stream` at its end. Daemon and clients come to the same from `cmd` alone.
+    """
+    host, _, port = cmd.rpartition(":")
+    if not cmd.startswith("tcp://") or not port.isdigit():
+        return cmd if cmd.startswith("tcp://") else f"{cmd}.stream"
+    for step in range(STREAM_PORT - CMD_PORT, 16):
+        beside = f"{host}:{int(port) + (step if int(port) + step < 65536 else -step)}"
+        if beside not in taken:
+            return beside
+    raise AssertionError("three endpoints cannot take a dozen ports")
+
+
 def _is_loopback(host: str) -> bool:
     try:
         return ipaddress.ip_address(host).is_loopback
@@ -57,12 +73,14 @@ class Endpoints:
         ctl: stop, estop, reset, arm, park, status.
         pub: state and events for all.
         keys: folder of CURVE keys, for which see `daemon.keys`; None leaves only local endpoints.
+        stream: joint targets from another program; empty takes a place beside `cmd`, see `stream_beside`.
     """
 
     cmd: str = f"tcp://127.0.0.1:{CMD_PORT}"
     ctl: str = f"tcp://127.0.0.1:{CTL_PORT}"
     pub: str = f"tcp://127.0.0.1:{PUB_PORT}"
     keys: Path | None = None
+    stream: str = ""
 
     def __post_init__(self) -> None:
         """Refuse what other machines could reach, and two sockets at one place.
@@ -72,9 +90,12 @@ class Endpoints:
         """
         for key in ("cmd", "ctl", "pub"):
             check_endpoint(key, getattr(self, key), keys=self.keys is not None)
-        if len({self.cmd, self.ctl, self.pub}) != 3 and not self.cmd.endswith(":*"):
-            found = f"cmd {self.cmd}, ctl {self.ctl}, pub {self.pub}"
-            raise config_error("endpoints", found, "three different endpoints", "give each its own port")
+        if not self.stream:
+            object.__setattr__(self, "stream", stream_beside(self.cmd, {self.ctl, self.pub}))
+        check_endpoint("stream", self.stream, keys=self.keys is not None)
+        if len({self.cmd, self.ctl, self.pub, self.stream}) != 4 and not self.cmd.endswith(":*"):
+            found = f"cmd {self.cmd}, ctl {self.ctl}, pub {self.pub}, stream {self.stream}"
+            raise config_error("endpoints", found, "four different endpoints", "give each its own port")
 
 
 @dataclass(frozen=True)
@@ -100,6 +121,10 @@ class DaemonConfig:
         state_rate_hz: how often `v1/state` is published.
         generate_timeout_s: longest wait for the generator.
         park_timeout_s: longest wait for the robot to park at the end.
+        lease_s: a lease without a target for so long brakes and holds, where it names no time itself.
+        lease_park_s: after so long without a target the lease ends and the robot parks.
+        lease_limp_s: the robot stays so long in the park pose before it goes limp, when a lease has led to it.
+        stream_queue_s: setpoints of a stream kept ready in the bus process while it moves.
     """
 
     robot: str
@@ -120,6 +145,10 @@ class DaemonConfig:
     state_rate_hz: float = 20.0
     generate_timeout_s: float = 10.0
     park_timeout_s: float = 20.0
+    lease_s: float = 0.2
+    lease_park_s: float = 5.0
+    lease_limp_s: float = 2.0
+    stream_queue_s: float = 0.03
 
     def __post_init__(self) -> None:
         """Check ranges and the generator's endpoint.
@@ -130,10 +159,15 @@ class DaemonConfig:
         for key, low, high in (
             ("queue_s", 0.02, 0.3), ("log_size_mb", 0.0, 1e6), ("log_total_mb", 0.0, 1e7), ("state_rate_hz", 1.0, 200.0),
             ("generate_timeout_s", 0.1, 600.0), ("park_timeout_s", 1.0, 120.0),
+            ("lease_s", SHORTEST_SILENCE_S, LONGEST_SILENCE_S), ("lease_park_s", 0.1, 600.0), ("lease_limp_s", 0.0, 600.0),
+            ("stream_queue_s", 0.01, 0.3),
         ):  # fmt: skip
             value = getattr(self, key)
             if not low <= value <= high:
                 raise config_error(key, f"{value}", f"{low} to {high}", "choose a value in this range")
+        if self.lease_park_s <= self.lease_s:
+            allowed = f"more than lease_s ({self.lease_s:g})"
+            raise config_error("lease_park_s", f"{self.lease_park_s:g}", allowed, "holding comes before parking")
         if self.idle not in ("off", *IDLE_STYLES):
             raise config_error("idle", repr(self.idle), ", ".join(("off", *IDLE_STYLES)), "choose one of these")
         if self.generator is not None:

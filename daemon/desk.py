@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.metadata
 from collections.abc import Callable
 
+from daemon.config import DaemonConfig
 from daemon.errors import ClipError
 from daemon.events import Ack, CapabilitiesEvent, Event, JointInfo, Rejected, StateEvent
 from daemon.generation import GeneratorClient
@@ -23,12 +24,14 @@ from daemon.requests import (
     MOST_REPEATS,
     MOST_TEMPO,
     SHORTEST_S,
+    STREAM_TYPES,
     Cancel,
     Capabilities,
+    Command,
     Idle,
     Look,
-    Play,
     Record,
+    Release,
     Request,
     Status,
     tag_of,
@@ -51,6 +54,7 @@ class Desk:
 
     def __init__(
         self,
+        config: DaemonConfig,
         robot: RobotModel,
         performer: Performer,
         sources: Sources,
@@ -58,7 +62,8 @@ class Desk:
         generator: GeneratorClient,
         state: Callable[[], StateEvent],
     ) -> None:
-        self._robot, self._performer, self._sources = robot, performer, sources
+        self._config, self._robot = config, robot
+        self._performer, self._sources = performer, sources
         self._ledger, self._generator, self._state = ledger, generator, state
 
     @property
@@ -72,7 +77,7 @@ class Desk:
         Raises:
             WireError: its id stands for something else.
         """
-        if isinstance(request, Play):
+        if isinstance(request, Command):
             entry = self._ledger.open(request, route, t_received_ns)
             if entry is not None:
                 self._performer.play(entry)
@@ -86,6 +91,8 @@ class Desk:
             return self._state()
         if isinstance(request, Cancel):
             return self._cancel(request)
+        if isinstance(request, Release):
+            return self._release(request)
         if isinstance(request, Look):
             return self._look(request)
         if isinstance(request, Idle):
@@ -108,6 +115,18 @@ class Desk:
             return Rejected(code="not_running", asked=asked, found=found, allowed=allowed, do="see `mmmd status`")
         ack = self._ack(request)
         self._performer.cancel(request.command)
+        return ack
+
+    def _release(self, request: Release) -> Event:
+        lease = self._performer.lease
+        if lease is None or request.lease not in ("", lease.id):
+            found = "nobody holds a lease" if lease is None else f"the lease that is held is {lease.id!r}"
+            return Rejected(
+                code="no_lease", asked=f"release {request.lease!r}", found=found, allowed="the lease that is held",
+                do="see `mmmd status`",
+            )  # fmt: skip
+        ack = self._ack(request)
+        self._performer.release()
         return ack
 
     def _look(self, request: Look) -> Event:
@@ -134,7 +153,7 @@ class Desk:
         return self._ack(request, f"{request.name}: {text}")
 
     def _capabilities(self) -> CapabilitiesEvent:
-        robot = self._robot
+        robot, config = self._robot, self._config
         joints = [
             JointInfo(
                 j.name, j.role, j.position_min_rad, j.position_max_rad, j.velocity_limit_rad_s, j.acceleration_limit_rad_s2
@@ -148,7 +167,11 @@ class Desk:
             joints=joints,
             generator=self._generator.state,
             checkpoint_hash=self._generator.checkpoint_hash,
-            requests={"cmd": [tag_of(t) for t in CMD_TYPES], "ctl": [tag_of(t) for t in CTL_TYPES]},
+            requests={
+                "cmd": [tag_of(t) for t in CMD_TYPES],
+                "ctl": [tag_of(t) for t in CTL_TYPES],
+                "stream": [tag_of(t) for t in STREAM_TYPES],
+            },
             topics=TOPICS,
             options={
                 "tempo": [LEAST_TEMPO, MOST_TEMPO],
@@ -158,4 +181,6 @@ class Desk:
             },
             gestures=self.library.infos(),
             idle_styles=list(IDLE_STYLES),
+            stream=config.endpoints.stream,
+            lease={"silence_s": config.lease_s, "park_s": config.lease_park_s, "limp_s": config.lease_limp_s},
         )

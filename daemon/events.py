@@ -38,6 +38,7 @@ class Accepted(Event, tag="accepted"):
         scope_score: how near the text lies to what the model can do.
         duration_s: length of the generated motion; 0 for a story, of which only the first part is known.
         generate_ms: time the generator took.
+        silence_s: of a lease: without a target for so long it brakes and holds; None for a motion.
     """
 
     plan_id: int
@@ -48,13 +49,15 @@ class Accepted(Event, tag="accepted"):
     scope_score: float
     duration_s: float
     generate_ms: float
+    silence_s: float | None = None
 
 
 class Progress(Event, tag="progress"):
     """A stage was reached.
 
     `arming`: waiting for torque and rest pose; `moving`: the first servo moves; `scene`: a part of a story is played next,
-    or was left out.
+    or was left out. Of a lease: `leased`: targets move the robot from now on; `held` before a self-contact; `silent`: braking,
+    as no target came; `streaming` again; `bad_target`: messages that were refused. `reason` says more.
 
     Attributes:
         plan_id: number of the plan, 0 before there is one.
@@ -233,6 +236,8 @@ class CapabilitiesEvent(Event, tag="capabilities"):
         options: bounds of the options of `say` and `gesture`.
         gestures: the library.
         idle_styles: for `idle`.
+        stream: endpoint of the `stream` socket.
+        lease: its times in seconds: silence_s (brake and hold), park_s, limp_s.
     """
 
     version: str
@@ -246,6 +251,46 @@ class CapabilitiesEvent(Event, tag="capabilities"):
     options: dict[str, list[float]]
     gestures: list[GestureInfo]
     idle_styles: list[str]
+    stream: str = ""
+    lease: dict[str, float] = msgspec.field(default_factory=dict[str, float])
+
+
+class LeaseInfo(msgspec.Struct):
+    """The lease that is held.
+
+    Attributes:
+        id: of its command, which every target names.
+        holder: who asked for it, in its own words.
+        state: accepted (not begun yet), waiting (for the first target), streaming, silent or released.
+        held_by: what keeps the robot from its target: self-collision, silence, or nothing.
+        silence_s: without a target for so long it brakes and holds.
+        silent_s: since the last target.
+        targets: messages taken.
+        clipped: frames whose target lay outside a position limit.
+    """
+
+    id: str
+    holder: str
+    state: str
+    held_by: str = ""
+    silence_s: float = 0.0
+    silent_s: float = 0.0
+    targets: int = 0
+    clipped: int = 0
+
+
+class StreamInfo(msgspec.Struct):
+    """The `stream` socket.
+
+    Attributes:
+        endpoint: where it is.
+        lease: who may send to it now; None for nobody.
+        bad: messages refused since the start, by code.
+    """
+
+    endpoint: str
+    lease: LeaseInfo | None = None
+    bad: dict[str, int] = msgspec.field(default_factory=dict[str, int])
 
 
 class CurrentCommand(msgspec.Struct):
@@ -271,6 +316,7 @@ class StateEvent(Event, tag="state"):
         waiting: ids of the commands that wait for their turn or their time.
         idle: style of the idle movements, `off` when there are none.
         gaze_deg: where the head was told to look (left, down), None when it is free.
+        stream: the socket for joint targets, and who holds its lease.
         generator: ready, starting or down, with the reason.
         joint_names: J names.
         goal_rad: (J,) what the servos were last told.
@@ -298,6 +344,7 @@ class StateEvent(Event, tag="state"):
     waiting: list[str] = msgspec.field(default_factory=list[str])
     idle: str = "off"
     gaze_deg: tuple[float, float] | None = None
+    stream: StreamInfo | None = None
 
 
 AnyEvent = (

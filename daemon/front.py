@@ -37,6 +37,7 @@ from daemon.shared import BusLink, BusRequest
 from daemon.sockets import bind, send_now
 from daemon.sources import Sources
 from daemon.state import RobotState, StateMachine
+from daemon.stream_desk import TargetDesk
 from daemon.wire import WireError, decode_cmd, encode, error_event
 from retarget.robot import RobotModel
 
@@ -44,6 +45,8 @@ log = logging.getLogger(__name__)
 
 DRAIN_LIMIT = 10_000
 PARK_AGAIN_S = 1.0
+STREAM_PAUSE_S = 0.001
+"""Between two targets that are read; of those that come meanwhile the newest counts."""
 SWITCH_S = 0.001
 """Longest that the event loop keeps the interpreter from the ctl thread."""
 SCHED_FIFO = 1
@@ -79,12 +82,12 @@ class Front:
         self._generator, self._record = generator, record
         self.machine = StateMachine(auto_arm=config.auto_arm)
         self.view = BusView(link, robot)
-        planner = Planner(robot, link, self.view, config.queue_s)
+        planner = Planner(robot, link, self.view, config.queue_s, config.stream_queue_s)
         self.follower = Follower(link, self.view, planner, self.machine)
         self.ledger = Ledger(self._send, self._publish_event)
-        sources = Sources(config, generator, GestureLibrary(config.gestures))
+        sources = Sources(config, robot, generator, GestureLibrary(config.gestures))
         self.performer = Performer(config, link, planner, self.follower, self.ledger, sources)
-        self._desk = Desk(robot, self.performer, sources, self.ledger, generator, self.state_event)
+        self._desk = Desk(config, robot, self.performer, sources, self.ledger, generator, self.state_event)
         self._started_s = time.monotonic()
         self.recording = str(config.log) if config.log else ""
         self._rates = Rates()
@@ -94,6 +97,10 @@ class Front:
         self._cmd = context.socket(zmq.ROUTER)
         self._pub = context.socket(zmq.XPUB)
         self._pub.setsockopt(zmq.XPUB_VERBOSE, 1)
+        self._stream = context.socket(zmq.SUB)
+        self._stream.setsockopt(zmq.CONFLATE, 1)  # only the newest target is of use
+        self._stream.subscribe(b"")
+        self._targets = TargetDesk(robot, self.performer, self.ledger, self._publish_event)
         self._ctl_context = zmq.Context()  # its own I/O thread: a flood on the other sockets delays no stop
         if may_fifo(CONTROL_PRIORITY):  # libzmq aborts where it is not permitted
             self._ctl_context.set(zmq.THREAD_SCHED_POLICY, SCHED_FIFO)
@@ -103,7 +110,7 @@ class Front:
         keys = KeyFolder(config.endpoints.keys) if config.endpoints.keys is not None else None
         contexts = (context, self._ctl_context) if keys is not None else ()
         self._doorkeepers = [Doorkeeper(c, keys) for c in contexts if keys is not None]
-        sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "ctl": ctl, "pub": self._pub}
+        sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "ctl": ctl, "pub": self._pub, "stream": self._stream}
         try:
             for key, socket in sockets.items():
                 bind(socket, key, getattr(config.endpoints, key), keys)
@@ -126,7 +133,9 @@ class Front:
         """Begin to serve, in the running event loop."""
         self._loop = asyncio.get_running_loop()
         self.view.begin()
-        serve = (self._serve_cmd, self._serve_subscriptions, self._tick_forever, self._publish_state_forever)
+        serve = (
+            self._serve_cmd, self._serve_subscriptions, self._serve_stream, self._tick_forever, self._publish_state_forever,
+        )  # fmt: skip
         self._tasks = [asyncio.create_task(s(), name=s.__name__) for s in serve]
         self._control.start()
 
@@ -154,7 +163,8 @@ class Front:
                 self.performer.tick()
             if self.machine.state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP):
                 return self.machine.state
-            if self.machine.state is not RobotState.PARKING and time.monotonic() - asked_s > PARK_AGAIN_S:
+            parking = self.machine.state is RobotState.PARKING and asked_s > 0  # one that began before may stay a while
+            if not parking and time.monotonic() - asked_s > PARK_AGAIN_S:
                 self.link.request(BusRequest.PARK)
                 asked_s = time.monotonic()
             await asyncio.sleep(TICK_S)
@@ -174,10 +184,19 @@ class Front:
         await self._generator.close()
         self._cmd.close(200)  # the last events still go out
         self._pub.close(200)
+        self._stream.close(0)
 
     async def _serve_cmd(self) -> None:
         while True:
             self._take_frames(await self._cmd.recv_multipart())
+
+    async def _serve_stream(self) -> None:
+        while True:
+            frame = await self._stream.recv()
+            if self._record is not None:
+                self._record("stream", frame)
+            self._targets.take(frame)
+            await asyncio.sleep(STREAM_PAUSE_S)
 
     def _take_frames(self, frames: list[bytes]) -> None:
         t_received_ns = time.monotonic_ns()
@@ -274,6 +293,7 @@ class Front:
             waiting=self.performer.waiting_ids(),
             idle=self.performer.layers.idle_style or "off",
             gaze_deg=self.performer.layers.gaze_deg,
+            stream=self._targets.info(self._config.endpoints.stream),
         )
 
 

@@ -12,13 +12,15 @@ from dataclasses import dataclass, field
 import msgspec
 
 from daemon.events import Accepted, Event, Progress
-from daemon.requests import Play, tag_of
+from daemon.requests import Command, tag_of
 from daemon.wire import WireError
 
 KEPT = 1024
 """Commands that are remembered, so that the same id is the same command."""
 KEPT_SCENES = 8
-"""Newest scenes of a story that a later asker hears of."""
+"""Newest scenes of a story, or newest news of a lease, that a later asker hears of."""
+LEASE_NEWS = ("held", "silent", "streaming", "bad_target")
+"""Stages that come any number of times."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class Entry:
     """
 
     id: str
-    request: Play
+    request: Command
     t_received_ns: int
     routes: list[Route]
     events: list[Event] = field(default_factory=list[Event])
@@ -67,11 +69,11 @@ class Entry:
         return any(isinstance(event, Accepted) for event in self.events)
 
     def keep(self, event: Event) -> None:
-        """Remember an event for those who ask later; of a story's scenes only the newest, for it has any number."""
-        if isinstance(event, Progress) and event.scene is not None:
-            scenes = [e for e in self.events if isinstance(e, Progress) and e.scene is not None]
-            if len(scenes) >= KEPT_SCENES:
-                self.events.remove(scenes[0])
+        """Remember an event for those who ask later; of what has any number only the newest."""
+        if _any_number(event):
+            many = [e for e in self.events if _any_number(e)]
+            if len(many) >= KEPT_SCENES:
+                self.events.remove(many[0])
         self.events.append(event)
 
     @property
@@ -104,7 +106,7 @@ class Ledger:
         self.counts[tag_of(event)] += 1
         return event
 
-    def open(self, request: Play, route: Route, t_received_ns: int) -> Entry | None:
+    def open(self, request: Command, route: Route, t_received_ns: int) -> Entry | None:
         """A new command; None when the id is known, in which case the sender hears what happened so far and what comes.
 
         Raises:
@@ -154,6 +156,10 @@ class Ledger:
             entry.routes.append(route)
 
 
-def _without_stamp(request: Play) -> Play:
+def _any_number(event: Event) -> bool:
+    return isinstance(event, Progress) and (event.scene is not None or event.stage in LEASE_NEWS)
+
+
+def _without_stamp(request: Command) -> Command:
     """What was asked, whenever and as whichever message it was sent."""
     return msgspec.structs.replace(request, seq=None, t_mono=None)

@@ -10,18 +10,32 @@ import logging
 import time
 from collections.abc import Callable
 
+import numpy as np
+from numpy.typing import NDArray
+
 from daemon.config import DaemonConfig
 from daemon.events import Cancelled, CurrentCommand, Failed, Progress, Rejected
 from daemon.follower import Follower
 from daemon.layers import Layers
+from daemon.lease import LeaseState
 from daemon.ledger import Entry, Ledger
 from daemon.planner import Planner
 from daemon.player import Player
-from daemon.replies import NotPlayableError, ending, failed, refusal, refused_later, too_late
-from daemon.requests import tag_of
+from daemon.replies import (
+    NotPlayableError,
+    ending,
+    failed,
+    lease_held,
+    lease_silent,
+    refusal,
+    refused_later,
+    too_late,
+)
+from daemon.requests import Lease, tag_of
 from daemon.shared import BusLink, BusRequest
 from daemon.sources import Prepared, Sources
 from daemon.state import CommandRefusedError, RobotState, StateMachine, Trigger
+from daemon.stream_score import StreamScore
 from daemon.waiting import MOST_WAITING, Halts, Pending, WaitingRoom
 from retarget.errors import RetargetError
 
@@ -53,7 +67,7 @@ class Performer:
         ledger: Ledger,
         sources: Sources,
     ) -> None:
-        self._link, self._ledger, self._sources = link, ledger, sources
+        self._config, self._link, self._ledger, self._sources = config, link, ledger, sources
         self.planner, self.follower = planner, follower
         self.layers = Layers(config.idle)
         self.halts = Halts()
@@ -75,6 +89,9 @@ class Performer:
         if self.halts.overtook(entry):  # the stop came later but arrived first
             self._ledger.emit(entry, Cancelled(plan_id=0, by=self.halts.by))
             return
+        if isinstance(entry.request, Lease) and (lease := self.lease) is not None:
+            self._ledger.emit(entry, lease_held(lease))
+            return
         pending = Pending(entry, self.planner.epoch)
         if entry.request.when == "now":
             self._overtake(pending)
@@ -91,6 +108,29 @@ class Performer:
         """Ids of the commands that have not ended."""
         playing = self._player.entry
         return [*self.waiting_ids(), *([playing.id] if playing is not None else [])]
+
+    @property
+    def lease(self) -> Entry | None:
+        """The lease that is held, from its request to its end."""
+        playing = self._player.entry
+        entries = [p.entry for p in self._waiting] + ([playing] if playing is not None else [])
+        return next((entry for entry in entries if isinstance(entry.request, Lease) and not entry.ended), None)
+
+    @property
+    def stream(self) -> StreamScore | None:
+        """The lease that is played."""
+        return self._player.stream
+
+    def release(self) -> None:
+        """The holder gives its lease back: one that is played goes to its last target, one that waits is cancelled."""
+        if (score := self._player.stream) is not None:
+            score.clock.release()
+        elif (lease := self.lease) is not None:
+            self.cancel(lease.id)
+
+    def target(self, q_rad: NDArray[np.float64]) -> bool:
+        """A checked target (J,) of the lease that is played; false when it takes none now."""
+        return self._player.target(q_rad)
 
     def waiting_ids(self) -> list[str]:
         """Ids of the commands that are not played yet."""
@@ -138,7 +178,18 @@ class Performer:
         for state in self.follower.update():
             self._entered(state)
         self._player.watch(finish_loop=self._waiting.someone_waits_after)
+        self._end_silent_lease()
         self._player.idle(free=not len(self._waiting))
+
+    def _end_silent_lease(self) -> None:
+        """A lease whose holder has fallen silent for good has failed: the robot parks, unless a command waits for it."""
+        score = self._player.stream
+        if score is None or score.clock.state is not LeaseState.OVER:
+            return
+        self._player.end("silence", lease_silent(score.clock.park_s, score.targets))
+        if not len(self._waiting):
+            log.warning("a lease fell silent for %g s: parking", score.clock.park_s)
+            self._link.request(BusRequest.PARK, stay_s=self._config.lease_limp_s)
 
     def _entered(self, state: RobotState) -> None:
         """End what a state of the robot ends."""

@@ -51,7 +51,7 @@ class Plan:
         self._stretches: list[Stretch] = []
         self._frames: list[Array] = []
         self._kept_from = 0
-        self.n_frames = 0
+        self.n_frames: int = 0
         self.complete = False
         self.end: int | None = None
         self.pushed = 0
@@ -85,6 +85,11 @@ class Plan:
         return self.n_frames if self.end is None else min(self.end, self.n_frames)
 
     @property
+    def ends_here(self) -> bool:
+        """Whether the bus process may hold after the last frame so far."""
+        return self.complete
+
+    @property
     def all_pushed(self) -> bool:
         """Whether the bus process has the last frame."""
         return self.complete and self.pushed >= self.n_frames
@@ -109,6 +114,13 @@ class Plan:
         stretch = self._stretch(frame)
         t_s = min((frame - stretch.first + 1) / self._rate_hz, stretch.path.duration_s)
         return JointState(self.frames(frame, frame + 1)[0].copy(), stretch.path.velocity_at(np.array([t_s]))[0])
+
+    def step_at(self, frame: int) -> JointState:
+        """Position at a frame and the difference quotient up to it, which is what the gate goes on from."""
+        if frame <= self._kept_from:
+            return self.state_at(frame)
+        before, here = self.frames(frame - 1, frame + 1)
+        return JointState(here.copy(), (here - before) * self._rate_hz)
 
     def posture_from(self, frame: int, n: int, *, raw: bool = False) -> Posture:
         """`n` frames of posture that follow bus frame `frame`; what is not planned stays as the last one is."""

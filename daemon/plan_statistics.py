@@ -37,6 +37,7 @@ class PlanStatistics:
         self.cycles = 0
         self.gate_clipped = 0
         self.underruns = 0
+        self.last_underrun_frame = -1
         self.dropped = 0
         self._frames = 0
         self._direction_deg_frames = 0.0
@@ -46,6 +47,14 @@ class PlanStatistics:
     def first_motion_ms(self) -> float | None:
         """From the arrival of the text to the first cycle in which a servo's goal changed."""
         return None if self.first_motion_ns is None else (self.first_motion_ns - self._t_received_ns) / 1e6
+
+    def count_from(self, t_received_ns: int) -> None:
+        """What moves the robot has only now arrived, monotonic."""
+        self._t_received_ns = t_received_ns
+
+    def take_changes(self, clipped_frames: int, interventions: int) -> None:
+        """How many frames of a stream were clipped, and how often it was held, so far."""
+        self._clipped, self._interventions = clipped_frames, interventions
 
     def take_report(self, report: RetargetReport, frames: int) -> None:
         """Add what retargeting changed in a stretch of `frames` bus frames."""
@@ -80,7 +89,10 @@ class PlanStatistics:
         self.last_frame = max(self.last_frame, int(records["frame"].max()))
         self.cycles += len(records)
         self.gate_clipped += int(records["clipped"].any(1).sum())
-        self.underruns += int((records["underrun"] != 0).sum())
+        late = records["frame"][records["underrun"] != 0]
+        if len(late):
+            self.underruns += len(late)
+            self.last_underrun_frame = int(late.max())
 
     def done(self, frames: int) -> Done:
         """The event that ends the plan."""

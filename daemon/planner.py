@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,12 @@ from numpy.typing import NDArray
 from daemon.bus_view import BusView
 from daemon.plan import Plan
 from daemon.plan_statistics import PlanStatistics
-from daemon.posture import Posture, standing
+from daemon.posture import Posture, posture_of, standing
 from daemon.shared import N_SETPOINTS, BusLink
+from daemon.stream_plan import StreamPlan
+from daemon.stream_score import StreamScore
+from retarget.as_human import joints_of_path
+from retarget.human import read_human
 from retarget.paths import JointPath, JointState
 from retarget.pipeline import Retargeter
 from retarget.robot import RobotModel
@@ -49,12 +53,16 @@ class HandOver:
 class Planner:
     """Keeps about `queue_s` of setpoints in the bus process. For one thread."""
 
-    def __init__(self, robot: RobotModel, link: BusLink, view: BusView, queue_s: float) -> None:
+    def __init__(
+        self, robot: RobotModel, link: BusLink, view: BusView, queue_s: float, stream_queue_s: float = 0.03
+    ) -> None:
         self.robot = robot
         self._link, self._view = link, view
         self._retargeter = Retargeter(robot)
         self._rate_hz = robot.bus.rate_hz
         self._queue_frames = max(2, math.ceil(queue_s * self._rate_hz))
+        self._stream_frames = max(2, math.ceil(stream_queue_s * self._rate_hz))
+        self._from_rest = False
         self._retarget_s = FIRST_RETARGET_S
         self._last_goal_tick: NDArray[np.int32] | None = None
         self._plans: list[Plan] = []
@@ -67,21 +75,30 @@ class Planner:
         """Grows with each stop, e-stop and park; a plan of a text that came before is never played."""
         return self._link.epoch
 
-    def hand_over(self) -> HandOver:
+    def hand_over(self, *, at_once: bool = False) -> HandOver:
         """Where a new path must start; `commit` or `give_up` must follow.
 
-        The running plan goes on up to the frame at which the new one takes over.
+        The running plan goes on up to the frame at which the new one takes over: the next one when `at_once`, with the
+        difference quotient as velocity.
         """
-        plan = self.current
+        plan, self._from_rest = self.current, False
+        if isinstance(plan, StreamPlan) and self.running and self._ran_dry(plan):
+            plan.end, self._from_rest = plan.pushed, True  # nothing moves until `commit`, or `give_up`
+            at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
+            return HandOver(at_rest, plan.posture_from(plan.n_frames - 1, FADE_FRAMES), None)
         if plan is None or not self.running or self._ran_dry(plan):
             self.drop()
             at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
             return HandOver(at_rest, self._posture, None)
         lead = math.ceil(RETARGET_MARGIN * self._retarget_s * self._rate_hz) - self._link.queued_frames
         lead -= sum(p.limit - p.pushed for p in self._plans[:-1])
+        lead = 0 if at_once else lead
+        if isinstance(plan, StreamPlan):
+            plan.extend(plan.pushed + max(0, lead))
         frame = max(0, min(plan.pushed + max(0, lead), plan.n_frames) - 1)
         plan.end = frame + 1
-        return HandOver(plan.state_at(frame), plan.posture_from(frame, FADE_FRAMES), frame)
+        state = plan.step_at(frame) if at_once else plan.state_at(frame)
+        return HandOver(state, plan.posture_from(frame, FADE_FRAMES), frame)
 
     def retarget(self, posture: Posture, start: JointState, *, settle: bool = True) -> JointPath:
         """The path of a posture from `start`; may run in a worker thread, one at a time.
@@ -98,7 +115,7 @@ class Planner:
     def hand_over_missed(self) -> bool:
         """Whether the bus process ran dry before the new path was ready: it brakes, so the path starts elsewhere."""
         plan = self.current
-        return plan is not None and not plan.all_pushed and self._ran_dry(plan)
+        return plan is not None and not self._from_rest and not plan.all_pushed and self._ran_dry(plan)
 
     def new_plan_id(self) -> int:
         """The number of a plan to come."""
@@ -113,10 +130,36 @@ class Planner:
         statistics = PlanStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
         plan = Plan(plan_id, command_id, epoch, self._rate_hz, statistics)
         plan.append(path, posture, complete=complete, raw=raw)
-        self._plans = [p for p in self._plans if p.pushed < p.limit]
-        self._plans.append(plan)
+        self._succeed(plan)
         self.pump()
         return plan
+
+    def commit_stream(self, score: StreamScore, plan_id: int, command_id: str, epoch: int, t_received_ns: int) -> None:
+        """Make a lease that has begun the current plan."""
+        statistics = PlanStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
+        self._succeed(StreamPlan(plan_id, command_id, epoch, self._rate_hz, statistics, score, self._shown))
+
+    def stream_on(self) -> None:
+        """Make the frames of a lease that are due, and push them; call it after `read_cycles`."""
+        plan = self.current
+        if not isinstance(plan, StreamPlan) or plan.end is not None or plan.epoch != self.epoch:
+            return
+        plan.check_lost()
+        if plan.lost or plan.resting:
+            stands = plan.all_played and self._view.at_rest and not self._link.queued_frames
+            if plan.lost and not stands:
+                return
+            moved = stands and not np.array_equal(self._view.goal_rad, plan.score.state.position_rad)
+            if plan.lost or moved:
+                plan.go_on(self._view.goal_rad)
+        waiting = sum(p.limit - p.pushed for p in self._plans[:-1])
+        plan.extend(plan.pushed + self._stream_frames - self._link.queued_frames - waiting)
+        self.pump()
+
+    def gaze_rad(self, posture: Posture) -> dict[int, float]:
+        """Angles of the head's joints, by index, that show the head of a posture of one frame."""
+        q_rad = self._retargeter.solve(read_human(posture.motion()))[0]
+        return {j: float(q_rad[j]) for j, joint in enumerate(self.robot.joints) if joint.role.startswith("head")}
 
     def give_up(self) -> None:
         """Nothing takes over: the running plan plays to its end."""
@@ -184,13 +227,28 @@ class Planner:
         if len(records):
             self._last_goal_tick = np.array(records["goal_tick"][-1])
 
+    def _succeed(self, plan: Plan) -> None:
+        self._plans = [p for p in self._plans if p.pushed < p.limit]
+        self._plans.append(plan)
+
+    def _shown(self, q_rad: NDArray[np.float64]) -> Posture:
+        """One frame: a person held as the robot in a pose (J,)."""
+        joints, head = joints_of_path(self._retargeter.kinematics, q_rad[None])
+        person = standing().motion()
+        return posture_of(replace(
+            person, joints_m=joints.astype(np.float32), head_quat_wxyz=head.astype(np.float32),
+            forearm_twist_rad=np.zeros((1, 2), np.float32),
+        ))  # fmt: skip
+
     def _push(self, plan: Plan, count: int) -> None:
         if plan.epoch != self._link.epoch:
             return
         frames = plan.frames(plan.pushed, plan.pushed + count)
-        last = plan.complete and plan.pushed + len(frames) >= plan.n_frames
+        last = plan.ends_here and plan.pushed + len(frames) >= plan.n_frames
         plan.pushed += self._link.push(frames, plan.plan_id, plan.pushed, plan.epoch, last=last)
 
     def _ran_dry(self, plan: Plan) -> bool:
         """Whether the bus process has none of the plan's frames in hand though more were to come."""
+        if isinstance(plan, StreamPlan) and plan.end is None and not plan.resting:
+            return plan.lost  # else more is made in a moment
         return 0 < plan.pushed and not plan.all_pushed and plan.pushed >= plan.limit and self._link.queued_frames == 0

@@ -13,19 +13,24 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from daemon.events import Cancelled, CurrentCommand, Failed, Progress, Rejected
 from daemon.follower import Follower
 from daemon.idle import IdleScore
 from daemon.layers import Layers
 from daemon.ledger import Entry, Ledger
+from daemon.plan import Plan
 from daemon.planner import FADE_FRAMES, HandOver, Planner
-from daemon.posture import Posture, distance_deg, faded_in
+from daemon.posture import Posture, distance_deg, faded_in, standing
 from daemon.replies import NotPlayableError, as_failure, ending, failed
-from daemon.requests import tag_of
+from daemon.requests import Play, tag_of
 from daemon.score import ClipScore, Score
 from daemon.state import RobotState
 from daemon.story_score import StoryScore
+from daemon.stream_plan import StreamPlan
+from daemon.stream_score import StreamScore
+from daemon.stream_watch import StreamWatch
 from retarget.errors import RetargetError
 from retarget.paths import JointPath
 
@@ -53,7 +58,8 @@ class Player:
     def __init__(self, planner: Planner, follower: Follower, ledger: Ledger, layers: Layers) -> None:
         self._planner, self._follower, self._ledger, self._layers = planner, follower, ledger, layers
         self.entry: Entry | None = None
-        self._score: Score | None = None
+        self._score: Score | StreamScore | None = None
+        self._stream = StreamWatch(planner, ledger)
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._feeding = False
@@ -63,7 +69,7 @@ class Player:
         self._still_since_s = time.monotonic()
 
     async def take_over(
-        self, entry: Entry | None, score: Score, plan_id: int, epoch: int, alive: Callable[[], bool]
+        self, entry: Entry | None, score: Score | StreamScore, plan_id: int, epoch: int, alive: Callable[[], bool]
     ) -> bool:
         """Play a score from the state of the joints on; false when it was ended meanwhile.
 
@@ -71,6 +77,9 @@ class Player:
             RetargetError: its motion does not fit the robot; what was played goes on.
         """
         async with self._lock:
+            if isinstance(score, StreamScore):
+                assert entry is not None, "a lease is a command"
+                return await self._take_over_stream(entry, score, plan_id, epoch, alive)
             stretch: tuple[Posture, bool] | None = None
             while True:
                 if self._planner.dry:
@@ -87,14 +96,38 @@ class Player:
                 if not self._planner.hand_over_missed:
                     break
             before, previous = self.entry, self._planner.current
+            if isinstance(previous, StreamPlan):
+                self._stream.end(previous)
             self._begin(entry, score)
             t_received_ns = entry.t_received_ns if entry is not None else time.monotonic_ns()
             command_id = entry.id if entry is not None else ""
             self._planner.commit(path, posture, plan_id, command_id, epoch, t_received_ns, complete=last, raw=raw)
-            if before is not None and entry is not None:
-                by = f"{tag_of(entry.request)} {entry.id}"
-                self._ledger.emit(before, Cancelled(plan_id=previous.plan_id if previous else 0, by=by))
+            self._tell_taken_over(before, previous, entry)
             return True
+
+    async def _take_over_stream(
+        self, entry: Entry, score: StreamScore, plan_id: int, epoch: int, alive: Callable[[], bool]
+    ) -> bool:
+        """Let a lease begin in the next frame. Its first target is measured from its own arrival."""
+        if self._planner.dry:
+            await self._until_at_rest()
+        if not alive():
+            return False
+        start = self._planner.hand_over(at_once=True)
+        before, previous = self.entry, self._planner.current
+        gaze = self._layers.over(standing()) if self._layers.gaze_deg is not None else None
+        score.look({} if gaze is None else self._planner.gaze_rad(gaze))
+        self._begin(entry, score)
+        score.begin(start.state, time.monotonic())
+        self._planner.commit_stream(score, plan_id, entry.id, epoch, entry.t_received_ns)
+        self._tell_taken_over(before, previous, entry)
+        self._stream.begin(entry, plan_id)
+        return True
+
+    def _tell_taken_over(self, before: Entry | None, previous: Plan | None, entry: Entry | None) -> None:
+        if before is not None and entry is not None:
+            by = f"{tag_of(entry.request)} {entry.id}"
+            self._ledger.emit(before, Cancelled(plan_id=previous.plan_id if previous else 0, by=by))
 
     def end(self, by: str, failure: Failed | None = None) -> None:
         """End what is played."""
@@ -103,6 +136,16 @@ class Player:
         self._planner.drop()
         if entry is not None:
             self._ledger.emit(entry, ending(plan.plan_id if plan is not None else 0, by, failure))
+
+    @property
+    def stream(self) -> StreamScore | None:
+        """The lease that is played, None when there is none."""
+        return self._score if isinstance(self._score, StreamScore) else None
+
+    def target(self, q_rad: NDArray[np.float64]) -> bool:
+        """A checked target (J,) of the lease that is played; false when it takes none any more."""
+        plan = self._planner.current
+        return isinstance(plan, StreamPlan) and self._stream.take(plan, q_rad)
 
     def current_command(self) -> CurrentCommand | None:
         """What is being played."""
@@ -128,6 +171,8 @@ class Player:
         self._tell_scenes(plan.plan_id)
         if finish_loop and isinstance(self._score, (ClipScore, StoryScore)):
             self._score.finish()
+        if isinstance(plan, StreamPlan) and entry is not None:
+            self._stream.look(plan, entry)
         if not plan.complete:
             ready = self._score.ready
             due = self._planner.ahead_s < FEED_AHEAD_S and plan.epoch == self._planner.epoch
@@ -140,6 +185,8 @@ class Player:
         stalled = self._held_since_s is not None and time.monotonic() - self._held_since_s > STALL_S
         if plan.played or (stalled and statistics.dropped):
             self._forget()
+            if isinstance(plan, StreamPlan):
+                self._stream.end(plan)
             if entry is not None:
                 self._ledger.emit(entry, statistics.done(plan.n_frames))
         elif stalled:
@@ -160,6 +207,11 @@ class Player:
 
     async def follow_gaze(self) -> None:
         """Let what is played, or the pose that is held, go on with the gaze that is now set."""
+        if isinstance(self._score, StreamScore):
+            async with self._lock:
+                gaze = self._layers.over(standing()) if self._layers.gaze_deg is not None else None
+                self._score.look({} if gaze is None else self._planner.gaze_rad(gaze))
+            return
         if self._planner.running and self._score is not None:
             async with self._lock:
                 await self._replan()
@@ -181,10 +233,10 @@ class Player:
         if not task.cancelled() and (error := task.exception()) is not None:
             log.error("a stretch could not be made", exc_info=error)
 
-    def _begin(self, entry: Entry | None, score: Score) -> None:
+    def _begin(self, entry: Entry | None, score: Score | StreamScore) -> None:
         self.entry, self._score = entry, score
         self._moving_told, self._held_since_s = False, None
-        self._held = entry is not None and entry.request.hold
+        self._held = entry is not None and isinstance(entry.request, Play) and entry.request.hold
         if entry is not None:
             self._follower.stopped = False
         self._follower.idling = entry is None
@@ -236,7 +288,7 @@ class Player:
     async def _append(self) -> None:
         async with self._lock:
             plan, score = self._planner.current, self._score
-            if plan is None or score is None or plan.complete or plan.end is not None:
+            if plan is None or score is None or isinstance(score, StreamScore) or plan.complete or plan.end is not None:
                 return
             raw, last = await asyncio.to_thread(score.next)
             start = HandOver(plan.state_at(plan.n_frames - 1), raw, plan.n_frames - 1)
@@ -245,7 +297,7 @@ class Player:
                 plan.append(path, posture, complete=last, raw=raw)
                 self._planner.pump()
 
-    def _give_up(self, score: Score | None, event: Rejected | Failed) -> None:
+    def _give_up(self, score: Score | StreamScore | None, event: Rejected | Failed) -> None:
         """End the command whose next stretch failed; what is in the bus process is played, then it brakes and holds."""
         entry, plan = self.entry, self._planner.current
         if score is None or score is not self._score:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import msgspec
 
 from daemon.events import Cancelled, Failed, Rejected
@@ -63,3 +65,20 @@ def as_failure(event: Rejected | Failed) -> Failed:
 def failed(code: str, found: str, allowed: str, do: str) -> Failed:
     """A command that could not be carried out."""
     return Failed(code=code, asked="say", found=found, allowed=allowed, do=do)
+
+
+def lease_held(lease: Entry) -> Rejected:
+    """The event of a lease that somebody else has."""
+    since_s = time.monotonic() - lease.t_received_ns * 1e-9
+    return Rejected(
+        code="lease_held", asked="lease", found=f"{lease.request.words} holds lease {lease.id!r} since {since_s:.1f} s",
+        allowed="one lease at a time", do="ask its holder to `release` it, or end it with `cancel`",
+    )  # fmt: skip
+
+
+def lease_silent(park_s: float, targets: int) -> Failed:
+    """The event of a lease whose holder sends no more: it has broken what a lease promises, so this is no `done`."""
+    return Failed(
+        code="lease_silent", asked="lease", found=f"no target for {park_s:g} s, after {targets}",
+        allowed="targets at least as often as the lease says, or `release`", do="the robot parks; ask for a new lease",
+    )  # fmt: skip

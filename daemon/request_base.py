@@ -39,27 +39,15 @@ class Request(msgspec.Struct, tag_field="type", forbid_unknown_fields=True, kw_o
     t_mono: float | None = None
 
 
-class Play(Request, kw_only=True):
-    """How a motion is to be played, whatever it comes from.
+class Command(Request, kw_only=True):
+    """What every request that moves the robot may carry: when its turn is.
 
     Attributes:
-        tempo: how much faster than it was made, where the servos can follow.
-        amplitude: every deviation from standing, times this.
-        mirror: left for right.
-        repeat: how often; a part that can go round goes round, else the whole is done again.
-        loop: go round until something ends it.
-        hold: stop in the pose that says most, and stay.
         when: now (takes over from what is played), after (what is played and what waits already), or at `at_s`.
         at_s: when to take over, on the daemon's clock as in `t_mono` of its events.
         deadline_s: a motion that cannot begin so many seconds after its request came is not played.
     """
 
-    tempo: Annotated[float, Meta(ge=LEAST_TEMPO, le=MOST_TEMPO)] = 1.0
-    amplitude: Annotated[float, Meta(ge=LEAST_AMPLITUDE, le=MOST_AMPLITUDE)] = 1.0
-    mirror: bool = False
-    repeat: Annotated[int, Meta(ge=1, le=MOST_REPEATS)] = 1
-    loop: bool = False
-    hold: bool = False
     when: Literal["now", "after", "at"] = "now"
     at_s: float | None = None
     deadline_s: Annotated[float, Meta(ge=0, le=3600)] | None = None
@@ -72,13 +60,41 @@ class Play(Request, kw_only=True):
         """
         if (self.at_s is not None) != (self.when == "at"):
             raise ValueError('`when` "at" and `at_s` belong together: give both or none')
-        if self.loop and (self.repeat > 1 or self.hold):
-            raise ValueError("`loop` goes round until it is ended: leave out `repeat` and `hold`")
 
     @property
     def words(self) -> str:
         """What it is, in a word or a sentence."""
         raise NotImplementedError
+
+
+class Play(Command, kw_only=True):
+    """How a motion is to be played, whatever it comes from.
+
+    Attributes:
+        tempo: how much faster than it was made, where the servos can follow.
+        amplitude: every deviation from standing, times this.
+        mirror: left for right.
+        repeat: how often; a part that can go round goes round, else the whole is done again.
+        loop: go round until something ends it.
+        hold: stop in the pose that says most, and stay.
+    """
+
+    tempo: Annotated[float, Meta(ge=LEAST_TEMPO, le=MOST_TEMPO)] = 1.0
+    amplitude: Annotated[float, Meta(ge=LEAST_AMPLITUDE, le=MOST_AMPLITUDE)] = 1.0
+    mirror: bool = False
+    repeat: Annotated[int, Meta(ge=1, le=MOST_REPEATS)] = 1
+    loop: bool = False
+    hold: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse options that contradict each other.
+
+        Raises:
+            ValueError: which becomes one `error` event.
+        """
+        super().__post_init__()
+        if self.loop and (self.repeat > 1 or self.hold):
+            raise ValueError("`loop` goes round until it is ended: leave out `repeat` and `hold`")
 
 
 class PlayOptions(TypedDict, total=False):

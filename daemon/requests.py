@@ -21,6 +21,7 @@ from daemon.compositions import (
     SceneOf,
     Story,
 )
+from daemon.lease_requests import LONGEST_SILENCE_S, SHORTEST_SILENCE_S, Lease, Release, Target
 from daemon.request_base import (
     IDLE_STYLES,
     LEAST_AMPLITUDE,
@@ -34,6 +35,7 @@ from daemon.request_base import (
     MOST_TEMPO,
     PROTOCOL_VERSION,
     SHORTEST_S,
+    Command,
     Id,
     Name,
     Play,
@@ -50,6 +52,7 @@ __all__ = [
     "LEAST_AMPLITUDE",
     "LEAST_TEMPO",
     "LONGEST_S",
+    "LONGEST_SILENCE_S",
     "MAX_ID_CHARS",
     "MAX_SEED",
     "MAX_TEXT_CHARS",
@@ -62,10 +65,13 @@ __all__ = [
     "REQUESTS",
     "SHORTEST_GAP_S",
     "SHORTEST_S",
+    "SHORTEST_SILENCE_S",
+    "STREAM_TYPES",
     "Arm",
     "Cancel",
     "Capabilities",
     "CmdRequest",
+    "Command",
     "CtlRequest",
     "Edit",
     "Estop",
@@ -74,12 +80,14 @@ __all__ = [
     "Idle",
     "Inbetween",
     "KeyPoseOf",
+    "Lease",
     "Look",
     "Name",
     "Park",
     "Play",
     "PlayOptions",
     "Record",
+    "Release",
     "Replay",
     "Request",
     "Reset",
@@ -88,6 +96,7 @@ __all__ = [
     "Status",
     "Stop",
     "Story",
+    "Target",
     "Text",
     "tag_of",
 ]
@@ -201,10 +210,14 @@ class Park(Request, tag="park"):
     """Move to the park pose, then torque off."""
 
 
-CmdRequest = Say | Story | Inbetween | Edit | Replay | Gesture | Record | Look | Idle | Cancel | Status | Capabilities
+CmdRequest = (
+    Say | Story | Inbetween | Edit | Replay | Gesture | Lease | Release | Record | Look | Idle | Cancel | Status
+    | Capabilities
+)  # fmt: skip
 CtlRequest = Stop | Estop | Reset | Arm | Park | Status
 CMD_TYPES: tuple[type[Request], ...] = (
-    Say, Story, Inbetween, Edit, Replay, Gesture, Record, Look, Idle, Cancel, Status, Capabilities,
+    Say, Story, Inbetween, Edit, Replay, Gesture, Lease, Release, Record, Look, Idle, Cancel, Status, Capabilities,
 )  # fmt: skip
 CTL_TYPES: tuple[type[Request], ...] = (Stop, Estop, Reset, Arm, Park, Status)
-REQUESTS: tuple[type[Request], ...] = (*CMD_TYPES, *CTL_TYPES[:-1])
+STREAM_TYPES: tuple[type[Request], ...] = (Target,)
+REQUESTS: tuple[type[Request], ...] = (*CMD_TYPES, *CTL_TYPES[:-1], *STREAM_TYPES)

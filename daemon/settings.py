@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from daemon.config import DaemonConfig, Endpoints
+from daemon.config import DaemonConfig, Endpoints, stream_beside
 from daemon.errors import ConfigError
 
 _ENDPOINTS = Endpoints()
@@ -21,12 +21,14 @@ DEFAULTS: dict[str, Any] = {
     "robot": "reference", "bus": "sim://", "log": None, "log_size_mb": _CONFIG.log_size_mb,
     "log_total_mb": _CONFIG.log_total_mb, "generator": None, "model": None, "model_hash": "", "auto_arm": True,
     "idle": "off", "gestures": None, "motions": None,
-    "cmd": _ENDPOINTS.cmd, "ctl": _ENDPOINTS.ctl, "pub": _ENDPOINTS.pub, "keys": None,
+    "cmd": _ENDPOINTS.cmd, "ctl": _ENDPOINTS.ctl, "pub": _ENDPOINTS.pub, "stream": "", "keys": None,
     "metrics": "", "queue_s": _CONFIG.queue_s, "state_rate_hz": _CONFIG.state_rate_hz,
-    "generate_timeout_s": _CONFIG.generate_timeout_s, "park_timeout_s": _CONFIG.park_timeout_s, "log_json": False,
+    "generate_timeout_s": _CONFIG.generate_timeout_s, "park_timeout_s": _CONFIG.park_timeout_s, "lease_s": _CONFIG.lease_s,
+    "lease_park_s": _CONFIG.lease_park_s, "lease_limp_s": _CONFIG.lease_limp_s,
+    "stream_queue_s": _CONFIG.stream_queue_s, "log_json": False,
 }  # fmt: skip
 _PATHS = ("log", "model", "gestures", "motions", "keys")
-_ENDPOINT_KEYS = ("cmd", "ctl", "pub", "keys")
+_ENDPOINT_KEYS = ("cmd", "ctl", "pub", "keys", "stream")
 _LOG_JSON = "log_json"
 """Read by `mmmd run` itself."""
 
@@ -70,6 +72,9 @@ def resolve(
         for key, value in flags.items()
         if value is not None
     }
+    if not found["stream"].value:
+        taken = {str(found["ctl"].value), str(found["pub"].value)}
+        found["stream"] = Setting(stream_beside(str(found["cmd"].value), taken), "beside cmd")
     return found
 
 

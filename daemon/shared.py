@@ -83,6 +83,7 @@ class _Word(IntEnum):
     SPEED_PERMILLE = 26
     DERATED_BY = 27
     DERATED_SERVO = 28
+    PARK_STAY_MS = 29
 
 
 class Readiness(IntEnum):
@@ -189,9 +190,14 @@ class BusLink:
         self._words[_Word.PUSHED] = head + n
         return n
 
-    def request(self, kind: BusRequest) -> None:
-        """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before."""
+    def request(self, kind: BusRequest, *, stay_s: float = 0.0) -> None:
+        """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before.
+
+        After `stay_s` in the park pose a `PARK` goes limp.
+        """
         with self._asking:  # the ctl thread and the event loop both ask
+            if kind is BusRequest.PARK:
+                self._words[_Word.PARK_STAY_MS] = round(1000 * stay_s)
             if kind in (BusRequest.STOP, BusRequest.ESTOP, BusRequest.PARK):
                 self._words[_Word.EPOCH] += np.uint64(1)
             self._words[kind] = 1 + max(int(self._words[k]) for k in BusRequest)
@@ -223,6 +229,11 @@ class BusLink:
         return (permille / 1000 if permille else 1.0), by, servo_id
 
     # Bus process's side.
+
+    @property
+    def park_stay_s(self) -> float:
+        """How long the robot stays in the park pose with torque, as the newest `PARK` says."""
+        return int(self._words[_Word.PARK_STAY_MS]) / 1000
 
     def take_setpoint(self) -> Setpoint | None:
         """The next setpoint of the current epoch; None when there is none."""

@@ -20,14 +20,18 @@ from daemon.generation_messages import Generated, GeneratorError
 from daemon.gestures.library import GestureLibrary
 from daemon.kept_motions import KeptMotion, KeptMotions
 from daemon.keyposes import KeyPose, led_through
+from daemon.lease import LeaseClock
 from daemon.ledger import Entry
 from daemon.originals import Originals
 from daemon.posture import Posture, joined, posture_of
 from daemon.replies import NotPlayableError, generator_failed, too_late
-from daemon.requests import Edit, Gesture, Inbetween, Play, Replay, Say, Story, tag_of
+from daemon.requests import Command, Edit, Gesture, Inbetween, Lease, Play, Replay, Say, Story, tag_of
 from daemon.score import ClipScore, Marks, Score, varied
 from daemon.story_score import SceneNews, StoryScore
+from daemon.stream_score import StreamScore
 from mmm_core.motion import Motion
+from retarget.guarded_steps import GuardedSteps
+from retarget.robot import RobotModel
 
 OUT_OF_SCOPE_DO = "ask for gestures of head, arms and torso, in English, e.g. 'wave with your right hand'"
 _THEIRS = ("bad_edit", "bad_keyframes")
@@ -39,13 +43,14 @@ T = TypeVar("T")
 class Prepared:
     """A motion ready to be played, and what is told about it when it is accepted."""
 
-    score: Score
+    score: Score | StreamScore
     duration_s: float
     status: str = "accepted"
     understood: str = ""
     reason: str = ""
     scope_score: float = 1.0
     generate_ms: float = 0.0
+    silence_s: float | None = None
 
     def accepted(self, entry: Entry, plan_id: int) -> Accepted:
         """The event."""
@@ -58,15 +63,19 @@ class Prepared:
             scope_score=round(self.scope_score, 4),
             duration_s=round(self.duration_s, 3),
             generate_ms=round(self.generate_ms, 2),
+            silence_s=self.silence_s,
         )
 
 
 class Sources:
     """Turns requests into scores."""
 
-    def __init__(self, config: DaemonConfig, generator: GeneratorClient, library: GestureLibrary) -> None:
+    def __init__(
+        self, config: DaemonConfig, robot: RobotModel, generator: GeneratorClient, library: GestureLibrary
+    ) -> None:
         self._config, self._generator, self.library = config, generator, library
         self.kept = KeptMotions()
+        self._robot = robot
         self._originals = Originals(library, self.kept, config.motions or Path())
 
     async def prepare(self, entry: Entry, now: Callable[[], Posture]) -> Prepared:
@@ -95,6 +104,8 @@ class Sources:
             motion = clip.posture.motion(text=clip.name)
             score = await self._score(entry, clip.posture, motion, clip.marks)
             return Prepared(score, _duration_s(clip.posture, request), understood=f"{clip.text} (gesture {clip.name})")
+        if isinstance(request, Lease):
+            return await self._lease(request)
         raise TypeError(f"no source for {type(request).__name__}")
 
     def keep(self, name: str, command_id: str) -> str:
@@ -132,6 +143,14 @@ class Sources:
             motion.scope_score,
             sum(generated.timings_ms.values()),
         )
+
+    async def _lease(self, request: Lease) -> Prepared:
+        silence_s = self._config.lease_s if request.silence_s is None else request.silence_s
+        guard = await asyncio.to_thread(GuardedSteps, self._robot)
+        clock = LeaseClock(silence_s, self._config.lease_park_s)
+        score = StreamScore(self._robot, guard, clock, request.holder)
+        understood = f"joint targets to {self._config.endpoints.stream}, at least one every {silence_s:g} s"
+        return Prepared(score, 0.0, understood=understood, silence_s=silence_s)
 
     async def _story(self, entry: Entry, request: Story) -> Prepared:
         score = StoryScore(request, self._generator, self._config.generate_timeout_s)
@@ -192,6 +211,7 @@ class Sources:
 
     async def _score(self, entry: Entry, posture: Posture, motion: Motion, marks: Marks | None = None) -> Score:
         play = entry.request
+        assert isinstance(play, Play), "only motions have a score of posture"
         self.kept.add(entry.id, KeptMotion(play.words, varied(posture, play), motion))
         if play.loop or play.hold or play.repeat > 1:  # looking for the loop takes a while
             return await asyncio.to_thread(ClipScore, posture, play, marks)
@@ -210,6 +230,6 @@ def _out_of_scope(entry: Entry, reason: str, understood: str, score: float) -> N
     ))  # fmt: skip
 
 
-def _duration_s(posture: Posture, play: Play) -> float:
+def _duration_s(posture: Posture, request: Command) -> float:
     """Length of one performance at the asked tempo."""
-    return len(posture) / posture.fps / play.tempo
+    return len(posture) / posture.fps / (request.tempo if isinstance(request, Play) else 1.0)

@@ -274,7 +274,8 @@ class Streamer:
         t_s = (self._cycle - self._approach_started_s) * self._period_s
         self._setpoint_rad = self._approach.at(t_s)
         goal = self._gate.step(self._setpoint_rad)
-        if t_s > self._approach.duration_s and self._gate.at_rest:
+        stay_s = self._link.park_stay_s if self.state is BusState.PARKING else 0.0
+        if t_s > self._approach.duration_s + stay_s and self._gate.at_rest:
             self._approach = None
             if self.state is BusState.PARKING:
                 self._cut_torque()

@@ -142,7 +142,7 @@ class Supervisor:
             ends = self._config.endpoints
             await self._start_extras(front)
             log.info("ready: robot %s on %s", self._robot.name, self._config.bus)
-            log.info("cmd %s, ctl %s, pub %s", ends.cmd, ends.ctl, ends.pub)
+            log.info("cmd %s, ctl %s, pub %s, stream %s", ends.cmd, ends.ctl, ends.pub, ends.stream)
             failure = asyncio.create_task(front.failure())
             asked = asyncio.create_task(self._asked_to_end.wait())
             await asyncio.wait((failure, asked), return_when=asyncio.FIRST_COMPLETED)

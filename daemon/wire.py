@@ -20,11 +20,12 @@ from daemon.requests import (
     MAX_ID_CHARS,
     MAX_TEXT_CHARS,
     PROTOCOL_VERSION,
-    REQUESTS,
+    STREAM_TYPES,
     CmdRequest,
     CtlRequest,
     Request,
     Say,
+    Target,
     tag_of,
 )
 
@@ -84,6 +85,15 @@ def decode_ctl(frame: bytes) -> CtlRequest:
     if text[:1] not in ("{", "["):
         text = _ENCODER.encode({"type": text}).decode()
     return _decode_json(text, CTL_TYPES, CtlRequest, "ctl")
+
+
+def decode_target(frame: bytes) -> Target:
+    """The joint target in a frame of the `stream` socket.
+
+    Raises:
+        WireError: the frame cannot be taken.
+    """
+    return _decode_json(_checked_text(frame), STREAM_TYPES, Target, "stream")
 
 
 def error_event(error: WireError) -> ErrorEvent:
@@ -149,8 +159,10 @@ def _check_type(raw: dict[str, Any], types: tuple[type[Request], ...], socket: s
         return by_name[name]
     found = "no 'type'" if name is None else f"type {name!r}"
     do = "name one of these types"
-    if isinstance(name, str) and name in {tag_of(t) for t in REQUESTS}:
-        do = f"send it to the {'ctl' if socket == 'cmd' else 'cmd'} socket"
+    for its_socket, its_types in (("cmd", CMD_TYPES), ("ctl", CTL_TYPES), ("stream", STREAM_TYPES)):
+        if isinstance(name, str) and name in {tag_of(t) for t in its_types}:
+            do = f"send it to the {its_socket} socket"
+            break
     allowed = f"on {socket}: {_names(types)}"
     raise WireError("unknown_type", "read a request", found, allowed, do, request_id)
 

@@ -23,6 +23,7 @@ class Connection:
         ctl: endpoint of stop, estop, reset, arm, park, status.
         pub: endpoint of state and events.
         keys: folder of CURVE keys, for a daemon on another machine (`mmmd keys`).
+        stream: endpoint of joint targets; empty takes the place beside `cmd`.
         timeout_s: longest wait for a reply.
     """
 
@@ -30,6 +31,7 @@ class Connection:
     ctl: str = _DEFAULT.ctl
     pub: str = _DEFAULT.pub
     keys: Path | None = None
+    stream: str = ""
     timeout_s: float = 5.0
 
     def client(self) -> Client:
@@ -40,4 +42,4 @@ class Connection:
         """
         from daemon.client import Client
 
-        return Client(Endpoints(self.cmd, self.ctl, self.pub, self.keys), self.timeout_s)
+        return Client(Endpoints(self.cmd, self.ctl, self.pub, self.keys, self.stream), self.timeout_s)

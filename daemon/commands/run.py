@@ -27,7 +27,11 @@ def run(
     cmd: str | None = None,
     ctl: str | None = None,
     pub: str | None = None,
+    stream: str | None = None,
     keys: Path | None = None,
+    lease_s: float | None = None,
+    lease_park_s: float | None = None,
+    lease_limp_s: float | None = None,
     metrics: str | None = None,
     log_json: bool = False,
     quiet: bool = False,
@@ -58,7 +62,11 @@ def run(
         cmd: endpoint of requests.
         ctl: endpoint of stop, estop, reset, arm, park, status.
         pub: endpoint of state and events.
+        stream: endpoint of joint targets under a lease; beside `cmd` (four ports on, or PATH.stream) when it is not given.
         keys: folder of CURVE keys (`mmmd keys`): tcp sockets then take allowed clients only, and may be on any address.
+        lease_s: a streaming program silent for so long: the robot brakes and holds (0.2 when it is not given).
+        lease_park_s: silent for so long: its lease ends and the robot parks (5).
+        lease_limp_s: so long in the park pose after that, then limp (2).
         metrics: HOST:PORT of Prometheus metrics; none when it is not given.
         log_json: one JSON object a line instead of text.
         quiet: log only warnings.

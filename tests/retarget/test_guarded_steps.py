@@ -100,7 +100,7 @@ def test_a_held_robot_does_not_creep():
 
 def test_what_ends_the_steps_brakes_on_the_way_that_was_proved():
     """The bus process brakes by `limits.brake` when frames end: from every step that way is clear."""
-    robot, guard = begun("toddlerbot")
+    _, guard = begun("toddlerbot")
     draw = np.random.default_rng(5)
     for _ in range(12):
         target = draw.uniform(guard.limits.position_min_rad, guard.limits.position_max_rad)
