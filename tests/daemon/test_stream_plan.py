@@ -122,7 +122,7 @@ def test_no_stream_breaks_a_limit_or_touches(name, actions):
             elif kind == "stall":
                 s.cycle(n, fed=False)
             elif kind == "slow":
-                s.bench.streamer._derating.share = float(draw.uniform(0.3, 1.0))  # noqa: SLF001
+                s.bench.streamer._derating.share = float(draw.uniform(0.3, 1.0))
                 s.to(draw.uniform(low, high), n)
             elif kind == "stop":
                 s.bench.link.request(BusRequest.STOP)

@@ -1,0 +1,316 @@
+"""Joint targets from other programs: a whole daemon, its simulated servos and their audit, clients that behave or do not."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import zmq
+
+from daemon import events as ev
+from daemon.async_client import AsyncClient
+from daemon.client import CancelledByError, Client, RefusedError
+from daemon.client_streams import Stream
+from daemon.requests import Release, Say
+from daemon.wire import decode_event, encode
+from tests.end_to_end.harness import RunningDaemon
+
+PARK_S, LIMP_S = 1.2, 0.4
+PERIOD_S = 0.02
+
+
+@pytest.fixture(scope="module")
+def running():
+    """One daemon for all; at its end the audit of everything that these tests sent to its servos."""
+    daemon = RunningDaemon("--lease-park-s", str(PARK_S), "--lease-limp-s", str(LIMP_S))
+    try:
+        yield daemon.until_ready()
+        assert daemon.terminate() == 0
+        report = json.loads(daemon.audit.read_text())
+        assert report["goals"] > 0
+        assert report["violations"] == 0 and report["self_contacts"] == 0, report
+    finally:
+        daemon.close()
+
+
+@pytest.fixture
+def robot(running):
+    with running.client() as client:
+        if client.status().state in ("fault", "estop"):
+            client.reset()
+        if client.status().state == "parking":
+            client.wait_for("limp", timeout_s=10)
+        client.arm()
+        client.wait_for("idle", "holding", timeout_s=10)
+        yield client
+
+
+def wave(robot: Client, stream: Stream, seconds: float, rad: float = 0.3) -> None:
+    """A sine of the first joints about the robot's rest."""
+    rest, began_s = robot.status().goal_rad, time.monotonic()
+    while (t_s := time.monotonic() - began_s) < seconds:
+        stream.send([q + rad * math.sin(3 * t_s) for q in rest])
+        time.sleep(PERIOD_S)
+
+
+def stages(stream: Stream) -> list[str]:
+    return [e.stage for e in stream.news.events if isinstance(e, ev.Progress)]
+
+
+def until_still(robot: Client, within_s: float = 3.0) -> list[float]:
+    """Wait until two looks show the same goal; the goal."""
+    end_s, before = time.monotonic() + within_s, [math.nan]
+    while (now := robot.status().goal_rad) != before:
+        assert time.monotonic() < end_s, "it still moves"
+        before = now
+        time.sleep(0.05)
+    return before
+
+
+def test_a_stream_moves_the_robot_and_is_released_with_its_figures(robot):
+    with robot.stream("sine") as stream:
+        accepted = stream.news.events[0]
+        assert isinstance(accepted, ev.Accepted) and accepted.silence_s == 0.2
+        wave(robot, stream, 1.0)
+        now = robot.status()
+        assert now.state == "moving" and now.command.id == stream.news.id
+        assert now.stream.lease.holder == "sine" and now.stream.lease.state == "streaming"
+        assert now.stream.lease.targets > 20 and now.stream.bad == {}
+    done = stream.news.end
+    assert isinstance(done, ev.Done) and done.gate_clipped_frames == 0 and done.peak_speed_share > 0.02
+    assert 0 < done.first_motion_ms < 1000
+    assert robot.status().stream.lease is None
+
+
+def test_the_asyncio_client_has_the_same(robot, running):
+    async def play() -> ev.AnyEvent | None:
+        async with AsyncClient(running.endpoints) as other, other.stream("async") as stream:
+            rest = (await other.status()).goal_rad
+            for k in range(20):
+                await stream.send({robot.status().joint_names[0]: rest[0] + 0.01 * k})
+                await asyncio.sleep(PERIOD_S)
+        return stream.news.end
+
+    assert isinstance(asyncio.run(play()), ev.Done)
+
+
+def test_a_second_asker_is_told_who_holds_it(robot, running):
+    with robot.stream("the first") as stream, running.client() as other:
+        stream.send(robot.status().goal_rad)
+        with pytest.raises(RefusedError) as caught, other.stream("the second"):
+            raise AssertionError("two leases at once")
+        assert caught.value.code == "lease_held"
+        assert "the first" in str(caught.value) and stream.news.id in str(caught.value)
+    with running.client() as other, other.stream("the second"):
+        assert other.status().stream.lease.holder == "the second"
+
+
+def test_silence_brakes_and_holds_then_parks_then_limp(robot):
+    rest = robot.status().goal_rad
+    with pytest.raises(RefusedError) as caught, robot.stream("sleepy") as stream:
+        wave(robot, stream, 0.4)
+        time.sleep(0.35)
+        held = until_still(robot)
+        assert robot.status().stream.lease.held_by == "silence"
+        stream.send([q + 0.1 for q in rest])  # it lives: the robot goes on
+        time.sleep(0.1)
+        assert robot.status().stream.lease.state == "streaming"
+        time.sleep(0.3)
+        until_still(robot)
+        assert robot.status().goal_rad != held
+        silent_s = time.monotonic()
+        parking = robot.wait_for("parking", timeout_s=PARK_S + 1)
+        assert parking.stream.lease is None and parking.command is None
+        robot.wait_for("limp", timeout_s=8)
+        assert time.monotonic() - silent_s > LIMP_S
+        stream.send(rest)
+    assert caught.value.code == "lease_silent"
+    assert "silent" in stages(stream)
+
+
+def test_a_lease_may_name_a_shorter_silence(robot):
+    with robot.stream("quick", silence_s=0.05) as stream:
+        assert stream.news.events[0].silence_s == 0.05
+        stream.send(robot.status().goal_rad)
+        time.sleep(0.1)
+        assert robot.status().stream.lease.state == "silent"
+
+
+def test_a_text_takes_over_and_the_stream_says_no_more(robot):
+    with pytest.raises(CancelledByError, match="say"), robot.stream("talkative") as stream:
+        wave(robot, stream, 0.5)
+        said = robot.say("wave with your right hand", wait=False)
+        while True:
+            stream.send(robot.status().goal_rad)
+            time.sleep(PERIOD_S)
+    assert stream.news.end.by == f"say {said.id}"
+    robot.wait_for("idle", timeout_s=15)
+
+
+def test_a_lease_takes_over_from_a_text_without_a_jolt(robot, running):
+    with running.client() as other:
+        events = other.events_of(Say(id="barged", text="slow wave"))
+        while not (isinstance(event := next(events), ev.Progress) and event.stage == "moving"):
+            pass
+        with robot.stream("barger") as stream:
+            wave(robot, stream, 0.5)
+        ended = list(events)
+    assert isinstance(ended[-1], ev.Cancelled) and ended[-1].by == f"lease {stream.news.id}"
+    assert isinstance(stream.news.end, ev.Done) and stream.news.end.gate_clipped_frames <= 2
+
+
+@pytest.mark.parametrize("verb", ["stop", "cancel", "park", "estop"])
+def test_what_ends_a_motion_ends_a_lease(robot, verb):
+    with pytest.raises(CancelledByError, match=verb), robot.stream("ended") as stream:
+        wave(robot, stream, 0.4)
+        began_s = time.monotonic()
+        {"stop": robot.stop, "cancel": robot.cancel, "park": robot.park, "estop": robot.estop}[verb]()
+        assert time.monotonic() - began_s < 10
+        time.sleep(0.05)
+        goal = until_still(robot)
+        for _ in range(10):
+            with contextlib.suppress(CancelledByError):
+                stream.send([q + 0.2 for q in goal])
+            time.sleep(PERIOD_S)
+        assert robot.status().goal_rad == goal, "targets of a lease that has ended move nothing"
+        stream.send(goal)
+    terminal = [e for e in stream.news.events if e.terminal]
+    assert len(terminal) == 1
+
+
+def test_bad_messages_are_counted_and_named_and_move_nothing(robot, running):
+    context = zmq.Context()
+    raw = context.socket(zmq.PUB)
+    raw.connect(running.endpoints.stream)
+    try:
+        before = dict(robot.status().stream.bad)
+        with robot.stream("careful") as stream:
+            rest = robot.status().goal_rad
+            n, name = len(rest), robot.status().joint_names[0]
+            good = {"type": "target", "id": stream.news.id}
+            for frame in (
+                b"wave", b'{"type": "target"}', {**good, "q_rad": [0.0] * (n + 1)}, {**good, "q_rad": {"tail": 1.0}},
+                {**good, "q_rad": {name: 5000.0}}, {**good, "id": "stolen", "q_rad": rest},
+            ):  # fmt: skip
+                data = frame if isinstance(frame, bytes) else json.dumps(frame).encode()
+                code_seen = dict(robot.status().stream.bad)
+                for _ in range(100):
+                    raw.send(data)
+                    time.sleep(0.01)
+                    if robot.status().stream.bad != code_seen:
+                        break
+            assert robot.status().goal_rad == rest
+            stream.send(rest)
+            time.sleep(0.1)
+            stream.send(rest)
+        bad = robot.status().stream.bad
+        for code in ("bad_json", "bad_value", "wrong_number", "unknown_joint", "not_finite", "no_lease"):
+            assert bad.get(code, 0) > before.get(code, 0), (code, bad)
+        told = [e for e in stream.news.events if isinstance(e, ev.Progress) and e.stage == "bad_target"]
+        assert {e.status for e in told} >= {"wrong_number", "unknown_joint", "not_finite"}
+        assert all(e.reason for e in told)
+    finally:
+        context.destroy(linger=0)
+
+
+def test_bad_messages_are_no_sign_of_life(robot):
+    with robot.stream("noisy") as stream:
+        stream.send(robot.status().goal_rad)
+        end_s = time.monotonic() + 0.5
+        while time.monotonic() < end_s:
+            stream.send({"no such joint": 1.0})
+            time.sleep(PERIOD_S)
+        assert robot.status().stream.lease.state == "silent"
+
+
+def test_random_jumping_streams_stay_off_the_body(robot):
+    """The audit at the end of the module is the judge; here it only has to be told when it held."""
+    draw = np.random.default_rng(7)
+    capabilities = robot.capabilities()
+    low = np.array([j.position_min_rad for j in capabilities.joints])
+    high = np.array([j.position_max_rad for j in capabilities.joints])
+    with robot.stream("adversary") as stream:
+        for _ in range(25):
+            target = np.where(draw.random(len(low)) < 0.5, draw.uniform(2 * low, 2 * high), draw.uniform(low, high))
+            for _ in range(int(draw.integers(1, 12))):
+                stream.send(target.tolist())
+                time.sleep(PERIOD_S)
+        held = [e.reason for e in stream.news.events if isinstance(e, ev.Progress) and e.stage == "held"]
+        for _ in range(80):  # back to where parking is short
+            stream.send([0.0 if a < 0.0 < b else (a + b) / 2 for a, b in zip(low, high, strict=True)])
+            time.sleep(PERIOD_S)
+    assert isinstance(stream.news.end, ev.Done)
+    assert stream.news.end.clipped_frames > 0
+    assert all("self-collision" in reason for reason in held)
+
+
+KILLED = """
+import math, os, sys, time
+from daemon.client import Client
+from daemon.config import Endpoints
+with Client(Endpoints(*sys.argv[1:4])) as robot, robot.stream("doomed") as stream:
+    rest, began_s = robot.status().goal_rad, time.monotonic()
+    while True:
+        t_s = time.monotonic() - began_s
+        stream.send([q + 0.4 * math.sin(5 * t_s) for q in rest])
+        if t_s > 0.5:
+            print("streaming", flush=True)
+        time.sleep(0.01)
+"""
+
+
+def test_a_client_that_is_killed_leaves_no_arm_moving(robot, running):
+    ends = running.endpoints
+    with subprocess.Popen(
+        [sys.executable, "-c", KILLED, ends.cmd, ends.ctl, ends.pub], stdout=subprocess.PIPE, text=True, env=os.environ
+    ) as child:
+        assert child.stdout is not None and child.stdout.readline() == "streaming\n"
+        assert robot.status().state == "moving"
+        child.send_signal(signal.SIGKILL)
+        child.wait(5)
+    killed_s = time.monotonic()
+    until_still(robot, within_s=1.5)
+    assert time.monotonic() - killed_s < 1.5
+    assert robot.status().stream.lease.held_by == "silence"
+    robot.wait_for("limp", timeout_s=15)
+    assert robot.status().stream.lease is None
+
+
+def test_look_holds_for_a_stream_too(robot):
+    names = robot.status().joint_names
+    yaw = next((k for k, name in enumerate(names) if "yaw" in name and ("head" in name or "neck" in name)), None)
+    assert yaw is not None, names
+    with robot.stream("looked at") as stream:
+        rest = robot.status().goal_rad
+        robot.look(yaw_deg=20)
+        for _ in range(40):
+            stream.send(rest)
+            time.sleep(PERIOD_S)
+        assert abs(robot.status().goal_rad[yaw] - rest[yaw]) > math.radians(15)
+        robot.look()
+        for _ in range(40):
+            stream.send(rest)
+            time.sleep(PERIOD_S)
+        assert robot.status().goal_rad[yaw] == pytest.approx(rest[yaw], abs=1e-6)
+
+
+def test_release_without_a_lease_is_refused(running):
+    context = zmq.Context()
+    socket = context.socket(zmq.REQ)
+    try:
+        socket.connect(running.endpoints.cmd)
+        socket.setsockopt(zmq.RCVTIMEO, 5000)
+        socket.send(encode(Release(lease="never")))
+        event = decode_event(socket.recv())
+        assert isinstance(event, ev.Rejected) and event.code == "no_lease"
+    finally:
+        context.destroy(linger=0)
