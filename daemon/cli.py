@@ -34,6 +34,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "gesture": CommandEntry("daemon.commands.gesture:gesture", "play, list, record and add named gestures"),
     "look": CommandEntry("daemon.commands.layers:look", "turn the head, whatever the body does"),
     "idle": CommandEntry("daemon.commands.layers:idle", "small movements while there is nothing to play"),
+    "stream": CommandEntry("daemon.commands.stream:stream", "joint targets from another program, under a lease"),
     "cancel": CommandEntry("daemon.commands.layers:cancel", "end a command; the robot brakes and holds"),
     "capabilities": CommandEntry("daemon.commands.layers:capabilities", "what the robot and the daemon can do"),
     "status": CommandEntry("daemon.commands.status:status", "what the robot and the daemon are doing"),

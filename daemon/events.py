@@ -62,7 +62,8 @@ class Progress(Event, tag="progress"):
     Attributes:
         plan_id: number of the plan, 0 before there is one.
         stage: the stage.
-        first_motion_ms: text to first changed servo goal, once `moving`.
+        first_motion_ms: text (of a lease: first target) to first changed servo goal, once `moving`.
+        target_t_mono: of a lease, once `moving`: when its first target came, on the daemon's clock.
         scene: number of the part, from 1 in each round.
         text: of the part.
         status: accepted, degraded, or rejected when the part was left out.
@@ -74,6 +75,7 @@ class Progress(Event, tag="progress"):
     plan_id: int
     stage: str
     first_motion_ms: float | None = None
+    target_t_mono: float | None = None
     scene: int | None = None
     text: str = ""
     status: str = ""

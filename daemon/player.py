@@ -167,7 +167,9 @@ class Player:
         if entry is not None and not self._moving_told and statistics.first_motion_ms is not None:
             self._moving_told = True
             first_ms = round(statistics.first_motion_ms, 2)
-            self._ledger.emit(entry, Progress(plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms))
+            came_s = plan.first_target_s if isinstance(plan, StreamPlan) else None
+            moving = Progress(plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms, target_t_mono=came_s)
+            self._ledger.emit(entry, moving)
         self._tell_scenes(plan.plan_id)
         if finish_loop and isinstance(self._score, (ClipScore, StoryScore)):
             self._score.finish()

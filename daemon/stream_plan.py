@@ -27,6 +27,7 @@ class StreamPlan(Plan):
     Attributes:
         score: the same.
         resting: whether the last frame stands where it is until something changes; the bus process then holds.
+        first_target_s: when the first target came, monotonic; None before.
         lost: whether the bus process ran out of frames: it brakes, and the frames go on from where it stands.
     """
 
@@ -40,6 +41,7 @@ class StreamPlan(Plan):
         self._start = score.state
         self.resting: bool = False
         self.lost: bool = False
+        self.first_target_s: float | None = None
         self._good_from: int = 0
 
     def extend(self, n: int) -> None:

@@ -36,7 +36,9 @@ class StreamWatch:
         if not plan.score.take(q_rad, time.monotonic()):
             return False
         if plan.score.targets == 1:
-            plan.statistics.count_from(time.monotonic_ns())
+            now_ns = time.monotonic_ns()
+            plan.first_target_s = now_ns * 1e-9
+            plan.statistics.count_from(now_ns)
         self._planner.stream_on()
         return True
 

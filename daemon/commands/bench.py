@@ -10,10 +10,11 @@ from typing import Annotated, Any, Literal
 import tyro
 
 BenchName = Literal[
-    "generate", "official", "story", "retarget", "first-motion", "barge-in", "seams", "estop", "audit", "bus"
+    "generate", "official", "story", "retarget", "first-motion", "barge-in", "seams", "estop", "audit", "bus", "stream"
 ]
 _WITH_N: dict[str, int | None] = {
     "story": 59, "retarget": None, "first-motion": 50, "barge-in": 1000, "seams": 60, "estop": 30, "audit": 200,
+    "stream": 50,
 }  # fmt: skip
 """Figures that take a number of texts, clips or trials, and how many it is when none is given (None: all)."""
 
@@ -29,7 +30,7 @@ def bench(
     daemon. barge-in: overlapping commands and stops at random instants. seams: jerk and steps where motions meet, and
     closure of loops. estop: e-stop to torque-off bytes with busy cores. audit: many texts through the daemon's bus side
     on every robot, also under faults, every goal checked against the limits. bus: codec and servo bus against a wire
-    kept on a pty, beside other drivers where they are installed.
+    kept on a pty, beside other drivers where they are installed. stream: joint target of another program to first moved goal.
 
     Example: mmmd bench first-motion --json
 

@@ -89,6 +89,7 @@ def capabilities(
     lines = [
         f"mmmd {found.version}, robot {found.robot}, {len(found.joints)} joints at {found.rate_hz:g} Hz",
         f"generator: {found.generator}",
+        f"stream: {found.stream}, lease: {', '.join(f'{k} {v:g}' for k, v in found.lease.items())}",
         *(f"{socket}: {', '.join(names)}" for socket, names in found.requests.items()),
         *(f"topic {topic}: {text}" for topic, text in found.topics.items()),
         *(f"option {name}: {low:g} to {high:g}" for name, (low, high) in found.options.items()),

@@ -114,8 +114,9 @@ def describe(event: object) -> str:
             taken = "left out" if event.status == "rejected" else event.status
             return f"scene {event.scene}: {event.text} ({taken}{': ' if event.reason else ''}{event.reason})"
         if event.first_motion_ms is None:
-            return f"{event.stage} ..."
-        return f"{event.stage}: first servo frame {event.first_motion_ms:.0f} ms after the text"
+            return f"{event.stage}: {event.reason}" if event.reason else f"{event.stage} ..."
+        after = "the text" if event.target_t_mono is None else "the first target"
+        return f"{event.stage}: first servo frame {event.first_motion_ms:.0f} ms after {after}"
     if isinstance(event, Done):
         return (
             f"done: {event.duration_s:.2f} s; peak {event.peak_speed_joint} at {100 * event.peak_speed_share:.0f} % of "

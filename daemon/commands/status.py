@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import sys
+from typing import TYPE_CHECKING
 
 from tyro.conf import OmitArgPrefixes
 
 from daemon.commands.connection import Connection
+
+if TYPE_CHECKING:
+    from daemon.events import StateEvent
 
 
 def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
@@ -37,6 +41,7 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
         + (" (needs `mmmd arm`)" if now.must_arm else "")
         + (f": {now.reason}" if now.reason else ""),
         "playing": playing,
+        "stream": _stream(now),
         "in hand": f"{now.queued_ms:.0f} ms of setpoints",
         "generator": now.generator,
         "recording": now.recording or "-",
@@ -48,3 +53,16 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
         table.add_row(f"[bold]{key}[/bold]", value)
     Console().print(table)
     return 3 if now.state == "fault" else 0
+
+
+def _stream(now: StateEvent) -> str:
+    """The socket for joint targets, and who holds its lease."""
+    if now.stream is None:
+        return "-"
+    bad = f"; refused: {', '.join(f'{n} {code}' for code, n in now.stream.bad.items())}" if now.stream.bad else ""
+    lease = now.stream.lease
+    if lease is None:
+        return f"{now.stream.endpoint}, no lease{bad}"
+    held = f", held by {lease.held_by}" if lease.held_by else ""
+    who = f"{lease.state} by {lease.holder or 'somebody'}"
+    return f"{now.stream.endpoint}, {who} (lease {lease.id[:8]}), {lease.targets} targets{held}{bad}"

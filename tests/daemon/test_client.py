@@ -13,6 +13,7 @@ from daemon import events, wire
 from daemon.client import Client, NoAnswerError, RefusedError
 from daemon.config import Endpoints
 from daemon.errors import ConfigError
+from daemon.settings import config_of, resolve
 
 
 class Peer:
@@ -118,3 +119,34 @@ def test_local_endpoints(cmd):
 def test_two_sockets_at_one_place():
     with pytest.raises(ConfigError, match="different"):
         Endpoints(cmd="tcp://127.0.0.1:5872")
+
+
+@pytest.mark.parametrize(
+    ("cmd", "stream"),
+    [
+        ("tcp://127.0.0.1:5871", "tcp://127.0.0.1:5875"),
+        ("tcp://127.0.0.1:5868", "tcp://127.0.0.1:5874"),  # 5872 and 5873 are ctl's and pub's
+        ("tcp://127.0.0.1:65535", "tcp://127.0.0.1:65531"),
+        ("ipc:///run/mmmd/cmd", "ipc:///run/mmmd/cmd.stream"),
+    ],
+)
+def test_daemon_and_client_find_the_stream_beside_cmd(cmd, stream):
+    assert Endpoints(cmd=cmd).stream == stream
+
+
+@pytest.mark.parametrize(
+    "stream", ["tcp://0.0.0.0:5875", "tcp://127.0.0.1", "udp://127.0.0.1:5", "tcp://127.0.0.1:5872"]
+)
+def test_a_stream_that_machines_could_reach_or_that_is_taken_is_refused(stream):
+    with pytest.raises(ConfigError, match="stream"):
+        Endpoints(stream=stream)
+
+
+def test_settings_of_leases_have_ranges_and_sources():
+    found = resolve({"cmd": "ipc:///tmp/x", "lease_s": 0.5}, environment={"MMMD_LEASE_PARK_S": "9"})
+    assert (found["stream"].value, found["stream"].source) == ("ipc:///tmp/x.stream", "beside cmd")
+    config = config_of(found)
+    assert (config.lease_s, config.lease_park_s, config.endpoints.stream) == (0.5, 9.0, "ipc:///tmp/x.stream")
+    for key, value in (("lease_s", 3.0), ("lease_park_s", 0.1), ("lease_limp_s", -1.0), ("stream_queue_s", 1.0)):
+        with pytest.raises(ConfigError, match=key):
+            config_of(resolve({key: value}, environment={}))

@@ -99,6 +99,11 @@ def test_an_allowed_client_does_everything(secured):
         assert client.say("wave", seconds=0.8).done
         assert next(client.watch("v1/state"))[0] == "v1/state"
         client.stop()
+        with client.stream("allowed") as stream:
+            for _ in range(20):
+                stream.send(client.status().goal_rad)
+                time.sleep(0.02)
+            assert client.status().stream.lease.targets > 0
 
 
 @pytest.mark.parametrize("who", ["no key", "a key that is not allowed", "the wrong daemon's key"])
@@ -110,7 +115,9 @@ def test_a_stranger_gets_nothing_on_any_socket(secured, tmp_path, who):
     ends = daemon.endpoints
     context = zmq.Context()
     try:
-        for endpoint, kind in ((ends.cmd, zmq.DEALER), (ends.ctl, zmq.DEALER), (ends.pub, zmq.SUB)):
+        for endpoint, kind in (
+            (ends.cmd, zmq.DEALER), (ends.ctl, zmq.DEALER), (ends.pub, zmq.SUB), (ends.stream, zmq.PUB)
+        ):  # fmt: skip
             socket = context.socket(kind)
             if who != "no key":
                 from daemon.keys import connect_curve
@@ -130,7 +137,9 @@ def test_a_stranger_gets_nothing_on_any_socket(secured, tmp_path, who):
     finally:
         context.destroy(linger=0)
     with daemon.client() as client:
-        assert client.status().state in ("limp", "idle", "holding")
+        now = client.status()
+        assert now.state in ("limp", "idle", "holding")
+        assert now.stream.bad == {}, "a stranger's frame has come in at `stream`"
 
 
 def test_a_key_can_be_allowed_and_taken_back_while_it_runs(secured, tmp_path):
