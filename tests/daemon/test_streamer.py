@@ -185,6 +185,27 @@ def test_parking_ends_limp_in_the_park_pose():
         r.assert_limits_kept()
 
 
+def test_a_park_may_stay_in_the_park_pose_before_it_goes_limp():
+    """A lease that fell silent leads there; a plain park, also while it stays, goes limp at once."""
+    with rig() as r:
+        r.arm()
+        r.link.request(BusRequest.PARK, stay_s=3.0)
+        r.cycle()
+        r.until(BusState.LIMP)
+        stood = [
+            i for i, k in enumerate(r.records) if k["torque"] and not k["velocity_rad_s"].any() and k["state"] == 5
+        ]
+        assert len(stood) / r.robot.bus.rate_hz == pytest.approx(3.0, abs=0.2)
+        r.arm()
+        r.link.request(BusRequest.PARK, stay_s=60.0)
+        r.cycle(400)
+        assert r.state is BusState.PARKING and all(r.torque)
+        r.link.request(BusRequest.PARK)
+        r.cycle()
+        r.until(BusState.LIMP, within_s=1.0)
+        r.assert_limits_kept()
+
+
 def test_a_silent_front_holds_then_parks(monkeypatch):
     """Time of the heartbeat is the machine's; here it goes with the virtual clock."""
     with rig(watch_front=True) as r:

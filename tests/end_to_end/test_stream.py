@@ -139,6 +139,26 @@ def test_silence_brakes_and_holds_then_parks_then_limp(robot):
     assert "silent" in stages(stream)
 
 
+def test_a_command_that_waits_for_a_silent_lease_is_played_instead_of_parking(robot, running):
+    with pytest.raises(RefusedError) as caught, robot.stream("in the way") as stream, running.client() as other:
+        stream.send(robot.status().goal_rad)
+        said = other.say("wave", when="after", timeout_s=PARK_S + 20)
+        assert said.done
+        stream.send(robot.status().goal_rad)
+    assert caught.value.code == "lease_silent"
+    robot.wait_for("idle", "holding", timeout_s=3)
+
+
+def test_a_text_that_cannot_be_made_leaves_the_stream_going(robot):
+    with robot.stream("undisturbed") as stream:
+        wave(robot, stream, 0.3)
+        with pytest.raises(RefusedError):
+            robot.say("do a somersault")
+        wave(robot, stream, 0.3)
+        assert robot.status().stream.lease.state == "streaming"
+    assert isinstance(stream.news.end, ev.Done)
+
+
 def test_a_lease_may_name_a_shorter_silence(robot):
     with robot.stream("quick", silence_s=0.05) as stream:
         assert stream.news.events[0].silence_s == 0.05
