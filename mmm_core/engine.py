@@ -105,7 +105,11 @@ class Engine:
             clock.lap("decode")
             motion = self.motion(ids, text, seed, verdict, n_frames, is_mirrored=is_mirrored)
             clock.lap("motion")
-        return Generation(motion, understood(verdict), verdict.reason, clock.laps_ms)
+        taken_as = understood(verdict)
+        if len(commands) > 1:
+            several = ", then ".join(c.understood for c in commands)
+            taken_as = mirror_words(several) if is_mirrored else several
+        return Generation(motion, taken_as, verdict.reason, clock.laps_ms)
 
     def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
         """States of a text, and how far it lies from what the model can do."""

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import torch
 from torch import Tensor
 
+from mmm_core.generation import understood
 from mmm_core.in_turn import commands_in_turn
 from mmm_core.sampling import SamplingSettings, fill
 from mmm_core.text import TextStates
@@ -32,11 +33,19 @@ COMMAND_STRIDE = 15_485_863
 
 @dataclass(frozen=True)
 class Command:
-    """One of the commands of a text: its words, their states, and how many tokens it takes."""
+    """One of the commands of a text.
+
+    Attributes:
+        text: its words.
+        states: of its words.
+        n_tokens: how many it takes.
+        understood: the nearest known command and its score, where it is one of several.
+    """
 
     text: str
     states: TextStates
     n_tokens: int
+    understood: str = ""
 
 
 def commands_of(engine: Engine, text: str, states: TextStates, n_frames: int | None) -> list[Command]:
@@ -60,7 +69,7 @@ def commands_of(engine: Engine, text: str, states: TextStates, n_frames: int | N
             own = [tokens_for_frames(engine.predicted_frames(s)) for s, _ in read]
             if n_frames is not None or sum(own) > room:
                 own = shared_out(room, own)
-            return [Command(t, s, n) for t, (s, _), n in zip(parts, read, own, strict=True)]
+            return [Command(t, s, n, understood(v)) for t, (s, v), n in zip(parts, read, own, strict=True)]
     n_frames = engine.predicted_frames(states) if n_frames is None else n_frames
     return [Command(text, states, tokens_for_frames(n_frames))]
 

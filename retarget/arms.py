@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from retarget.arm_chain import ArmChain
 from retarget.branches import UNSEEN, fill_unseen
 from retarget.kinematics import cross, skew
+from retarget.subproblems import Reach, Turn, angle_about, frame, unit
 
 Array = NDArray[np.float64]
 UPPER_WEIGHT, FORE_WEIGHT = 1.0, 1.0
@@ -38,7 +39,6 @@ _SPREAD = {2: 21, 3: 9}
 """Poses for each joint among which a start for the least error is looked for, by number of joints."""
 _STRAIGHT = 1e-6
 """Sine below which two directions count as parallel."""
-_SIGNS = np.array([-1.0, 1.0])
 
 
 @dataclass(frozen=True)
@@ -81,12 +81,12 @@ class Arms:
         self._skews = np.array([[skew(a) for a in c.axes] for c in chains])  # (G, n, 3, 3)
         self._skews_squared = self._skews @ self._skews
         self._upper_m, self._beside_m = np.stack([c.upper_m for c in chains]), np.stack([c.beside_m for c in chains])
-        self.upper0, self.fore0 = _unit(self._upper_m), _unit(np.stack([c.fore_m for c in chains]))
+        self.upper0, self.fore0 = unit(self._upper_m), unit(np.stack([c.fore_m for c in chains]))
         if self.reaches_all:
             a1, a2, a3, a4 = np.moveaxis(self.axes, 1, 0)
-            self._elbow_turn = _Turn(a4, self.fore0)
-            self._third_turn, self._first_turn = _Turn(a2, a3), _Turn(a2, a1)
-            self._elbow_reach, self._roll_reach = _Reach(self._elbow_turn, self.upper0), _Reach(self._third_turn, a1)
+            self._elbow_turn = Turn(a4, self.fore0)
+            self._third_turn, self._first_turn = Turn(a2, a3), Turn(a2, a1)
+            self._elbow_reach, self._roll_reach = Reach(self._elbow_turn, self.upper0), Reach(self._third_turn, a1)
             self._skew_upper = np.array([skew(u) for u in self.upper0])
         else:
             self._spread_out()
@@ -156,7 +156,7 @@ class Arms:
         for j in range(1, self._n_shoulder):
             shoulder = shoulder @ R[:, :, j]
         if self._has_offsets:
-            upper = _unit(self._levers(R)[0])
+            upper = unit(self._levers(R)[0])
         else:
             upper = (shoulder @ self.upper0[:, None, :, None])[..., 0]
         if not self._has_elbow:
@@ -215,14 +215,14 @@ class Arms:
         cosine = np.einsum("gmi,gmi->gm", upper, fore)
         elbow = self._elbow_reach.angles(cosine)  # (G, M, 2)
         bent = self._elbow_turn.at(np.cos(elbow), np.sin(elbow))  # forearm in the upper arm's zero frame
-        R = _frame(upper, fore)[:, :, None] @ np.swapaxes(self._zero_frame(bent), -1, -2)  # (G, M, 2, 3, 3)
+        R = frame(upper, fore)[:, :, None] @ np.swapaxes(self._zero_frame(bent), -1, -2)  # (G, M, 2, 3, 3)
         third = np.einsum("gmeij,gj->gmei", R, a3)
         first = np.einsum("gmeij,gi->gmej", R, a1)
         height = np.einsum("gmei,gi->gme", third, a1)
         q2 = self._roll_reach.angles(height)  # (G, M, 2, 2)
         c2, s2 = np.cos(q2), np.sin(q2)
-        q1, lost = _angle_about(a1, self._third_turn.at(c2, s2), third)
-        q3, _ = _angle_about(a3, first, self._first_turn.at(c2, -s2), first_has_ways=False)
+        q1, lost = angle_about(a1, self._third_turn.at(c2, s2), third)
+        q3, _ = angle_about(a3, first, self._first_turn.at(c2, -s2), first_has_ways=False)
         ways = np.empty((G, M, 2, 2, 4))
         ways[..., 0], ways[..., 1], ways[..., 2], ways[..., 3] = q1, q2, q3, elbow[..., None]
         if lost.any():  # the first and the third axis in line: their sum alone counts, and must be right
@@ -243,16 +243,16 @@ class Arms:
             across = np.where(straight, other, across)
             length = np.linalg.norm(across, axis=-1, keepdims=True)
         across = across / length
-        frame = np.empty((*bent.shape, 3))
-        frame[..., 0] = self.upper0[:, None, None]
-        frame[..., 1] = across
-        frame[..., 2] = across @ np.swapaxes(self._skew_upper, -1, -2)[:, None]
-        return frame
+        columns = np.empty((*bent.shape, 3))
+        columns[..., 0] = self.upper0[:, None, None]
+        columns[..., 1] = across
+        columns[..., 2] = across @ np.swapaxes(self._skew_upper, -1, -2)[:, None]
+        return columns
 
     def _third_alone(self, ways: Array, R: Array) -> Array:
         """(G, M, 2, 2) the third angle that completes the first two to the rotation `R` (G, M, 2, 3, 3)."""
         a3 = self.axes[:, 2]
-        probe = _unit(cross(a3, np.eye(3)[np.abs(a3).argmin(-1)]))
+        probe = unit(cross(a3, np.eye(3)[np.abs(a3).argmin(-1)]))
         turns = self._rotations(ways.reshape(len(ways), -1, 4)).reshape(*ways.shape, 3, 3)
         left = np.swapaxes(turns[..., 0, :, :] @ turns[..., 1, :, :], -1, -2) @ R[:, :, :, None]
         moved = np.einsum("gmewij,gj->gmewi", left, probe)
@@ -265,16 +265,16 @@ class Arms:
         aim = np.concatenate([upper, fore], -1)
         nearest = (aim @ np.swapaxes(self._pose_directions, -1, -2)).argmax(-1)  # (G, M)
         starts = [np.take_along_axis(self._poses, nearest[..., None], 1)]
-        between = _unit(upper + fore)
+        between = unit(upper + fore)
         for aim in (upper, between) if self._has_elbow else (between,):
             if self._n_shoulder == 2:
                 a1, a2 = self.axes[:, 0], self.axes[:, 1]
-                turn = _Turn(a2, self.upper0)
-                q2 = _Reach(turn, a1).angles(np.einsum("gmi,gi->gm", aim, a1))  # (G, M, 2)
-                q1, _ = _angle_about(a1, turn.at(np.cos(q2), np.sin(q2)), aim)
+                turn = Turn(a2, self.upper0)
+                q2 = Reach(turn, a1).angles(np.einsum("gmi,gi->gm", aim, a1))  # (G, M, 2)
+                q1, _ = angle_about(a1, turn.at(np.cos(q2), np.sin(q2)), aim)
                 shoulders = [np.stack([q1[..., w], q2[..., w]], -1) for w in range(2)]
             else:
-                q1, _ = _angle_about(self.axes[:, 0], self.upper0[:, None, None], aim)
+                q1, _ = angle_about(self.axes[:, 0], self.upper0[:, None, None], aim)
                 shoulders = [q1]
             starts += [self._with_elbow(shoulder, fore) for shoulder in shoulders]
         return np.stack(starts, 2)
@@ -287,7 +287,7 @@ class Arms:
         local = fore[..., None]
         for j in range(self._n_shoulder):
             local = np.swapaxes(R[:, :, j], -1, -2) @ local
-        elbow, _ = _angle_about(self.axes[:, -1], self.fore0[:, None, None], local[..., 0])
+        elbow, _ = angle_about(self.axes[:, -1], self.fore0[:, None, None], local[..., 0])
         return np.concatenate([shoulder, elbow], -1)
 
     def _refine(self, ways: Array, upper: Array, fore: Array, steps: int) -> Array:
@@ -317,69 +317,3 @@ class Arms:
     def _nearest_turn(self, ways: Array) -> Array:
         """Whole turns added where that brings an angle into its limits."""
         return ways - 2 * np.pi * np.round((ways - self._middle[:, None]) / (2 * np.pi))
-
-
-class _Turn:
-    """Vectors `v` (G, 3) turned about unit axes (G, 3)."""
-
-    def __init__(self, axis: Array, v: Array) -> None:
-        along = (axis * v).sum(-1, keepdims=True) * axis
-        self.still, self.cosine, self.sine = along, v - along, cross(axis, v)
-
-    def at(self, cosine: Array, sine: Array) -> Array:
-        """(G, ..., 3) the vectors turned by angles (G, ...) of which cosine and sine are given."""
-        shape = (len(self.still), *[1] * (cosine.ndim - 1), 3)
-        turned = cosine[..., None] * self.cosine.reshape(shape) + sine[..., None] * self.sine.reshape(shape)
-        return turned + self.still.reshape(shape)
-
-
-class _Reach:
-    """Which turns bring a vector to a given height along another."""
-
-    def __init__(self, turn: _Turn, onto: Array) -> None:
-        cosine, sine = (turn.cosine * onto).sum(-1), (turn.sine * onto).sum(-1)
-        self._still, self._middle = (turn.still * onto).sum(-1), np.arctan2(sine, cosine)
-        self._reach = np.maximum(np.hypot(cosine, sine), 1e-9)
-
-    def angles(self, height: Array) -> Array:
-        """(G, ..., 2) both angles for heights (G, ...); as near as can be where none reaches."""
-        shape = (-1, *[1] * (height.ndim - 1))
-        share = (height - self._still.reshape(shape)) / self._reach.reshape(shape)
-        spread = np.arccos(np.minimum(np.maximum(share, -1.0), 1.0))
-        return self._middle.reshape(shape)[..., None] + spread[..., None] * _SIGNS
-
-
-def _angle_about(axis: Array, a: Array, b: Array, *, first_has_ways: bool = True) -> tuple[Array, NDArray[np.bool_]]:
-    """Angles (G, M, ..., W) about unit `axis` (G, 3) that turn `a` nearest to `b`, and where either lies along it.
-
-    One of the two has W ways more than the other, in the axis before the last: `a` (G, M, ..., W, 3) and `b`
-    (G, M, ..., 3), or the other way round. Angles are 0 where they are not determined.
-    """
-    many, one = (a, b) if first_has_ways else (b, a)
-    shape = (len(axis), *[1] * (one.ndim - 2), 3)
-    along = axis.reshape(shape)
-    height = (one * along).sum(-1, keepdims=True)
-    flat = one - height * along  # what of it is across the axis
-    across = cross(flat, along) if first_has_ways else cross(along, flat)
-    sine = np.einsum("...wi,...i->...w", many, across)
-    cosine = np.einsum("...wi,...i->...w", many, flat)
-    lost = np.abs(sine) + np.abs(cosine) < _STRAIGHT**2
-    return np.where(lost, 0.0, np.arctan2(sine, cosine)), lost
-
-
-def _frame(a: Array, b: Array) -> Array:
-    """(..., 3, 3) rotations whose columns are `a`, what is across both, and what is across that; any such when parallel."""
-    across = cross(a, b)
-    length = np.sqrt(np.einsum("...i,...i", across, across))[..., None]
-    straight = length < _STRAIGHT
-    if straight.any():
-        across = np.where(straight, cross(a, np.eye(3)[np.abs(a).argmin(-1)]), across)
-        length = np.linalg.norm(across, axis=-1, keepdims=True)
-    across = across / length
-    frame = np.empty((*a.shape, 3))
-    frame[..., 0], frame[..., 1], frame[..., 2] = a, across, cross(a, across)
-    return frame
-
-
-def _unit(v: Array) -> Array:
-    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)

@@ -108,13 +108,9 @@ class TestMotion:
     )
     def test_both_are_done_in_order(self, engine: Engine, text: str, first: str, second: str) -> None:
         motion = engine.generate(text, seed=1).motion
-        middle = next(
-            t for t in range(16, len(motion.joints_m) - 16, 4) if _arms(motion, 0, t) == first == _arms(motion, 0, t)
-        )
-        assert any(
-            _arms(motion, 0, t) == first and _arms(motion, t, len(motion.joints_m)) == second
-            for t in range(middle, len(motion.joints_m) - 12, 2)
-        )
+        n_frames = len(motion.joints_m)
+        moments = range(16, n_frames - 12, 2)
+        assert any(_arms(motion, 0, t) == first and _arms(motion, t, n_frames) == second for t in moments)
 
     def test_its_length_is_that_of_the_commands_and_what_lies_between(self, engine: Engine) -> None:
         one, two = (len(engine.generate(t).motion.tokens) for t in ("nod twice", "clap your hands"))
@@ -126,6 +122,12 @@ class TestMotion:
         motion = engine.generate("nod, then clap, then bow", seconds=seconds).motion
         assert len(motion.joints_m) == round(20 * seconds)
         assert len(motion.tokens) == tokens_for_frames(len(motion.joints_m))
+
+    def test_it_says_how_each_command_was_taken(self, engine: Engine) -> None:
+        """Read in its mirror image and told in the user's own words."""
+        made = engine.generate("wave with your left hand, then bow")
+        first, second = made.understood.split(", then ")
+        assert "left" in first and "right" not in first and "bow" in second
 
     def test_the_same_seed_gives_the_same_motion_and_candidates_are_of_each_command(self, engine: Engine) -> None:
         text = "clap, then bow"
