@@ -24,7 +24,7 @@ from mmm_core.motion import FPS
 from mmm_core.skeleton import JOINT_NAMES, PARENTS, Array, matrix_from_quat, rotation_y
 
 SEED = 1
-PANEL = (112, 146)
+PANEL = (96, 126)
 """Width and height in pixels of one person."""
 METRES = 2.15
 """What the height shows."""
