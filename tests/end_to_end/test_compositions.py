@@ -41,7 +41,7 @@ def test_a_story_moves_with_its_first_part_and_leaves_out_what_it_cannot_do(run)
     with run.client() as robot:
         robot.arm()
         said = robot.story(
-            [("wave with your right hand", 1.6), "swim across the lake", ("nod twice", 1.6), ("bow", 2.0)]
+            [("wave with your right hand", 1.6), "walk to the window", ("nod twice", 1.6), ("bow", 2.0)]
         )
         done = said.done
         assert done is not None and done.underruns == 0 and done.gate_clipped_frames == 0
@@ -121,7 +121,7 @@ def test_an_edit_of_one_arm_moves_that_arm_and_a_bad_one_says_why(run):
                 robot.edit("bow", **fields)
             assert caught.value.code == code, caught.value
         with pytest.raises(RefusedError) as caught:
-            robot.edit("swim across the lake", plan=plan)
+            robot.edit("walk to the window", plan=plan)
         assert caught.value.code == "out_of_scope"
 
 

@@ -52,7 +52,7 @@ def test_three_texts_one_of_them_during_a_motion(run):
 
 
 def test_out_of_scope_is_rejected_with_a_reason_and_a_score(run):
-    result = run.mmmd("say", "swim across the lake", "--json")
+    result = run.mmmd("say", "walk to the window", "--json")
     event = json.loads(result.stdout)
     assert result.returncode == 1 and event["code"] == "out_of_scope" and event["found"] and event["scope_score"] < 1
 
