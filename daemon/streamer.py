@@ -42,9 +42,12 @@ TORQUE_OFF_REPEATS = 5
 MISSING_CYCLES = 20
 """Half of the servos silent for so many cycles is a fault (loose plug, power)."""
 TORQUE_CHECK_CYCLES = 5
+PIN_ATTEMPTS = 3
 SWING_OUT_S = 1.0
 _STILL_S, _STILL_TICK = 0.02, 2
 """Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
+_PIN_TICK = 8
+"""So far may a joint be from its pinned goal when torque comes on: 0.7 degrees of a servo of 4096 ticks."""
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
 """Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
 _LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
@@ -170,15 +173,9 @@ class Streamer:
                 silent = ", ".join(str(i) for i, ok in zip(self._bus.ids, reading.valid, strict=True) if not ok)
                 self._fault(f"cannot arm: no fresh position of servo {silent}; check cable and power")
                 return
-            present = reading.position_tick.copy()
             self._refuse_hardware_errors(reading)
             self._derating.limits = read_limits(self._bus)
-            for servo_id, tick in zip(self._bus.ids, present, strict=True):
-                self._bus.write_item(servo_id, "goal_position", int(tick))
-                pinned = self._bus.read_item(servo_id, "goal_position")
-                if pinned != tick:
-                    raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
-            self._bus.set_effort(PWM_START / PWM_FULL, confirmed=True)
+            present = self._pinned(reading)
             self._bus.write_all("torque_enable", 1)
             without = self._bus.arm_watchdog(WATCHDOG_UNITS)
             if without:
@@ -192,6 +189,31 @@ class Streamer:
         self._gate.reset(self._ticks.tick_to_rad(present))
         self._approach_to(self.rest_rad)
         self._enter(BusState.ARMING)
+
+    def _pinned(self, reading: BusReading) -> NDArray[np.int32]:
+        """(J,) goals pinned to where the joints stand, still so when all are: on a bad wire it takes long enough to move an arm.
+
+        Raises:
+            ServoFaultError: a goal is not taken, or a joint moves each time while goals are pinned.
+        """
+        row = 0
+        for _ in range(PIN_ATTEMPTS):
+            present = reading.position_tick.copy()
+            for servo_id, tick in zip(self._bus.ids, present, strict=True):
+                self._bus.write_item(servo_id, "goal_position", int(tick))
+                pinned = self._bus.read_item(servo_id, "goal_position")
+                if pinned != tick:
+                    raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
+            self._bus.set_effort(PWM_START / PWM_FULL, confirmed=True)
+            now = self._bus.exchange(None)
+            moved = np.where(now.valid, np.abs(now.position_tick - present), np.iinfo(np.int32).max)
+            if moved.max() <= _PIN_TICK:
+                return present
+            row = int(moved.argmax())
+            reading = self._reading_at_rest()
+            if not reading.valid.all():
+                break
+        raise ServoFaultError(self._bus.ids[row], "to stand still while its goal is pinned", "it moved, or was silent")
 
     def _reading_at_rest(self) -> BusReading:
         """A whole reading of joints that stand still: limp they swing on, and a goal pinned meanwhile would jerk.
