@@ -40,9 +40,7 @@ def run(tmp_path_factory):
 def test_a_story_moves_with_its_first_part_and_leaves_out_what_it_cannot_do(run):
     with run.client() as robot:
         robot.arm()
-        said = robot.story(
-            [("wave with your right hand", 1.6), "walk to the window", ("nod twice", 1.6), ("bow", 2.0)]
-        )
+        said = robot.story([("wave with your right hand", 1.6), "walk to the window", ("nod twice", 1.6), ("bow", 2.0)])
         done = said.done
         assert done is not None and done.underruns == 0 and done.gate_clipped_frames == 0
         seconds = 1.6 + 1.6 + 2.0 + 2 * 0.4  # two transitions
