@@ -121,7 +121,11 @@ class SimBus:
         by_id: dict[int, list[SimServo]] = {}
         for servo in listening:
             servo.fed(t_s)
-            by_id.setdefault(servo.servo_id, []).append(servo)
+            servo_id = servo.servo_id
+            if servo_id in by_id:
+                by_id[servo_id].append(servo)
+            else:
+                by_id[servo_id] = [servo]
         if p.instruction in _FAST_READS and protocol == 2.0:
             self._answer_fast(p, by_id, t_s, baud)
         elif p.instruction in _READS:
@@ -210,20 +214,26 @@ class SimBus:
         """One packet to which each servo adds its part."""
         parts: list[Part] = []
         speakers: list[SimServo] = []
-        for access in accesses_of(p, 2.0):
-            servo = next(iter(by_id.get(access.servo_id, ())), None)
+        accesses = accesses_of(p, 2.0)
+        for access in accesses:
+            servo = by_id[access.servo_id][0] if access.servo_id in by_id else None
             if servo is None or not servo.model.has_fast_sync(servo.firmware) or not _answers(servo, Instruction.READ):
                 break
             error, data = servo.read(access.address, access.length)
-            parts.append(Part(servo.servo_id, error | servo.alert(), data.ljust(access.length, b"\0")))
+            parts.append(Part(access.servo_id, error | servo.alert(), data.ljust(access.length, b"\0")))
             speakers.append(servo)
         if not parts:
             return
         byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
         start_s = t_s + self._pause_s(speakers[0])
-        whole = 1 + sum(4 + access.length for access in accesses_of(p, 2.0))
-        for servo, own in zip(speakers, _fast_shares(parts, whole), strict=True):
-            pieces = spoil(self.faults, servo.servo_id, lambda _id, own=own: own, start_s, byte_s)
+        whole = 1 + sum(4 + access.length for access in accesses)
+        shares = _fast_shares(parts, whole)
+        if not self.faults.strikes_packets:  # nothing comes between their shares
+            self.faults.packet += len(speakers)
+            self.wire.answer(start_s, b"".join(shares), baud)
+            return
+        for part, own in zip(parts, shares, strict=True):
+            pieces = spoil(self.faults, part.servo_id, lambda _id, own=own: own, start_s, byte_s)
             if not pieces:
                 return
             for piece in pieces:
