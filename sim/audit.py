@@ -156,10 +156,10 @@ class Audit:
         if self._contact is None:
             self._contact = SelfContact(self.robot, margin_m=0.0)
         ticks = np.array(self._poses, np.int32).reshape(-1, len(self._tracks))
-        poses = self._ticks.tick_to_rad(ticks)
-        for start in range(0, len(poses), _POSES_AT_ONCE):
-            self._contacts += int(self._contact.frames(poses[start : start + _POSES_AT_ONCE]).sum())
-        self._poses_checked += len(poses)
+        for start in range(0, len(ticks), _POSES_AT_ONCE):
+            poses = self._ticks.tick_to_rad(ticks[start : start + _POSES_AT_ONCE])
+            self._contacts += int(self._contact.frames(poses).sum())
+        self._poses_checked += len(ticks)
         self._poses = array("i")
 
     def _count_in_fault(self, track: _Track, t_s: float, faulted: bool) -> None:
