@@ -104,7 +104,8 @@ def test_a_servo_obeys_its_second_id_without_a_word() -> None:
 
 def test_another_id_or_baud_is_followed_at_once() -> None:
     b = Bench()
-    assert b.write("id", 9) == 0
+    said = b.ask(packet.write(1, 7, b"\x09"))
+    assert [(p.servo_id, p.error) for p in said] == [(1, 0)], "it answers as who was asked"
     assert b.ask(packet.ping(1)) == [] and b.ask(packet.ping(9))[0].servo_id == 9
     assert b.write("baud_rate", 1, servo_id=9) == 0
     assert b.ask(packet.ping(9)) == []
