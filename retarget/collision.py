@@ -14,7 +14,7 @@ from retarget.distances import MARGIN_M, MEASURED_M, Array, Indices, PairDistanc
 from retarget.kinematics import cross
 from retarget.robot import RobotModel
 
-_KEPT = 0.8
+KEPT = 0.8
 """Share of the margin that is proved for every instant of a path."""
 _DEEPEST = 8
 """Halvings of a segment after which it counts as touching; distances that near and movements that small do not occur."""
@@ -27,7 +27,7 @@ class SelfContact(PairDistances):
         super().__init__(robot, margin_m)
         self._sweep_m = self._sweeps()
 
-    def frames(self, q_rad: Array, share: float = _KEPT) -> NDArray[np.bool_]:
+    def frames(self, q_rad: Array, share: float = KEPT) -> NDArray[np.bool_]:
         """(T,) whether each frame of (T, J) comes closer to itself than a share of the margin, what paths keep of it."""
         return np.asarray((self.distances_m(q_rad) < share * self._margin_m).any(1), bool)
 
@@ -35,13 +35,13 @@ class SelfContact(PairDistances):
         """(T,) smallest distance of each frame of (T, J)."""
         return self.distances_m(q_rad).min(1, initial=np.inf)
 
-    def rooms_m(self, q_rad: Array) -> Array:
-        """(T, P) what each pair has beyond the share of its margin that paths keep, in each pose of (T, J)."""
-        return self.distances_m(q_rad) - _KEPT * self._margin_m
+    def rooms_m(self, q_rad: Array, share: float = KEPT) -> Array:
+        """(T, P) what each pair has beyond a share of its margin, what paths keep of it, in each pose of (T, J)."""
+        return self.distances_m(q_rad) - share * self._margin_m
 
-    def room_m(self, q_rad: Array) -> Array:
+    def room_m(self, q_rad: Array, share: float = KEPT) -> Array:
         """(P,) the same in one pose (J,)."""
-        return self.rooms_m(q_rad[None])[0]
+        return self.rooms_m(q_rad[None], share)[0]
 
     def within_room(self, room_m: Array, moved_rad: Array) -> bool:
         """Whether every pair keeps that share wherever the joints are within (J,) `moved_rad` of where it has `room_m` (P,)."""
@@ -105,7 +105,7 @@ class SelfContact(PairDistances):
         step = np.abs(np.diff(control_rad, axis=0)) @ self._sweep_m.T  # (N - 1, P)
         first, last = border[:-1], border[1:]
         # Speed changes in a straight line, so a segment moves by no more than the mean of the speeds at its ends.
-        kept_m = _KEPT * self._margin_m
+        kept_m = KEPT * self._margin_m
         near = np.asarray(first + last - (step[:-1] + step[1:]) / 2 < 2 * kept_m, bool) & ~hit[:, None]
         segment, of = np.flatnonzero(near.any(1)), np.flatnonzero(near.any(0))
         if not len(segment):
@@ -129,6 +129,37 @@ class SelfContact(PairDistances):
         hit[segment] = True
         return hit
 
+    def clear_along(self, way_rad: Array, share: float = KEPT, first_room_m: Array | None = None) -> bool:
+        """Whether straight lines from pose to pose of (N, J) keep a share of every margin at every instant.
+
+        On a stretch whose ends have the rooms a and b and on which a pair moves by m, it has at least (a + b - m) / 2;
+        stretches on which that is not enough are halved. `first_room_m` (P,) is the room at the first pose where it is known.
+        """
+        gone = np.zeros_like(way_rad)  # (N, J) what each joint has turned so far
+        np.cumsum(np.abs(np.diff(way_rad, axis=0)), 0, out=gone[1:])
+        kept_m, of, sweep_m = share * self._margin_m, self._every, self._sweep_m
+        first = (self.room_m(way_rad[0], share) if first_room_m is None else first_room_m)[None]
+        last = self.rooms_m(way_rad[-1:], share)
+        if (first <= 0).any() or (last <= 0).any():
+            return False
+        u = np.array([[0.0, len(way_rad) - 1.0]])
+        for _ in range(_DEEPEST + len(way_rad).bit_length()):
+            moved = (_on_lines(gone, u[:, 1]) - _on_lines(gone, u[:, 0])) @ sweep_m.T
+            unsure = np.asarray(first + last <= moved, bool)
+            if not unsure.any():
+                return True
+            segment, pairs = np.flatnonzero(unsure.any(1)), np.flatnonzero(unsure.any(0))
+            of, sweep_m = of[pairs], sweep_m[pairs]
+            u, first, last = u[segment], first[segment][:, pairs], last[segment][:, pairs]
+            middle = u.mean(1)
+            q = _on_lines(way_rad, middle)
+            between = self._distances(q, self._placed(q, with_joints=False), of)[0] - kept_m[of]
+            if (between <= 0).any():
+                return False
+            u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
+            first, last = np.concatenate([first, between]), np.concatenate([between, last])
+        return False
+
     def _sweeps(self) -> Array:
         """(P, J) metres that the shapes of each pair move against each other at most, per radian of each joint."""
         model = self._model
@@ -151,3 +182,9 @@ def _spline(control: Array, segment: Indices, u: Array) -> Array:
     c0, c1, c2 = control[segment], control[segment + 1], control[segment + 2]
     u = u[:, None]
     return (c0 + c1) / 2 + (c1 - c0) * u + (c2 - 2 * c1 + c0) * (u * u / 2)
+
+
+def _on_lines(points: Array, u: Array) -> Array:
+    """(n, J) places on the lines between (N, J) points, `u` counting points."""
+    at = np.minimum(u.astype(np.int64), len(points) - 2)
+    return points[at] + (u - at)[:, None] * (points[at + 1] - points[at])
