@@ -1,12 +1,15 @@
-"""Slow point-to-point moves: from where the robot stands to rest, and to park. Jerk-limited, by ruckig."""
+"""Slow moves along a way of straight lines: from where the robot stands to rest, and to park. Jerk-limited, by ruckig."""
 
 from __future__ import annotations
 
 # ruckig is a compiled module without types:
-# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false
+# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false, reportUnknownArgumentType=false, reportUnknownParameterType=false
+from collections.abc import Sequence
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
-from ruckig import InputParameter, Result, Ruckig, Trajectory
+from ruckig import InputParameter, Result, Ruckig, Synchronization, Trajectory
 
 from retarget.limits import JointLimits
 
@@ -17,26 +20,46 @@ JERK_RAD_S3 = 20.0
 
 
 class Approach:
-    """A move of all joints at once, each slower than its own limits, arriving together."""
+    """A move of all joints at once, each slower than its own limits, on straight lines, at rest at the end of each.
 
-    def __init__(self, start_rad: Array, goal_rad: Array, limits: JointLimits) -> None:
-        n = len(start_rad)
-        request = InputParameter(n)
-        request.current_position, request.target_position = start_rad.tolist(), goal_rad.tolist()
-        request.max_velocity = np.minimum(SPEED_RAD_S, 0.5 * limits.velocity_rad_s).tolist()
-        request.max_acceleration = np.minimum(ACCELERATION_RAD_S2, 0.5 * limits.acceleration_rad_s2).tolist()
-        request.max_jerk = [JERK_RAD_S3] * n
-        self._trajectory = Trajectory(n)
-        result = Ruckig(n).calculate(request, self._trajectory)
-        if result not in (Result.Working, Result.Finished):
-            raise ValueError(f"no way from {start_rad} to {goal_rad}: {result}")
+    Args:
+        way_rad: poses (J,) to go through, the first one where the robot stands.
+        limits: of the joints.
+
+    Raises:
+        ValueError: ruckig finds no trajectory, e.g. for a pose that is not finite.
+    """
+
+    def __init__(self, way_rad: Sequence[Array], limits: JointLimits) -> None:
+        self._lines = [_line(a, b, limits) for a, b in pairwise(way_rad)]
 
     @property
     def duration_s(self) -> float:
         """Time the move takes."""
-        return float(self._trajectory.duration)
+        return float(sum(line.duration for line in self._lines))
 
     def at(self, t_s: float) -> Array:
         """(J,) position at `t_s` since its start."""
-        position, _, _ = self._trajectory.at_time(min(t_s, self.duration_s))
+        for line in self._lines[:-1]:
+            if t_s <= line.duration:
+                break
+            t_s -= line.duration
+        else:
+            line = self._lines[-1]
+        position, _, _ = line.at_time(min(t_s, line.duration))
         return np.array(position)
+
+
+def _line(start_rad: Array, goal_rad: Array, limits: JointLimits) -> Trajectory:
+    n = len(start_rad)
+    request = InputParameter(n)
+    request.synchronization = Synchronization.Phase  # joints in step: the way is straight
+    request.current_position, request.target_position = start_rad.tolist(), goal_rad.tolist()
+    request.max_velocity = np.minimum(SPEED_RAD_S, 0.5 * limits.velocity_rad_s).tolist()
+    request.max_acceleration = np.minimum(ACCELERATION_RAD_S2, 0.5 * limits.acceleration_rad_s2).tolist()
+    request.max_jerk = [JERK_RAD_S3] * n
+    trajectory = Trajectory(n)
+    result = Ruckig(n).calculate(request, trajectory)
+    if result not in (Result.Working, Result.Finished):
+        raise ValueError(f"no way from {start_rad} to {goal_rad}: {result}")
+    return trajectory

@@ -188,5 +188,6 @@ class SlowedSetpoints:
                 return before
             self._pair, self._phase = (before, following), self._phase - 1.0
         a, b = self._pair
-        q_rad = a.q_rad + self._phase * (b.q_rad - a.q_rad)
+        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is the gate's to refuse
+            q_rad = a.q_rad + self._phase * (b.q_rad - a.q_rad)
         return Setpoint(a.plan_id, a.frame, False, q_rad)

@@ -1,6 +1,7 @@
 """The last limiter before bytes, for every source: text, replay, raw stream, park.
 
-Whatever comes in, what goes out keeps position, velocity and acceleration; what already keeps them passes bit for bit.
+Whatever comes in, what goes out keeps position, velocity and acceleration, and leads the robot not into itself: braking as
+hard as it can is proved free after every goal. What already keeps all that passes bit for bit.
 """
 
 from __future__ import annotations
@@ -8,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from retarget.collision import SelfContact
+from retarget.guarded_steps import GuardedSteps
 from retarget.limits import JointLimits, brake, limit_step
 from retarget.robot import RobotModel
 
@@ -15,10 +18,17 @@ Array = NDArray[np.float64]
 
 FARTHEST_RAD = 1000.0
 """Targets beyond are all equally far; without this bound the limiter overflows at 1e300 and its goal is NaN."""
+GATE_SHARE = 0.3
+"""Share of the margin of self-contact that is kept here: less than what paths and streams keep, so that those pass."""
 
 
 class Gate:
     """Holds what the joints were told last, and lets nothing through that they cannot follow.
+
+    Args:
+        robot: which one.
+        period_s: time between two goals; that of the robot's bus when None.
+        contact: of the robot; None: nothing is known of its body, limits alone are kept.
 
     Attributes:
         position_rad, velocity_rad_s: (J,) the last goal and the step to it.
@@ -26,13 +36,20 @@ class Gate:
         refused: targets refused because they were not finite.
     """
 
-    def __init__(self, robot: RobotModel, period_s: float | None = None) -> None:
+    def __init__(self, robot: RobotModel, period_s: float | None = None, contact: SelfContact | None = None) -> None:
         self.limits = JointLimits.of(robot)
         self.period_s = period_s or robot.bus.period_s
         self.position_rad: Array = robot.park_rad.copy()
         self.velocity_rad_s: Array = np.zeros(robot.n_joints)
         self.clipped: NDArray[np.bool_] = np.zeros(robot.n_joints, bool)
         self.refused = 0
+        self._guarded = None if contact is None else GuardedSteps(robot, contact, GATE_SHARE)
+        self.reset(robot.park_rad)
+
+    @property
+    def held(self) -> bool:
+        """Whether it keeps the robot from touching itself just now."""
+        return self._guarded is not None and self._guarded.held
 
     def reset(self, position_rad: Array) -> None:
         """Start anew at a measured position, at rest."""
@@ -41,6 +58,8 @@ class Gate:
         self.position_rad = position_rad.copy()
         self.velocity_rad_s = np.zeros_like(position_rad)
         self.clipped = np.zeros(len(position_rad), bool)
+        if self._guarded is not None:
+            self._guarded.reset(self.position_rad, self.velocity_rad_s)
 
     def step(self, target_rad: Array) -> Array:
         """(J,) next goal towards `target_rad`; a target that is not finite brakes instead."""
@@ -50,19 +69,28 @@ class Gate:
             self.clipped = np.ones(len(goal), bool)
             return goal
         near_rad = np.clip(target_rad, -FARTHEST_RAD, FARTHEST_RAD)
-        goal = limit_step(near_rad, self.position_rad, self.velocity_rad_s, self.limits, self.period_s)
+        if self._guarded is not None:
+            goal = self._guarded.step(near_rad)
+        else:
+            goal = limit_step(near_rad, self.position_rad, self.velocity_rad_s, self.limits, self.period_s)
         self.clipped = goal != target_rad
         return self._advance(goal)
 
     def brake(self) -> Array:
         """(J,) next goal while coming to rest."""
         self.clipped = np.zeros(len(self.position_rad), bool)
+        if self._guarded is not None:
+            return self._advance(self._guarded.brake())
         return self._advance(brake(self.position_rad, self.velocity_rad_s, self.limits, self.period_s))
 
     @property
     def at_rest(self) -> bool:
         """Whether the last step moved nothing."""
         return not self.velocity_rad_s.any()
+
+    def touching(self, target_rad: Array) -> list[tuple[str, str]]:
+        """Names of the bodies that would touch at finite targets (J,), for people; none when nothing is known of the body."""
+        return [] if self._guarded is None else self._guarded.touching(target_rad)
 
     def _advance(self, goal: Array) -> Array:
         self.velocity_rad_s = (goal - self.position_rad) / self.period_s

@@ -26,6 +26,8 @@ from daemon.derating import Derating, SlowedSetpoints, read_limits
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
 from daemon.shared import BusLink, BusRequest, BusState, Readiness, valid_requests
+from retarget.collision import SelfContact
+from retarget.free_way import WaySearch
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
 
@@ -36,6 +38,12 @@ PARK_AFTER_S = 5.0
 """A silent front: after the first time decelerate and hold, after the second park and go limp."""
 FAULT_LIMP_S = 10.0
 """A fault in which torque was kept, and a front so long silent: nobody will come, the servos go limp."""
+NO_WAY_LIMP_S = 10.0
+"""Where no way to rest or park was found that keeps off the robot itself it holds in a fault, and goes limp after so long."""
+SEARCH_PIECES_PER_S = 200
+"""So much of the search for a way is done in a second: a piece or a few in a cycle."""
+_HELD_S, _SEARCHES = 0.5, 3
+"""A slow move that the gate has held for so long is looked for anew from where it stands, so many times."""
 WATCHDOG_UNITS = 10
 """Servo bus watchdog, 20 ms each: 200 ms without any packet on the bus and the servos stop by themselves."""
 TORQUE_OFF_REPEATS = 5
@@ -63,7 +71,8 @@ class Streamer:
     ) -> None:
         self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
         self._ticks = JointServoMap(robot)
-        self._gate = Gate(robot)
+        self._contact = SelfContact(robot)
+        self._gate = Gate(robot, contact=self._contact)
         self._period_s = robot.bus.period_s
         self._watch_front = watch_front
         self.state = BusState.LIMP
@@ -72,7 +81,12 @@ class Streamer:
         """Where arming leads to; replay sets a log's first goal."""
         self._torque = False
         self._approach: Approach | None = None
-        self._approach_started_s = 0.0
+        self._search: WaySearch | None = None
+        self._search_pieces = max(1, round(SEARCH_PIECES_PER_S * robot.bus.period_s))
+        self._searches = 0
+        self._approach_s = self._held_s = 0.0
+        self._limp_at_s: float | None = None
+        self._held = False
         self._goal_tick: NDArray[np.int32] | None = None
         self._setpoint_rad = robot.park_rad.copy()
         self._plan_id, self._frame, self._last = 0, 0, True
@@ -114,6 +128,7 @@ class Streamer:
                 self._serve(self._asked.pop(0))
             self._repeat_torque_off()
             self._watch_heartbeat()
+            self._limp_when_due()
             self._check_stall()
             goal_rad = self._next_goal()
             if goal_rad is not None and self._goal_tick is not None:
@@ -136,13 +151,14 @@ class Streamer:
         log.info("request %s in %s", request.name, self.state.name)
         if request is BusRequest.ESTOP:
             self._link.drop_queued()
-            self._torque, self._goal_tick, self._approach = False, None, None
+            self._torque, self._goal_tick = False, None
+            self._forget_approach()
             self._torque_off_left = TORQUE_OFF_REPEATS  # the first goes out in this cycle
             self._enter(BusState.ESTOP)
         elif request is BusRequest.STOP:
             self._link.drop_queued()
             if self.state in _ARMED:
-                self._approach = None
+                self._forget_approach()
                 self._enter(BusState.STOPPING)
         elif request is BusRequest.RESET:
             if self.state in (BusState.ESTOP, BusState.FAULT):
@@ -154,7 +170,7 @@ class Streamer:
         elif request is BusRequest.PARK:
             self._link.drop_queued()
             if self.state in _ARMED:
-                self._approach = None
+                self._forget_approach()
                 self._enter(BusState.PARKING)
         elif request is BusRequest.ARM:
             if self.state is BusState.LIMP:
@@ -188,7 +204,7 @@ class Streamer:
         self._torque, self._goal_tick, self._pwm = True, present, PWM_START
         self._fed_s = self._clock.now_s()
         self._gate.reset(self._ticks.tick_to_rad(present))
-        self._approach_to(self.rest_rad)
+        self._forget_approach()
         self._enter(BusState.ARMING)
 
     def _pinned(self, reading: BusReading) -> NDArray[np.int32]:
@@ -263,7 +279,9 @@ class Streamer:
                 self._enter(BusState.HOLDING)
             return goal
         if self.state in (BusState.HOLDING, BusState.PLAYING):
-            return self._play()
+            goal = self._play()
+            self._tell_held()
+            return goal
         return self._gate.brake()  # fault with torque still on: hold
 
     def _frame_or_none(self) -> None:
@@ -287,19 +305,33 @@ class Streamer:
             self._enter(BusState.HOLDING)
         return goal
 
+    def _tell_held(self) -> None:
+        """Log once when what is played begins to be held off the robot itself."""
+        if self._gate.held and not self._held:
+            pairs = ", ".join(f"{a} and {b}" for a, b in self._gate.touching(self._setpoint_rad)[:3])
+            log.warning(
+                "held: plan %d would lead the robot into itself%s", self._plan_id, f" ({pairs})" if pairs else ""
+            )
+        self._held = self._gate.held
+
     def _follow_approach(self) -> NDArray[np.float64]:
-        """The slow move of arming and parking; parking first comes to rest."""
+        """The slow move of arming and parking: comes to rest, looks for a way that is free, and goes it."""
         if self._approach is None:
             goal = self._gate.brake()
             if self._gate.at_rest:
-                self._approach_to(self.robot.park_rad if self.state is BusState.PARKING else self.rest_rad)
+                self._look_for_a_way()
             return goal
-        t_s = (self._cycle - self._approach_started_s) * self._period_s
-        self._setpoint_rad = self._approach.at(t_s)
+        self._setpoint_rad = self._approach.at(self._approach_s + self._period_s)
         goal = self._gate.step(self._setpoint_rad)
+        if self._gate.held:  # its time stands still with it
+            self._held_s += self._period_s
+            if self._held_s > _HELD_S:
+                self._approach = None
+            return goal
+        self._approach_s += self._period_s
         stay_s = self._link.park_stay_s if self.state is BusState.PARKING else 0.0
-        if t_s > self._approach.duration_s + stay_s and self._gate.at_rest:
-            self._approach = None
+        if self._approach_s > self._approach.duration_s + stay_s and self._gate.at_rest:
+            self._forget_approach()
             if self.state is BusState.PARKING:
                 self._cut_torque()
                 self._enter(BusState.LIMP)
@@ -307,9 +339,36 @@ class Streamer:
                 self._enter(BusState.HOLDING)
         return goal
 
-    def _approach_to(self, goal_rad: NDArray[np.float64]) -> None:
-        self._approach = Approach(self._gate.position_rad, goal_rad, self._gate.limits)
-        self._approach_started_s = self._cycle
+    def _look_for_a_way(self) -> None:
+        """Some pieces of the search from where it stands; then the approach, or a fault when there is no way."""
+        goal_rad = self.robot.park_rad if self.state is BusState.PARKING else self.rest_rad
+        if self._search is None:
+            self._search = WaySearch(self.robot, self._contact, self._gate.position_rad, goal_rad)
+            self._searches += 1
+        for _ in range(self._search_pieces):
+            if self._search.work():
+                break
+        else:
+            return
+        search, self._search = self._search, None
+        if search.way is None or self._searches > _SEARCHES:
+            self._no_way(search)
+            return
+        log.info("way of %d lines to %s, %d pieces", len(search.way) - 1, self.state.name.lower(), search.pieces)
+        self._approach, self._approach_s, self._held_s = Approach(search.way, self._gate.limits), 0.0, 0.0
+
+    def _no_way(self, search: WaySearch) -> None:
+        """Hold and say so; limp after a while: the robot is never led through itself."""
+        where = "park" if self.state is BusState.PARKING else "rest"
+        near = ", ".join(f"{a} and {b}" for a, b in search.touching()[:3])
+        self._fault(
+            f"no free way to the {where} pose: the robot is in its own way{f' ({near})' if near else ''}; it holds, and goes"
+            f" limp in {NO_WAY_LIMP_S:g} s; lead its arms clear by hand, then reset and arm"
+        )
+        self._limp_at_s = self._clock.now_s() + NO_WAY_LIMP_S
+
+    def _forget_approach(self) -> None:
+        self._approach, self._search, self._searches = None, None, 0
 
     def _ramp_torque(self) -> None:
         if self._pwm is not None and self._cycle % 5 == 0:
@@ -340,6 +399,16 @@ class Streamer:
             log.warning("front silent for %.1f s: holding", age_s)
             self._serve(BusRequest.STOP)
 
+    def _limp_when_due(self) -> None:
+        """Where there was no free way, after the time that was said."""
+        if self._limp_at_s is None:
+            return
+        if not self._torque or self.state is not BusState.FAULT:
+            self._limp_at_s = None
+        elif self._clock.now_s() >= self._limp_at_s:
+            log.warning("no free way was found %g s ago: torque off", NO_WAY_LIMP_S)
+            self._cut_torque()
+
     def _check_stall(self) -> None:
         """After a pause in which the servos' watchdog may have run out: they then stand still and refuse goals."""
         pause_s, self._fed_s = self._clock.now_s() - self._fed_s, self._clock.now_s()
@@ -360,6 +429,14 @@ class Streamer:
             self._fault(f"{silent} of {len(reading.valid)} servos are silent; check cable and power")
             return
         if not self._torque:
+            return
+        withheld: list[int] = np.flatnonzero(self._bus.withheld).tolist()
+        if withheld:
+            names = ", ".join(f"{self._bus.ids[i]} ({self.robot.servos[i].joint_name})" for i in withheld[:3])
+            self._fault(
+                f"servo {names} silent: it may have lost power, and the next goal would switch its torque on wherever it"
+                " hangs, so it gets none; check cable and power, then reset and arm"
+            )
             return
         self._refuse_hardware_errors(reading)
         if self._cycle % TORQUE_CHECK_CYCLES == 0:
@@ -391,7 +468,7 @@ class Streamer:
             log.error("fault: %s", text)
             self._link.set_text(text)
         self._link.drop_queued()
-        self._approach = None
+        self._forget_approach()
         self._enter(BusState.FAULT)
 
     def _cut_torque(self) -> None:

@@ -13,8 +13,9 @@ from retarget.description import mujoco
 from retarget.distances import MARGIN_M, MEASURED_M, Array, Indices, PairDistances
 from retarget.kinematics import cross
 from retarget.robot import RobotModel
+from retarget.spans import Known, Spans
 
-_KEPT = 0.8
+KEPT = 0.8
 """Share of the margin that is proved for every instant of a path."""
 _DEEPEST = 8
 """Halvings of a segment after which it counts as touching; distances that near and movements that small do not occur."""
@@ -26,8 +27,11 @@ class SelfContact(PairDistances):
     def __init__(self, robot: RobotModel, margin_m: float = MARGIN_M) -> None:
         super().__init__(robot, margin_m)
         self._sweep_m = self._sweeps()
+        above = self._above[self._model.geom_bodyid]
+        self._spans = Spans(self._pairs, above, self._half_m, self._radii_m, self._sweep_m)
+        self._bounded = self._exact & self._spans.known
 
-    def frames(self, q_rad: Array, share: float = _KEPT) -> NDArray[np.bool_]:
+    def frames(self, q_rad: Array, share: float = KEPT) -> NDArray[np.bool_]:
         """(T,) whether each frame of (T, J) comes closer to itself than a share of the margin, what paths keep of it."""
         return np.asarray((self.distances_m(q_rad) < share * self._margin_m).any(1), bool)
 
@@ -35,13 +39,13 @@ class SelfContact(PairDistances):
         """(T,) smallest distance of each frame of (T, J)."""
         return self.distances_m(q_rad).min(1, initial=np.inf)
 
-    def rooms_m(self, q_rad: Array) -> Array:
-        """(T, P) what each pair has beyond the share of its margin that paths keep, in each pose of (T, J)."""
-        return self.distances_m(q_rad) - _KEPT * self._margin_m
+    def rooms_m(self, q_rad: Array, share: float = KEPT) -> Array:
+        """(T, P) what each pair has beyond a share of its margin, what paths keep of it, in each pose of (T, J)."""
+        return self.distances_m(q_rad) - share * self._margin_m
 
-    def room_m(self, q_rad: Array) -> Array:
+    def room_m(self, q_rad: Array, share: float = KEPT) -> Array:
         """(P,) the same in one pose (J,)."""
-        return self.rooms_m(q_rad[None])[0]
+        return self.rooms_m(q_rad[None], share)[0]
 
     def within_room(self, room_m: Array, moved_rad: Array) -> bool:
         """Whether every pair keeps that share wherever the joints are within (J,) `moved_rad` of where it has `room_m` (P,)."""
@@ -99,35 +103,88 @@ class SelfContact(PairDistances):
 
     def along(self, control_rad: Array) -> NDArray[np.bool_]:
         """(N - 2,) whether the robot may touch itself in each segment of a quadratic spline of N control points."""
-        border = self.distances_m((control_rad[:-1] + control_rad[1:]) / 2)
+        known = self._known((control_rad[:-1] + control_rad[1:]) / 2, self._every)
+        border = known.distance
         touching = np.asarray((border < self._margin_m).any(1), bool)
         hit = touching[:-1] | touching[1:]
-        step = np.abs(np.diff(control_rad, axis=0)) @ self._sweep_m.T  # (N - 1, P)
-        first, last = border[:-1], border[1:]
+        step_rad = np.abs(control_rad[1:] - control_rad[:-1])
+        step = step_rad @ self._sweep_m.T  # (N - 1, P)
         # Speed changes in a straight line, so a segment moves by no more than the mean of the speeds at its ends.
-        kept_m = _KEPT * self._margin_m
-        near = np.asarray(first + last - (step[:-1] + step[1:]) / 2 < 2 * kept_m, bool) & ~hit[:, None]
+        kept_m = KEPT * self._margin_m
+        near = np.asarray(border[:-1] + border[1:] - (step[:-1] + step[1:]) / 2 < 2 * kept_m, bool) & ~hit[:, None]
         segment, of = np.flatnonzero(near.any(1)), np.flatnonzero(near.any(0))
         if not len(segment):
             return hit
         # From here on only those pairs that may come near, each half of a segment moving by half of its fastest.
-        first, last = first[segment][:, of], last[segment][:, of]
-        moved = np.maximum(step[segment][:, of], step[segment + 1][:, of])
+        moved = np.maximum(step[:-1], step[1:])
+        bend_rad = np.abs(control_rad[2:] - 2 * control_rad[1:-1] + control_rad[:-2])
+        bent = self._spans.bends_m(step_rad, bend_rad, moved)[segment][:, of]
+        moved, near, kept_m, margin_m = moved[segment][:, of], near[segment][:, of], kept_m[of], self._margin_m[of]
+        known, ends = known.of(of), np.stack([segment, segment + 1])
         u = np.tile((0.0, 1.0), (len(segment), 1))
         for _ in range(_DEEPEST):
-            middle = u.mean(1)
-            q = _spline(control_rad, segment, middle)
-            between = self._distances(q, self._placed(q, with_joints=False), of)[0]
-            hit[segment[(between < self._margin_m[of]).any(1)]] = True
-            u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
-            first, last = np.concatenate([first, between]), np.concatenate([between, last])
-            segment, moved = np.concatenate([segment, segment]), np.concatenate([moved, moved]) / 2
-            unsure = np.asarray((first + last - moved < 2 * kept_m[of]).any(1), bool) & ~hit[segment]
+            near = self._still_near(near, known, ends, of, bent, kept_m)
+            unsure = near.any(1) & ~hit[segment]
             if not unsure.any():
                 return hit
-            segment, u, first, last, moved = segment[unsure], u[unsure], first[unsure], last[unsure], moved[unsure]
-        hit[segment] = True
+            segment, u, ends, near = segment[unsure], u[unsure], ends[:, unsure], near[unsure]
+            moved, bent = moved[unsure], bent[unsure]
+            middle = u.mean(1)
+            between = self._known(_spline(control_rad, segment, middle), of)
+            hit[segment[(between.distance < margin_m).any(1)]] = True
+            at = len(known.distance) + np.arange(len(segment))
+            known = known.and_also(between)
+            ends = np.concatenate([np.stack([ends[0], at]), np.stack([at, ends[1]])], 1)
+            u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
+            segment, near = np.concatenate([segment, segment]), np.concatenate([near, near])
+            moved, bent = np.concatenate([moved, moved]) / 2, np.concatenate([bent, bent]) / 4
+            near &= known.distance[ends[0]] + known.distance[ends[1]] - moved < 2 * kept_m
+        hit[segment[near.any(1)]] = True
         return hit
+
+    def clear_along(self, way_rad: Array, share: float = KEPT, first_room_m: Array | None = None) -> bool:
+        """Whether straight lines from pose to pose of (N, J) keep a share of every margin at every instant.
+
+        On a stretch whose ends have the rooms a and b and on which a pair moves by m, it has at least (a + b - m) / 2;
+        stretches on which that is not enough are halved. `first_room_m` (P,) is the room at the first pose where it is known.
+        """
+        gone = np.zeros_like(way_rad)  # (N, J) what each joint has turned so far
+        np.cumsum(np.abs(np.diff(way_rad, axis=0)), 0, out=gone[1:])
+        kept_m, of, sweep_m = share * self._margin_m, self._every, self._sweep_m
+        first = (self.room_m(way_rad[0], share) if first_room_m is None else first_room_m)[None]
+        last = self.rooms_m(way_rad[-1:], share)
+        if (first <= 0).any() or (last <= 0).any():
+            return False
+        u = np.array([[0.0, len(way_rad) - 1.0]])
+        for _ in range(_DEEPEST + len(way_rad).bit_length()):
+            moved = (_on_lines(gone, u[:, 1]) - _on_lines(gone, u[:, 0])) @ sweep_m.T
+            unsure = np.asarray(first + last <= moved, bool)
+            if not unsure.any():
+                return True
+            segment, pairs = np.flatnonzero(unsure.any(1)), np.flatnonzero(unsure.any(0))
+            of, sweep_m = of[pairs], sweep_m[pairs]
+            u, first, last = u[segment], first[segment][:, pairs], last[segment][:, pairs]
+            middle = u.mean(1)
+            q = _on_lines(way_rad, middle)
+            between = self._distances(q, self._placed(q, with_joints=False), of)[0] - kept_m[of]
+            if (between <= 0).any():
+                return False
+            u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
+            first, last = np.concatenate([first, between]), np.concatenate([between, last])
+        return False
+
+    def _known(self, q_rad: Array, of: Indices) -> Known:
+        placed = self._placed(q_rad, with_joints=False)
+        return Known(placed.centre, placed.axis, placed.turn, *self._distances(q_rad, placed, of))
+
+    def _still_near(
+        self, near: NDArray[np.bool_], known: Known, ends: Indices, of: Indices, bent: Array, kept_m: Array
+    ) -> NDArray[np.bool_]:
+        """(n, m) which of m pairs are still `near` in n spans when what is curved about their movement is bounded too."""
+        span, at = np.nonzero(near & self._bounded[of])
+        least = self._spans.least_m(known, ends[:, span], at, of[at]) - bent[span, at]
+        near[span, at] = least < kept_m[at]
+        return near
 
     def _sweeps(self) -> Array:
         """(P, J) metres that the shapes of each pair move against each other at most, per radian of each joint."""
@@ -137,8 +194,9 @@ class SelfContact(PairDistances):
             up = int(model.geom_bodyid[g])
             far = float(np.linalg.norm(model.geom_pos[g])) + self._half_m[g] + self._radius_m[g]
             while up:
-                for j in np.flatnonzero(model.jnt_bodyid[self._joint_ids] == up):
-                    reach[g, j] = far + float(np.linalg.norm(model.jnt_pos[self._joint_ids[j]]))
+                moved_by = np.flatnonzero(model.jnt_bodyid[self._joint_ids] == up)
+                anchors_m = np.linalg.norm(model.jnt_pos[self._joint_ids[moved_by]], axis=1)
+                reach[g, moved_by] = far + anchors_m.max(initial=0.0)  # of joints in one place none reaches further
                 far += float(np.linalg.norm(model.body_pos[up]))
                 up = int(model.body_parentid[up])
         a, b = self._pairs.T
@@ -151,3 +209,9 @@ def _spline(control: Array, segment: Indices, u: Array) -> Array:
     c0, c1, c2 = control[segment], control[segment + 1], control[segment + 2]
     u = u[:, None]
     return (c0 + c1) / 2 + (c1 - c0) * u + (c2 - 2 * c1 + c0) * (u * u / 2)
+
+
+def _on_lines(points: Array, u: Array) -> Array:
+    """(n, J) places on the lines between (N, J) points, `u` counting points."""
+    at = np.minimum(u.astype(np.int64), len(points) - 2)
+    return points[at] + (u - at)[:, None] * (points[at + 1] - points[at])

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.collision import SelfContact
+from retarget.collision import KEPT, SelfContact
 from retarget.limits import JointLimits, brake, limit_step
 from retarget.robot import RobotModel
 
@@ -24,6 +24,11 @@ _NEARER_M = 1e-6
 class GuardedSteps:
     """One robot's next positions towards a target, step by step. No clock, no I/O; not for several threads.
 
+    Args:
+        robot: which one.
+        contact: of the robot; made anew when None.
+        share: of the margin that is kept.
+
     Attributes:
         position_rad, velocity_rad_s: (J,) the last step's end and its difference quotient.
         held: whether it brakes, or stands, because the way to the target would touch.
@@ -31,7 +36,8 @@ class GuardedSteps:
         holds: times it began to be held.
     """
 
-    def __init__(self, robot: RobotModel, contact: SelfContact | None = None) -> None:
+    def __init__(self, robot: RobotModel, contact: SelfContact | None = None, share: float = KEPT) -> None:
+        self._share = share
         self.limits = JointLimits.of(robot)
         self.period_s = robot.bus.period_s
         self._contact = contact or SelfContact(robot)
@@ -42,11 +48,10 @@ class GuardedSteps:
     def reset(self, position_rad: Array, velocity_rad_s: Array) -> None:
         """Go on from here."""
         self.position_rad, self.velocity_rad_s = position_rad.copy(), velocity_rad_s.copy()
-        self._before_rad = position_rad - velocity_rad_s * self.period_s
         self.held = self.clipped = False
         self._refused_rad: Array | None = None
         self._known_rad = self.position_rad
-        self._room_m = self._contact.room_m(self.position_rad)
+        self._room_m = self._contact.room_m(self.position_rad, self._share)
 
     @property
     def at_rest(self) -> bool:
@@ -76,7 +81,6 @@ class GuardedSteps:
         return self._contact.pairs(np.clip(target_rad, self.limits.position_min_rad, self.limits.position_max_rad))
 
     def _advance(self, goal: Array) -> Array:
-        self._before_rad = self.position_rad
         self.velocity_rad_s = (goal - self.position_rad) / self.period_s
         self.position_rad = goal
         return goal
@@ -90,7 +94,8 @@ class GuardedSteps:
             goal = limit_step(target, position, velocity, self.limits, self.period_s)
             position, velocity = goal, (goal - position) / self.period_s
             path.append(goal)
-        free = self._clear([*path, *self._braking(position, velocity)])
+        here = self._contact.room_m(self.position_rad, self._share)
+        free = self._clear([*path, *self._braking(position, velocity)], here)
         self._refused_rad = None if free or not self.at_rest else target.copy()
         return free
 
@@ -101,8 +106,8 @@ class GuardedSteps:
             return True
         if self._within_room(way):
             return True
-        self._known_rad, self._room_m = self.position_rad, self._contact.room_m(self.position_rad)
-        return self._within_room(way) or self._clear(way)
+        self._known_rad, self._room_m = self.position_rad, self._contact.room_m(self.position_rad, self._share)
+        return self._within_room(way) or self._clear(way, self._room_m)
 
     def _within_room(self, way: list[Array]) -> bool:
         """Whether nothing can touch because all of it is near a pose that has room enough on every side."""
@@ -124,15 +129,11 @@ class GuardedSteps:
             way.append(goal)
         return way
 
-    def _clear(self, way: list[Array]) -> bool:
-        """Whether a way from here on stays off the robot, between its poses too."""
-        points = np.array([self._before_rad, self.position_rad, *way, way[-1]])
-        if not self._contact.along(points).any():
-            return True
-        # A robot that stands within the margin (it was led there by hand, or rests so) may leave it, not go deeper.
-        here = self._contact.room_m(self.position_rad)
+    def _clear(self, way: list[Array], here: Array) -> bool:
+        """Whether a way from here, where each pair has (P,) room, stays off the robot, between its poses too."""
+        points = np.array([self.position_rad, *way])
         if (here > 0).all():
-            return False
-        halves = (points[1:-1] + points[2:]) / 2
-        path = np.concatenate([points[2:], halves])
-        return bool((self._contact.rooms_m(path) >= np.minimum(here, 0.0) - _NEARER_M).all())
+            return self._contact.clear_along(points, self._share, here)
+        # A robot that stands within the margin (it was led there by hand, or rests so) may leave it, not go deeper.
+        path = np.concatenate([points[1:], (points[1:] + points[:-1]) / 2])
+        return bool((self._contact.rooms_m(path, self._share) >= np.minimum(here, 0.0) - _NEARER_M).all())

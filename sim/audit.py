@@ -7,16 +7,14 @@ not hurry: goals that come faster than the robot's rate, more than a few in a ro
 
 from __future__ import annotations
 
-from array import array
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
-from retarget.collision import SelfContact
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
+from sim.contact_audit import ContactAudit
 
 PIN_TOLERANCE_TICK = 12
 """About one degree: torque may come on over a goal no further from where the servo stands."""
@@ -24,10 +22,7 @@ HURRY_GOALS, HURRY_RATE = 30, 1.1
 """So many goals may come at once (what waited in a tty while a loaded machine slept), in the long run a tenth too many."""
 FAULT_GRACE_S = 0.1
 """Goals that were under way when a servo tripped are not counted against anybody."""
-_CONTACT_EVERY = 5
 _MAX_DETAILS = 20
-_MAX_POSES = 500_000
-_POSES_AT_ONCE = 1000
 
 
 @dataclass
@@ -50,6 +45,7 @@ class Audit:
     """Collects goals and violations of one robot.
 
     Attributes:
+        measure: true ticks of the servos, for contacts that were not commanded; None where nobody can tell.
         goals: goals received.
         violations: by kind.
         writes_in_fault: goals to a servo whose fault has taken its torque, after a grace of 0.1 s. They move nothing.
@@ -58,6 +54,7 @@ class Audit:
     """
 
     robot: RobotModel
+    measure: Callable[[], list[int]] | None = None
     goals: int = 0
     violations: Counter[str] = field(default_factory=Counter[str])
     writes_in_fault: int = 0
@@ -68,12 +65,8 @@ class Audit:
         """Bounds in ticks for each servo."""
         period = self.robot.bus.period_s
         self._tracks: dict[int, _Track] = {}
-        self._pose: dict[int, int] = {}
-        self._poses = array("i")  # ticks of poses to be checked, one after another
-        self._poses_checked, self._contacts = 0, 0
-        self._contact: SelfContact | None = None
-        self._sets = 0
-        ticks = self._ticks = JointServoMap(self.robot)
+        self.contacts = ContactAudit(self.robot, self.measure)
+        ticks = JointServoMap(self.robot)
         bounds = zip(
             ticks.position_min_tick.tolist(), ticks.position_max_tick.tolist(), ticks.velocity_limit_tick_s.tolist(),
             ticks.acceleration_limit_tick_s2.tolist(), strict=True,
@@ -88,6 +81,8 @@ class Audit:
             return
         track.last = track.before = goal_tick if on else None
         track.faulted_s = None
+        if on:
+            self.contacts.begin(servo_id, goal_tick)
         if on and abs(goal_tick - present_tick) > PIN_TOLERANCE_TICK:
             self._violate(t_s, servo_id, "unpinned_torque", f"goal {goal_tick}, standing at {present_tick}")
 
@@ -101,6 +96,7 @@ class Audit:
         if track is None:
             return
         self.goals += 1
+        self.contacts.told(t_s, servo_id, tick, track.last is not None)
         if not torque:
             self._count_in_fault(track, t_s, faulted)
             return
@@ -118,13 +114,13 @@ class Audit:
                 self._violate(t_s, servo_id, "acceleration", f"second difference {bend}, allowed {track.bend:.2f}")
         self._count_hurry(track, t_s, servo_id, tick)
         track.before, track.last = track.last, tick
-        self._collect(servo_id, tick)
 
-    def missed(self, servo_id: int, tick: int) -> None:
+    def missed(self, t_s: float, servo_id: int, tick: int) -> None:
         """A goal that was sent and lost on the wire: the next one is a step from it, not from the last one that came."""
         track = self._tracks.get(servo_id)
         if track is not None and track.last is not None:
             track.before, track.last = track.last, tick
+            self.contacts.told(t_s, servo_id, tick, torque=True)
 
     def refused(self, t_s: float, servo_id: int, code: int, *, faulted: bool = False) -> None:
         """A servo refused a goal: the daemon wrote beyond its limits, or after its watchdog had stopped it."""
@@ -136,31 +132,20 @@ class Audit:
 
     def report(self) -> dict[str, Any]:
         """All figures as plain values."""
-        self.check_poses()
         return {
             "robot": self.robot.name,
             "goals": self.goals,
             "violations": sum(self.violations.values()),
             "violations_by_kind": dict(self.violations),
             "writes_in_fault": self.writes_in_fault,
-            "self_contacts": self._contacts,
-            "poses_checked": self._poses_checked,
             "body_contacts": self.body_contacts,
             "details": self.details,
+            **self.contacts.report(),
         }
 
     def check_poses(self) -> None:
         """Look for self-contact in the poses collected so far, and forget them: for runs of hours."""
-        if not self._poses:
-            return
-        if self._contact is None:
-            self._contact = SelfContact(self.robot, margin_m=0.0)
-        ticks = np.array(self._poses, np.int32).reshape(-1, len(self._tracks))
-        for start in range(0, len(ticks), _POSES_AT_ONCE):
-            poses = self._ticks.tick_to_rad(ticks[start : start + _POSES_AT_ONCE])
-            self._contacts += int(self._contact.frames(poses).sum())
-        self._poses_checked += len(ticks)
-        self._poses = array("i")
+        self.contacts.check()
 
     def _count_in_fault(self, track: _Track, t_s: float, faulted: bool) -> None:
         if not faulted:
@@ -181,15 +166,6 @@ class Audit:
             track.credit = 0.0
             rate_hz = self.robot.bus.rate_hz
             self._violate(t_s, servo_id, "hurry", f"more than {HURRY_GOALS} goals faster than {rate_hz:g} a second")
-
-    def _collect(self, servo_id: int, tick: int) -> None:
-        """Keep every few whole sets of goals for the check of self-contact."""
-        self._pose[servo_id] = tick
-        if servo_id != self.robot.servos[-1].servo_id or len(self._pose) < len(self._tracks):
-            return
-        self._sets += 1
-        if self._sets % _CONTACT_EVERY == 0 and len(self._poses) < _MAX_POSES * len(self._tracks):
-            self._poses.extend(self._pose[servo_id] for servo_id in self.robot.servo_ids)
 
     def _violate(self, t_s: float, servo_id: int, kind: str, text: str) -> None:
         self.violations[kind] += 1

@@ -101,7 +101,7 @@ class SimBus:
             self.world.advance(t_s)
             start_s, byte_s, heard = self.wire.talk(t_s, data, baud, patient=patient)
             if bytes(heard) != data:
-                self._note_lost(data)
+                self._note_lost(data, t_s)
             if self.faults.in_force("echo"):
                 self.wire.echo(start_s, data, byte_s)
             at = 0
@@ -136,19 +136,19 @@ class SimBus:
                 for servo in by_id.get(access.servo_id, ()):
                     self._instructions.write(servo, access.address, access.data, t_s)
                 if access.servo_id not in by_id:
-                    self._instructions.missed(self.on_wire, access)
+                    self._instructions.missed(self.on_wire, access, t_s)
         elif p.servo_id == BROADCAST_ID:
             self._answer_all(p, listening, t_s, baud)
         else:
             self._answer_one(p, listening, by_id, t_s, baud)
 
-    def _note_lost(self, data: bytes) -> None:
+    def _note_lost(self, data: bytes, t_s: float) -> None:
         """Goals that a collision took are steps that the daemon made all the same: the audit counts from them."""
         for protocol, decoder in ((2.0, packet.PacketDecoder()), (1.0, packet1.PacketDecoder(answers=False))):
             for p in decoder.feed(data):
                 if p.instruction in _GROUP_WRITES:
                     for access in accesses_of(p, protocol):
-                        self._instructions.missed(self.on_wire, access)
+                        self._instructions.missed(self.on_wire, access, t_s)
 
     def _listening(self, protocol: float, t_s: float, baud: int) -> list[SimServo]:
         """Servos that hear and understand what is said now."""

@@ -72,13 +72,13 @@ class Instructions:
             return 0 if servo.restore_backup() else ErrorCode.RESULT_FAIL
         return ErrorCode.DATA_RANGE
 
-    def missed(self, servos: Sequence[SimServo], access: Access) -> None:
+    def missed(self, servos: Sequence[SimServo], access: Access, t_s: float) -> None:
         """A write that its servo did not hear."""
         for servo in servos:
             item = servo.items["goal_position"]
             at = item.address - access.address
             if servo.servo_id == access.servo_id and 0 <= at <= len(access.data) - item.size:
-                self._audit.missed(servo.spec.servo_id, item.decode(access.data[at : at + item.size]))
+                self._audit.missed(t_s, servo.spec.servo_id, item.decode(access.data[at : at + item.size]))
 
     def write(self, servo: SimServo, address: int, data: bytes, t_s: float) -> int:
         """Write, and tell the audit."""

@@ -51,7 +51,7 @@ class World:
     ) -> None:
         pose = np.array(start_rad, np.float64) if start_rad is not None else robot.park_rad
         specs = (*robot.servos, *extra)
-        self.robot, self.faults, self.audit = robot, faults or FaultSchedule(), Audit(robot)
+        self.robot, self.faults, self.audit = robot, faults or FaultSchedule(), Audit(robot, self._true_ticks)
         motors = [motor_of(s.model.model_number) for s in specs]
         rad_per_tick = [2 * np.pi / s.model.ticks_per_turn for s in specs]
         ticks = [*JointServoMap(robot).to_ticks(pose).tolist(), *(s.zero_tick for s in extra)]
@@ -123,6 +123,10 @@ class World:
             for i, torque_nm in enumerate(push):
                 self.body.push(i, torque_nm)
             self.drives.touch()
+
+    def _true_ticks(self) -> list[int]:
+        """Where the servos of the robot file stand, as their registers count."""
+        return [round(servo.position_tick) for servo in self.servos.values()]
 
     def _strike(self, fault: Fault, t_s: float) -> None:
         """What happens at an instant."""

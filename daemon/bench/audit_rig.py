@@ -23,7 +23,10 @@ _QUEUE = 10
 _REQUESTS = (BusRequest.STOP, BusRequest.PARK, BusRequest.ESTOP, BusRequest.RESET, BusRequest.ARM)
 _COOL_C = 30.0
 _REPAIR_CYCLES, _REBOOT_CYCLES = 100, 60
-_REPORTED = ("goals", "violations", "violations_by_kind", "self_contacts", "poses_checked", "details")
+_REPORTED = (
+    "goals", "violations", "violations_by_kind", "self_contacts", "inherited_contacts", "measured_contacts", "poses_checked",
+    "details", "contact_details",
+)  # fmt: skip
 
 
 class AuditRig:

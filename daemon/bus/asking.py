@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from daemon.bus.dialect import DIALECTS, Decoder, Dialect
 from daemon.bus.events import BusEvent, BusEventKind, EventLog
 from daemon.bus.feedback import is_status
@@ -44,7 +46,7 @@ class Asking:
         self.timing = Timing(port.baud, margin_s)
         self.events = EventLog()
         self.reading = BusReading.of(len(self.ids))
-        self.health = HealthTracker(len(self.ids))
+        self.health = HealthTracker(len(self.ids), np.array([m.protocol == 1.0 for m in self.models], bool))
         self._row = {servo_id: i for i, servo_id in enumerate(self.ids)}
         self._decoders: dict[float, Decoder] = {m.protocol: DIALECTS[m.protocol].decoder() for m in self.models}
         self._torque_expected = False

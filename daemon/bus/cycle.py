@@ -125,7 +125,16 @@ class Cycle(Items):
         self.reading.valid[:] = False
         return self.reading.valid
 
+    @property
+    def withheld(self) -> NDArray[np.bool_]:
+        """(S,) servos that get no goals until `verify`: silent for long, and a goal would switch their torque on."""
+        return self.health.withheld
+
     def _goal_packet(self, goal_ticks: NDArray[np.int32]) -> bytes:
+        withheld = self.health.withhold(self.reading.read_s, self.clock.now_s())
+        if withheld.any():
+            writes = self._writers("goal_position", ~withheld)
+            return b"".join(write.frame(goal_ticks[rows]) for rows, write in writes)
         if len(self._goal_writes) == 1:
             return self._goal_writes[0][1].frame(goal_ticks)
         return b"".join(write.frame(goal_ticks[rows]) for rows, write in self._goal_writes)

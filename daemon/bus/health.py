@@ -13,6 +13,9 @@ from daemon.bus.packet import ALERT_BIT
 QUARANTINE_AFTER = 10
 """Cycles in a row without an answer after which a servo is asked no more but once a second: at 100 Hz a tenth of a second."""
 PROBE_EVERY_S = 1.0
+WITHHELD_S, _WITHHELD_CYCLES = 0.15, 3
+"""A servo whose torque a goal switches on, and that has been silent for so long and so many cycles, gets no goal any more: it
+may have lost its power, started again (which takes longer) and hang limp wherever it fell."""
 
 
 class Health(IntEnum):
@@ -45,9 +48,10 @@ class HealthTracker:
 
     Args:
         n: servos.
+        woken_by_goal: (S,) those that switch their torque on when they get a goal: all of protocol 1.0; none when None.
     """
 
-    def __init__(self, n: int) -> None:
+    def __init__(self, n: int, woken_by_goal: NDArray[np.bool_] | None = None) -> None:
         self.state = np.zeros(n, np.uint8)
         self.counters = Counters(*(np.zeros(n, np.int64) for _ in range(5)))
         self._missed = np.zeros(n, np.int32)
@@ -58,6 +62,9 @@ class HealthTracker:
         """(S,) servos that take part in the cycle."""
         self.faulted = np.zeros(n, bool)
         """(S,) servos that came back changed; cleared by `cleared`."""
+        self.withheld = np.zeros(n, bool)
+        """(S,) servos that get no goals until all was verified anew; cleared by `cleared`."""
+        self._woken_by_goal = np.zeros(n, bool) if woken_by_goal is None else woken_by_goal
 
     def all_well(self, error: NDArray[np.uint8]) -> bool:
         """Whether nothing was wrong with any servo before, and these error bytes say nothing new."""
@@ -85,6 +92,13 @@ class HealthTracker:
         self._probe_due_s[gone] = now_s + PROBE_EVERY_S
         return True
 
+    def withhold(self, read_s: NDArray[np.float64], now_s: float) -> NDArray[np.bool_]:
+        """(S,) servos that get no goals now, by when each answered last."""
+        if self._missed.any():
+            silent = (self._missed >= _WITHHELD_CYCLES) & (now_s - read_s > WITHHELD_S)
+            self.withheld |= self._woken_by_goal & silent
+        return self.withheld
+
     def came_late(self, row: int) -> None:
         """An answer of this servo arrived after its deadline."""
         self.counters.late[row] += 1
@@ -110,4 +124,5 @@ class HealthTracker:
     def cleared(self) -> None:
         """Everything was verified anew: no servo is taken for changed, all take part."""
         self.faulted[:], self.asked[:], self._missed[:], self._alerted[:] = False, True, 0, False
+        self.withheld[:] = False
         self.state[:] = Health.OK

@@ -143,14 +143,16 @@ class Items(Asking):
         self._ask(self._of(row).reboot(servo_id), row, 0)
         self.health.faulted[row] = True
 
-    def _writers(self, name: str) -> list[tuple[NDArray[np.intp], GroupWrite | GroupWrite1]]:
-        """One group write for each place at which the item stands, of the servos that have it."""
+    def _writers(
+        self, name: str, of: NDArray[np.bool_] | None = None
+    ) -> list[tuple[NDArray[np.intp], GroupWrite | GroupWrite1]]:
+        """One group write for each place at which the item stands, of the servos that have it; of some (S,) or of all."""
         places: dict[tuple[float, int, int], list[int]] = {}
         for row, model in enumerate(self.models):
             item = model.table.get(name)
-            if item is not None:
+            if item is not None and (of is None or of[row]):
                 places.setdefault((model.protocol, item.address, item.size), []).append(row)
-        if not places:
+        if not places and of is None:
             raise CommandError(f"no servo on {self.port.name} has an item '{name}'")
         return [
             (

@@ -53,6 +53,14 @@ class MultiBus:
         """(S,) cycles in which each servo did not answer."""
         return self._merged([part.timeouts for part in self.parts])
 
+    @property
+    def withheld(self) -> NDArray[np.bool_]:
+        """(S,) servos that get no goals until `verify`; see `ServoBus`."""
+        out = np.zeros(len(self.ids), bool)
+        for part, rows in zip(self.parts, self._rows, strict=True):
+            out[rows] = part.withheld
+        return out
+
     def exchange(self, goal_ticks: NDArray[np.int32] | None) -> BusReading:
         """Goals out and measurements in on every port; all are sent before any answer is waited for.
 

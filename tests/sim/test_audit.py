@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
+from retarget.collision import SelfContact
 from retarget.robot import load_robot
+from retarget.ticks import JointServoMap
 from sim.audit import Audit
+from sim.contact_audit import ContactAudit
 
 ROBOT = load_robot("reference")
 SERVO = ROBOT.servos[2]  # waist_yaw: an XM430 without gear
@@ -93,7 +97,7 @@ def test_a_goal_lost_on_the_wire_is_a_step_of_the_wires_and_not_of_the_daemons()
     assert path[-1] - path[-3] > step / 2
     for i, tick in enumerate(path):
         if i == 9:
-            audit.missed(SERVO.servo_id, tick)
+            audit.missed(0.01 * i, SERVO.servo_id, tick)
         else:
             audit.goal(0.01 * i, SERVO.servo_id, tick, True)
     assert dict(audit.violations) == {}
@@ -120,3 +124,62 @@ def test_a_robot_that_touches_itself_is_seen() -> None:
         for servo, q in zip(ROBOT.servos, pose, strict=True):
             audit.goal(0.0, servo.servo_id, round(2048 + servo.direction * q * TICKS_PER_RAD), True)
     assert audit.report()["self_contacts"] > 0
+
+
+OP2 = load_robot("op2")
+INSIDE, CLEAR = "inside", "clear"
+
+
+def poses_of_op2() -> dict[str, list[int]]:
+    """Ticks of a pose in which the robot is in itself, and of its rest pose."""
+    body, ticks = SelfContact(OP2, margin_m=0.0), JointServoMap(OP2)
+    draw = np.random.default_rng(1)
+    q = draw.uniform(OP2.position_min_rad, OP2.position_max_rad, (2000, OP2.n_joints))
+    inside = q[body.clearance_m(q).argmin()]
+    return {INSIDE: ticks.rad_to_tick(inside).tolist(), CLEAR: ticks.rad_to_tick(OP2.rest_rad).tolist()}
+
+
+def tell(contacts: ContactAudit, pose: list[int], times: int) -> None:
+    for _ in range(times):
+        for servo_id, tick in zip(OP2.servo_ids, pose, strict=True):
+            contacts.told(0.0, servo_id, tick, torque=True)
+
+
+def test_a_pose_in_contact_is_counted_and_described():
+    contacts, pose = ContactAudit(OP2), poses_of_op2()
+    tell(contacts, pose[CLEAR], 50)
+    tell(contacts, pose[INSIDE], 50)
+    report = contacts.report()
+    assert (report["self_contacts"], report["inherited_contacts"], report["poses_checked"]) == (10, 0, 20)
+    assert "mm deep" in report["contact_details"][0]
+
+
+def test_a_contact_over_which_torque_came_on_is_inherited_until_it_ends_or_grows():
+    contacts, pose = ContactAudit(OP2), poses_of_op2()
+    for servo_id, tick in zip(OP2.servo_ids, pose[INSIDE], strict=True):
+        contacts.begin(servo_id, tick)
+    tell(contacts, pose[INSIDE], 50)
+    report = contacts.report()
+    assert report["self_contacts"] == 0 and report["inherited_contacts"] >= 10
+    tell(contacts, pose[CLEAR], 50)
+    tell(contacts, pose[INSIDE], 50)
+    assert contacts.report()["self_contacts"] == 10, "once it was clear it has nothing to inherit"
+
+
+def test_a_contact_that_nobody_commanded_is_measured_only():
+    """A servo that is stuck: the others were led elsewhere, as told, and what was told is clear."""
+    pose = poses_of_op2()
+    contacts = ContactAudit(OP2, lambda: pose[INSIDE])
+    tell(contacts, pose[CLEAR], 50)
+    report = contacts.report()
+    assert (report["self_contacts"], report["measured_contacts"]) == (0, 10)
+
+
+def test_a_goal_lost_on_the_wire_is_part_of_the_pose_that_was_told():
+    audit, pose = Audit(OP2), poses_of_op2()
+    for servo_id, tick in zip(OP2.servo_ids, pose[CLEAR], strict=True):
+        audit.torque(0.0, servo_id, True, tick, tick)
+    for _ in range(20):
+        for servo_id, tick in zip(OP2.servo_ids, pose[INSIDE], strict=True):
+            audit.missed(0.0, servo_id, tick)
+    assert audit.report()["self_contacts"] >= 4

@@ -1,0 +1,130 @@
+"""Torque comes on only over goals pinned to where the joints stand, also when they move meanwhile."""
+
+from __future__ import annotations
+
+import pytest
+from rig import Rig, rig, swing
+
+from daemon.shared import BusRequest, BusState
+from sim.faults import Fault
+
+ID = 13
+
+
+class Pushed:
+    """A hand at one joint: moves its limp servo by some ticks whenever another goal has been pinned, so many times."""
+
+    def __init__(self, r: Rig, ticks: int, times: int) -> None:
+        self.left, self._ticks, self._servo = times, ticks, r.sim.servos[ID]
+        self._last = r.robot.servo_ids[-1]
+        r.sim.on_goal = self._pinned
+
+    def _pinned(self, _t_s: float, servo_id: int, _tick: int) -> None:
+        if servo_id == self._last and self.left and not self._servo.torque:
+            self.left -= 1
+            self._servo.position_tick = self._servo.position_tick + self._ticks
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_joint_that_is_moved_while_goals_are_pinned_is_pinned_anew(times):
+    with rig() as r:
+        hand = Pushed(r, 60, times)
+        before = r.sim.servos[ID].position_tick
+        r.arm()
+        assert hand.left == 0
+        first = next(k for k in r.records if k["torque"])["goal_tick"][r.robot.servo_ids.index(ID)]
+        assert first == pytest.approx(before + 60 * times, abs=2)
+        r.assert_limits_kept()
+
+
+def test_a_joint_that_never_stands_still_while_goals_are_pinned_is_a_named_fault():
+    with rig() as r:
+        Pushed(r, 60, 99)
+        r.link.request(BusRequest.ARM)
+        r.cycle(3)
+        assert (
+            r.state is BusState.FAULT
+            and f"servo {ID}:" in r.link.text
+            and "to stand still while its goal is pinned" in r.link.text
+        )
+        assert not any(r.torque)
+        assert r.sim.audit.report()["violations"] == 0
+
+
+def test_a_joint_moved_within_the_tolerance_is_no_reason_to_pin_anew():
+    with rig() as r:
+        hand = Pushed(r, 4, 1)
+        r.arm()
+        assert hand.left == 0
+        r.assert_limits_kept()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_limp_arm_that_sinks_on_a_bad_wire_is_armed_over_where_it_stands_or_not_at_all(seed):
+    """Half of the answers are lost, so pinning takes long; somebody's hand turns the joint for most of the time.
+
+    Without a second reading torque came on over goals that the joint had left: a jerk.
+    """
+    start_s = 0.05 * seed
+    faults = (
+        Fault("drop", 0.0, 1.5, 0.3),
+        Fault("push", start_s, 0.4 + start_s, servo_id=ID, amount=0.35),
+    )
+    with rig("reference", *faults) as r:
+        for _ in range(6):
+            r.link.request(BusRequest.ARM)
+            r.cycle()
+            if r.state is BusState.ARMING:
+                break
+            r.link.request(BusRequest.RESET)
+            r.cycle(20)
+        assert r.state is BusState.ARMING, r.link.text
+        r.until(BusState.HOLDING, BusState.FAULT)
+        assert r.sim.audit.report()["violations"] == 0, r.sim.audit.report()["details"]
+
+
+@pytest.mark.parametrize("name", ["reachy_2021", "poppy_torso"])
+@pytest.mark.parametrize("outage_s", [0.05, 1.0])
+def test_servos_that_a_goal_wakes_get_none_after_their_power_failed(name, outage_s):
+    """AX and MX switch torque on with a goal: after a brown-out the held goal took limp arms up with a jerk, wherever they hung."""
+    with rig(name, Fault("brown_out", 6.0, 6.0 + outage_s)) as r:
+        r.arm()
+        while r.clock.now_s() < 6.0 + outage_s / 2:
+            r.cycle()
+        for servo in r.sim.servos.values():  # arms fall
+            servo.position_tick = servo.position_tick + 40
+        r.cycle(60)
+        assert r.state is BusState.FAULT
+        assert "silent" in r.link.text and "reset and arm" in r.link.text
+        assert not any(r.torque), "they answer again and hang limp"
+        r.link.request(BusRequest.RESET)
+        r.cycle(2)
+        r.arm()
+        r.assert_limits_kept()
+
+
+def test_one_servo_that_lost_its_power_gets_no_goal_and_the_others_come_to_rest():
+    with rig("reachy_2021") as r:
+        r.arm()
+        servo = r.sim.servos[13]
+        r.push(swing(r.robot, 3.0))
+        r.cycle(20)
+        servo.reboot()
+        servo.position_tick = servo.position_tick + 60
+        r.until(BusState.FAULT, within_s=1.0)
+        assert "servo 13 (r_elbow_pitch) silent" in r.link.text
+        r.cycle(60)
+        assert not servo.torque and all(s.torque for s in r.sim.servos.values() if s is not servo)
+        assert not r.records[-1]["velocity_rad_s"].any()
+        r.assert_limits_kept()
+
+
+def test_answers_lost_now_and_then_withhold_no_goal():
+    with rig("reachy_2021", Fault("drop", start_s=6.0, probability=0.05)) as r:
+        r.arm()
+        for _ in range(4):
+            r.push(swing(r.robot, 1.5))
+            r.cycle(85)
+            assert r.state is BusState.HOLDING, r.link.text
+        assert sum((~x["valid"].astype(bool)).sum() for x in r.records) > 50
+        r.assert_limits_kept()
