@@ -369,6 +369,20 @@ def test_calibration_writes_zero_and_range_of_what_was_moved(tmp_path: Path) -> 
     assert out.read_text("utf-8").splitlines()[0].startswith("#"), "comments stay"
 
 
+def test_answers_that_are_lost_become_no_zero_and_a_silent_servo_is_named() -> None:
+    bus, port, _ = wired()
+    waist, lost = port.servos[3], [True] * 4
+
+    def zero(_follow) -> None:
+        waist.set("present_position", 2100)
+        port.spoil = lambda raw, _servo_id: b"" if lost and lost.pop() else raw
+
+    found = calibrate(bus, ROBOT, wait_zero=zero, wait_range=lambda _follow: None)
+    assert not lost and found[2].zero_tick == 2100
+    with pytest.raises(CommandError, match="servo 3 does not answer"):
+        calibrate(bus, ROBOT, wait_zero=lambda _follow: setattr(waist, "silent", True), wait_range=lambda _follow: None)
+
+
 def test_a_calibration_that_makes_no_valid_file_is_not_kept(tmp_path: Path) -> None:
     bus, _, _ = wired()
     found = calibrate(bus, ROBOT, wait_zero=lambda follow: None, wait_range=lambda follow: None)
