@@ -54,7 +54,7 @@ class SimServo:
 
     Attributes:
         asked: names of the items that the last write was about, whether it was taken or not.
-        baud: bits per second it listens at; None for a code without one.
+        baud: bits per second it listens at; 0 for a code without one.
     """
 
     errors = Errors(ErrorCode.INSTRUCTION, ErrorCode.DATA_LENGTH, ErrorCode.ACCESS)
@@ -74,7 +74,7 @@ class SimServo:
         self.silent_until_s = -math.inf
         self.powered = True
         self.asked: list[str] = []
-        self.baud: int | None = None
+        self.baud = 0
         self._torque = False
         self._fed_s = 0.0
         self._watchdog_s = math.inf
@@ -385,7 +385,7 @@ class SimServo:
         d.feedforward_1[i] = get("feedforward_1st_gain") / 4 * units / self._tick_s_per_unit
         d.feedforward_2[i] = get("feedforward_2nd_gain") / 4 * units / self._tick_s2_per_unit
         d.profile_tick_s[i], d.profile_tick_s2[i] = self._profile()
-        self.baud = self.model.baud_of_code(get("baud_rate"))
+        self.baud = self.model.baud_of_code(get("baud_rate")) or 0
         watchdog = get("bus_watchdog")
         has = watchdog > 0 and self.model.has_watchdog(self.firmware)
         self._watchdog_s = watchdog * WATCHDOG_UNIT_S if has else math.inf

@@ -96,7 +96,7 @@ class SimServo1(SimServo):
 
     def _configure(self) -> None:
         get, i, d = self.memory.get, self.index, self.drives
-        self.baud = self.model.baud_of_code(get("baud_rate"))
+        self.baud = self.model.baud_of_code(get("baud_rate")) or 0
         speed = get("moving_speed")
         per_unit = self._tick_s_per_unit
         d.mode[i] = Mode.VELOCITY if self._is_wheel else Mode.POSITION

@@ -99,6 +99,8 @@ def test_settings_are_written_read_back_and_guarded() -> None:
         one.reboot(drop=False)
     one.reboot(drop=True)
     one.set("torque_enable", 0)
+    with pytest.raises(CommandError, match="knows no reboot"):
+        old.reboot(drop=True)
     with pytest.raises(LinkTimeoutError, match="mmmd scan"):
         find(far, clock, 77)
 
