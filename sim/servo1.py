@@ -11,7 +11,8 @@ import math
 
 from daemon.bus.registers import Item
 from sim.drive import Mode
-from sim.servo import HEAT_BIT, OVERLOAD_BIT, Errors, SimServo
+from sim.servo import Errors, SimServo
+from sim.servo_power import HEAT_BIT, OVERLOAD_BIT
 
 VOLTAGE_ERROR, ANGLE_ERROR, HEAT_ERROR, RANGE_ERROR = 1 << 0, 1 << 1, 1 << 2, 1 << 3
 OVERLOAD_ERROR, INSTRUCTION_ERROR = 1 << 5, 1 << 6
