@@ -63,7 +63,11 @@ def persons_words(phrase: str, pronoun: str) -> str:
     }[pronoun]
     phrase = re.sub(r"\byourself\b", self_word, phrase)
     phrase = re.sub(r"\byour\b", pronoun, phrase)
-    phrase = re.sub(r"\b(behind|around|in front of|towards|below|above|to|from|over|about|beside|near|beneath|under|for) you\b", rf"\1 {other}", phrase)
+    phrase = re.sub(
+        r"\b(behind|around|in front of|towards|below|above|to|from|over|about|beside|near|beneath|under|for) you\b",
+        rf"\1 {other}",
+        phrase,
+    )
     return re.sub(r"\byou\b", "they", phrase)  # the subject of a clause; "they" needs no other verb form
 
 

@@ -17,6 +17,7 @@ from mmm_core.corpus.bending import (
     times,
 )
 from mmm_core.corpus.families import FAMILIES, MIMED, Gesture, Words
+from mmm_core.corpus.heldout import is_withheld
 from mmm_core.corpus.styles import STYLES
 
 OTHER = {"left": "right", "right": "left"}
@@ -48,7 +49,24 @@ _ASKED_TERSE = ("{p}, please", "{p} please", "please, {p}", "now {p}", "{p} now"
 _ASKED_NOUN = ("do {p}", "give me {p}", "show me {p}", "I want {p}", "make {p}", "perform {p}", "I would like {p}", "can I have {p}", "let us have {p}", "we need {p}", "how about {p}", "I would love {p}", "do me {p}", "it is time for {p}")  # fmt: skip
 _NOUN_BEGINS = ("a", "an", "some", "another", *NUMBERS[2:], *"2345678")
 _THEN_THIRD = ("{a}, then {b}", "{a} and then {b}", "{a} and afterwards {b}", "{a} and {b}", "first {a}, then {b}", "{a}, after that {b}", "{a} and finally {b}")  # fmt: skip
-_LONG_WAY_WORDS = ("up", "above", "over", "high", "sky", "ceiling", "question", "pupil", "volunteer", "overhead", "upwards", "upward", "vertical", "vertically", "air", "top")
+_LONG_WAY_WORDS = (
+    "up",
+    "above",
+    "over",
+    "high",
+    "sky",
+    "ceiling",
+    "question",
+    "pupil",
+    "volunteer",
+    "overhead",
+    "upwards",
+    "upward",
+    "vertical",
+    "vertically",
+    "air",
+    "top",
+)
 
 
 def words_of(g: Gesture) -> Words:
@@ -65,9 +83,16 @@ def base_phrase(g: Gesture, rng: np.random.Generator) -> str:
         phrases = [p for p in expand(pattern) if _fits(p, g)]
         if phrases:
             phrase = _pick(phrases, rng) + after
-            if g.family in MIMED and not is_terse(phrase) and phrase.split()[0] not in _PRETENDING and rng.random() < 0.1:
+            if (
+                g.family in MIMED
+                and not is_terse(phrase)
+                and phrase.split()[0] not in _PRETENDING
+                and rng.random() < 0.1
+            ):
                 phrase = _pick(_PRETEND, rng).replace("{v}", plain(phrase))
-            return _fill(phrase, g, rng)
+            said = _fill(phrase, g, rng)
+            if not is_withheld(plain(said)):
+                return said
     raise AssertionError(f"no phrase of {g.family!r} says {g}")
 
 
@@ -120,7 +145,7 @@ def _pick(options: tuple[str, ...] | list[str], rng: np.random.Generator) -> str
     return options[int(rng.integers(len(options)))]
 
 
-def _manner(g: Gesture, rng: np.random.Generator) -> str:
+def _manner(g: Gesture, terse: bool, rng: np.random.Generator) -> str:
     """Height, tempo, size, style and hold in words, only where the motion has them, and then not always."""
     options: list[tuple[str, ...]] = []
     if (g.family, g.height) in _HEIGHTS and (g.height == "low" or rng.random() < 0.7):
@@ -128,7 +153,8 @@ def _manner(g: Gesture, rng: np.random.Generator) -> str:
     if g.hold_s:
         seconds = int(g.hold_s)
         word = NUMBERS[seconds] if rng.random() < 0.6 else str(seconds)
-        return " " + _pick(_HOLDS, rng).replace("{s}", f"{word} second{'s' if seconds > 1 else ''}")
+        holds = tuple(h for h in _HOLDS if not h.startswith("and ")) if terse else _HOLDS
+        return " " + _pick(holds, rng).replace("{s}", f"{word} second{'s' if seconds > 1 else ''}")
     if g.style:
         return " " + _pick(STYLES[g.style].words, rng)
     options += [_SLOW] if g.tempo < 0.8 else []
@@ -142,7 +168,8 @@ def _manner(g: Gesture, rng: np.random.Generator) -> str:
 
 def clause(g: Gesture, rng: np.random.Generator) -> str:
     """A phrase with its manner; an adverb may come first."""
-    return base_phrase(g, rng) + _manner(g, rng)
+    phrase = base_phrase(g, rng)
+    return phrase + _manner(g, is_terse(phrase), rng)
 
 
 def _contrast(g: Gesture, phrase: str, rng: np.random.Generator) -> str:
@@ -292,7 +319,7 @@ def known_commands(most_of_a_row: int = 12) -> set[str]:
                         for often, number in (("", "three"), ("three times", "3")) if "{" in phrase else (("", ""),):
                             text = phrase.replace("{S}", side).replace("{D}", direction)
                             found.add(" ".join(text.replace("{n}", often).replace("{N}", number).split()))
-    return found
+    return {text for text in found if not is_withheld(text)}
 
 
 def usual_counts(family: str) -> tuple[int, ...]:
