@@ -95,6 +95,7 @@ class Streamer:
         self._pwm: int | None = None
         self._front_lost_s: float | None = None
         self._torque_off_left = 0
+        self._made_limp = False
         self._derating = Derating(robot.n_servos, robot.bus.period_s)
         self._setpoints = SlowedSetpoints(link)
         self._asked: list[BusRequest] = []
@@ -153,6 +154,7 @@ class Streamer:
             self._link.drop_queued()
             self._torque, self._goal_tick = False, None
             self._forget_approach()
+            self._made_limp = True
             self._torque_off_left = TORQUE_OFF_REPEATS  # the first goes out in this cycle
             self._enter(BusState.ESTOP)
         elif request is BusRequest.STOP:
@@ -201,7 +203,7 @@ class Streamer:
             self._cut_torque()
             self._fault(f"cannot arm: {error}")
             return
-        self._torque, self._goal_tick, self._pwm = True, present, PWM_START
+        self._torque, self._goal_tick, self._pwm, self._made_limp = True, present, PWM_START, False
         self._fed_s = self._clock.now_s()
         self._gate.reset(self._ticks.tick_to_rad(present))
         self._forget_approach()
@@ -491,13 +493,21 @@ class Streamer:
             self._bus.send_torque_off()
         except LinkError as error:
             log.error("torque off not sent: %s", error)
-        self._torque, self._goal_tick = False, None
+        self._torque, self._goal_tick, self._made_limp = False, None, True
         self._torque_off_left = TORQUE_OFF_REPEATS
 
     def _repeat_torque_off(self) -> None:
-        if self._torque_off_left and not self._torque:
+        if self._torque:
+            return
+        if self._torque_off_left:
             self._bus.send_torque_off()
             self._torque_off_left -= 1
+            return
+        holding = np.flatnonzero(self._bus.reading.torque == 1) if self._made_limp else ()
+        if len(holding):  # read since: it heard none of them, a cable may have been loose
+            ids = ", ".join(str(self._bus.ids[row]) for row in holding)
+            log.warning("servo %s still has torque: torque off is sent again", ids)
+            self._bus.send_torque_off()
 
     def _enter(self, state: BusState) -> None:
         if state is not self.state:

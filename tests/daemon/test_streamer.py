@@ -438,3 +438,21 @@ def test_the_start_says_how_to_set_a_slow_adapters_timer(monkeypatch, caplog):
         assert "run: set /dev/ttyUSB7" in caplog.text and link.readiness is Readiness.READY
     finally:
         link.close()
+
+
+@pytest.mark.parametrize("request_", [BusRequest.ESTOP, BusRequest.PARK])
+def test_a_servo_that_heard_no_torque_off_is_told_again_when_it_hears(request_):
+    """A loose cable while the robot goes limp: the five packets that nobody answers were all lost on one servo."""
+    deaf = Fault("deaf", start_s=4.0, end_s=12.0, servo_id=5)
+    with rig("reference", deaf, slow_every=10) as r:
+        r.cycle(3)
+        r.arm()
+        r.cycle(max(0, round((4.2 - r.clock.true_s) * 100)))
+        r.link.request(request_)
+        r.until(BusState.ESTOP, BusState.LIMP)
+        r.cycle(20)
+        if r.clock.true_s < 12.0:
+            assert [i for i, s in r.sim.servos.items() if s.torque] == [5]
+        r.cycle(1400)
+        assert not any(r.torque), "it is limp once it hears again"
+        r.assert_limits_kept()
