@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.approach import Approach
+from daemon.bus.adapter import latency_advice
 from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.bus.multi import RobotBus
 from daemon.bus.packet import ALERT_BIT
@@ -554,6 +555,10 @@ def start(
         plan = bus.plan()
         if not plan.require(robot.bus.rate_hz):
             log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))
+        for port in bus.ports:
+            advice = latency_advice(getattr(port, "device", ""))
+            if advice:
+                log.warning("%s", advice)
         bus.exchange(None)
     except DaemonError as error:
         bus.close()

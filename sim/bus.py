@@ -25,6 +25,8 @@ from sim.spoil import spoil
 from sim.wire import Wire, WireSettings
 from sim.world import World
 
+_BAUD_TOLERANCE = 0.03
+"""A byte's last bit is still read right; 57,600 baud is 57,142 on a servo of protocol 1.0 (e-manual, "Baud Rate")."""
 _READS = (Instruction.SYNC_READ, Instruction.BULK_READ)
 _FAST_READS = (Instruction.FAST_SYNC_READ, Instruction.FAST_BULK_READ)
 _GROUP_WRITES = (Instruction.SYNC_WRITE, Instruction.BULK_WRITE)
@@ -152,10 +154,11 @@ class SimBus:
 
     def _listening(self, protocol: float, t_s: float, baud: int) -> list[SimServo]:
         """Servos that hear and understand what is said now."""
+        low, high = baud * (1 - _BAUD_TOLERANCE), baud * (1 + _BAUD_TOLERANCE)
         listening = [
             s
             for s in self.on_wire
-            if s.baud == baud and s.powered and t_s >= s.silent_until_s and s.model.protocol == protocol
+            if low <= s.baud <= high and s.powered and t_s >= s.silent_until_s and s.model.protocol == protocol
         ]
         if self.faults.in_force("deaf"):
             listening = [s for s in listening if not self.faults.active("deaf", t_s, s.spec.servo_id)]

@@ -1,8 +1,8 @@
 """A run from its log again: what the simulated servos do with its goals, beside what the log says the servos did.
 
-The goals of the log go out as packets at the log's times, to servos that stand where those of the log stood when torque came
-on. Compared are the positions read back. For each servo also the lag: the delay of the goals that explains its positions
-best, in the log and here.
+The goals of the log go out over the daemon's own bus driver at the log's times, in either protocol, to servos that stand
+where those of the log stood when torque came on. Compared are the positions read back. For each servo also the lag: the
+delay of the goals that explains its positions best, in the log and here.
 """
 
 from __future__ import annotations
@@ -13,12 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus import packet
-from daemon.bus.models import MODELS
+from daemon.bus.servo_bus import ServoBus
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
 from sim.bus import SimBus
+from sim.clock import VirtualClock
 from sim.options import world_of
+from sim.port import SimPort
 
 Array = NDArray[np.float64]
 
@@ -89,7 +90,7 @@ def compare(stretches: Sequence[Stretch], robot: RobotModel, body: str = "plain"
         positions, n = _played(stretch, robot, body)
         simulated.append(positions)
         refused += n
-    rows = tuple(_compared(i, robot, stretches, simulated) for i in range(robot.n_joints))
+    rows = tuple(_compared(i, robot, stretches, simulated) for i in range(len(robot.servos)))
     return Comparison(float(sum(s.t_s[-1] for s in stretches)), len(stretches), refused, rows)
 
 
@@ -97,50 +98,19 @@ def _played(stretch: Stretch, robot: RobotModel, body: str) -> tuple[Array, int]
     """(T, S) positions read from the simulated servos, and goals they refused."""
     start_rad = JointServoMap(robot).tick_to_rad(stretch.present_tick[0])
     bus = SimBus(robot, world=world_of(robot, None, body, start_rad=start_rad.tolist()))
-    client = _Client(bus, robot)
-    client.torque_on(stretch.present_tick[0].tolist())
-    goals: list[list[int]] = stretch.goal_tick.tolist()
-    times: list[float] = stretch.t_s.tolist()
-    positions = [client.cycle(t_s, ticks) for t_s, ticks in zip(times, goals, strict=True)]
+    clock = VirtualClock()
+    driver = ServoBus(SimPort(bus, clock), robot.servos, clock)
+    driver.verify()
+    driver.exchange(stretch.present_tick[0].astype(np.int32))
+    for servo in bus.servos.values():
+        item = servo.items["torque_enable"]
+        servo.write(item.address, b"\1")
+    start_s = clock.now_s() + _BEFORE_S
+    positions: list[NDArray[np.int32]] = []
+    for t_s, goal in zip(stretch.t_s.tolist(), stretch.goal_tick.astype(np.int32), strict=True):
+        clock.sleep_until(start_s + t_s)
+        positions.append(driver.exchange(goal).position_tick.copy())
     return np.array(positions, np.float64), bus.audit.violations["refused_goal"]
-
-
-class _Client:
-    """Writes goals and reads positions, in the log's own time."""
-
-    def __init__(self, bus: SimBus, robot: RobotModel) -> None:
-        self._bus, self._ids, self._baud = bus, robot.servo_ids, robot.bus.baud
-        table = MODELS[robot.servos[0].model.model_number].table
-        self._goal, self._present = table["goal_position"], table["present_position"]
-        self._last = [0] * len(self._ids)
-
-    def torque_on(self, ticks: Sequence[int]) -> None:
-        """Torque over goals where the servos stand."""
-        self._last = list(ticks)
-        self._send(0.0, ticks)
-        self._bus.wire.clear()
-        for servo in self._bus.servos.values():
-            item = servo.items["torque_enable"]
-            servo.write(item.address, b"\1")
-
-    def cycle(self, t_s: float, ticks: Sequence[int]) -> list[int]:
-        """One cycle of the log; the positions that come back."""
-        t_s += _BEFORE_S
-        self._send(t_s, ticks)
-        by_id: dict[int, int] = {}
-        while (ready_s := self._bus.wire.ready_s()) is not None:
-            for p in self._decoder.feed(self._bus.wire.take(max(ready_s, t_s))):
-                if len(p.parameters) == self._present.size:
-                    by_id[p.servo_id] = self._present.decode(p.parameters)
-        self._last = [by_id.get(i, last) for i, last in zip(self._ids, self._last, strict=True)]
-        return self._last
-
-    def _send(self, t_s: float, ticks: Sequence[int]) -> None:
-        self._decoder = packet.PacketDecoder()
-        rows = [(i, self._goal.encode(tick)) for i, tick in zip(self._ids, ticks, strict=True)]
-        data = packet.sync_write(self._goal.address, self._goal.size, rows)
-        data += packet.sync_read(self._present.address, self._present.size, self._ids)
-        self._bus.receive(data, t_s, self._baud)
 
 
 def _compared(i: int, robot: RobotModel, stretches: Sequence[Stretch], simulated: Sequence[Array]) -> ServoComparison:

@@ -11,7 +11,8 @@ import math
 
 from daemon.bus.registers import Item
 from sim.drive import Mode
-from sim.servo import HEAT_BIT, OVERLOAD_BIT, Errors, SimServo
+from sim.servo import Errors, SimServo
+from sim.servo_power import HEAT_BIT, OVERLOAD_BIT
 
 VOLTAGE_ERROR, ANGLE_ERROR, HEAT_ERROR, RANGE_ERROR = 1 << 0, 1 << 1, 1 << 2, 1 << 3
 OVERLOAD_ERROR, INSTRUCTION_ERROR = 1 << 5, 1 << 6
@@ -96,7 +97,7 @@ class SimServo1(SimServo):
 
     def _configure(self) -> None:
         get, i, d = self.memory.get, self.index, self.drives
-        self.baud = self.model.baud_of_code(get("baud_rate"))
+        self.baud = self.model.baud_of_code(get("baud_rate")) or 0
         speed = get("moving_speed")
         per_unit = self._tick_s_per_unit
         d.mode[i] = Mode.VELOCITY if self._is_wheel else Mode.POSITION

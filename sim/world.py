@@ -17,8 +17,9 @@ from sim.body import Body, PlainBody
 from sim.drive import STEP_S, Drives
 from sim.faults import Fault, FaultSchedule
 from sim.motors import motor_of
-from sim.servo import ENCODER_BIT, OVERLOAD_BIT, RESET_SHARE, SimServo
+from sim.servo import SimServo
 from sim.servo1 import SimServo1
+from sim.servo_power import ENCODER_BIT, OVERLOAD_BIT, RESET_SHARE
 
 log = logging.getLogger(__name__)
 

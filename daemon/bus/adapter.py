@@ -56,6 +56,14 @@ def latency_remedy(device: str) -> str:
     return f"{now}; for good: echo '{rule}' | sudo tee /etc/udev/rules.d/99-latency.rules"
 
 
+def latency_advice(device: str, sysfs: Path = SYSFS) -> str:
+    """How long an adapter keeps answers back and what to do about it; empty when that is short, or there is no timer."""
+    timer_ms = latency_timer_ms(device, sysfs)
+    if timer_ms is None or timer_ms <= GOOD_LATENCY_MS:
+        return ""
+    return f"{device} keeps answers back for up to {timer_ms} ms; run: {latency_remedy(device)}"
+
+
 def _text(path: Path) -> str:
     try:
         return path.read_text("ascii", "replace").strip()

@@ -94,6 +94,11 @@ class Asking:
                     return p
         return None
 
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """Where its servos are: one port here, several in `MultiBus`."""
+        return (self.port,)
+
     def take_events(self) -> list[BusEvent]:
         """Events since the last call."""
         return self.events.take()

@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bus.multi import RobotBus
+from daemon.bus.reading import BusReading
 from daemon.errors import CommandError
 from retarget.errors import RobotFileError
 from retarget.robot import RobotModel, ServoSpec, load_robot
 
+_TRIES = 30
 MOVED_TICKS = 100
 """A joint moved by less than this (9 degrees) was not moved on purpose: its range in the file stays."""
 
@@ -89,12 +91,8 @@ def calibrate(
         CommandError: a servo does not answer, or kept its torque.
     """
     bus.write_all("torque_enable", 0)
-    reading = bus.exchange(None)
-    if not reading.valid.all():
-        silent = ", ".join(str(i) for i, ok in zip(bus.ids, reading.valid, strict=True) if not ok)
-        raise CommandError(f"servo {silent} does not answer; check cable and power")
     turns = np.array([_wrap_ticks(s) for s in robot.servos], np.int32)
-    ranges = Ranges(reading.position_tick, turns)
+    ranges = Ranges(_whole(bus).position_tick, turns)
 
     def follow() -> Ranges:
         now = bus.exchange(None)
@@ -102,10 +100,26 @@ def calibrate(
         return ranges
 
     wait_zero(follow)
-    zero = follow().tick.copy()
+    ranges.update(_whole(bus).position_tick, np.ones(len(turns), bool))
+    zero = ranges.tick.copy()
     ranges.low[:], ranges.high[:] = zero, zero
     wait_range(follow)
     return [_of_servo(robot, i, int(zero[i]), ranges, margin_deg) for i in range(len(robot.servos))]
+
+
+def _whole(bus: RobotBus) -> BusReading:
+    """A reading with every servo in it; asked for again, because on a busy machine an answer may come too late for one.
+
+    Raises:
+        CommandError: a servo does not answer.
+    """
+    reading = bus.exchange(None)
+    for _ in range(_TRIES):
+        if reading.valid.all():
+            return reading
+        reading = bus.exchange(None)
+    silent = ", ".join(str(i) for i, ok in zip(bus.ids, reading.valid, strict=True) if not ok)
+    raise CommandError(f"servo {silent} does not answer; check cable and power")
 
 
 def _wrap_ticks(servo: ServoSpec) -> int:

@@ -239,7 +239,7 @@ class Cycle(Items):
             return
         reading.age_cycles += 1
         reading.age_cycles[valid] = 0
-        silent_before = self.health.asked.copy()
+        silent_before, alerts_before = self.health.asked.copy(), self.health.counters.alerts.copy()
         if self.health.after_cycle(valid, reading.error, now_s):
             for row in np.flatnonzero(silent_before & ~self.health.asked):
                 text = (
@@ -251,6 +251,9 @@ class Cycle(Items):
             self._careful -= 1
             if self._careful in (0, _CAREFUL_CYCLES - 1):
                 self._build_steps()
+        for row in np.flatnonzero(self.health.counters.alerts > alerts_before):
+            text = f"servo {self.ids[row]} ({self.servos[row].joint_name}) reports one"
+            self.events.add(BusEventKind.HARDWARE_ERROR, now_s, text, self.ids[row])
         missing = self.health.asked & ~valid
         if missing.any() and len(self.ids) > 2 and 2 * missing.sum() >= self.health.asked.sum():
             ids = ", ".join(str(self.ids[i]) for i in np.flatnonzero(missing))

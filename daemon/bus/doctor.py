@@ -5,13 +5,13 @@ from __future__ import annotations
 import getpass
 import os
 import resource
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from daemon.bus.adapter import GOOD_LATENCY_MS, adapter_at, latency_remedy, latency_timer_ms
 from daemon.bus.checks import ADVISED, NEEDED, Finding, check_servos, fix
+from daemon.bus.multi import RobotBus, bus_on
 from daemon.bus.port import Port
-from daemon.bus.servo_bus import ServoBus
 from daemon.clock import Clock
 from daemon.errors import BusMismatchError, ConfigError, DaemonError, PortError
 from retarget.robot import RobotModel
@@ -51,17 +51,20 @@ class Diagnosis:
         return any(c.verdict == BAD for c in self.checks)
 
 
-def diagnose(robot: RobotModel, open_port: Callable[[], Port], clock: Clock, *, correct: bool = False) -> Diagnosis:
+def diagnose(
+    robot: RobotModel, open_ports: Callable[[], Sequence[Port]], clock: Clock, *, correct: bool = False
+) -> Diagnosis:
     """Look at everything, and with `correct` set right the servos' settings that can be."""
     checks = [*_rights()]
     try:
-        port = open_port()
+        ports = open_ports()
     except PortError as error:
         return Diagnosis((*checks, Check("port", error.problem, BAD, error.remedy)))
     try:
-        checks += _adapter(port)
-        bus = ServoBus(port, robot.servos, clock)
+        for port in ports:
+            checks += _adapter(port)
         try:
+            bus = bus_on(ports, robot, clock)
             bus.verify()
         except BusMismatchError as error:
             rows = [
@@ -79,7 +82,8 @@ def diagnose(robot: RobotModel, open_port: Callable[[], Port], clock: Clock, *, 
     except DaemonError as error:
         return Diagnosis((*checks, Check("bus", str(error), BAD, "check cable and power, then again")))
     finally:
-        port.close()
+        for port in ports:
+            port.close()
 
 
 def _rights() -> list[Check]:
@@ -121,7 +125,7 @@ def _adapter(port: Port) -> list[Check]:
     return checks
 
 
-def _settings(bus: ServoBus, robot: RobotModel, *, correct: bool) -> list[Check]:
+def _settings(bus: RobotBus, robot: RobotModel, *, correct: bool) -> list[Check]:
     findings = check_servos(bus, robot)
     fixed: list[Finding] = []
     if correct:
@@ -156,11 +160,11 @@ def _of_item(findings: list[Finding], *, correct: bool) -> list[Check]:
     return [Check(what, ", ".join(dict.fromkeys(f.found for f in findings)), verdict, remedy)]
 
 
-def _events(bus: ServoBus) -> list[Check]:
+def _events(bus: RobotBus) -> list[Check]:
     return [Check(e.kind.value, e.text, ADVICE, "") for e in bus.take_events()]
 
 
-def _rate(bus: ServoBus, robot: RobotModel) -> list[Check]:
+def _rate(bus: RobotBus, robot: RobotModel) -> list[Check]:
     plan, rate_hz = bus.plan(), robot.bus.rate_hz
     try:
         fits = plan.require(rate_hz)

@@ -39,6 +39,11 @@ class MultiBus:
         self.reading = BusReading.of(len(self.ids))
 
     @property
+    def ports(self) -> tuple[Port, ...]:
+        """Where its servos are."""
+        return tuple(part.port for part in self.parts)
+
+    @property
     def firmware(self) -> list[int]:
         """Of each servo, known after `verify`."""
         return [self._part[i].firmware[self._part[i].ids.index(i)] for i in self.ids]
@@ -186,16 +191,33 @@ def open_bus(url: str, robot: RobotModel, clock: Clock, *, slow_every: int = 0) 
         PortError: a port cannot be opened.
         BusMismatchError: a servo answers on two ports.
     """
-    context = PortContext(robot, clock)
+    ports = open_ports(url, PortContext(robot, clock))
+    try:
+        return bus_on(ports, robot, clock, slow_every=slow_every)
+    except BaseException:
+        _close(ports)
+        raise
+
+
+def open_ports(url: str, context: PortContext) -> list[Port]:
+    """The ports of such a URL; all or none.
+
+    Raises:
+        PortError: one cannot be opened.
+    """
     ports: list[Port] = []
     try:
         for part in url.split(","):
             ports.append(open_port(part.strip(), context))
-        return bus_on(ports, robot, clock, slow_every=slow_every)
     except BaseException:
-        for port in ports:
-            port.close()
+        _close(ports)
         raise
+    return ports
+
+
+def _close(ports: Sequence[Port]) -> None:
+    for port in ports:
+        port.close()
 
 
 def bus_on(ports: Sequence[Port], robot: RobotModel, clock: Clock, *, slow_every: int = 0) -> RobotBus:

@@ -101,9 +101,14 @@ class SingleServo:
         """Restart it, and wait until it is back.
 
         Raises:
-            CommandError: it holds torque, which would drop, and `drop` was not said.
+            CommandError: it holds torque, which would drop, and `drop` was not said; or its protocol knows no reboot.
             LinkTimeoutError: it has not come back.
         """
+        if self.model.protocol == 1.0:
+            raise CommandError(
+                f"{self.model.name} (protocol 1.0) knows no reboot; take its power away for a moment, or clear an alarm with"
+                f" mmmd servo set {self.servo_id} torque_limit 1023"
+            )
         if self.get("torque_enable") and not drop:
             raise CommandError(f"servo {self.servo_id} holds torque: a reboot lets its joint fall; --drop to do it")
         self.bus.reboot(self.servo_id)

@@ -31,7 +31,7 @@ def calibrate(
 
     Args:
         robot: name of a packaged robot, or the path of a robot.toml.
-        bus: where its servos are.
+        bus: where its servos are; several ports with commas between them.
         out: file to write; beside the robot's description. Default: calibrated.toml beside the robot's file.
         limp: the robot may go limp now.
         margin_deg: the ranges end so far before the ends that were reached.
@@ -41,8 +41,7 @@ def calibrate(
 
     from daemon.bus.calibration import calibrate as find
     from daemon.bus.calibration import write_robot_file
-    from daemon.bus.open import PortContext, open_port
-    from daemon.bus.servo_bus import ServoBus
+    from daemon.bus.multi import open_bus
     from daemon.clock import RealClock
     from daemon.errors import CommandError
     from retarget.robot import load_robot
@@ -63,16 +62,15 @@ def calibrate(
 
         return until_enter
 
-    port = open_port(bus, PortContext(model, clock))
+    servo_bus = open_bus(bus, model, clock)
     try:
-        servo_bus = ServoBus(port, model.servos, clock)
         servo_bus.verify()
         found = find(
             servo_bus, model, wait_zero=wait("hold the robot in its zero pose"),
             wait_range=wait("move every joint to both of its ends"), margin_deg=margin_deg,
         )  # fmt: skip
     finally:
-        port.close()
+        servo_bus.close()
     write_robot_file(model, found, path)
     for c in found:
         span = "range kept" if c.low_deg is None else f"{c.low_deg:.1f} to {c.high_deg:.1f} deg"

@@ -18,7 +18,7 @@ def doctor(robot: str = "reference", bus: str = "dxl:///dev/ttyUSB0", fix: bool 
 
     Args:
         robot: name of a packaged robot, or the path of a robot.toml.
-        bus: where its servos are.
+        bus: where its servos are; several ports with commas between them.
         fix: correct what can be corrected.
         json: print one JSON object.
     """
@@ -26,12 +26,13 @@ def doctor(robot: str = "reference", bus: str = "dxl:///dev/ttyUSB0", fix: bool 
     from rich.table import Table
 
     from daemon.bus.doctor import ADVICE, BAD, GOOD, diagnose
-    from daemon.bus.open import PortContext, open_port
+    from daemon.bus.multi import open_ports
+    from daemon.bus.open import PortContext
     from daemon.clock import RealClock
     from retarget.robot import load_robot
 
     model, clock, console = load_robot(robot), RealClock(), Console()
-    diagnosis = diagnose(model, lambda: open_port(bus, PortContext(model, clock)), clock, correct=fix)
+    diagnosis = diagnose(model, lambda: open_ports(bus, PortContext(model, clock)), clock, correct=fix)
     if json:
         checks = [dataclasses.asdict(c) for c in diagnosis.checks]
         console.out(json_module.dumps({"bad": diagnosis.bad, "checks": checks, "budget": diagnosis.budget}))

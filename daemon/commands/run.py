@@ -47,7 +47,7 @@ def run(
 
     Args:
         robot: name of a packaged robot, or path of a robot.toml; reference when nothing says otherwise.
-        bus: where the servos are: sim:// or dxl://DEVICE?baud=N.
+        bus: where the servos are: sim:// or dxl://DEVICE?baud=N, several ports with commas between them.
         config: TOML file; else $MMMD_CONFIG, ~/.config/mmmd/mmmd.toml, /etc/mmmd/mmmd.toml.
         log: MCAP file to record into.
         log_size_mb: a log of this size is ended and the next one begun (NAME.1.mcap, ...); 0 for never.

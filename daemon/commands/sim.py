@@ -119,6 +119,10 @@ def _servers(
     seen = [servo_id for ids in parts.values() for servo_id in ids]
     if link is not None or len(set(seen)) < len(seen) or len(parts) < len(ports):
         raise SimSettingError("--port", " ".join(ports), "each link and each servo once, and no --link beside it")
+    if len(parts) > 1 and any(fault.path is not None for fault in world.faults.faults):
+        raise SimSettingError(
+            "path of an unplug fault", "several ports", "one port: two cannot come back under one link"
+        )
     return [
         PtyServer(SimBus(robot, world=world, wire=settings, servo_ids=ids), path, baud) for path, ids in parts.items()
     ]

@@ -424,3 +424,17 @@ def test_no_order_of_requests_and_setpoints_breaks_a_limit(sequence, seed):
         assert r.sim.audit.report()["violations"] == 0, r.sim.audit.report()["details"]
         torque = any(r.torque)
         assert torque == (r.state not in (BusState.LIMP, BusState.ESTOP)) or r.state is BusState.FAULT
+
+
+def test_the_start_says_how_to_set_a_slow_adapters_timer(monkeypatch, caplog):
+    monkeypatch.setattr("daemon.streamer.latency_advice", lambda device: f"run: set {device}" if device else "")
+    robot, clock = load_robot("reference"), VirtualClock()
+    link = BusLink.create(robot.n_joints)
+    port = SimPort(SimBus(robot), clock)
+    port.device = "/dev/ttyUSB7"
+    try:
+        with caplog.at_level("WARNING", "daemon.streamer"):
+            assert start(robot, lambda: ServoBus(port, robot.servos, clock), link, clock) is not None
+        assert "run: set /dev/ttyUSB7" in caplog.text and link.readiness is Readiness.READY
+    finally:
+        link.close()

@@ -43,6 +43,17 @@ def test_a_simulated_run_is_what_the_simulator_makes_of_its_log(run):
     assert all(abs(a - b) <= 6 and 10 < b < 120 for a, b in lags)
 
 
+def test_a_robot_of_protocol_1_is_played_in_its_protocol():
+    with rig("poppy_torso") as r:
+        r.cycle(3)
+        r.arm()
+        r.push(swing(r.robot, 2.0))
+        r.cycle(230)
+        found = compare([stretch_of(r.records)], r.robot)
+    assert found.refused_goals == 0 and len(found.servos) == len(r.robot.servos)
+    assert found.rms_deg < 0.1, [(s.joint_name, s.rms_deg) for s in found.servos]
+
+
 def test_servos_that_did_something_else_are_found(run):
     robot, records = run
     stretch = stretch_of(records)

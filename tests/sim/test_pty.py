@@ -179,6 +179,16 @@ def test_the_command_serves_two_ports_names_its_faults_and_audits(tmp_path: Path
     assert "8 servos of 'reference' at 1000000 baud on" in out and "fault overload servo 2" in err
 
 
+def test_two_ports_cannot_come_back_under_one_link(tmp_path: Path, capsys) -> None:
+    from daemon.cli import main
+
+    schedule = tmp_path / "faults.toml"
+    schedule.write_text('[[fault]]\nkind = "unplug"\nstart_s = 1.0\nend_s = 2.0\npath = "again"\n')
+    ports = [f"{tmp_path / 'left'}=1-8", f"{tmp_path / 'right'}=9-16"]
+    assert main(["sim", "--port", *ports, "--faults", str(schedule)]) in (1, 2)
+    assert "two cannot come back under one link" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

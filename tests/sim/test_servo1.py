@@ -76,6 +76,15 @@ def test_mistakes_earn_error_bits(name: str, value: int, error: int) -> None:
     assert b.read(name) == before
 
 
+def test_a_baud_that_is_nearly_the_clients_is_heard() -> None:
+    """2,000,000 / 35 is 57,142; drivers say 57,600."""
+    b = Bench("MX-28")
+    assert b.write("baud_rate", 34) == 0
+    assert b.ask(packet1.ping(1)) == []
+    b.baud = 57_600
+    assert b.ask(packet1.ping(1)) == [Packet(1, packet.Instruction.STATUS)]
+
+
 def test_a_sync_write_and_a_bulk_read_reach_all() -> None:
     b = Bench("MX-28", "MX-64")
     b.send(packet1.sync_write(25, 1, [(1, b"\1"), (2, b"\1")]))

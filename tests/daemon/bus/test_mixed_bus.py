@@ -358,6 +358,9 @@ def test_hardware_errors_in_words_for_both_protocols() -> None:
     assert {bus.hardware_error_text(i) for i in (1, 2)} == {"overheating, overload"}
     assert bus.health.state.tolist() == [Health.FAULTED, Health.FAULTED, Health.OK]
     assert bus.health.counters.alerts.tolist() == [1, 1, 0]
+    bus.exchange(None)
+    events = [e.servo_id for e in bus.events.take() if e.kind is BusEventKind.HARDWARE_ERROR]
+    assert events == [1, 2], "told when it begins, not in every cycle"
 
 
 def test_what_is_not_there_is_named() -> None:

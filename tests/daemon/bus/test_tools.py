@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from emulator import FakePort, FakeServo, fake
 
-from daemon.bus.adapter import Adapter, adapter_at, device_of, latency_remedy, latency_timer_ms
+from daemon.bus.adapter import Adapter, adapter_at, device_of, latency_advice, latency_remedy, latency_timer_ms
 from daemon.bus.calibration import Ranges, calibrate, write_robot_file
 from daemon.bus.checks import ADVISED, NEEDED, check_servos, fix, require_needed
 from daemon.bus.doctor import BAD, GOOD, diagnose
@@ -99,6 +99,8 @@ def test_settings_are_written_read_back_and_guarded() -> None:
         one.reboot(drop=False)
     one.reboot(drop=True)
     one.set("torque_enable", 0)
+    with pytest.raises(CommandError, match="knows no reboot"):
+        old.reboot(drop=True)
     with pytest.raises(LinkTimeoutError, match="mmmd scan"):
         find(far, clock, 77)
 
@@ -206,33 +208,43 @@ def test_the_doctor_names_everything_with_its_remedy() -> None:
     _bus, port, clock = wired()
     port.servos[3].set("operating_mode", 1)
     port.servos[4].set("return_delay_time", 250)
-    found = diagnose(ROBOT, lambda: port, clock)
+    found = diagnose(ROBOT, lambda: [port], clock)
     by_what = {c.what: c for c in found.checks}
     assert by_what["servo 3 (waist_yaw) operating_mode"].verdict == BAD
     assert "mmmd servo set 3 operating_mode 3" in by_what["servo 3 (waist_yaw) operating_mode"].remedy
     assert "--fix" in by_what["servo 4 (waist_pitch) return_delay_time"].remedy
     assert found.bad and any("return delay" in line for line in found.budget)
     port.unplugged = False
-    again = diagnose(ROBOT, lambda: port, clock, correct=True)
+    again = diagnose(ROBOT, lambda: [port], clock, correct=True)
     assert not again.bad, again
     assert {c.what: c for c in again.checks}["settings"].verdict == GOOD
     port.unplugged = False
     port.servos[3].silent = True
-    gone = diagnose(ROBOT, lambda: port, clock)
+    gone = diagnose(ROBOT, lambda: [port], clock)
     assert gone.bad and any(c.what == "servo 3 (waist_yaw)" and "no answer" in c.found for c in gone.checks)
 
 
 def test_the_doctor_says_when_a_rate_is_impossible_or_the_port_missing() -> None:
     _bus, port, clock = wired()
     robot = replace(ROBOT, bus=replace(ROBOT.bus, rate_hz=900.0))
-    rate = next(c for c in diagnose(robot, lambda: port, clock).checks if c.what == "rate")
+    rate = next(c for c in diagnose(robot, lambda: [port], clock).checks if c.what == "rate")
     assert rate.verdict == BAD and "impossible" in rate.found and "baud" in rate.remedy
 
-    def missing() -> FakePort:
+    def missing() -> list[FakePort]:
         raise PortMissingError("dxl:///dev/x", "no device '/dev/x'", "plug the adapter in")
 
     last = diagnose(ROBOT, missing, clock).checks[-1]
     assert (last.verdict, last.remedy) == (BAD, "plug the adapter in")
+
+
+def test_the_doctor_looks_at_every_port() -> None:
+    clock = VirtualClock()
+    _, whole, _ = wired()
+    halves = [FakePort(clock, [s for i, s in whole.servos.items() if i % 2 == n], ROBOT.bus.baud) for n in (0, 1)]
+    found = diagnose(ROBOT, lambda: halves, clock, correct=True)
+    assert not found.bad, found
+    assert [c.what for c in found.checks].count("port") == 2
+    assert "all 16 answer" in next(c.found for c in found.checks if c.what == "servos")
 
 
 # Adapter.
@@ -265,6 +277,9 @@ def test_an_adapter_is_known_again_under_another_path(tmp_path: Path) -> None:
     assert latency_timer_ms("/dev/ttyUSB1", tmp_path) == 1 and latency_timer_ms("/dev/ttyUSB7", tmp_path) == 16
     assert latency_timer_ms("/dev/pts/3", tmp_path) is None and adapter_at("/dev/pts/3", tmp_path) is None
     assert "echo 1 | sudo tee /sys/class/tty/ttyUSB7/device/latency_timer" in latency_remedy("/dev/ttyUSB7")
+    assert latency_advice("/dev/ttyUSB1", tmp_path) == latency_advice("/dev/pts/3", tmp_path) == ""
+    advice = latency_advice("/dev/ttyUSB7", tmp_path)
+    assert "up to 16 ms" in advice and latency_remedy("/dev/ttyUSB7") in advice
 
 
 def test_a_lost_tty_is_opened_again_where_its_link_leads_now(tmp_path: Path) -> None:
@@ -354,6 +369,20 @@ def test_calibration_writes_zero_and_range_of_what_was_moved(tmp_path: Path) -> 
     assert np.rad2deg([joint.position_min_rad, joint.position_max_rad]).round(1).tolist() == [-41.9, 41.9]
     assert new.joints[rows["left_elbow"]] == ROBOT.joints[rows["left_elbow"]], "its range stays"
     assert out.read_text("utf-8").splitlines()[0].startswith("#"), "comments stay"
+
+
+def test_answers_that_are_lost_become_no_zero_and_a_silent_servo_is_named() -> None:
+    bus, port, _ = wired()
+    waist, lost = port.servos[3], [True] * 4
+
+    def zero(_follow) -> None:
+        waist.set("present_position", 2100)
+        port.spoil = lambda raw, _servo_id: b"" if lost and lost.pop() else raw
+
+    found = calibrate(bus, ROBOT, wait_zero=zero, wait_range=lambda _follow: None)
+    assert not lost and found[2].zero_tick == 2100
+    with pytest.raises(CommandError, match="servo 3 does not answer"):
+        calibrate(bus, ROBOT, wait_zero=lambda _follow: setattr(waist, "silent", True), wait_range=lambda _follow: None)
 
 
 def test_a_calibration_that_makes_no_valid_file_is_not_kept(tmp_path: Path) -> None:
