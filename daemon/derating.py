@@ -33,6 +33,11 @@ CURRENT_S, VOLTAGE_S = 2.0, 0.5
 """Time constants of the means that are judged: a start or a stop takes more for a moment, and may."""
 CHANGE_PER_S = 0.5
 FULL_LOAD = 1000
+_SLOWING = (
+    np.array([[HOTTEST_C], [LOWEST_V], [-HIGHEST_CURRENT]]),
+    np.array([[HOT_C], [LOW_V], [-HIGH_CURRENT]]),
+)
+"""Where slowing is greatest, and where it begins: by temperature, voltage, current."""
 
 
 class DeratedBy(IntEnum):
@@ -125,11 +130,7 @@ class Derating:
         hot = reading.temperature_c != UNKNOWN
         below_c = np.where(hot, self.limits.temperature_c - reading.temperature_c, np.inf)
         above_v = np.where(np.isnan(self._voltage), np.inf, 0.1 * (self._voltage - self.limits.voltage_raw))
-        shares = np.stack([
-            _between(below_c, HOTTEST_C, HOT_C),
-            _between(above_v, LOWEST_V, LOW_V),
-            _between(-self._current / self.limits.current_raw, -HIGHEST_CURRENT, -HIGH_CURRENT),
-        ])  # fmt: skip
+        shares = _between(np.array([below_c, above_v, -self._current / self.limits.current_raw]), *_SLOWING)
         worst, row = divmod(int(shares.argmin()), shares.shape[1])
         wanted = float(shares[worst, row])
         before = self.by
@@ -139,9 +140,9 @@ class Derating:
         return self.by is not before
 
 
-def _between(x: Array, low: float, high: float) -> Array:
+def _between(x: Array, low: Array, high: Array) -> Array:
     """Shares that fall from 1 at `high` to `LEAST_SHARE` at `low`."""
-    return LEAST_SHARE + (1 - LEAST_SHARE) * np.clip((x - low) / (high - low), 0.0, 1.0)
+    return LEAST_SHARE + (1 - LEAST_SHARE) * np.minimum(np.maximum((x - low) / (high - low), 0.0), 1.0)
 
 
 class Source(Protocol):

@@ -6,6 +6,8 @@ hard as it can is proved free after every goal. What already keeps all that pass
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -69,19 +71,34 @@ class Gate:
             self.clipped = np.ones(len(goal), bool)
             return goal
         near_rad = np.clip(target_rad, -FARTHEST_RAD, FARTHEST_RAD)
+        limits = self._limits_now()
         if self._guarded is not None:
+            self._guarded.limits = limits
             goal = self._guarded.step(near_rad)
         else:
-            goal = limit_step(near_rad, self.position_rad, self.velocity_rad_s, self.limits, self.period_s)
+            goal = limit_step(near_rad, self.position_rad, self.velocity_rad_s, limits, self.period_s)
         self.clipped = goal != target_rad
         return self._advance(goal)
 
     def brake(self) -> Array:
         """(J,) next goal while coming to rest."""
         self.clipped = np.zeros(len(self.position_rad), bool)
+        limits = self._limits_now()
         if self._guarded is not None:
+            self._guarded.limits = limits
             return self._advance(self._guarded.brake())
-        return self._advance(brake(self.position_rad, self.velocity_rad_s, self.limits, self.period_s))
+        return self._advance(brake(self.position_rad, self.velocity_rad_s, limits, self.period_s))
+
+    def _limits_now(self) -> JointLimits:
+        """The robot's; a joint found outside its range has the range up to where it is, so that nothing drives it back in haste."""
+        low, high = self.limits.position_min_rad, self.limits.position_max_rad
+        if ((self.position_rad >= low) & (self.position_rad <= high)).all():
+            return self.limits
+        return replace(
+            self.limits,
+            position_min_rad=np.minimum(low, self.position_rad),
+            position_max_rad=np.maximum(high, self.position_rad),
+        )
 
     @property
     def at_rest(self) -> bool:

@@ -133,7 +133,7 @@ class BusLink:
         if owner:
             with path.open("wb") as f:
                 f.truncate(int(starts[-1]))
-        memory = np.memmap(path, np.uint8, "r+")
+        memory = np.memmap(path, np.uint8, "r+").view(np.ndarray)  # indexing a memmap is several times slower
         if len(memory) != starts[-1]:
             raise ValueError(f"{path}: {len(memory)} bytes; expected {starts[-1]} for {n_joints} joints")
         parts = [memory[a:b] for a, b in pairwise(starts)]

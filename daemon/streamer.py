@@ -216,7 +216,7 @@ class Streamer:
         for _ in range(PIN_ATTEMPTS):
             present = reading.position_tick.copy()
             for servo_id, tick in zip(self._bus.ids, present, strict=True):
-                self._bus.write_item(servo_id, "goal_position", int(tick))
+                self._pin(servo_id, int(tick))
                 pinned = self._bus.read_item(servo_id, "goal_position")
                 if pinned != tick:
                     raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
@@ -230,6 +230,21 @@ class Streamer:
             if not reading.valid.all():
                 break
         raise ServoFaultError(self._bus.ids[row], "to stand still while its goal is pinned", "it moved, or was silent")
+
+    def _pin(self, servo_id: int, tick: int) -> None:
+        """Set the goal of a limp servo to where it stands.
+
+        Raises:
+            ServoFaultError: it stands outside its own position limits, and refuses.
+        """
+        try:
+            self._bus.write_item(servo_id, "goal_position", tick)
+        except ServoFaultError as error:
+            low, high = (self._bus.read_item(servo_id, f"{end}_position_limit") for end in ("min", "max"))
+            if low <= tick <= high:
+                raise
+            found = f"it takes {low} to {high} only: move the joint back by hand, then reset and arm"
+            raise ServoFaultError(servo_id, f"goal where it stands, {tick}", found) from error
 
     def _reading_at_rest(self) -> BusReading:
         """A whole reading of joints that stand still: limp they swing on, and a goal pinned meanwhile would jerk.

@@ -10,11 +10,11 @@ from retarget.limits import JointLimits
 from retarget.robot import RobotModel
 
 Array = NDArray[np.float64]
-STRENGTHS = (0.0, 0.0, 0.1, 0.3, 0.6, 1.0)
+STRENGTHS = (0.0, 0.0, 0.0, 0.0, 0.1, 0.3, 0.6, 1.0)
 """Share drawn towards the rest pose around what a path touches, one attempt after another; first by pushes alone."""
-_AIM_M = 0.004
+_AIM_M = 0.001
 """A pose led round keeps so much more than the margin, for what limits in time then cut off."""
-_PUSHED_ON_M = 0.006
+_PUSHED_ON_M = 0.003
 """A path that touches is pushed so much further than the margin."""
 _PUSHES = 6
 _MOST_PUSHED_RAD = 0.15

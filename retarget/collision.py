@@ -13,6 +13,7 @@ from retarget.description import mujoco
 from retarget.distances import MARGIN_M, MEASURED_M, Array, Indices, PairDistances
 from retarget.kinematics import cross
 from retarget.robot import RobotModel
+from retarget.spans import Known, Spans
 
 KEPT = 0.8
 """Share of the margin that is proved for every instant of a path."""
@@ -26,6 +27,9 @@ class SelfContact(PairDistances):
     def __init__(self, robot: RobotModel, margin_m: float = MARGIN_M) -> None:
         super().__init__(robot, margin_m)
         self._sweep_m = self._sweeps()
+        above = self._above[self._model.geom_bodyid]
+        self._spans = Spans(self._pairs, above, self._half_m, self._radii_m, self._sweep_m)
+        self._bounded = self._exact & self._spans.known
 
     def frames(self, q_rad: Array, share: float = KEPT) -> NDArray[np.bool_]:
         """(T,) whether each frame of (T, J) comes closer to itself than a share of the margin, what paths keep of it."""
@@ -99,34 +103,43 @@ class SelfContact(PairDistances):
 
     def along(self, control_rad: Array) -> NDArray[np.bool_]:
         """(N - 2,) whether the robot may touch itself in each segment of a quadratic spline of N control points."""
-        border = self.distances_m((control_rad[:-1] + control_rad[1:]) / 2)
+        known = self._known((control_rad[:-1] + control_rad[1:]) / 2, self._every)
+        border = known.distance
         touching = np.asarray((border < self._margin_m).any(1), bool)
         hit = touching[:-1] | touching[1:]
-        step = np.abs(np.diff(control_rad, axis=0)) @ self._sweep_m.T  # (N - 1, P)
-        first, last = border[:-1], border[1:]
+        step_rad = np.abs(control_rad[1:] - control_rad[:-1])
+        step = step_rad @ self._sweep_m.T  # (N - 1, P)
         # Speed changes in a straight line, so a segment moves by no more than the mean of the speeds at its ends.
         kept_m = KEPT * self._margin_m
-        near = np.asarray(first + last - (step[:-1] + step[1:]) / 2 < 2 * kept_m, bool) & ~hit[:, None]
+        near = np.asarray(border[:-1] + border[1:] - (step[:-1] + step[1:]) / 2 < 2 * kept_m, bool) & ~hit[:, None]
         segment, of = np.flatnonzero(near.any(1)), np.flatnonzero(near.any(0))
         if not len(segment):
             return hit
         # From here on only those pairs that may come near, each half of a segment moving by half of its fastest.
-        first, last = first[segment][:, of], last[segment][:, of]
-        moved = np.maximum(step[segment][:, of], step[segment + 1][:, of])
+        moved = np.maximum(step[:-1], step[1:])
+        bend_rad = np.abs(control_rad[2:] - 2 * control_rad[1:-1] + control_rad[:-2])
+        bent = self._spans.bends_m(step_rad, bend_rad, moved)[segment][:, of]
+        moved, near, kept_m, margin_m = moved[segment][:, of], near[segment][:, of], kept_m[of], self._margin_m[of]
+        known, ends = known.of(of), np.stack([segment, segment + 1])
         u = np.tile((0.0, 1.0), (len(segment), 1))
         for _ in range(_DEEPEST):
-            middle = u.mean(1)
-            q = _spline(control_rad, segment, middle)
-            between = self._distances(q, self._placed(q, with_joints=False), of)[0]
-            hit[segment[(between < self._margin_m[of]).any(1)]] = True
-            u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
-            first, last = np.concatenate([first, between]), np.concatenate([between, last])
-            segment, moved = np.concatenate([segment, segment]), np.concatenate([moved, moved]) / 2
-            unsure = np.asarray((first + last - moved < 2 * kept_m[of]).any(1), bool) & ~hit[segment]
+            near = self._still_near(near, known, ends, of, bent, kept_m)
+            unsure = near.any(1) & ~hit[segment]
             if not unsure.any():
                 return hit
-            segment, u, first, last, moved = segment[unsure], u[unsure], first[unsure], last[unsure], moved[unsure]
-        hit[segment] = True
+            segment, u, ends, near = segment[unsure], u[unsure], ends[:, unsure], near[unsure]
+            moved, bent = moved[unsure], bent[unsure]
+            middle = u.mean(1)
+            between = self._known(_spline(control_rad, segment, middle), of)
+            hit[segment[(between.distance < margin_m).any(1)]] = True
+            at = len(known.distance) + np.arange(len(segment))
+            known = known.and_also(between)
+            ends = np.concatenate([np.stack([ends[0], at]), np.stack([at, ends[1]])], 1)
+            u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
+            segment, near = np.concatenate([segment, segment]), np.concatenate([near, near])
+            moved, bent = np.concatenate([moved, moved]) / 2, np.concatenate([bent, bent]) / 4
+            near &= known.distance[ends[0]] + known.distance[ends[1]] - moved < 2 * kept_m
+        hit[segment[near.any(1)]] = True
         return hit
 
     def clear_along(self, way_rad: Array, share: float = KEPT, first_room_m: Array | None = None) -> bool:
@@ -160,6 +173,19 @@ class SelfContact(PairDistances):
             first, last = np.concatenate([first, between]), np.concatenate([between, last])
         return False
 
+    def _known(self, q_rad: Array, of: Indices) -> Known:
+        placed = self._placed(q_rad, with_joints=False)
+        return Known(placed.centre, placed.axis, placed.turn, *self._distances(q_rad, placed, of))
+
+    def _still_near(
+        self, near: NDArray[np.bool_], known: Known, ends: Indices, of: Indices, bent: Array, kept_m: Array
+    ) -> NDArray[np.bool_]:
+        """(n, m) which of m pairs are still `near` in n spans when what is curved about their movement is bounded too."""
+        span, at = np.nonzero(near & self._bounded[of])
+        least = self._spans.least_m(known, ends[:, span], at, of[at]) - bent[span, at]
+        near[span, at] = least < kept_m[at]
+        return near
+
     def _sweeps(self) -> Array:
         """(P, J) metres that the shapes of each pair move against each other at most, per radian of each joint."""
         model = self._model
@@ -168,8 +194,9 @@ class SelfContact(PairDistances):
             up = int(model.geom_bodyid[g])
             far = float(np.linalg.norm(model.geom_pos[g])) + self._half_m[g] + self._radius_m[g]
             while up:
-                for j in np.flatnonzero(model.jnt_bodyid[self._joint_ids] == up):
-                    reach[g, j] = far + float(np.linalg.norm(model.jnt_pos[self._joint_ids[j]]))
+                moved_by = np.flatnonzero(model.jnt_bodyid[self._joint_ids] == up)
+                anchors_m = np.linalg.norm(model.jnt_pos[self._joint_ids[moved_by]], axis=1)
+                reach[g, moved_by] = far + anchors_m.max(initial=0.0)  # of joints in one place none reaches further
                 far += float(np.linalg.norm(model.body_pos[up]))
                 up = int(model.body_parentid[up])
         a, b = self._pairs.T

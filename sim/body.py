@@ -64,7 +64,7 @@ class PlainBody:
     @property
     def at_rest(self) -> bool:
         """Nothing turns, and friction held it in the last step."""
-        return not self.velocity_rad_s.any()
+        return not np.count_nonzero(self.velocity_rad_s)
 
     def step(self, torque_nm: Array, blocked: NDArray[np.bool_], step_s: float) -> None:
         """Semi-implicit Euler; friction may stop a shaft but never turn it round."""
@@ -72,7 +72,7 @@ class PlainBody:
         velocity = self.velocity_rad_s + (torque_nm + self._push_nm - self._damping * self.velocity_rad_s) * rate
         slowed = np.maximum(np.abs(velocity) - self._friction_nm * rate, 0.0)
         self.velocity_rad_s = np.copysign(slowed, velocity)
-        if blocked.any():
+        if np.count_nonzero(blocked):
             self.velocity_rad_s[blocked] = 0.0
         self.position_rad = self.position_rad + self.velocity_rad_s * step_s
 

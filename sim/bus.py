@@ -2,8 +2,9 @@
 
 What is modelled: time of every byte, half duplex with collisions, answers in order, every instruction. Not modelled: see
 the list in docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). Where the manual is
-silent: in a sync or bulk read the next servo waits for the time of an answer that does not come; a fast read ends at the
-first servo that is silent, for the next ones cannot continue its checksum; a packet with a wrong checksum is not answered.
+silent: in a sync or bulk read the next servo waits for the time of an answer that does not come (on protocol 1.0 for ever,
+for it waits for the packet itself); a fast read ends at the first servo that is silent, for the next ones cannot continue
+its checksum; a packet with a wrong checksum is not answered.
 """
 
 from __future__ import annotations
@@ -121,7 +122,11 @@ class SimBus:
         by_id: dict[int, list[SimServo]] = {}
         for servo in listening:
             servo.fed(t_s)
-            by_id.setdefault(servo.servo_id, []).append(servo)
+            servo_id = servo.servo_id
+            if servo_id in by_id:
+                by_id[servo_id].append(servo)
+            else:
+                by_id[servo_id] = [servo]
         if p.instruction in _FAST_READS and protocol == 2.0:
             self._answer_fast(p, by_id, t_s, baud)
         elif p.instruction in _READS:
@@ -139,10 +144,11 @@ class SimBus:
 
     def _note_lost(self, data: bytes, t_s: float) -> None:
         """Goals that a collision took are steps that the daemon made all the same: the audit counts from them."""
-        for p in packet.PacketDecoder().feed(data):
-            if p.instruction in _GROUP_WRITES:
-                for access in accesses_of(p, 2.0):
-                    self._instructions.missed(self.on_wire, access, t_s)
+        for protocol, decoder in ((2.0, packet.PacketDecoder()), (1.0, packet1.PacketDecoder(answers=False))):
+            for p in decoder.feed(data):
+                if p.instruction in _GROUP_WRITES:
+                    for access in accesses_of(p, protocol):
+                        self._instructions.missed(self.on_wire, access, t_s)
 
     def _listening(self, protocol: float, t_s: float, baud: int) -> list[SimServo]:
         """Servos that hear and understand what is said now."""
@@ -160,30 +166,33 @@ class SimBus:
     def _answer_one(
         self, p: Packet, listening: list[SimServo], by_id: dict[int, list[SimServo]], t_s: float, baud: int
     ) -> None:
-        """The servo that is meant; one with this as its second id obeys in silence."""
+        """The servo that is meant; one with this as its second id obeys in silence.
+
+        It answers as who was asked, also when it has been given another id or baud (manual of RX-28, examples 7 and 8).
+        """
         for servo in listening:
             if "secondary_id" in servo.items and servo.memory.get("secondary_id") == p.servo_id:
                 self._instructions.carry_out(servo, p, t_s)
         for servo in by_id.get(p.servo_id, ()):
             error, parameters = self._instructions.carry_out(servo, p, t_s)
             if _answers(servo, p.instruction):
-                self._send(servo, error, parameters, t_s, baud)
+                self._send(servo, p.servo_id, error, parameters, t_s, baud)
 
     def _answer_all(self, p: Packet, listening: list[SimServo], t_s: float, baud: int) -> None:
         """A broadcast: everybody obeys, and only a ping is answered, by one after another."""
         for servo in sorted(listening, key=lambda s: s.servo_id):
             error, parameters = self._instructions.carry_out(servo, p, t_s)
             if p.instruction == Instruction.PING:
-                t_s = self._send(servo, error, parameters, t_s, baud)
+                t_s = self._send(servo, servo.servo_id, error, parameters, t_s, baud)
 
-    def _send(self, servo: SimServo, error: int, parameters: bytes, t_s: float, baud: int) -> float:
-        """Put one status packet on the wire; the time it ends, or would have ended."""
+    def _send(self, servo: SimServo, servo_id: int, error: int, parameters: bytes, t_s: float, baud: int) -> float:
+        """Put one status packet of `servo_id` on the wire; the time it ends, or would have ended."""
         byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
         status = packet.status if servo.model.protocol == 2.0 else packet1.status
         start_s = t_s + self._pause_s(servo)
         error |= servo.alert()
         end_s = start_s + byte_s * (len(parameters) + (11 if servo.model.protocol == 2.0 else 6))
-        for piece in spoil(self.faults, servo.servo_id, lambda i: status(i, error, parameters), start_s, byte_s):
+        for piece in spoil(self.faults, servo_id, lambda i: status(i, error, parameters), start_s, byte_s):
             sent_s = self.wire.answer(start_s + piece.after_s, piece.data, baud, alone=piece.alone)
             end_s = max(end_s, sent_s) if not piece.after_s else end_s
         return end_s
@@ -196,13 +205,15 @@ class SimBus:
     def _answer_group(
         self, p: Packet, protocol: float, by_id: dict[int, list[SimServo]], t_s: float, baud: int
     ) -> None:
-        """One status packet after another, in the order asked."""
+        """One status packet after another, in the order asked; on protocol 1.0 each waits for the packet before its own."""
         for access in accesses_of(p, protocol):
             ends_s = [
-                self._send(servo, *servo.read(access.address, access.length), t_s, baud)
+                self._send(servo, access.servo_id, *servo.read(access.address, access.length), t_s, baud)
                 for servo in by_id.get(access.servo_id, ())
                 if _answers(servo, Instruction.READ)
             ]
+            if protocol == 1.0 and (not ends_s or self.faults.active("silent", t_s, access.servo_id)):
+                return
             byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
             t_s = max(ends_s, default=t_s + (11 + access.length) * byte_s)
 
@@ -210,20 +221,26 @@ class SimBus:
         """One packet to which each servo adds its part."""
         parts: list[Part] = []
         speakers: list[SimServo] = []
-        for access in accesses_of(p, 2.0):
-            servo = next(iter(by_id.get(access.servo_id, ())), None)
+        accesses = accesses_of(p, 2.0)
+        for access in accesses:
+            servo = by_id[access.servo_id][0] if access.servo_id in by_id else None
             if servo is None or not servo.model.has_fast_sync(servo.firmware) or not _answers(servo, Instruction.READ):
                 break
             error, data = servo.read(access.address, access.length)
-            parts.append(Part(servo.servo_id, error | servo.alert(), data.ljust(access.length, b"\0")))
+            parts.append(Part(access.servo_id, error | servo.alert(), data.ljust(access.length, b"\0")))
             speakers.append(servo)
         if not parts:
             return
         byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
         start_s = t_s + self._pause_s(speakers[0])
-        whole = 1 + sum(4 + access.length for access in accesses_of(p, 2.0))
-        for servo, own in zip(speakers, _fast_shares(parts, whole), strict=True):
-            pieces = spoil(self.faults, servo.servo_id, lambda _id, own=own: own, start_s, byte_s)
+        whole = 1 + sum(4 + access.length for access in accesses)
+        shares = _fast_shares(parts, whole)
+        if not self.faults.strikes_packets:  # nothing comes between their shares
+            self.faults.packet += len(speakers)
+            self.wire.answer(start_s, b"".join(shares), baud)
+            return
+        for part, own in zip(parts, shares, strict=True):
+            pieces = spoil(self.faults, part.servo_id, lambda _id, own=own: own, start_s, byte_s)
             if not pieces:
                 return
             for piece in pieces:

@@ -96,7 +96,7 @@ class Drives:
         self._steps = 0
         self._quiet = False
         self._plain = True
-        self._lists: list[list[float]] | None = None
+        self._rows: list[tuple[float, ...]] | None = None
         self._path_tick_s2: Array = np.zeros(n)
         self._ramp_tick_s: Array = np.zeros(n)
         self.touch()
@@ -109,12 +109,13 @@ class Drives:
 
     def touch(self) -> None:
         """A setting has changed: forget what was derived from the old ones."""
-        self._quiet, self._lists = False, None
+        self._quiet, self._rows = False, None
         in_position = np.isin(self.mode, _POSITION_MODES)
         self._plain = bool(in_position.all()) and not (
             self.i_gain.any() or self.feedforward_1.any() or self.feedforward_2.any() or self.deadband_tick.any()
         )
         self._in_position = in_position
+        self._least_duty, self._least_a = -self.limit_duty, -self.limit_a
         self._has_profile = bool((np.isfinite(self.profile_tick_s) | np.isfinite(self.profile_tick_s2)).any())
 
     def start(self, i: int) -> None:
@@ -128,40 +129,38 @@ class Drives:
         self.body.place(i, tick * float(self.rad_per_tick[i]))
         self.position_tick[i] = self.path_tick[i] = tick
         self.velocity_tick_s[i] = self.path_tick_s[i] = 0.0
-        self._quiet, self._lists = False, None
+        self._quiet, self._rows = False, None
 
-    def live(self) -> list[list[float]]:
-        """Position, velocity, current, duty, voltage, temperature, path position, path velocity: one list each."""
-        if self._lists is None:
-            self._lists = [
-                a.tolist()
-                for a in (
-                    self.position_tick, self.velocity_tick_s, self.current_a, self.duty, self.voltage_v,
-                    self.temperature_c, self.path_tick, self.path_tick_s,
-                )
-            ]  # fmt: skip
-        return self._lists
+    def live(self) -> list[tuple[float, ...]]:
+        """Of each servo: position, velocity, current, duty, voltage, temperature, path position, path velocity."""
+        if self._rows is None:
+            measured = (
+                self.position_tick, self.velocity_tick_s, self.current_a, self.duty, self.voltage_v,
+                self.temperature_c, self.path_tick, self.path_tick_s,
+            )  # fmt: skip
+            self._rows = list(zip(*(a.tolist() for a in measured), strict=True))
+        return self._rows
 
     def step(self) -> bool:
         """One step of the grid; whether the slow part was done, after which latches should be looked at."""
         self._steps += 1
         slow = self._steps % SLOW_EVERY == 0
         if not self._quiet:
-            self._lists = None
+            self._rows = None
             self._move()
         if slow:
             self._heat()
-            self._lists = None
+            self._rows = None
         return slow
 
     def _move(self) -> None:
         self._follow_path()
         duty = self._position_duty() if self._plain else self._any_duty()
-        np.clip(duty, -self.limit_duty, self.limit_duty, out=duty)
+        np.minimum(np.maximum(duty, self._least_duty, out=duty), self.limit_duty, out=duty)
         duty *= self.torque
         voltage = duty * self.voltage_v
         current = (voltage - self._emf_per_tick_s * self.velocity_tick_s) / self._resistance
-        np.clip(current, -self.limit_a, self.limit_a, out=current)
+        np.minimum(np.maximum(current, self._least_a, out=current), self.limit_a, out=current)
         current *= self.torque
         was = self.position_tick
         self.body.step(current * self._torque_per_a, self.stuck, STEP_S)

@@ -6,6 +6,7 @@ the byte whose address stands in its indirect address item (ROBOTIS e-manual, "I
 
 from __future__ import annotations
 
+import struct
 from dataclasses import dataclass
 
 from daemon.bus.models import BusModel, IndirectWindow
@@ -26,9 +27,14 @@ class Span:
 
 
 class Memory:
-    """The bytes of one servo."""
+    """The bytes of one servo.
 
-    def __init__(self, model: BusModel, firmware: int) -> None:
+    Args:
+        model, firmware: whose control table.
+        measured: addresses whose bytes are written by `measure`.
+    """
+
+    def __init__(self, model: BusModel, firmware: int, measured: range = range(0)) -> None:
         self.model = model
         self._windows = model.indirect_windows(firmware)
         self.items: dict[str, Item] = dict(model.table) | _indirect_items(self._windows)
@@ -36,6 +42,7 @@ class Memory:
         self.size = max(ends)
         self.bytes = bytearray(self.size)
         self._by_address = {item.address: item for item in self.items.values()}
+        self._measured = measured
         self._values: dict[str, int] = {}  # of items that only `set` changes
         self._spans: dict[tuple[int, int], Span] = {}
         self._data_first = min((w.data for w in self._windows), default=self.size)
@@ -59,8 +66,12 @@ class Memory:
         item = self.items[name]
         data = item.encode(value)
         self.bytes[item.address : item.end] = data
-        if item.writable:
+        if item.address not in self._measured:
             self._values[name] = item.decode(data)
+
+    def measure(self, layout: struct.Struct, *values: int) -> None:
+        """Store what was measured, packed side by side from the first of the measured addresses on."""
+        layout.pack_into(self.bytes, self._measured.start, *values)
 
     def read(self, address: int, length: int) -> bytes | None:
         """Bytes as a client sees them; None beyond the end. Addresses without an item read as zero."""

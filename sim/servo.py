@@ -41,9 +41,10 @@ class Errors:
 
 
 _GOALS = ("goal_position", "goal_velocity", "goal_pwm", "goal_current")
-_POSITION_RANGE = {Mode.EXTENDED_POSITION: 1048575, Mode.CURRENT_POSITION: 1048575}
+_POSITION_RANGE: dict[int, int] = {Mode.EXTENDED_POSITION: 1048575, Mode.CURRENT_POSITION: 1048575}
+_LIMIT_OF = {"goal_velocity": "velocity_limit", "goal_current": "current_limit", "goal_pwm": "pwm_limit"}
 _SINGLE_TURN = (Mode.POSITION,)
-_LIVE_FROM, _LIVE_TO = 120, 147
+_LIVE_AT = range(120, 147)
 _LIVE = struct.Struct("<HBBhhiiiiHB")  # realtime tick 120 ... temperature 146, side by side
 _MS_PER_S, _TICK_WRAP_MS = 1000, 32768
 
@@ -57,6 +58,7 @@ class SimServo:
     """
 
     errors = Errors(ErrorCode.INSTRUCTION, ErrorCode.DATA_LENGTH, ErrorCode.ACCESS)
+    _measured_at = _LIVE_AT
 
     def __init__(self, spec: ServoSpec, drives: Drives, index: int, firmware: int | None = None) -> None:
         number = spec.model.model_number
@@ -65,7 +67,7 @@ class SimServo:
         self.spec, self.model, self.index = spec, MODELS[number], index
         self.drives = drives
         self.firmware = firmware if firmware is not None else _FIRMWARE.get(self.model.family, _FIRMWARE_X)
-        self.memory = Memory(self.model, self.firmware)
+        self.memory = Memory(self.model, self.firmware, self._measured_at)
         self.rad_per_tick = float(drives.rad_per_tick[index])
         self._tick_s_per_unit = self._speed_unit_rad_s() / self.rad_per_tick
         self.watchdog_stops = self.model.watchdog_stops
@@ -73,6 +75,7 @@ class SimServo:
         self.powered = True
         self.asked: list[str] = []
         self.baud: int | None = None
+        self._torque = False
         self._fed_s = 0.0
         self._watchdog_s = math.inf
         self._turn_tick = 0.0
@@ -104,7 +107,7 @@ class SimServo:
     @property
     def torque(self) -> bool:
         """Whether torque is on."""
-        return bool(self.drives.torque[self.index])
+        return self._torque
 
     @property
     def position_tick(self) -> float:
@@ -118,7 +121,7 @@ class SimServo:
     @property
     def is_faulted(self) -> bool:
         """Whether a hardware error is latched that took its torque."""
-        return bool(self.get("hardware_error_status") & self.get("shutdown"))
+        return bool(self.memory.get("hardware_error_status") & self.memory.get("shutdown"))
 
     def get(self, name: str) -> int:
         """Value of an item, live ones refreshed."""
@@ -311,9 +314,9 @@ class SimServo:
             mode = self.memory.get("operating_mode")
             if mode == Mode.POSITION:
                 return self.memory.get("min_position_limit"), self.memory.get("max_position_limit")
-            far = _POSITION_RANGE.get(Mode(mode), math.inf)
+            far = _POSITION_RANGE.get(mode, math.inf)
             return -far, far
-        limit = {"goal_velocity": "velocity_limit", "goal_current": "current_limit", "goal_pwm": "pwm_limit"}.get(name)
+        limit = _LIMIT_OF.get(name)
         most = math.inf if limit is None else self.memory.get(limit)
         return -most, most
 
@@ -322,9 +325,10 @@ class SimServo:
         if name == "goal_position":
             self._set(name, value)
             self.drives.set_goal(self.index, self._to_shaft(value))
-            if self.memory.get("drive_mode") & 8 and not self.torque and not self.is_faulted:
+            drive_mode = self.memory.get("drive_mode")
+            if drive_mode & 8 and not self.torque and not self.is_faulted:
                 self._set_torque(True)  # drive mode bit 3: torque on by goal update
-            if self.memory.get("drive_mode") & 4:
+            if drive_mode & 4:
                 self._configure()  # a profile in time depends on the way to go
         elif name == "torque_enable":
             self._set_torque(bool(value))
@@ -352,7 +356,7 @@ class SimServo:
         if on and not self.torque:
             self.drives.start(self.index)
             self.fed(self._now_s)
-        self.drives.torque[self.index] = on
+        self._torque = self.drives.torque[self.index] = on
         self.drives.touch()
 
     def _configure(self) -> None:
@@ -451,17 +455,17 @@ class SimServo:
 
     def judge(self) -> None:
         """Latch what voltage, temperature and load have come to."""
-        live, i = self.drives.live(), self.index
         if not self.powered:
             return
-        decivolt = round(live[4][i] * 10)
+        live = self.drives.live()[self.index]
+        decivolt = round(live[4] * 10)
         if decivolt < RESET_SHARE * self.model.voltage_v[0] * 10:
             return  # too low even to notice: the world takes its power away
         if not self.memory.get("min_voltage_limit") <= decivolt <= self.memory.get("max_voltage_limit"):
             self._latch(VOLTAGE_BIT)
-        if live[5][i] > self.memory.get("temperature_limit"):
+        if live[5] > self.memory.get("temperature_limit"):
             self._latch(HEAT_BIT)
-        if self.torque and self.drives.load[i] > OVERLOAD_SHARE:
+        if self.torque and self.drives.load[self.index] > OVERLOAD_SHARE:
             self._latch(OVERLOAD_BIT)
 
     def _latch(self, bit: int) -> None:
@@ -470,9 +474,7 @@ class SimServo:
 
     def _refresh(self) -> None:
         """Write what is measured into the table."""
-        position, velocity, current, duty, voltage, temperature, path, path_speed = (
-            v[self.index] for v in self.drives.live()
-        )
+        position, velocity, current, duty, voltage, temperature, path, path_speed = self.drives.live()[self.index]
         sign, per_unit = self._sign, self._tick_s_per_unit
         moving = abs(velocity) > self._threshold_tick_s
         here = self._to_register(position)
@@ -481,9 +483,8 @@ class SimServo:
             effort = sign * current / (self.items["present_current"].scale * 1e-3)
         else:
             effort = sign * duty * 1000
-        _LIVE.pack_into(
-            self.memory.bytes, _LIVE_FROM,
-            int(self._now_s * _MS_PER_S) % _TICK_WRAP_MS, int(moving), int(arrived) | int(path_speed != 0) << 1,
+        self.memory.measure(
+            _LIVE, int(self._now_s * _MS_PER_S) % _TICK_WRAP_MS, int(moving), int(arrived) | int(path_speed != 0) << 1,
             round(sign * duty * _PWM_FULL), round(effort), round(sign * velocity / per_unit), round(here),
             round(sign * path_speed / per_unit), round(self._to_register(path)),
             max(0, round(voltage * 10)), max(0, min(255, round(temperature))),

@@ -24,6 +24,7 @@ class SimServo1(SimServo):
     """Registers of one AX or MX of Protocol 1.0."""
 
     errors = Errors(INSTRUCTION_ERROR, INSTRUCTION_ERROR, INSTRUCTION_ERROR)
+    _measured_at = range(0)
 
     @property
     def is_faulted(self) -> bool:
@@ -135,8 +136,7 @@ class SimServo1(SimServo):
             self.trip(bit)
 
     def _refresh(self) -> None:
-        live = [v[self.index] for v in self.drives.live()]
-        position, velocity, current, duty, voltage, temperature, path = live[:7]
+        position, velocity, current, duty, voltage, temperature, path, _ = self.drives.live()[self.index]
         most = (1 << 10) - 1
         top = self.items["present_position"]
         low, high = (-28672, 28672) if top.signed else (0, most)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import threading
 from collections.abc import Callable, Mapping, Sequence
 
@@ -69,9 +70,13 @@ class World:
         """Held while anything is asked of the servos: doors may be served by threads of their own."""
         self.on_clock_jump: Callable[[float], None] | None = None
         self._steps = 0
+        self._done_s = -math.inf
 
     def advance(self, t_s: float) -> None:
         """Move on to time `t_s`; earlier times change nothing."""
+        if t_s <= self._done_s:
+            return
+        self._done_s = t_s
         while (next_s := (self._steps + 1) * STEP_S) <= t_s + _EPSILON_S:
             self._steps += 1
             for fault in self.faults.begin(next_s):

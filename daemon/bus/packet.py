@@ -12,6 +12,7 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 from daemon.bus.crc import crc16
 from daemon.errors import PacketError
@@ -176,8 +177,7 @@ def bulk_write(rows: Sequence[tuple[int, int, bytes]]) -> bytes:
 # What requests say, and the answers: the servo's role.
 
 
-@dataclass(frozen=True)
-class Access:
+class Access(NamedTuple):
     """One servo's part of a request: `length` bytes at `address`, and the bytes when they are to be written."""
 
     servo_id: int
@@ -231,8 +231,7 @@ def status(servo_id: int, error: int = 0, parameters: bytes = b"") -> bytes:
     return encode(Packet(servo_id, Instruction.STATUS, parameters, error))
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(NamedTuple):
     """One servo's part of a fast reply."""
 
     servo_id: int

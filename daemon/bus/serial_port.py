@@ -127,13 +127,12 @@ def _open(device: str, baud: int, url: str) -> serial.Serial:
 def open_dxl(url: SplitResult, context: PortContext) -> SerialPort:
     """`dxl:///dev/ttyUSB0?baud=1000000` or `dxl://./servos`; the robot file's baud when none is given."""
     device = url.netloc + url.path
+    name = f"dxl://{device}" + (f"?{url.query}" if url.query else "")  # `geturl` would take two slashes out
     query = parse_qs(url.query, strict_parsing=bool(url.query))
     unknown = query.keys() - {"baud"}
     if unknown or not device:
-        raise CommandError(
-            f"bus '{url.geturl()}': {', '.join(unknown) or 'no device'}; allowed: dxl://PATH?baud=NUMBER"
-        )
+        raise CommandError(f"bus '{name}': {', '.join(unknown) or 'no device'}; allowed: dxl://PATH?baud=NUMBER")
     text = query.get("baud", [str(context.robot.bus.baud)])[0]
     if not text.isdigit():
-        raise CommandError(f"bus '{url.geturl()}': baud '{text}' is not a number; example: baud=1000000")
-    return SerialPort(device, int(text), url.geturl())
+        raise CommandError(f"bus '{name}': baud '{text}' is not a number; example: baud=1000000")
+    return SerialPort(device, int(text), name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 
 from daemon.bus.models import MODELS, BusModel
@@ -15,6 +16,8 @@ from retarget.servos import servo_models
 
 MOVES = ("goal_position", "goal_velocity", "goal_pwm", "goal_current", "moving_speed", "goal_torque", "torque_enable")
 """Items that can set a joint in motion: the daemon's alone, behind its gate."""
+_BOOT_S, _ASK_EVERY_S = 2.0, 0.1
+"""After a reboot a servo is asked for so long, so often, whether it is back."""
 
 
 @dataclass(frozen=True)
@@ -76,11 +79,12 @@ class SingleServo:
             pass
         else:
             raise CommandError(f"id {new_id} is taken by another servo on this bus")
-        self.bus.write_item(self.servo_id, "id", new_id)
+        with contextlib.suppress(LinkTimeoutError):  # some answer as their new self: who has the new id tells
+            self.bus.write_item(self.servo_id, "id", new_id)
         find(self.bus.port, self.bus.clock, new_id, self.model.protocol)
 
     def set_baud(self, baud: int) -> None:
-        """Give it another baud; from then on it is heard only there.
+        """Give it another baud; from then on it is heard only there: look for it with `find` on a port of that baud.
 
         Raises:
             CommandError: it cannot, or torque is on.
@@ -90,17 +94,24 @@ class SingleServo:
             known = "57600, 115200, 1000000, 2000000, 3000000, 4000000" if self.model.protocol == 2.0 else "2000000 / n"
             raise CommandError(f"{self.model.name} has no {baud} baud; allowed: {known}, at most {self.model.max_baud}")
         self._require_free(self.item("baud_rate"))
-        self.bus.write_item(self.servo_id, "baud_rate", code)
+        with contextlib.suppress(LinkTimeoutError):  # some answer at the new baud: who is heard there tells
+            self.bus.write_item(self.servo_id, "baud_rate", code)
 
     def reboot(self, *, drop: bool) -> None:
-        """Restart it.
+        """Restart it, and wait until it is back.
 
         Raises:
             CommandError: it holds torque, which would drop, and `drop` was not said.
+            LinkTimeoutError: it has not come back.
         """
         if self.get("torque_enable") and not drop:
             raise CommandError(f"servo {self.servo_id} holds torque: a reboot lets its joint fall; --drop to do it")
         self.bus.reboot(self.servo_id)
+        clock = self.bus.clock
+        until_s = clock.now_s() + _BOOT_S
+        while not self.bus.ping_all() and clock.now_s() < until_s:
+            clock.sleep_until(clock.now_s() + _ASK_EVERY_S)
+        find(self.bus.port, clock, self.servo_id, self.model.protocol)
 
     def _require_free(self, item: Item) -> None:
         if item.eeprom and self.get("torque_enable"):

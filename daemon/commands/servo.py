@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import json as json_module
-from typing import Annotated, Literal
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from daemon.bus.registers import Item
 
 Verb = Literal["get", "set", "reboot", "id", "baud"]
 
@@ -38,7 +44,6 @@ def servo(
         json: print one JSON object.
     """
     from rich.console import Console
-    from rich.table import Table
 
     from daemon.bus.open import PortContext, open_port
     from daemon.bus.single import find
@@ -53,40 +58,58 @@ def servo(
     if not number.lstrip("-").isdigit():
         raise CommandError(f"mmmd servo {verb}: '{number}' is no whole number")
     console, clock = Console(), RealClock()
-    port = open_port(bus, PortContext(load_robot("reference"), clock))
+    context = PortContext(load_robot("reference"), clock)
+    port = open_port(bus, context)
     try:
         one = find(port, clock, servo_id)
         said = {"servo_id": servo_id, "model": one.model.name, "firmware": one.firmware}
         if verb == "get":
             names = arguments or tuple(one.model.table)
-            items = [one.item(name) for name in names]
+            items = [one.item(name) for name in names]  # named before anything is asked
             values = one.bus.read_items(servo_id, names)
             if json:
                 console.out(json_module.dumps(said | {"items": values}))
                 return 0
-            table = Table(title=f"servo {servo_id}: {one.model.name}, firmware {one.firmware}")
-            for column in ("address", "item", "value", "", "access"):
-                table.add_column(column)
-            for item in items:
-                value = values[item.name]
-                meaning = f"{value * item.scale:g} {item.unit}" if item.unit and item.unit != "tick" else ""
-                access = ("EEPROM" if item.eeprom else "RAM") + ("" if item.writable else ", read only")
-                table.add_row(str(item.address), item.name, str(value), meaning, access)
-            console.print(table)
+            console.print(_table(f"servo {servo_id}: {one.model.name}, firmware {one.firmware}", items, values))
             return 0
         if verb == "set":
             one.set(arguments[0], int(number))
             did = f"{arguments[0]} = {number}"
         elif verb == "reboot":
             one.reboot(drop=drop)
-            did = "rebooting: torque is off, settings in RAM are gone"
+            did = "rebooted: torque is off, settings in RAM are gone"
         elif verb == "id":
             one.set_id(int(number))
             did = f"its id is now {number}"
         else:
             one.set_baud(int(number))
-            did = f"its baud is now {number}; talk to it there"
+            port.close()
+            port = open_port(_at_baud(bus, number), context)
+            find(port, clock, servo_id, one.model.protocol)
+            did = f"its baud is now {number}; it answers there"
     finally:
         port.close()
     console.out(json_module.dumps(said | {"did": did}) if json else f"servo {servo_id} ({one.model.name}): {did}")
     return 0
+
+
+def _table(title: str, items: Sequence[Item], values: Mapping[str, int]) -> Table:
+    """Items of a servo with their values and what those mean."""
+    from rich.table import Table
+
+    table = Table(title=title)
+    for column in ("address", "item", "value", "", "access"):
+        table.add_column(column)
+    for item in items:
+        value = values[item.name]
+        meaning = f"{value * item.scale:g} {item.unit}" if item.unit and item.unit != "tick" else ""
+        access = ("EEPROM" if item.eeprom else "RAM") + ("" if item.writable else ", read only")
+        table.add_row(str(item.address), item.name, str(value), meaning, access)
+    return table
+
+
+def _at_baud(url: str, baud: str) -> str:
+    """The URL of the same port at another baud."""
+    place, _, query = url.partition("?")
+    options = [option for option in query.split("&") if option and not option.startswith("baud=")]
+    return f"{place}?{'&'.join([*options, f'baud={baud}'])}"

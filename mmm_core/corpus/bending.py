@@ -9,8 +9,8 @@ from itertools import product
 import numpy as np
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight")
-_THIRD = {"have": "has", "be": "is"}
-_GERUND = {"lie": "lying", "be": "being", "tie": "tying", "die": "dying", "program": "programming", "swivel": "swiveling", "unplug": "unplugging"}  # fmt: skip
+_THIRD = {"have": "has", "be": "is", "shoo": "shoos"}
+_GERUND = {"lie": "lying", "be": "being", "tie": "tying", "die": "dying", "program": "programming", "swivel": "swiveling", "unplug": "unplugging", "control": "controlling", "regret": "regretting", "forbid": "forbidding", "begin": "beginning"}  # fmt: skip
 _DOUBLED = re.compile(r"^[^aeiou]*(?:qu)?[aeiou][bdgklmnprtv]$")
 _SPELLINGS = (("forward", "forwards"), ("backward", "backwards"), ("upwards", "upward"), ("downwards", "downward"), ("towards", "toward"), ("favourite", "favorite"), ("colour", "color"), ("practise", "practice"), ("rhythm", "rythm"))  # fmt: skip
 """British and American (and one common slip); the first is what the patterns say."""
@@ -49,8 +49,8 @@ def gerund(phrase: str, pronoun: str | None) -> str:
 
 
 def plain(phrase: str) -> str:
-    """The imperative itself."""
-    return phrase.replace("^", "")
+    """The imperative, or the phrase without a verb, itself: without marks."""
+    return phrase.replace("^", "").replace("~", "")
 
 
 def persons_words(phrase: str, pronoun: str) -> str:
@@ -63,7 +63,11 @@ def persons_words(phrase: str, pronoun: str) -> str:
     }[pronoun]
     phrase = re.sub(r"\byourself\b", self_word, phrase)
     phrase = re.sub(r"\byour\b", pronoun, phrase)
-    phrase = re.sub(r"\b(behind|around|in front of|towards|below|above|to) you\b", rf"\1 {other}", phrase)
+    phrase = re.sub(
+        r"\b(behind|around|in front of|towards|below|above|to|from|over|about|beside|near|beneath|under|for) you\b",
+        rf"\1 {other}",
+        phrase,
+    )
     return re.sub(r"\byou\b", "they", phrase)  # the subject of a clause; "they" needs no other verb form
 
 

@@ -17,6 +17,7 @@ from mmm_core.corpus.bending import (
     times,
 )
 from mmm_core.corpus.families import FAMILIES, MIMED, Gesture, Words
+from mmm_core.corpus.heldout import is_withheld
 from mmm_core.corpus.styles import STYLES
 
 OTHER = {"left": "right", "right": "left"}
@@ -26,12 +27,12 @@ _IN_TURNS = (" one after the other", " alternately", " in turns", " with alterna
 _PRETEND = ("pretend to {v}", "act as if you {v}", "mime how you {v}", "make believe that you {v}", "do as if you {v}", "show me how you {v}")  # fmt: skip
 _PRETENDING = ("pretend", "act", "be", "imitate", "do", "show", "dance", "perform")
 """Verbs of phrases that already say it."""
-REQUESTS = ("please {v}", "could you {v}", "can you {v}", "{v} please", "robot, {v}", "now {v}", "I want you to {v}", "go ahead and {v}", "you should {v}", "try to {v}", "would you {v}", "I would like you to {v}", "hey, {v}", "ok, {v}", "hey robot, {v}", "robot please {v}", "can you please {v}", "could you {v} for me", "would you mind and {v}", "I need you to {v}", "just {v}", "um, {v}", "uh {v}", "ok so {v}", "well, {v}", "you can {v} now", "will you {v}", "{v}, thanks", "{v} for me", "{v} now", "kindly {v}", "come on, {v}", "mate, {v}", "you must {v}")  # fmt: skip
+REQUESTS = ("please {v}", "could you {v}", "can you {v}", "{v} please", "robot, {v}", "now {v}", "I want you to {v}", "go ahead and {v}", "you should {v}", "try to {v}", "would you {v}", "I would like you to {v}", "hey, {v}", "ok, {v}", "hey robot, {v}", "robot please {v}", "can you please {v}", "could you {v} for me", "would you mind and {v}", "I need you to {v}", "just {v}", "um, {v}", "uh {v}", "ok so {v}", "well, {v}", "you can {v} now", "will you {v}", "{v}, thanks", "{v} for me", "{v} now", "kindly {v}", "come on, {v}", "mate, {v}", "you must {v}", "next, {v}", "let us {v}", "how about you {v}", "it is time to {v}", "you have to {v}", "make sure to {v}", "be so kind and {v}", "your task: {v}", "I wish you would {v}", "all I ask is: {v}")  # fmt: skip
 _ABOUT_THE_ROBOT = ("have the robot {v}", "let the robot {v}", "make the robot {v}", "tell the robot to {v}", "the robot should {v}", "the robot must {v}")  # fmt: skip
 PERSONS = ("a person {v}", "someone {v}", "the person {v}", "a man {v}", "a woman {v}", "the robot {v}", "a figure {v}", "the character {v}", "he {v}", "she {v}", "somebody {v}", "the humanoid {v}", "a human {v}", "a standing person {v}", "this person {v}")  # fmt: skip
 _GERUNDS = ("a person {v}", "someone {v}", "a person is {v}", "the robot is {v}", "{v}", "start {v}", "a motion of {v}", "show {v}", "a man is {v}", "begin {v}", "someone who is {v}")  # fmt: skip
-_SLOW = ("slowly", "gently", "in slow motion", "calmly", "at a slow pace", "carefully", "very slowly", "unhurriedly")
-_FAST = ("quickly", "fast", "rapidly", "briskly", "at a fast pace", "in a hurry", "energetically", "very fast", "hastily")  # fmt: skip
+_SLOW = ("slowly", "gently", "in slow motion", "calmly", "at a slow pace", "carefully", "very slowly", "unhurriedly", "at a leisurely pace", "lazily", "at half speed", "taking your time", "without any hurry", "slow and steady", "really slow", "sluggishly")  # fmt: skip
+_FAST = ("quickly", "fast", "rapidly", "briskly", "at a fast pace", "in a hurry", "energetically", "very fast", "hastily", "swiftly", "speedily", "at high speed", "as fast as you can", "at double speed", "at a rapid pace", "like lightning", "really fast", "at a quick pace")  # fmt: skip
 _LARGE = ("widely", "with a big movement", "as far as you can", "strongly", "with large movements", "in a big way")
 _SMALL = ("slightly", "a little", "with a small movement", "a bit", "a tiny bit", "only slightly")
 _HEIGHTS = {
@@ -40,10 +41,32 @@ _HEIGHTS = {
     ("raise", "low"): ("to shoulder height", "halfway", "only halfway", "to the level of your shoulder"),
     ("raise", "high"): ("as high as you can", "all the way up", "to the very top"),
 }
-_HOLDS = ("and ^hold it for {s}", "for {s}", "and ^keep it there for {s}", "and ^stay like that for {s}", "and ^hold the pose for {s}", "and ^hold it {s} long", "holding it for {s}")  # fmt: skip
+_HOLDS = ("and ^hold it for {s}", "for {s}", "and ^keep it there for {s}", "and ^stay like that for {s}", "and ^hold the pose for {s}", "and ^hold it {s} long", "holding it for {s}", "and ^stay there {s}", "and ^wait like that for {s}", "{s} long", "and ^do not move for {s}")  # fmt: skip
 _THEN = ("{a}, then {b}", "{a} and then {b}", "first {a}, then {b}", "{a}, after that {b}", "{a} and {b}", "{a}. then {b}", "{a}, next {b}", "first {a} and afterwards {b}", "{a} before you {b}", "{a}, followed by: {b}", "{a} then {b}", "{a}; {b}", "start with: {a}, then {b}", "after you {a}, {b}", "{a}, finally {b}", "{a}. now {b}")  # fmt: skip
+_THEN_TERSE = ("{a}, then {b}", "{a} and then {b}", "first {a}, then {b}", "{a}, after that {b}", "{a}. then {b}", "{a}, next {b}", "first {a} and afterwards {b}", "{a}; {b}", "start with: {a}, then {b}", "{a}, finally {b}", "{a}. now {b}", "{a}, and then {b}", "{a}, followed by {b}")  # fmt: skip
+_AT_ONCE_TERSE = ("{a} and {b} at the same time", "{a}, and at the same time {b}", "{a}, meanwhile {b}", "{a} together with {b}", "at the same time {a} and {b}", "{a}, and simultaneously {b}")  # fmt: skip
+_ASKED_TERSE = ("{p}, please", "{p} please", "please, {p}", "now {p}", "{p} now", "robot, {p}", "ok, {p}", "just {p}", "{p}, thanks", "hey robot, {p}", "um, {p}", "and {p}", "next, {p}", "robot: {p}", "{p} for me")  # fmt: skip
+_ASKED_NOUN = ("do {p}", "give me {p}", "show me {p}", "I want {p}", "make {p}", "perform {p}", "I would like {p}", "can I have {p}", "let us have {p}", "we need {p}", "how about {p}", "I would love {p}", "do me {p}", "it is time for {p}")  # fmt: skip
+_NOUN_BEGINS = ("a", "an", "some", "another", *NUMBERS[2:], *"2345678")
 _THEN_THIRD = ("{a}, then {b}", "{a} and then {b}", "{a} and afterwards {b}", "{a} and {b}", "first {a}, then {b}", "{a}, after that {b}", "{a} and finally {b}")  # fmt: skip
-_LONG_WAY_WORDS = ("up", "above", "over", "high", "sky", "ceiling", "question", "pupil", "volunteer")
+_LONG_WAY_WORDS = (
+    "up",
+    "above",
+    "over",
+    "high",
+    "sky",
+    "ceiling",
+    "question",
+    "pupil",
+    "volunteer",
+    "overhead",
+    "upwards",
+    "upward",
+    "vertical",
+    "vertically",
+    "air",
+    "top",
+)
 
 
 def words_of(g: Gesture) -> Words:
@@ -60,10 +83,22 @@ def base_phrase(g: Gesture, rng: np.random.Generator) -> str:
         phrases = [p for p in expand(pattern) if _fits(p, g)]
         if phrases:
             phrase = _pick(phrases, rng) + after
-            if g.family in MIMED and phrase.split()[0] not in _PRETENDING and rng.random() < 0.1:
+            if (
+                g.family in MIMED
+                and not is_terse(phrase)
+                and phrase.split()[0] not in _PRETENDING
+                and rng.random() < 0.1
+            ):
                 phrase = _pick(_PRETEND, rng).replace("{v}", plain(phrase))
-            return _fill(phrase, g, rng)
+            said = _fill(phrase, g, rng)
+            if not is_withheld(plain(said)):
+                return said
     raise AssertionError(f"no phrase of {g.family!r} says {g}")
+
+
+def is_terse(phrase: str) -> bool:
+    """Whether a phrase has no verb to be bent: "~left arm up", "~a bow"."""
+    return phrase.startswith("~")
 
 
 def _patterns(g: Gesture, words: Words, rng: np.random.Generator) -> list[tuple[str, str]]:
@@ -71,7 +106,7 @@ def _patterns(g: Gesture, words: Words, rng: np.random.Generator) -> list[tuple[
     sides = FAMILIES[g.family].sides
     if g.side == "alternating":
         return [(p, "") for p in words.alternating] * 2 + [
-            (p, _pick(_IN_TURNS, rng)) for p in (*words.bare, *words.both)
+            (p, _pick(_IN_TURNS, rng)) for p in (*words.bare, *words.both) if not is_terse(p)
         ]
     if not g.side or (g.side == "both" and "right" not in sides):
         return [(p, "") for p in (*words.bare, *words.both)]
@@ -110,7 +145,7 @@ def _pick(options: tuple[str, ...] | list[str], rng: np.random.Generator) -> str
     return options[int(rng.integers(len(options)))]
 
 
-def _manner(g: Gesture, rng: np.random.Generator) -> str:
+def _manner(g: Gesture, terse: bool, rng: np.random.Generator) -> str:
     """Height, tempo, size, style and hold in words, only where the motion has them, and then not always."""
     options: list[tuple[str, ...]] = []
     if (g.family, g.height) in _HEIGHTS and (g.height == "low" or rng.random() < 0.7):
@@ -118,21 +153,23 @@ def _manner(g: Gesture, rng: np.random.Generator) -> str:
     if g.hold_s:
         seconds = int(g.hold_s)
         word = NUMBERS[seconds] if rng.random() < 0.6 else str(seconds)
-        return " " + _pick(_HOLDS, rng).replace("{s}", f"{word} second{'s' if seconds > 1 else ''}")
+        holds = tuple(h for h in _HOLDS if not h.startswith("and ")) if terse else _HOLDS
+        return " " + _pick(holds, rng).replace("{s}", f"{word} second{'s' if seconds > 1 else ''}")
     if g.style:
         return " " + _pick(STYLES[g.style].words, rng)
     options += [_SLOW] if g.tempo < 0.8 else []
     options += [_FAST] if g.tempo > 1.2 else []
     options += [_LARGE] if g.size > 1.15 else []
     options += [_SMALL] if g.size < 0.75 else []
-    if options and rng.random() < 0.75:
+    if options and rng.random() < 0.88:
         return " " + _pick(options[int(rng.integers(len(options)))], rng)
     return ""
 
 
 def clause(g: Gesture, rng: np.random.Generator) -> str:
     """A phrase with its manner; an adverb may come first."""
-    return base_phrase(g, rng) + _manner(g, rng)
+    phrase = base_phrase(g, rng)
+    return phrase + _manner(g, is_terse(phrase), rng)
 
 
 def _contrast(g: Gesture, phrase: str, rng: np.random.Generator) -> str:
@@ -155,7 +192,8 @@ def _contrast(g: Gesture, phrase: str, rng: np.random.Generator) -> str:
         )  # fmt: skip
         return _pick(forms, rng)
     others = [name for name in _PLAIN if name != g.family and FAMILIES[name].limb]
-    bare = _pick(expand(_pick(FAMILIES[_pick(others, rng)].words.bare, rng)), rng)
+    verbs = [p for p in FAMILIES[_pick(others, rng)].words.bare if not is_terse(p)]
+    bare = _pick(expand(_pick(verbs, rng)), rng)
     no = " ".join(bare.replace("{n}", "").replace("{N} ", "").split())
     no, ing = plain(no), gerund(no, None)
     forms = (f"don't {no}, {phrase}", f"do not {no}, {phrase} instead", f"{phrase} instead of {ing}", f"rather than {ing}, {phrase}", f"no {ing}, {phrase}", f"stop {ing} and {phrase}")  # fmt: skip
@@ -172,6 +210,8 @@ def caption(gestures: list[Gesture], parallel: bool, rng: np.random.Generator) -
     if len(gestures) == 1 and first.family not in ("point", "stand") and rng.random() < 0.1:
         return _finish(plain(_contrast(first, clauses[0], rng)), rng)
     style = rng.random()
+    if any(is_terse(c) for c in clauses):
+        return _finish(_terse(clauses, parallel, style, rng), rng)
     pronoun = _pick(("their", "their", "his", "her"), rng)
     if parallel:
         return _finish(_at_once(clauses[0], clauses[1], style, pronoun, rng), rng)
@@ -187,6 +227,17 @@ def caption(gestures: list[Gesture], parallel: bool, rng: np.random.Generator) -
         return _finish(_person(_joined(third, _THEN_THIRD, rng), pronoun, rng), rng)
     form = _pick(_GERUNDS, rng)
     return _finish(form.replace("{v}", gerund(clauses[0], None if form in ("{v}", "start {v}") else pronoun)), rng)
+
+
+def _terse(clauses: list[str], parallel: bool, style: float, rng: np.random.Generator) -> str:
+    """Phrases of which one at least has no verb, joined; asked for, now and then."""
+    if parallel:
+        return plain(_joined(clauses, _AT_ONCE_TERSE, rng))
+    sentence = plain(_joined(clauses, _THEN_TERSE, rng))
+    if len(clauses) > 1 or style < 0.5:
+        return sentence
+    is_noun = is_terse(clauses[0]) and sentence.split()[0] in _NOUN_BEGINS
+    return _pick(_ASKED_NOUN if is_noun and style > 0.65 else _ASKED_TERSE, rng).replace("{p}", sentence)
 
 
 def _at_once(a: str, b: str, style: float, pronoun: str, rng: np.random.Generator) -> str:
@@ -241,15 +292,16 @@ def plain_phrases(family: str, direction: str = "") -> list[tuple[str, str]]:
     else:
         rows += [("both" if sides else "none", words.bare, ("",))]
     if "alternating" in sides:
-        rows += [("alternating", (*words.bare, *words.both), _IN_TURNS[:1])]
-    said = [
-        (row, plain(f"{p}{end}")) for row, patterns, ends in rows for q in patterns for p in expand(q) for end in ends
-    ]
-    if family not in MIMED:
-        return said
-    return said + [
-        (row, _PRETEND[0].replace("{v}", p)) for row, p in said if row != "one" and p.split()[0] not in _PRETENDING
-    ]
+        verbs = tuple(p for p in (*words.bare, *words.both) if not is_terse(p))
+        rows += [("alternating", verbs, _IN_TURNS[:1])]
+    said = [(row, f"{p}{end}") for row, patterns, ends in rows for q in patterns for p in expand(q) for end in ends]
+    if family in MIMED:
+        said += [
+            (row, _PRETEND[0].replace("{v}", p))
+            for row, p in said
+            if row != "one" and not is_terse(p) and p.split()[0] not in _PRETENDING
+        ]
+    return [(row, plain(p)) for row, p in said]
 
 
 def known_commands(most_of_a_row: int = 12) -> set[str]:
@@ -267,7 +319,7 @@ def known_commands(most_of_a_row: int = 12) -> set[str]:
                         for often, number in (("", "three"), ("three times", "3")) if "{" in phrase else (("", ""),):
                             text = phrase.replace("{S}", side).replace("{D}", direction)
                             found.add(" ".join(text.replace("{n}", often).replace("{N}", number).split()))
-    return found
+    return {text for text in found if not is_withheld(text)}
 
 
 def usual_counts(family: str) -> tuple[int, ...]:

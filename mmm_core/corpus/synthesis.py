@@ -21,10 +21,11 @@ LONGEST_S = MAX_TOKENS * FRAMES_PER_TOKEN / FPS
 _COUNT_WEIGHTS = np.array([0.16, 0.21, 0.21, 0.16, 0.12, 0.07, 0.04, 0.03])
 """Probability of one to eight repetitions."""
 _WEIGHTS = {
-    "wave": 4.0, "point": 6.0, "look": 4.0, "raise": 3.0, "clap": 2.2, "nod": 2.4, "shake_head": 2.0, "bow": 2.0, "punch": 1.8, "lean": 2.2,
-    "twist": 1.8, "tilt_head": 1.6, "beckon": 1.5, "arms_down": 1.5, "hands_up": 1.6, "stop": 1.6, "arm_forward": 1.6, "arm_side": 1.6,
+    "wave": 7.0, "point": 6.0, "look": 6.0, "raise": 3.5, "clap": 4.5, "nod": 4.5, "shake_head": 3.5, "bow": 3.5, "punch": 3.0, "lean": 3.0,
+    "twist": 2.2, "tilt_head": 2.2, "beckon": 1.5, "arms_down": 1.5, "hands_up": 1.6, "stop": 1.6, "arm_forward": 1.6, "arm_side": 1.6,
     "t_pose": 1.3, "cross_arms": 1.3, "hands_on_hips": 1.3, "salute": 1.3, "shrug": 1.2, "arm_circle": 1.6, "stand": 1.2, "think": 1.2, "heart": 1.2,
 }  # fmt: skip
+"""How often a family is drawn: what people ask for most, and what can be counted, more than once in a hundred times."""
 _NAMES = list(FAMILIES)
 _P = np.array([_WEIGHTS.get(name, 0.8) for name in _NAMES])
 _P /= _P.sum()
@@ -88,13 +89,13 @@ def draw_gesture(rng: np.random.Generator, names: tuple[str, ...] = (), side: st
 def _in_a_manner(g: Gesture, rng: np.random.Generator) -> Gesture:
     """The gesture with a tempo, size, hold or style of its own, now and then."""
     family, kind = FAMILIES[g.family], rng.random()
-    if kind < 0.2:
+    if kind < (0.3 if family.counts else 0.15):
         return replace(g, tempo=float(rng.choice([0.65, 1.4])))
-    if kind < 0.32 and g.family not in _UNSIZED and (family.counts or family.limb in ("head", "trunk")):
+    if kind < 0.38 and g.family not in _UNSIZED and (family.counts or family.limb in ("head", "trunk")):
         return replace(g, size=float(rng.choice([0.65, 1.25])))
-    if kind < 0.42 and family.holds:
+    if kind < 0.48 and family.holds:
         return replace(g, hold_s=float(rng.choice([1, 2, 3, 4, 5], p=[0.1, 0.3, 0.3, 0.2, 0.1])))
-    if kind < 0.5 and family.limb == "arm" and not family.starts_away:
+    if kind < 0.55 and family.limb == "arm" and not family.starts_away:
         name = str(rng.choice(list(STYLES)))
         return replace(g, style=name, tempo=STYLES[name].tempo, size=STYLES[name].size if family.counts else 1.0)
     return g

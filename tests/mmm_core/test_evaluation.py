@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from mmm_core.corpus.families import FAMILIES, Gesture
-from mmm_core.corpus.grammar import known_commands
-from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, Probe
+from mmm_core.corpus.grammar import base_phrase, known_commands
+from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, Probe, is_withheld
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthesise_spec
 from mmm_core.evaluation import checks
 from mmm_core.evaluation.checks import Shown
@@ -91,8 +91,19 @@ def test_no_probe_is_a_sentence_of_the_grammar_and_some_words_are_never_said() -
     for i in range(400):
         said |= {plain(text) for text in synthesise(np.random.default_rng((1, i))).captions}
     assert not said & {plain(p.text) for p in PROBES}
+    assert not [text for text in said if is_withheld(text)], "but for politeness, articles and digits"
     words = {word for text in said for word in text.split()}
     assert not [v for v in HELD_OUT_VERBS if {v, v + "s", v + "es", v + "ing", v[:-1] + "ing"} & words]
+
+
+def test_a_phrase_that_is_a_probe_but_for_its_trimmings_is_withheld() -> None:
+    for probe in PROBES:
+        assert is_withheld(probe.text)
+        assert is_withheld(f"Robot, {probe.text.replace('two', '2')}, please!")
+    assert not is_withheld("wave your left hand")
+    gesture = Gesture("bow", count=2)
+    drawn_phrases = {base_phrase(gesture, np.random.default_rng(i)) for i in range(400)}
+    assert not [p for p in drawn_phrases if is_withheld(p)], "two bows are a probe, and a pattern says {N} bows"
 
 
 def test_probes_name_families_limbs_and_directions_that_exist() -> None:

@@ -104,7 +104,8 @@ def test_a_servo_obeys_its_second_id_without_a_word() -> None:
 
 def test_another_id_or_baud_is_followed_at_once() -> None:
     b = Bench()
-    assert b.write("id", 9) == 0
+    said = b.ask(packet.write(1, 7, b"\x09"))
+    assert [(p.servo_id, p.error) for p in said] == [(1, 0)], "it answers as who was asked"
     assert b.ask(packet.ping(1)) == [] and b.ask(packet.ping(9))[0].servo_id == 9
     assert b.write("baud_rate", 1, servo_id=9) == 0
     assert b.ask(packet.ping(9)) == []
@@ -336,10 +337,10 @@ def test_a_profile_is_a_trapezoid_with_its_speed_and_acceleration() -> None:
         ("goal_position", 4000),
     ):
         assert b.write(name, value) == 0
-    path = [b.servo.drives.live()[6][0]]
+    path = [b.servo.drives.live()[0][6]]
     while len(path) < 2000:
         b.wait(0.002)
-        path.append(b.servo.drives.live()[6][0])
+        path.append(b.servo.drives.live()[0][6])
     speed = [(y - x) * 500 * TICK_RAD for x, y in pairwise(path)]
     bend = [(y - x) * 500 for x, y in pairwise(speed)]
     assert max(speed) == pytest.approx(40 * 0.0239808, rel=0.01)
@@ -359,9 +360,9 @@ def test_a_time_based_profile_takes_its_time() -> None:
         assert b.write(name, value) == 0
     b.write("goal_position", 3000)
     b.wait(0.9)
-    assert b.servo.drives.live()[6][0] < 2999
+    assert b.servo.drives.live()[0][6] < 2999
     b.wait(0.15)
-    assert b.servo.drives.live()[6][0] == pytest.approx(3000, abs=1)
+    assert b.servo.drives.live()[0][6] == pytest.approx(3000, abs=1)
 
 
 def test_velocity_mode_keeps_its_speed_and_ramps_by_the_acceleration() -> None:

@@ -83,6 +83,14 @@ def test_a_sync_write_and_a_bulk_read_reach_all() -> None:
     assert [(p.servo_id, p.parameters) for p in found] == [(1, b"\1"), (2, b"\x00\x08")]
 
 
+@pytest.mark.parametrize("faults", [(), (Fault("silent", servo_id=2),)])
+def test_in_a_bulk_read_nobody_goes_on_behind_one_who_stays_away(faults: tuple[Fault, ...]) -> None:
+    b = Bench("MX-28", "MX-64", "MX-106", faults=faults)
+    asked = [(1, 36, 2), (2, 36, 2), (3, 36, 2)]
+    found = b.ask(packet1.bulk_read(asked if faults else [asked[0], (9, 36, 2), asked[2]]))
+    assert [p.servo_id for p in found] == [1]
+
+
 def test_an_overload_takes_torque_and_its_limit_until_the_limit_is_written_again() -> None:
     b = Bench("AX-12A", faults=(Fault("overload", start_s=1.0),))
     b.write("torque_enable", 1)

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 from daemon.bus import packet
+from daemon.bus_process import SLOW_EVERY
 from daemon.shared import BusLink, BusRequest, BusState
 from retarget.robot import RobotModel, load_robot
 from sim.faults import INSTANT_KINDS, PACKET_KINDS, Fault
@@ -136,9 +137,10 @@ def test_hours_of_faults_break_no_limit_and_every_recovery_is_armed_by_a_person(
     logging.getLogger("sim.faults").setLevel(logging.INFO)
     logging.getLogger("daemon").setLevel(logging.ERROR)
     try:
-        r = Rig(robot, link, *faults)
+        r = Rig(robot, link, *faults, slow_every=SLOW_EVERY)
         person = Person(r, seed)
-        person.work(min(900.0, HOURS * 900))  # caches are warm
+        person.work(min(900.0, HOURS * 900))
+        r.sim.audit.check_poses()  # caches are warm
         caplog.clear()
         before = usage()
         hour = 1.0
@@ -146,6 +148,8 @@ def test_hours_of_faults_break_no_limit_and_every_recovery_is_armed_by_a_person(
             person.work(hour * 3600)
             r.sim.audit.check_poses()
             caplog.clear()
+            so_far = f"{r.sim.audit.goals} goals, {sum(r.sim.audit.violations.values())} violations, {person.armings} armings"
+            print(f"seed {seed}: {hour:g} of {HOURS:g} h, {so_far}", flush=True)  # noqa: T201 -- hours without a word are long
             hour += 1.0
         person.work(HOURS * 3600)
         after = usage()

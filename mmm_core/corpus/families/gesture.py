@@ -53,10 +53,12 @@ class Gesture:
 
 @dataclass(frozen=True)
 class Words:
-    """What people say for a family: patterns of imperatives, each beginning with its verb.
+    """What people say for a family: patterns of imperatives, each beginning with its verb, and of phrases without one.
 
     `(a|b|)` stands for each of its alternatives. Slots: {S} the side, {D} the direction, {n} a count ("twice", "3 times",
-    or nothing), {N} a number before a plural. `^` marks a further verb: "raise your {S} hand and ^wave".
+    or nothing), {N} a number before a plural. `^` marks a further verb: "raise your {S} hand and ^wave". `~` begins a phrase that is
+    not an imperative: a noun ("~a bow", "~{N} bows"), a sentence about a part of the body ("~your {S} arm goes up"), or a few
+    words ("~{S} arm up").
 
     Attributes:
         bare: no side named; "with your {S} hand" or "with both hands" is added where the family has sides.

@@ -25,6 +25,7 @@ from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTim
 from retarget.robot import RobotModel, load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
+from sim.port import SimPort
 from sim.pty import PtyServer
 
 ROBOT = load_robot("reference")
@@ -112,6 +113,31 @@ def test_an_id_is_changed_only_when_it_is_free_and_the_new_one_answers() -> None
     assert find(far, clock, 7).get("id") == 7
     with pytest.raises(LinkTimeoutError):
         find(far, clock, 1)
+
+
+@pytest.mark.parametrize("servo_id", [1, 3])
+def test_an_id_is_changed_and_a_reboot_waited_for_on_simulated_servos(servo_id: int) -> None:
+    clock = VirtualClock()
+    port = SimPort(SimBus(ROBOT), clock)
+    find(port, clock, servo_id).set_id(40)
+    one = find(port, clock, 40)
+    one.set("led", 1)
+    one.reboot(drop=False)
+    assert one.get("led") == 0 and clock.now_s() < 1.0, "it is back, and its RAM is as after power on"
+
+
+@pytest.mark.parametrize("kind", ["id", "baud"])
+def test_a_servo_that_confirms_as_its_new_self_is_looked_for_there(kind: str) -> None:
+    """Some answer a new id or baud at once under it: no answer comes from the servo that was asked."""
+    far, _, clock = fake("XM430-W350")
+    one = find(far, clock, 1)
+    far.spoil = lambda raw, _servo_id: b"" if far.writes[-1][7] == 3 else raw
+    if kind == "id":
+        one.set_id(7)
+        assert find(far, clock, 7).get("id") == 7
+    else:
+        one.set_baud(2_000_000)
+        assert far.servos[1].get("baud_rate") == 4
 
 
 def test_a_baud_that_the_model_has_not_is_refused() -> None:
@@ -347,6 +373,22 @@ def test_a_calibration_that_makes_no_valid_file_is_not_kept(tmp_path: Path) -> N
 
 
 # Commands.
+
+
+def test_a_servo_is_given_another_baud_and_heard_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    server = PtyServer(SimBus(ROBOT), tmp_path / "servos")
+    thread = threading.Thread(target=server.serve)
+    thread.start()
+    url = f"dxl://{tmp_path}/servos?baud="
+    try:
+        assert main(["servo", "baud", "3", "57600", "--bus", url + "1000000"]) == 0
+        assert "its baud is now 57600; it answers there" in capsys.readouterr().out
+        assert main(["servo", "get", "3", "id", "--bus", url + "1000000"]) == 1
+        assert f"at 1000000 baud on {url}1000000" in capsys.readouterr().err, "the URL as it was given"
+    finally:
+        server.stop()
+        thread.join(5)
+        server.close()
 
 
 @pytest.mark.parametrize("name", ["scan", "doctor", "servo", "calibrate"])

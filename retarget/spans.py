@@ -1,0 +1,106 @@
+"""How near two capsules can come between two poses: a bound from below, to second order in what the joints move.
+
+In the frame of the last body that carries both capsules take any fixed direction n. Along n they are apart by the least,
+over their ends, of n . (b - a), which is not more than their distance. Between two instants h apart the ends' accelerations
+are at most A, so that this keeps above its smaller value at both instants less A h^2 / 8. A point r from the axes of
+joints that turn by w and are accelerated by w' has at most sum(w) sum(r w) + sum(r w'): its second derivatives by two
+joints are a1 x (a2 x r), not longer than the reach of the outer one, which is the shorter reach of both.
+
+The same from first derivatives alone falls off with h, so this spares most halvings of a segment.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+_LEAST_M = 1e-9
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of R poses and n pairs of capsules.
+
+    Attributes:
+        centre: (R, geoms, 3) centres of all capsules.
+        axis: (R, geoms, 3) their unit axes.
+        turn: (R, geoms, 9) rotations of all shapes.
+        distance: (R, n) of each pair.
+        s: (R, n) where on the first axis of each pair it is taken, from the centre.
+        t: (R, n) where on the second.
+    """
+
+    centre: Array
+    axis: Array
+    turn: Array
+    distance: Array
+    s: Array
+    t: Array
+
+    def of(self, pairs: Indices) -> Known:
+        """The same of some pairs."""
+        return Known(self.centre, self.axis, self.turn, self.distance[:, pairs], self.s[:, pairs], self.t[:, pairs])
+
+    def and_also(self, more: Known) -> Known:
+        """These poses, then those."""
+        return Known(*(np.concatenate([getattr(self, f.name), getattr(more, f.name)]) for f in fields(self)))
+
+
+class Spans:
+    """Bounds of a robot's P pairs of shapes between poses."""
+
+    def __init__(self, pairs: Indices, above: Array, half_m: Array, radii_m: Array, sweep_m: Array) -> None:
+        """Read which joints part each pair.
+
+        Args:
+            pairs: (P, 2) shapes.
+            above: (geoms, J) 1 where a joint moves a shape.
+            half_m: (geoms,) half lengths of the capsules.
+            radii_m: (P,) sum of both radii.
+            sweep_m: (P, J) reach of each pair from each joint that parts it.
+        """
+        self._pairs, self._half_m, self._radii_m, self._sweep_m = pairs, half_m, radii_m, sweep_m
+        a, b = pairs.T
+        self._parting: Array = (above[a] != above[b]).astype(np.float64)
+        beside = (above[None] == (above[a] * above[b])[:, None]).all(2)  # shapes fixed to what carries both
+        self.known: NDArray[np.bool_] = np.asarray(beside.any(1), bool)
+        """(P,) of which pairs a shape is fixed to the last body that carries both; the others have no bound here."""
+        self._carrier: Indices = beside.argmax(1)
+
+    def bends_m(self, step_rad: Array, bend_rad: Array, moved_m: Array) -> Array:
+        """(N - 2, P) A / 8 of a spline's segments.
+
+        Args:
+            step_rad: (N - 1, J) what joints move from one control point to the next, without sign.
+            bend_rad: (N - 2, J) how that changes, without sign.
+            moved_m: (N - 2, P) what pairs move in a segment at its fastest.
+        """
+        turned = step_rad @ self._parting.T
+        return (np.maximum(turned[:-1], turned[1:]) * moved_m + bend_rad @ self._sweep_m.T) / 8
+
+    def least_m(self, known: Known, rows: Indices, at: Indices, pair: Indices) -> Array:
+        """(K,) lower bounds of distances between two poses, A h^2 / 8 still to be taken off.
+
+        Args:
+            known: poses and pairs.
+            rows: (2, K) which two poses of `known`.
+            at: (K,) which of its pairs.
+            pair: (K,) the same among all pairs.
+        """
+        a, b = self._pairs[pair].T
+        axis_a, axis_b = known.axis[rows, a], known.axis[rows, b]  # (2, K, 3)
+        offset = known.centre[rows, b] - known.centre[rows, a]
+        apart = offset + known.t[rows, at][..., None] * axis_b - known.s[rows, at][..., None] * axis_a
+        apart /= np.maximum(np.sqrt(np.vecdot(apart, apart)), _LEAST_M)[..., None]
+        # The mean direction, as the body that carries both sees it, turned back for each of the poses.
+        turn = known.turn[rows, self._carrier[pair]].reshape(*rows.shape, 3, 3)
+        seen = (apart[..., None, :] @ turn)[..., 0, :].sum(0)
+        seen /= np.maximum(np.sqrt(np.vecdot(seen, seen)), _LEAST_M)[:, None]
+        along = (turn @ seen[..., None])[..., 0]
+        half_a, half_b = self._half_m[a], self._half_m[b]
+        ends = half_a * np.abs(np.vecdot(along, axis_a)) + half_b * np.abs(np.vecdot(along, axis_b))
+        return (np.vecdot(along, offset) - ends).min(0) - self._radii_m[pair]
