@@ -22,9 +22,6 @@ _lapack: Any = importlib.import_module("scipy.linalg.lapack")
 Array = NDArray[np.float64]
 _SAME_WISH_RAD = 0.01
 """A joint that wishes to be nowhere further away than this is not solved anew."""
-_ZIGZAG = 0.3
-"""Weight of how steps between control points differ from those wished for, against that of the frames half way between,
-in which a zigzag of control points does not show."""
 _OPTIMAL = 1
 _TIGHTENED = 1e-4
 """Share of a bound kept free: the solver keeps bounds within 1e-6."""
@@ -85,12 +82,13 @@ def nearer_path(
 ) -> bool:
     """Move a path within the bounds to the best there is of a wish, one joint after another; whether it could.
 
-    The path is a spline's control points, the wish is for the frames half way between them.
+    The path is a spline's control points, the wish is for the frames half way between them. There a zigzag of control points
+    does not show: half of each step's difference from `near`'s counts like an error of the joint's own in the frame.
 
     Args:
         wish: what is wanted in the frames.
         path: (G, T, w) control points to start from, changed in place; at the end they come to rest.
-        near: (G, T, w) control points to keep near where the frames tell little.
+        near: (G, T, w) control points that show about what is wanted.
         start: (G, w) the control point before the first.
         start_step: (G, w) the step that led to it.
         bounds: bounds, the same for all control points.
@@ -112,17 +110,15 @@ def nearer_path(
             slope[0] += own[0] * start[g, j] / 2
             zigzag = np.empty(T)
             zigzag[0], zigzag[1:] = near[g, 0, j] - start[g, j], near[g, 1:, j] - near[g, :-1, j]
-            zigzag *= own * (_ZIGZAG / 4)
+            zigzag *= own / 4
             linear = slope / 2 - zigzag  # and for the control points, of which each is half of two frames
             linear[:-1] += slope[1:] / 2 + zigzag[1:]
-            linear[0] -= (wish.pull + _ZIGZAG / 4 * own[0]) * start[g, j]
-            matrix = wish.pull * pull
-            entries = matrix.reshape(-1)
-            both, across = own * ((1 + _ZIGZAG) / 4), own[1:] * ((1 - _ZIGZAG) / 4)
-            entries[:: T + 1] += both
-            entries[: -1 : T + 1] += both[1:]
-            entries[1 :: T + 1] += across
-            entries[T :: T + 1] += across
+            linear[0] -= (wish.pull + own[0] / 4) * start[g, j]
+            # With steps counted like frames, squares of sums and of differences, no two control points are coupled.
+            matrix, half = wish.pull * pull, own / 2
+            diagonal = matrix.reshape(-1)[:: T + 1]
+            diagonal += half
+            diagonal[:-1] += half[1:]
             found, _, status, _ = _daqp.solve(matrix, linear, rows, upper[g, j], lower[g, j], inactive)
             if status != _OPTIMAL:
                 return False

@@ -63,7 +63,7 @@ class Retargeter:
         self.arms: tuple[ArmChain, ...] = self._poser.chains
         self.contact = SelfContact(robot)
         self._hands = Hands(self.kinematics, self.contact, self.limits) if keep_contacts else None
-        self._avoidance = Avoidance(robot, self.contact, self.limits)
+        self._avoidance = Avoidance(robot, self.contact, self.limits, self._poser.stiffness)
 
     def retarget(
         self,

@@ -117,6 +117,17 @@ class Poser:
             upper[sides], fore[sides] = arms.directions(q_rad[:, joints].transpose(1, 0, 2))
         return upper, fore
 
+    def stiffness(self, q_rad: Array) -> Array:
+        """(T, J, J) what a small movement away from poses (T, J) changes: bone directions, and every angle as much."""
+        T, J = q_rad.shape
+        every = np.zeros((T, J, J))
+        every[:, np.arange(J), np.arange(J)] = 1.0
+        for arms, joints in zip(self._arms, self._joints, strict=True):
+            hessian = arms.bones(q_rad[:, joints].transpose(1, 0, 2)).hessian()
+            for g, of in enumerate(joints):
+                every[:, of[:, None], of] += hessian[g]
+        return every
+
     def matters(self, q_rad: Array, led_rad: Array) -> PoseMatters:
         """What matters of the wish to show poses (T, J): directions for arms, angles for the rest.
 

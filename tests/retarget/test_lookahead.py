@@ -8,7 +8,7 @@ from scipy.optimize import LinearConstraint, minimize
 
 from retarget.following import limit_path
 from retarget.limits import JointLimits
-from retarget.lookahead import _ZIGZAG, Bounds, Wish, frames_between, nearer_path
+from retarget.lookahead import Bounds, Wish, frames_between, nearer_path
 from retarget.robot import load_robot
 
 T, W = 10, 3
@@ -31,7 +31,7 @@ def cost(wish: Wish, near: np.ndarray, path: np.ndarray) -> float:
     shown = frames_between(path, START)
     wished = 0.5 * (shown[..., None, :] @ wish.hessian @ shown[..., None]).sum() - (wish.linear * shown).sum()
     off = np.diff(np.concatenate([np.zeros((1, 1, W)), path - near], 1), axis=1)
-    zigzag = _ZIGZAG / 8 * (np.einsum("gtjj->gtj", wish.hessian) * off**2).sum()
+    zigzag = 0.125 * (np.einsum("gtjj->gtj", wish.hessian) * off**2).sum()
     moved = np.diff(np.concatenate([START[:, None], path], 1), axis=1)
     return float(wished + zigzag + wish.pull / 2 * (moved**2).sum())
 
