@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.limits import JointLimits, limit_step
+from retarget.limits import JointLimits, keeps, limit_step
 from retarget.lookahead import Bounds, Wish, frames_between, nearer_path
 
 Array = NDArray[np.float64]
@@ -150,8 +150,7 @@ def _kept(path: Array, position: Array, velocity: Array, limits: JointLimits, pe
     before = np.concatenate([position[None], path])
     speed = (path - before[:-1]) / period_s
     came, ahead = np.concatenate([velocity[None], speed[:-1]]), np.concatenate([speed[1:], speed[-1:]])
-    steps = limit_step(path, before[:-1], came, limits, period_s, ahead)
-    return np.asarray((steps == path).all(0), bool)
+    return np.asarray(keeps(path, before[:-1], came, limits, period_s, ahead).all(0), bool)
 
 
 def _follow(reference: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> Array:

@@ -98,32 +98,37 @@ def nearer_path(
     rows, pull = _differences(T)
     upper, lower = _sides(bounds, start, start_step, T)
     inactive = np.zeros(3 * T, np.int32)
+    own = np.ascontiguousarray(np.einsum("gtjj->gjt", wish.hessian))  # (G, w, T)
+    enough = _SAME_WISH_RAD * (own + wish.pull)
+    # With steps counted like frames, squares of sums and of differences, no two control points are coupled.
+    matrix = np.repeat((wish.pull * pull)[None], G * w, 0).reshape(G, w, T, T)
+    diagonal = matrix.reshape(G, w, T * T)[..., :: T + 1]
+    diagonal += own / 2
+    diagonal[..., :-1] += own[..., 1:] / 2
+    zigzag = near.transpose(0, 2, 1).copy()
+    zigzag[..., 1:] -= near.transpose(0, 2, 1)[..., :-1]
+    zigzag[..., 0] -= start
+    zigzag *= own / 4
+    known = -zigzag
+    known[..., :-1] += zigzag[..., 1:]
+    known[..., 0] -= wish.pull * start
     frames = frames_between(path, start)
-    for g in range(G):
-        for j in range(w):
-            weight = wish.hessian[g, :, j]  # (T, w)
-            own = weight[:, j]
-            slope = np.vecdot(weight, frames[g]) - wish.linear[g, :, j]
-            if inside[g, j] and (np.abs(slope) < _SAME_WISH_RAD * (own + wish.pull)).all():
-                continue
-            slope -= own * frames[g, :, j]  # what the others leave to wish for, in the frames
-            slope[0] += own[0] * start[g, j] / 2
-            zigzag = np.empty(T)
-            zigzag[0], zigzag[1:] = near[g, 0, j] - start[g, j], near[g, 1:, j] - near[g, :-1, j]
-            zigzag *= own / 4
-            linear = slope / 2 - zigzag  # and for the control points, of which each is half of two frames
-            linear[:-1] += slope[1:] / 2 + zigzag[1:]
-            linear[0] -= (wish.pull + own[0] / 4) * start[g, j]
-            # With steps counted like frames, squares of sums and of differences, no two control points are coupled.
-            matrix, half = wish.pull * pull, own / 2
-            diagonal = matrix.reshape(-1)[:: T + 1]
-            diagonal += half
-            diagonal[:-1] += half[1:]
-            found, _, status, _ = _daqp.solve(matrix, linear, rows, upper[g, j], lower[g, j], inactive)
+    for j in range(w):
+        slope = np.vecdot(wish.hessian[:, :, j], frames) - wish.linear[:, :, j]  # (G, T)
+        moves = ~inside[:, j] | (np.abs(slope) > enough[:, j]).any(1)
+        if not moves.any():
+            continue
+        # What the others leave to wish for in the frames, and for the control points, of which each is half of two frames.
+        slope -= own[:, j] * frames[:, :, j]
+        slope /= 2
+        linear = known[:, j] + slope
+        linear[:, :-1] += slope[:, 1:]
+        for g in np.flatnonzero(moves):
+            found, _, status, _ = _daqp.solve(matrix[g, j], linear[g], rows, upper[g, j], lower[g, j], inactive)
             if status != _OPTIMAL:
                 return False
             path[g, :, j] = found
-            frames[g, :, j] = frames_between(found[None, :, None], start[g, j, None, None])[0, :, 0]
+        frames[:, :, j] = frames_between(path[:, :, j, None], start[:, j, None])[..., 0]
     return True
 
 
