@@ -142,16 +142,18 @@ class Poser:
         chosen, seen = choose(ways, arms.own_cost(ways, upper, fore, seen), seen, before)
         cut = (chosen < arms.low) | (chosen > arms.high)
         closed = arms.within_limits(chosen, upper, fore) if cut.any() else chosen
-        shown = arms.directions(closed)
+        bones = arms.bones(closed)
+        shown = bones.upper, bones.fore
         x = arms.rested(closed, seen, *shown, before)
+        if x is not closed:
+            bones = arms.bones(x)
         lost = np.zeros(0)
         for _ in range(_REST_STEPS):
-            bones = arms.bones(x)
-            hessian = bones.hessian() + _NEARBY * np.eye(arms.n_joints)
+            hessian = bones.hessian() + arms.eye * _NEARBY
             linear = (hessian @ x[..., None])[..., 0] + bones.towards(*shown)
             x = np.minimum(np.maximum(least_moving(Wish(hessian, linear, _REST_PULL), before), arms.low), arms.high)
-            found = arms.directions(x)
-            lost = np.maximum(*(np.abs(f - s).max(-1) for f, s in zip(found, shown, strict=True)))
+            bones = arms.bones(x)
+            lost = np.maximum(np.abs(bones.upper - shown[0]), np.abs(bones.fore - shown[1])).max(-1)
             if lost.max() < _SEEN_RAD:
                 return x, cut
         return np.where((lost > _MOST_LOST_RAD)[..., None], closed, x), cut
