@@ -79,7 +79,7 @@ def train_tokenizer(
         window_frames: frames in a window.
         real_share: share of windows from people, where there are both kinds.
         plain_steps: steps at first in which latents are not quantised (layout by parts). With codes from the start, joints come
-            through them one after another, small ones after thousands of steps; so all are there when codes are laid into the latents.
+            through them one after another, small ones after thousands of steps; so all are there when codes come.
     """
     torch.manual_seed(schedule.seed)
     tokenizer = Tokenizer(config) if isinstance(config, TokenizerConfig) else VqVae(config)
