@@ -158,8 +158,14 @@ class Tokenizer(nn.Module):
         """(B, L, C) ids -> (B, L, C * D) code vectors, side by side."""
         return torch.cat([F.embedding(ids[..., c], q.codebook) for c, q in enumerate(self.books)], -1)
 
-    def forward(self, normalised: Tensor) -> tuple[Tensor, Tensor]:
-        """Training pass on normalised features: (reconstruction, commitment loss)."""
+    def forward(self, normalised: Tensor, *, quantise: bool = True) -> tuple[Tensor, Tensor]:
+        """Training pass on normalised features: (reconstruction, commitment loss).
+
+        Without `quantise` the latents go to the decoder as they are, and the second figure is their mean square.
+        """
+        if not quantise:
+            latents = torch.cat(self._latents(normalised), -1)
+            return self.decoder(latents), latents.float().square().mean()
         quantised: list[Tensor] = []
         commitment = normalised.new_zeros(())
         for quantizer, z in zip(self.books, self._latents(normalised), strict=True):

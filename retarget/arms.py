@@ -37,6 +37,7 @@ _SEEN_ACROSS, _SEEN_BENT = 0.15, 0.05
 """Squared sines from which on the first and the third shoulder joint count as fully seen."""
 _SPREAD = {2: 21, 3: 9}
 """Poses for each joint among which a start for the least error is looked for, by number of joints."""
+_EYE = np.eye(3)
 _STRAIGHT = 1e-6
 """Sine below which two directions count as parallel."""
 
@@ -72,7 +73,7 @@ class Arms:
         self.chains = tuple(chains)
         one = self.chains[0]
         self.n_joints = len(one.joints)
-        self._n_shoulder = self.n_joints - one.has_elbow
+        self._n_shoulder, self.eye = self.n_joints - one.has_elbow, np.eye(self.n_joints)
         self._has_elbow, self._has_offsets = one.has_elbow, bool(one.beside_m.any())
         self.reaches_all = self._n_shoulder == 3 and one.has_elbow
         self.low, self.high = np.stack([c.low for c in chains])[:, None], np.stack([c.high for c in chains])[:, None]
@@ -186,7 +187,7 @@ class Arms:
     def _rotations(self, q: Array) -> Array:
         """(G, M, n, 3, 3) rotation of each joint."""
         sine, versine = np.sin(q)[..., None, None], (1 - np.cos(q))[..., None, None]
-        return np.eye(3) + sine * self._skews[:, None] + versine * self._skews_squared[:, None]
+        return _EYE + sine * self._skews[:, None] + versine * self._skews_squared[:, None]
 
     def _levers(self, R: Array) -> tuple[Array, list[Array]]:
         """(G, M, 3) shoulder to elbow, and for each shoulder joint the vector that it turns to move the elbow."""

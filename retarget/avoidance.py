@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,11 +12,11 @@ from retarget.limits import JointLimits
 from retarget.robot import RobotModel
 
 Array = NDArray[np.float64]
-STRENGTHS = (0.0, 0.0, 0.0, 0.0, 0.1, 0.3, 0.6, 1.0)
+STRENGTHS = (0.0, 0.0, 0.0, 0.1, 0.3, 0.6, 1.0)
 """Share drawn towards the rest pose around what a path touches, one attempt after another; first by pushes alone."""
-_AIM_M = 0.001
+_AIM_M = 0.002
 """A pose led round keeps so much more than the margin, for what limits in time then cut off."""
-_PUSHED_ON_M = 0.003
+_PUSHED_ON_M = 0.004
 """A path that touches is pushed so much further than the margin."""
 _PUSHES = 6
 _MOST_PUSHED_RAD = 0.15
@@ -26,8 +28,18 @@ _AROUND = (1.0, 0.85, 0.5, 0.2)
 class Avoidance:
     """Keeps one robot off itself. The arms give way; head and waist go where they are meant to."""
 
-    def __init__(self, robot: RobotModel, contact: SelfContact, limits: JointLimits) -> None:
-        self._contact = contact
+    def __init__(
+        self, robot: RobotModel, contact: SelfContact, limits: JointLimits, stiffness: Callable[[Array], Array]
+    ) -> None:
+        """Set up for a robot.
+
+        Args:
+            robot: the robot.
+            contact: its distances to itself.
+            limits: its position limits.
+            stiffness: (T, J, J) for poses (T, J), what moving away from each costs: half of x' K x.
+        """
+        self._contact, self._stiffness = contact, stiffness
         self._low, self._high = limits.position_min_rad, limits.position_max_rad
         self._rest_rad = robot.rest_rad
         self._mobility = np.array([j.role.startswith(("left_", "right_")) for j in robot.joints], np.float64)
@@ -74,9 +86,10 @@ class Avoidance:
     def _pushed_out(self, q_rad: Array, aim_m: float) -> tuple[Array, NDArray[np.bool_]]:
         """Poses (T, J) moved little until they keep the margin and `aim_m` more, and which of them keep the margin.
 
-        The worst pair of each is pushed apart by the least movement, again and again.
+        The worst pair of each is pushed apart by the movement that costs least, again and again.
         """
         q = q_rad.copy()
+        yielding = np.linalg.inv(self._stiffness(q_rad))
         rows = np.arange(len(q))
         free = np.zeros(len(q), bool)
         for _ in range(_PUSHES):
@@ -86,7 +99,8 @@ class Avoidance:
             if not len(rows):
                 break
             way = way * self._mobility
-            push = lack * way / ((way * way).sum(1, keepdims=True) + _DAMPING)
+            along = (yielding[rows] @ way[..., None])[..., 0]
+            push = lack * along / (np.vecdot(way, along)[:, None] + _DAMPING)
             push = np.minimum(np.maximum(push, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
             q[rows] = np.minimum(np.maximum(q[rows] + push, self._low), self._high)
         return q, free

@@ -70,8 +70,8 @@ class PairDistances:
         # All inner products of centres and axes by one multiplication, then those of each pair.
         vectors = np.concatenate([placed.centre, placed.axis], 1)
         products: Array = (vectors @ vectors.transpose(0, 2, 1)).reshape(len(q_rad), vectors.shape[1] ** 2)
-        of_pair: list[Array] = [products.take(at, 1) for at in self._products[:, of]]
-        aa, bb, ab, cosine, axis_a, axis_ab, axis_ba, axis_b = of_pair
+        of_pair: Array = products.take(self._products if of is self._every else self._products[:, of], 1)
+        aa, bb, ab, cosine, axis_a, axis_ab, axis_ba, axis_b = of_pair.transpose(1, 0, 2)
         half1, half2 = self._half_lengths_m[:, of]
         squared, s, t = nearest_along(aa + bb - 2 * ab, cosine, axis_a - axis_ab, axis_ba - axis_b, half1, half2)
         distance = np.sqrt(squared) - self._radii_m[of]

@@ -1,19 +1,21 @@
 """Paths near a wish that keep every limit, with all that is known of the future in view.
 
-What already keeps the limits is left alone, bit for bit. For the rest `lookahead` finds the best path inside them; where
-a start breaks a limit, so that there is none, exact causal steps (`limits.limit_step`) lead back first.
+What already keeps the limits is left alone, bit for bit. For the rest `lookahead` finds the best path inside them, with
+what matters linearised at the wish, then once more where that led (Gauss-Newton); where a start breaks a limit, so that
+there is none, exact causal steps (`limits.limit_step`) lead back first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.limits import JointLimits, limit_step
-from retarget.lookahead import Bounds, Wish, nearest_path
+from retarget.limits import JointLimits, keeps, limit_step
+from retarget.lookahead import Bounds, Wish, frames_between, nearer_path
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -22,11 +24,13 @@ _WINDOW_FRAMES, _AHEAD_FRAMES = 36, 10
 _TAIL_WEIGHT = 1e-3
 """Weight of the frames after the last known one, in which the joints come to rest."""
 _PULL = 1e-3
+_LINEARISED = 2
+"""Times that what matters is linearised; the second brings a twentieth of the direction error, more bring little."""
 
 
 @dataclass(frozen=True)
 class Importance:
-    """What matters of a group of joints along a reference: its error e counts e' H e / 2 - b' e in each frame.
+    """What matters of a group of joints: angles q in a frame cost q' H q / 2 - b' q.
 
     Attributes:
         joints: (G, w) indices of the joints of G groups.
@@ -39,10 +43,26 @@ class Importance:
     linear: Array
 
 
-def each_by_itself(T: int, joints: Sequence[int]) -> Importance:
-    """Joints that all matter alike."""
-    rows = np.array(joints, np.int64)[:, None]
-    return Importance(rows, np.ones((len(rows), T, 1, 1)), np.zeros((len(rows), T, 1)))
+class Matters(Protocol):
+    """What matters of T frames, for groups that hold every joint once."""
+
+    def around(self, first: int, q_rad: Array | None) -> Sequence[Importance]:
+        """Linearised around frames (n, J) from frame `first` on; None: around all that are wished for from there."""
+        ...
+
+
+class Angles:
+    """Joints of which the angles (T, J) matter, all alike."""
+
+    def __init__(self, q_rad: Array, joints: Sequence[int]) -> None:
+        """Of (T, J) angles those of some joints."""
+        self._joints = np.array(joints, np.int64)[:, None]
+        self._wish: Array = q_rad[:, joints].T[..., None]  # (G, T, 1)
+
+    def around(self, first: int, q_rad: Array | None) -> Sequence[Importance]:
+        """The same everywhere."""
+        wish = self._wish[:, first : None if q_rad is None else first + len(q_rad)]
+        return (Importance(self._joints, np.ones((*wish.shape, 1)), wish),)
 
 
 def limit_path(
@@ -51,72 +71,78 @@ def limit_path(
     velocity_rad_s: Array,
     limits: JointLimits,
     period_s: float,
-    importance: Callable[[], Sequence[Importance]] | None = None,
+    ask: Callable[[], Matters] | None = None,
 ) -> Array:
     """(T, J) path near `reference_rad` (T, J) that keeps every limit, from the given position and velocity.
 
-    `importance` is asked, only when a limit is passed, what matters for groups that hold every joint once; None: all alike.
+    Both are control points of splines. Only when a limit is passed `ask` is asked what matters in the frames half way
+    between them; None: every joint alike.
     """
     T, J = reference_rad.shape
-    path = np.clip(reference_rad, limits.position_min_rad, limits.position_max_rad)
+    path = np.minimum(np.maximum(reference_rad, limits.position_min_rad), limits.position_max_rad)
     kept = _kept(path, position_rad, velocity_rad_s, limits, period_s)
     if kept.all():
         return path
-    groups = (each_by_itself(T, range(J)),) if importance is None else importance()
+    matters = ask() if ask else Angles(frames_between(reference_rad[None], position_rad[None])[0], range(J))
     position, velocity = position_rad, velocity_rad_s
     for k in range(0, T, _WINDOW_FRAMES):
         n = min(_WINDOW_FRAMES, T - k)
-        frames = slice(k, min(T, k + n + _AHEAD_FRAMES))
-        if k or frames.stop < T:
-            kept = _kept(path[frames], position, velocity, limits, period_s)
+        part = path[k : k + n + _AHEAD_FRAMES]
+        if k or len(part) < T:
+            kept = _kept(part, position, velocity, limits, period_s)
         if not kept.all():
-            for group in groups:
-                _solve(group, frames, reference_rad, ~kept, path, position, velocity, limits, period_s)
-            part = path[k : k + n]
-            np.clip(part, limits.position_min_rad, limits.position_max_rad, out=part)
-            part[:] = _follow(part, position, velocity, limits, period_s)
+            near = reference_rad[k : k + n + _AHEAD_FRAMES]
+            _solve(matters, k, near, kept, part, position, velocity, limits, period_s)
+            np.clip(part[:n], limits.position_min_rad, limits.position_max_rad, out=part[:n])
+            part[:n] = _follow(part[:n], position, velocity, limits, period_s)
         before = path[k + n - 2] if n > 1 else position
         position, velocity = path[k + n - 1].copy(), (path[k + n - 1] - before) / period_s
-        if k + n < T:  # what was planned beyond this window is planned anew from where it ends
-            path[k + n : frames.stop] = np.clip(
-                reference_rad[k + n : frames.stop], limits.position_min_rad, limits.position_max_rad
-            )
+        # What was planned beyond this window is planned anew from where it ends.
+        part[n:] = np.clip(reference_rad[k + n : k + len(part)], limits.position_min_rad, limits.position_max_rad)
     return path
 
 
 def _solve(
-    group: Importance,
-    frames: slice,
-    reference: Array,
-    changes: NDArray[np.bool_],
+    matters: Matters,
+    first: int,
+    near: Array,
+    kept: NDArray[np.bool_],
     path: Array,
     position: Array,
     velocity: Array,
     limits: JointLimits,
     period_s: float,
 ) -> None:
-    """Write the best path of the groups of which a joint `changes` into `path`, over `frames`."""
-    some = np.flatnonzero(changes[group.joints].any(1))
-    if not len(some):
-        return
-    joints = group.joints[some]
-    bounds = Bounds(
-        limits.position_min_rad[joints], limits.position_max_rad[joints],
-        (limits.velocity_rad_s * period_s)[joints], (limits.acceleration_rad_s2 * period_s**2)[joints],
-    )  # fmt: skip
-    tail = int(np.ceil((bounds.step / bounds.bend).max())) + 1
-    first = reference[frames][:, joints].transpose(1, 0, 2)
-    hessian, linear = group.hessian[some, frames], group.linear[some, frames]
-    linear = linear + (hessian @ first[..., None])[..., 0]
-    first, hessian, linear = (np.concatenate([a, np.repeat(a[:, -1:], tail, 1)], 1) for a in (first, hessian, linear))
-    hessian[:, -tail:] *= _TAIL_WEIGHT
-    linear[:, -tail:] *= _TAIL_WEIGHT
-    found = nearest_path(
-        Wish(hessian, linear, _PULL), first, position[joints], (velocity * period_s)[joints], bounds, ~changes[joints]
-    )
-    if found is not None:
-        length = frames.stop - frames.start
-        path[frames, joints.ravel()] = found[:, :length].transpose(1, 0, 2).reshape(length, -1)
+    """Make a path (n, J), whose frames begin with frame `first`, the best for all groups of which a joint is not `kept`."""
+    inside = kept.copy()
+    for linearised in range(_LINEARISED):
+        at = None if not linearised else frames_between(path[None], position[None])[0]
+        for group in matters.around(first, at):
+            some = np.flatnonzero(~kept[group.joints].all(1))
+            if not len(some):
+                continue
+            joints = group.joints[some]
+            bounds = Bounds(
+                limits.position_min_rad[joints], limits.position_max_rad[joints],
+                (limits.velocity_rad_s * period_s)[joints], (limits.acceleration_rad_s2 * period_s**2)[joints],
+            )  # fmt: skip
+            tail = int(np.ceil((bounds.step / bounds.bend).max())) + 1
+            hessian, linear = group.hessian[some, : len(path)], group.linear[some, : len(path)]
+            # After the last frame in view the joints come to rest.
+            points, target = path[:, joints].transpose(1, 0, 2), near[:, joints].transpose(1, 0, 2)
+            points, target, hessian, linear = (_held(x, tail) for x in (points, target, hessian, linear))
+            hessian[:, -tail:] *= _TAIL_WEIGHT
+            linear[:, -tail:] *= _TAIL_WEIGHT
+            step = (velocity * period_s)[joints]
+            wish = Wish(hessian, linear, _PULL)
+            if nearer_path(wish, points, target, position[joints], step, bounds, inside[joints]):
+                path[:, joints.ravel()] = points[:, : len(path)].transpose(1, 0, 2).reshape(len(path), -1)
+                inside[joints] = True
+
+
+def _held(x: Array, n: int) -> Array:
+    """(G, T + n, ...) the last of (G, T, ...) held."""
+    return np.concatenate([x, np.repeat(x[:, -1:], n, 1)], 1)
 
 
 def _kept(path: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> NDArray[np.bool_]:
@@ -124,8 +150,7 @@ def _kept(path: Array, position: Array, velocity: Array, limits: JointLimits, pe
     before = np.concatenate([position[None], path])
     speed = (path - before[:-1]) / period_s
     came, ahead = np.concatenate([velocity[None], speed[:-1]]), np.concatenate([speed[1:], speed[-1:]])
-    steps = limit_step(path, before[:-1], came, limits, period_s, ahead)
-    return np.asarray((steps == path).all(0), bool)
+    return np.asarray(keeps(path, before[:-1], came, limits, period_s, ahead).all(0), bool)
 
 
 def _follow(reference: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> Array:

@@ -29,7 +29,7 @@ def skew(axis: Array) -> Array:
 
 def cross(a: Array, b: Array) -> Array:
     """(..., 3) cross products; an eighth of the time of np.cross on few vectors."""
-    return a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]
+    return a.take(_NEXT, -1) * b.take(_LAST, -1) - a.take(_LAST, -1) * b.take(_NEXT, -1)
 
 
 def rotate(axis: Array, angle_rad: Array, v: Array) -> Array:

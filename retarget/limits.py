@@ -101,6 +101,28 @@ def _within(values: Array, low: Array, high: Array) -> Array:
     return np.minimum(np.maximum(values, low), high)
 
 
+def keeps(
+    target_rad: Array,
+    position_rad: Array,
+    velocity_rad_s: Array,
+    limits: JointLimits,
+    period_s: float,
+    target_velocity_rad_s: Array,
+) -> NDArray[np.bool_]:
+    """(...) whether `limit_step` of the same arguments goes to the target, without saying where it goes else."""
+    a, v_max = limits.acceleration_rad_s2 * period_s, limits.velocity_rad_s
+    low_end, high_end = limits.position_min_rad, limits.position_max_rad
+    gaps = np.stack([high_end - position_rad, position_rad - low_end])
+    up, down = stopping_velocity_rad_s(gaps, limits.acceleration_rad_s2, period_s)
+    slower, faster = velocity_rad_s - a, velocity_rad_s + a
+    high = np.maximum(np.minimum(np.minimum(faster, v_max), up), slower)
+    low = np.minimum(np.maximum(np.maximum(slower, -v_max), -down), faster)
+    direct, slack = (target_rad - position_rad) / period_s, SLACK * (v_max + a)
+    follow = np.minimum(np.maximum(target_velocity_rad_s, -v_max), v_max)
+    kept = (direct <= high + slack) & (direct >= low - slack) & (np.abs(direct - follow) <= a)
+    return kept & (target_rad >= low_end) & (target_rad <= high_end)
+
+
 def brake(position_rad: Array, velocity_rad_s: Array, limits: JointLimits, period_s: float) -> Array:
     """(J,) next position when stopping as fast as the acceleration allows."""
     loss = limits.acceleration_rad_s2 * period_s

@@ -1,10 +1,10 @@
 """Following a wish within position, velocity and acceleration bounds, knowing all of it beforehand.
 
-A quadratic program: the weighted least-squares path under box bounds on positions, first and second differences. Only the
-weights couple the joints of an arm, the bounds do not, so the program is solved joint by joint, each knowing where the
-others went (block coordinate descent, which ends at the optimum: Tseng 2001, theorem 4.1); two rounds come within a
-thousandth of it. One joint's program is small and dense, for which a dual active-set method (DAQP: Arnström, Bemporad,
-Axehill 2022) was the fastest of those measured, see docs/retargeting.md.
+A quadratic program: the weighted least-squares path under box bounds on positions, first and second differences of a
+spline's control points, wished for in the frames half way between them. Only the weights couple the joints of an arm, the
+bounds do not, so the program is solved joint by joint, each knowing where the others went (block coordinate descent, which
+ends at the optimum: Tseng 2001, theorem 4.1). One joint's program is small and dense, for which a dual active-set method
+(DAQP: Arnström, Bemporad, Axehill 2022) was the fastest of those measured, see docs/retargeting.md.
 """
 
 from __future__ import annotations
@@ -20,9 +20,8 @@ from numpy.typing import NDArray
 _daqp: Any = importlib.import_module("daqp")  # neither has types
 _lapack: Any = importlib.import_module("scipy.linalg.lapack")
 Array = NDArray[np.float64]
-_ROUNDS = 2
 _SAME_WISH_RAD = 0.01
-"""A joint whose wish moved less than this is not solved anew."""
+"""A joint that wishes to be nowhere further away than this is not solved anew."""
 _OPTIMAL = 1
 _TIGHTENED = 1e-4
 """Share of a bound kept free: the solver keeps bounds within 1e-6."""
@@ -78,47 +77,68 @@ def least_moving(wish: Wish, start: Array) -> Array:
     return np.asarray(x, np.float64).reshape(G, T, w)
 
 
-def nearest_path(
-    wish: Wish, first: Array, start: Array, start_step: Array, bounds: Bounds, kept: NDArray[np.bool_] | None = None
-) -> Array | None:
-    """(G, T, w) best path of a wish that keeps the bounds and comes to rest at its end; None when there is none.
+def nearer_path(
+    wish: Wish, path: Array, near: Array, start: Array, start_step: Array, bounds: Bounds, inside: NDArray[np.bool_]
+) -> bool:
+    """Move a path within the bounds to the best there is of a wish, one joint after another; whether it could.
+
+    The path is a spline's control points, the wish is for the frames half way between them. There a zigzag of control points
+    does not show: half of each step's difference from `near`'s counts like an error of the joint's own in the frame.
 
     Args:
-        wish: what is wanted.
-        first: (G, T, w) a path from which to look, which need not keep anything.
-        start: (G, w) where the joints are.
-        start_step: (G, w) their last step.
-        bounds: bounds, the same in all frames.
-        kept: (G, w) joints that may follow `first` as it is, and do unless the others make them wish for something else.
+        wish: what is wanted in the frames.
+        path: (G, T, w) control points to start from, changed in place; at the end they come to rest.
+        near: (G, T, w) control points that show about what is wanted.
+        start: (G, w) the control point before the first.
+        start_step: (G, w) the step that led to it.
+        bounds: bounds, the same for all control points.
+        inside: (G, w) joints whose path keeps the bounds already; they stay unless they wish for something else.
     """
-    G, T, w = first.shape
+    G, T, w = path.shape
     rows, pull = _differences(T)
     upper, lower = _sides(bounds, start, start_step, T)
     inactive = np.zeros(3 * T, np.int32)
-    x = first.copy()
-    diagonal = np.arange(T, dtype=np.int64)
-    known = np.full((G, w, T), np.inf)
-    own_wish = (wish.hessian @ first[..., None])[..., 0] - wish.linear
-    own_wish -= np.einsum("gtjj,gtj->gtj", wish.hessian, first)
-    for rounds in range(_ROUNDS):
-        for g in range(G):
-            for j in range(w):
-                weight = wish.hessian[g, :, j]  # (T, w)
-                own = weight[:, j]
-                # What the others leave to wish for.
-                linear = (weight * x[g]).sum(1) - own * x[g, :, j] - wish.linear[g, :, j]
-                if not rounds and kept is not None and kept[g, j]:
-                    known[g, j] = own_wish[g, :, j]
-                if (np.abs(linear - known[g, j]) < _SAME_WISH_RAD * (own + wish.pull)).all():
-                    continue
-                known[g, j] = linear
-                matrix = wish.pull * pull
-                matrix[diagonal, diagonal] += own
-                linear[0] -= wish.pull * start[g, j]  # `known` holds a copy
-                x[g, :, j], _, status, _ = _daqp.solve(matrix, linear, rows, upper[g, j], lower[g, j], inactive)
-                if status != _OPTIMAL:
-                    return None
-    return x
+    own = np.ascontiguousarray(np.einsum("gtjj->gjt", wish.hessian))  # (G, w, T)
+    enough = _SAME_WISH_RAD * (own + wish.pull)
+    # With steps counted like frames, squares of sums and of differences, no two control points are coupled.
+    matrix = np.repeat((wish.pull * pull)[None], G * w, 0).reshape(G, w, T, T)
+    diagonal = matrix.reshape(G, w, T * T)[..., :: T + 1]
+    diagonal += own / 2
+    diagonal[..., :-1] += own[..., 1:] / 2
+    zigzag = near.transpose(0, 2, 1).copy()
+    zigzag[..., 1:] -= near.transpose(0, 2, 1)[..., :-1]
+    zigzag[..., 0] -= start
+    zigzag *= own / 4
+    known = -zigzag
+    known[..., :-1] += zigzag[..., 1:]
+    known[..., 0] -= wish.pull * start
+    frames = frames_between(path, start)
+    for j in range(w):
+        slope = np.vecdot(wish.hessian[:, :, j], frames) - wish.linear[:, :, j]  # (G, T)
+        moves = ~inside[:, j] | (np.abs(slope) > enough[:, j]).any(1)
+        if not moves.any():
+            continue
+        # What the others leave to wish for in the frames, and for the control points, of which each is half of two frames.
+        slope -= own[:, j] * frames[:, :, j]
+        slope /= 2
+        linear = known[:, j] + slope
+        linear[:, :-1] += slope[:, 1:]
+        for g in np.flatnonzero(moves):
+            found, _, status, _ = _daqp.solve(matrix[g, j], linear[g], rows, upper[g, j], lower[g, j], inactive)
+            if status != _OPTIMAL:
+                return False
+            path[g, :, j] = found
+        frames[:, :, j] = frames_between(path[:, :, j, None], start[:, j, None])[..., 0]
+    return True
+
+
+def frames_between(path: Array, start: Array) -> Array:
+    """(G, T, w) what a spline of control points `path` (G, T, w) after `start` (G, w) shows: half way between each two."""
+    frames = path.copy()
+    frames[:, 1:] += path[:, :-1]
+    frames[:, 0] += start
+    frames /= 2
+    return frames
 
 
 @lru_cache(maxsize=128)

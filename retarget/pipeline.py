@@ -5,8 +5,8 @@ human -> waist -> neck -> arms -> unseen joints rest -> limits -> self-contact -
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from retarget.arm_chain import ArmChain
 from retarget.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.collision import SelfContact
 from retarget.errors import MotionError
-from retarget.following import Importance, limit_path
+from retarget.following import limit_path
 from retarget.hands import Hands, HumanContacts, read_contacts
 from retarget.human import HumanPose, read_human
 from retarget.kinematics import Kinematics
@@ -63,7 +63,7 @@ class Retargeter:
         self.arms: tuple[ArmChain, ...] = self._poser.chains
         self.contact = SelfContact(robot)
         self._hands = Hands(self.kinematics, self.contact, self.limits) if keep_contacts else None
-        self._avoidance = Avoidance(robot, self.contact, self.limits)
+        self._avoidance = Avoidance(robot, self.contact, self.limits, self._poser.stiffness)
 
     def retarget(
         self,
@@ -201,12 +201,13 @@ class Retargeter:
         What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
         touches when the path brakes after `keep` frames or at its end counts too.
         """
-        wanted, led = _controls(eased, pose_before), eased - posed
+        wanted, shown, led = _controls(eased, pose_before), eased, eased - posed
         half = start.velocity_rad_s * (period / 2)
         before, position = start.position_rad - half, start.position_rad + half
         if settle:
-            wanted, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in (wanted, led))
-        points = np.concatenate([[before], self._joined(wanted, led, before, position, period)])
+            every = (wanted, shown, led)
+            wanted, shown, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in every)
+        points = np.concatenate([[before], self._joined(wanted, shown, led, before, position, period)])
         if settle:
             n = len(points)
             moving = np.flatnonzero((np.abs(np.diff(points, axis=0)) > _STILL_RAD).any(1))
@@ -227,8 +228,8 @@ class Retargeter:
         left = np.maximum(np.abs(step) - np.arange(1, n + 1)[:, None] * loss, 0.0)
         return control[-1] + np.cumsum(np.sign(step) * left, 0)
 
-    def _joined(self, wanted: Array, led: Array, before: Array, position: Array, period: float) -> Array:
-        """(T + 1, J) control points from the second, `position`, on.
+    def _joined(self, wanted: Array, shown: Array, led: Array, before: Array, position: Array, period: float) -> Array:
+        """(T + 1, J) control points from the second, `position`, on, near `wanted` (T, J) to show poses `shown` (T, J).
 
         A joint that the start leaves just enough room to brake has its next control points at or beyond the position
         limit, though its path is not: until there is room for whole steps it brakes as hard as the path needs.
@@ -243,16 +244,14 @@ class Retargeter:
             short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
             short |= toward * (points[-1] - end) > 0
             if not short.any():
-                rest = limit_path(wanted[k:], points[-1], velocity, limits, period, self._importance(wanted, led, k))
+                matters = partial(self._poser.matters, shown[k:], led[k:])
+                rest = limit_path(wanted[k:], points[-1], velocity, limits, period, matters)
                 return np.concatenate([points[1:], rest])
             gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
             braking = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)
             inward = points[-1] + velocity * period - toward * braking * period**2
             points.append(np.where(short, inward, limit_step(wanted[k], points[-1], velocity, limits, period)))
         return np.array(points[1:])
-
-    def _importance(self, wanted: Array, led: Array, first: int) -> Callable[[], Sequence[Importance]]:
-        return lambda: self._poser.importance(wanted[first:], led[first:])
 
     def _compare(
         self, poses: Poses, contacts: HumanContacts, path: Array, rate_hz: float, interventions: int, stretch: float

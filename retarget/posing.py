@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from retarget.arm_chain import ArmChain, read_arm
 from retarget.arms import Arms
 from retarget.branches import choose
-from retarget.following import Importance, each_by_itself
+from retarget.following import Angles
 from retarget.human import SIDES, HumanPose
 from retarget.kinematics import Kinematics
 from retarget.limits import JointLimits
 from retarget.lookahead import Wish, least_moving
+from retarget.mattering import ArmMatters, PoseMatters
 from retarget.trunk import Trunk
 
 Array = NDArray[np.float64]
@@ -34,11 +35,6 @@ _NEARBY = 0.01
 """Weight of squared steps from one such trial to the next: directions are linear in angles nearby only."""
 _MOST_LOST_RAD = 0.03
 """A frame in which resting still costs more than this keeps its closed-form pose."""
-_LEAST = 1e-4
-"""Weight of a joint's own angle in the limiter, so that an unseen joint too has somewhere to go."""
-_LED_WEIGHT = 3.0
-_LED_RAD = 1e-6
-"""Weight of the way in which a pose was led round a contact, against one radian of direction error; least such way."""
 
 
 @dataclass(frozen=True)
@@ -121,23 +117,24 @@ class Poser:
             upper[sides], fore[sides] = arms.directions(q_rad[:, joints].transpose(1, 0, 2))
         return upper, fore
 
-    def importance(self, q_rad: Array, led_rad: Array) -> list[Importance]:
-        """What matters of each joint around poses (T, J): directions for arms, angles for the rest.
+    def stiffness(self, q_rad: Array) -> Array:
+        """(T, J, J) what a small movement away from poses (T, J) changes: bone directions, and every angle as much."""
+        T, J = q_rad.shape
+        every = np.zeros((T, J, J))
+        every[:, np.arange(J), np.arange(J)] = 1.0
+        for arms, joints in zip(self._arms, self._joints, strict=True):
+            hessian = arms.bones(q_rad[:, joints].transpose(1, 0, 2)).hessian()
+            for g, of in enumerate(joints):
+                every[:, of[:, None], of] += hessian[g]
+        return every
+
+    def matters(self, q_rad: Array, led_rad: Array) -> PoseMatters:
+        """What matters of the wish to show poses (T, J): directions for arms, angles for the rest.
 
         Where poses were led round a contact by `led_rad` (T, J), going less far that way matters too.
         """
-        every: list[Importance] = []
-        for arms, joints in zip(self._arms, self._joints, strict=True):
-            hessian = arms.bones(q_rad[:, joints].transpose(1, 0, 2)).hessian() + _LEAST * np.eye(arms.n_joints)
-            led = led_rad[:, joints].transpose(1, 0, 2)
-            length = np.linalg.norm(led, axis=-1, keepdims=True)
-            if (length > _LED_RAD).any():
-                way = np.where(length > _LED_RAD, led / np.maximum(length, _LED_RAD), 0.0)
-                hessian = hessian + _LED_WEIGHT * way[..., None] * way[..., None, :]
-            every.append(Importance(joints, hessian, np.zeros(hessian.shape[:3])))
-        if self._others:
-            every.append(each_by_itself(len(q_rad), self._others))
-        return every
+        arms = [ArmMatters(a, j, q_rad, led_rad) for a, j in zip(self._arms, self._joints, strict=True)]
+        return PoseMatters(arms, Angles(q_rad, self._others) if self._others else None)
 
     def _arm_angles(self, arms: Arms, upper: Array, fore: Array, before: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Angles of arms of one kind for directions (G, T, 3), from `before` (G, n) on, and which were cut, (G, T, n)."""
@@ -145,16 +142,18 @@ class Poser:
         chosen, seen = choose(ways, arms.own_cost(ways, upper, fore, seen), seen, before)
         cut = (chosen < arms.low) | (chosen > arms.high)
         closed = arms.within_limits(chosen, upper, fore) if cut.any() else chosen
-        shown = arms.directions(closed)
+        bones = arms.bones(closed)
+        shown = bones.upper, bones.fore
         x = arms.rested(closed, seen, *shown, before)
+        if x is not closed:
+            bones = arms.bones(x)
         lost = np.zeros(0)
         for _ in range(_REST_STEPS):
-            bones = arms.bones(x)
-            hessian = bones.hessian() + _NEARBY * np.eye(arms.n_joints)
+            hessian = bones.hessian() + arms.eye * _NEARBY
             linear = (hessian @ x[..., None])[..., 0] + bones.towards(*shown)
             x = np.minimum(np.maximum(least_moving(Wish(hessian, linear, _REST_PULL), before), arms.low), arms.high)
-            found = arms.directions(x)
-            lost = np.maximum(*(np.abs(f - s).max(-1) for f, s in zip(found, shown, strict=True)))
+            bones = arms.bones(x)
+            lost = np.maximum(np.abs(bones.upper - shown[0]), np.abs(bones.fore - shown[1])).max(-1)
             if lost.max() < _SEEN_RAD:
                 return x, cut
         return np.where((lost > _MOST_LOST_RAD)[..., None], closed, x), cut

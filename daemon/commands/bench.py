@@ -51,4 +51,4 @@ def bench(
     else:
         for key, value in figures.items():
             console.print(f"[bold]{key}[/bold]: {value}")
-    return 1 if figures.get("violations") else 0
+    return 1 if figures.get("violations") or figures.get("self_contacts") else 0

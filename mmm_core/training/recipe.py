@@ -56,6 +56,7 @@ class TokenizerRecipe:
         window_frames: frames in a window.
         real_share: share of windows from people.
         reset_rule: what becomes of dead codes; "official" never resets one that was used once.
+        plain_steps: of the schedule's steps, those at first that do not quantise (layout "parts").
         schedule: how long.
         decoder: further training of the decoder alone; 0 steps for none (layout "parts").
         gate: stop unless it keeps the corpus's motions (layout "parts"; `mmmd eval tokenizer`).
@@ -69,6 +70,7 @@ class TokenizerRecipe:
     window_frames: int = 40
     real_share: float = 0.12
     reset_rule: Literal["for_good", "official"] = "for_good"
+    plain_steps: int = 0
     schedule: Schedule = field(default_factory=lambda: Schedule(steps=2600, learning_rate=1e-3))
     decoder: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3))
     gate: bool = False

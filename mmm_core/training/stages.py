@@ -124,7 +124,8 @@ class Stages:
         if self.folder is not None and not self.recipe.data.synthesised:
             statistics = torch.from_numpy(self.folder.mean), torch.from_numpy(self.folder.std)
         return train_tokenizer(clips, how.config(width), how.schedule, run, statistics=statistics, batch=how.batch,
-                               window_frames=how.window_frames, real_share=how.real_share)  # fmt: skip
+                               window_frames=how.window_frames, real_share=how.real_share,
+                               plain_steps=how.plain_steps)  # fmt: skip
 
     @cached_property
     def corpus(self) -> TokenCorpus:

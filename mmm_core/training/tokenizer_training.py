@@ -27,6 +27,8 @@ from mmm_core.vqvae import HEIGHT_CHANNELS, ROOT_HEIGHT, VqVae, VqVaeConfig
 WINDOW_FRAMES = 40
 BATCH = 128
 COMMITMENT = 0.05
+LATENT_SQUARE = 0.001
+"""Weight of the latents' mean square before there are codes: they stay of a size that codes can follow."""
 BETA = 0.3
 """SmoothL1 turns linear here (in normalised units); 1 let small channels go."""
 DIFFERENCE_GAIN, DIFFERENCE_WEIGHT = 5.0, 0.3
@@ -63,6 +65,7 @@ def train_tokenizer(
     batch: int = BATCH,
     window_frames: int = WINDOW_FRAMES,
     real_share: float = 0.12,
+    plain_steps: int = 0,
 ) -> Tokenizer | VqVae:
     """A tokenizer trained on windows of `clips`, of which `real_share` come from real motion.
 
@@ -75,6 +78,8 @@ def train_tokenizer(
         batch: windows in a step, of all processes.
         window_frames: frames in a window.
         real_share: share of windows from people, where there are both kinds.
+        plain_steps: steps at first in which latents are not quantised (layout by parts). With codes from the start, joints come
+            through them one after another, small ones after thousands of steps; so all are there when codes come.
     """
     torch.manual_seed(schedule.seed)
     tokenizer = Tokenizer(config) if isinstance(config, TokenizerConfig) else VqVae(config)
@@ -83,9 +88,10 @@ def train_tokenizer(
     device = run.torch_device
     weights = channel_weights().to(device)
 
-    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
+    def loss_fn(step: int, generator: torch.Generator) -> dict[str, Tensor]:
         x = tokenizer.normalise(draw(generator)[distributed.share(batch)].to(device))
-        reconstruction, commitment = tokenizer(x)
+        plain = step < plain_steps and isinstance(tokenizer, Tokenizer)
+        reconstruction, commitment = tokenizer(x, quantise=False) if plain else tokenizer(x)
         reconstruction = reconstruction.float()
         if isinstance(tokenizer, VqVae):
             how, end = PaperLoss(), 4 + 3 * (joints_of(x.shape[-1]) - 1)
@@ -94,7 +100,7 @@ def train_tokenizer(
             loss = frames + how.positions * positions + how.commitment * commitment
             return {"loss": loss, "frames": frames, "positions": positions, "commitment": commitment}
         frames, differences = _errors(reconstruction, x, weights)
-        loss = frames + DIFFERENCE_WEIGHT * differences + COMMITMENT * commitment
+        loss = frames + DIFFERENCE_WEIGHT * differences + (LATENT_SQUARE if plain else COMMITMENT) * commitment
         return {"loss": loss, "frames": frames, "differences": differences, "commitment": commitment}
 
     train(tokenizer, loss_fn, schedule, run, "tokenizer")

@@ -40,7 +40,7 @@ def into_itself(name: str, seed: int = 0) -> np.ndarray:
     return poses[BODIES[name].clearance_m(poses).argmin()]
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(st.sampled_from(ROBOTS), seeds)
 def test_from_any_pose_it_arms_and_parks_off_itself(name, seed):
     """Where it stands in contact (led there by hand) the contact only grows shallower, or it holds, says so and goes limp."""
@@ -57,7 +57,7 @@ def test_from_any_pose_it_arms_and_parks_off_itself(name, seed):
         assert_never_in_itself(r)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(st.sampled_from(ROBOTS), seeds, st.lists(st.sampled_from(["jump", "noise", "stop", "wait", "park"]), max_size=6))
 def test_whatever_it_is_sent_it_is_led_to_park_off_itself(name, seed, actions):
     """Frames that no front would send: jumps into the body, noise; stops and parks at any instant."""

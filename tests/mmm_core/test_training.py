@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 from hypothesis import given
 from hypothesis import strategies as st
 from torch import nn
 
+from mmm_core.corpus.synthesis import synthesise
+from mmm_core.tokenizer import Tokenizer, TokenizerConfig
+from mmm_core.training.batches import Clip
 from mmm_core.training.run import Run, Schedule, train
+from mmm_core.training.tokenizer_training import train_tokenizer
 from mmm_core.training.transformer_training import Corruption, corrupt
 
 
@@ -73,3 +78,27 @@ def test_corruption_masks_at_least_its_share_and_leaves_end_and_padding(seed: in
         assert torch.equal(out[row, n:], ids[row, n:])
     whole = corrupt(ids, n_tokens, K, Corruption(full_share=1.0), torch.Generator().manual_seed(seed))
     assert all((whole[row, :n] == K + 2).all() for row, n in enumerate((a, b)))
+
+
+def test_before_there_are_codes_latents_go_to_the_decoder_as_they_are(tmp_path: Path) -> None:
+    """Plain steps leave the codebooks alone; then codes are laid into the latents, and the tokenizer is better than noise."""
+    clips = [Clip(synthesise(np.random.default_rng(i)).features, ["x"], False) for i in range(6)]
+    clips = [c for c in clips if len(c.features) >= 16]
+    config = TokenizerConfig(16, 4, 16)
+
+    def trained(steps: int, plain_steps: int, name: str) -> Tokenizer:
+        schedule = Schedule(steps=steps, learning_rate=1e-3, warmup_steps=1, save_every=100)
+        made = train_tokenizer(
+            clips, config, schedule, Run(tmp_path / name), batch=4, window_frames=16, plain_steps=plain_steps
+        )
+        assert isinstance(made, Tokenizer)
+        return made
+
+    plain = trained(3, 3, "plain")
+    assert [int(q.n_updates) for q in plain.books] == [0, 0, 0]
+    both = trained(6, 3, "both")
+    assert [int(q.n_updates) for q in both.books] == [3, 3, 3]
+    latents = both._latents(both.normalise(torch.from_numpy(clips[0].features)[None]))
+    for quantizer, z in zip(both.books, latents, strict=True):
+        apart = torch.cdist(z[0], quantizer.codebook).min(1).values.mean()
+        assert apart < z[0].norm(dim=-1).mean() + 1e-3, "codes lie among the latents"

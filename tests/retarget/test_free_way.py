@@ -44,7 +44,7 @@ def searched(name: str, start: np.ndarray, goal: np.ndarray) -> WaySearch:
     return search
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(names, seeds, st.booleans())
 def test_on_no_way_to_park_or_rest_it_touches_itself(name, seed, parks):
     """From any pose; where it starts in contact, each pair in contact only parts, and none joins it."""
@@ -120,7 +120,7 @@ def test_a_start_outside_the_limits_only_comes_back():
     assert (np.diff(dense(way)[:, 2]) <= 1e-12).all()
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(names, seeds, st.integers(2, 6), st.floats(0.01, 1.0))
 def test_a_line_that_is_called_clear_keeps_its_share_everywhere(name, seed, n, reach):
     draw = np.random.default_rng(seed)

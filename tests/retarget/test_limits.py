@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from retarget.following import limit_path
-from retarget.limits import JointLimits, brake, limit_step
+from retarget.limits import JointLimits, brake, keeps, limit_step
 from retarget.robot import load_robot
 
 LIMITS = JointLimits.of(load_robot("reference"))
@@ -62,6 +62,21 @@ def test_a_path_with_look_ahead_keeps_the_bounds(seed, kind, T):
     position = rng.uniform(LIMITS.position_min_rad, LIMITS.position_max_rad)
     path = limit_path(wild(rng, T, kind), position, np.zeros(J), LIMITS, 0.05)
     check_bounds(path, position, np.zeros(J), 0.05)
+
+
+@settings(max_examples=30, deadline=None)
+@given(seeds, st.sampled_from([0.05, 0.01]))
+def test_what_keeps_the_limits_is_what_a_step_would_follow(seed, period_s):
+    rng = np.random.default_rng(seed)
+    position = rng.uniform(LIMITS.position_min_rad, LIMITS.position_max_rad, (200, J))
+    velocity, ahead = rng.uniform(-1.1, 1.1, (2, 200, J)) * LIMITS.velocity_rad_s
+    near = velocity + rng.uniform(-1.2, 1.2, (200, J)) * LIMITS.acceleration_rad_s2 * period_s
+    target = position + period_s * np.where(rng.random((200, J)) < 0.8, near, velocity)
+    ahead = np.where(rng.random((200, J)) < 0.5, ahead, near)
+    followed = limit_step(target, position, velocity, LIMITS, period_s, ahead) == target
+    kept = keeps(target, position, velocity, LIMITS, period_s, ahead)
+    assert 0.1 < kept.mean() < 0.9
+    np.testing.assert_array_equal(kept, followed)
 
 
 def test_a_reference_inside_the_bounds_is_followed_exactly():

@@ -73,11 +73,11 @@ def test_the_stock_sdk_reads_groups_and_misses_who_is_silent(tmp_path: Path) -> 
             read = GroupSyncRead(port, handler, 132, 4)
             for servo_id in (1, 2, 4, 5):
                 read.addParam(servo_id)
-            assert read.txRxPacket() == COMM_SUCCESS
+            until(lambda: read.txRxPacket() == COMM_SUCCESS)  # its 34 ms pass at once on a busy machine
             assert read.getData(1, 132, 4) == 2048
             assert handler.ping(port, 3)[1] == COMM_RX_TIMEOUT
-            assert handler.reboot(port, 5) == (COMM_SUCCESS, 0)
-            assert handler.broadcastPing(port)[1] == COMM_SUCCESS
+            until(lambda: handler.reboot(port, 5) == (COMM_SUCCESS, 0))
+            until(lambda: handler.broadcastPing(port)[1] == COMM_SUCCESS)
         finally:
             port.closePort()
 
