@@ -21,7 +21,7 @@ from daemon.errors import CommandError
 from mmm_core.motion import Motion
 from mmm_core.recordings.files import read_motion
 from mmm_core.skeleton import quat_wxyz
-from retarget.errors import RetargetError
+from retarget.errors import MotionError, RetargetError
 from retarget.paths import JointPath
 from retarget.pipeline import Retargeter
 from retarget.posing import ArmsFollow
@@ -59,7 +59,10 @@ def retarget_file(settings: Settings, motion_path: Path, out: Path) -> JointPath
     """
     retargeter = _retargeter(settings)
     motion = read_motion(motion_path, settings.fps)
-    path = retargeter.retarget(motion, most_error_deg=settings.most_error_deg)
+    try:
+        path = retargeter.retarget(motion, most_error_deg=settings.most_error_deg)
+    except MotionError as error:
+        raise MotionError(error.key, error.found, error.allowed, str(motion_path)) from error
     write_path(retargeter, motion, path, out)
     return path
 

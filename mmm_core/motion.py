@@ -6,6 +6,7 @@ Frame: metres, y up, z forward, x to the person's left; see `mmm_core.skeleton` 
 from __future__ import annotations
 
 import os
+import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -149,7 +150,8 @@ def load_npz(path: Path | str) -> Motion:
     except FileNotFoundError:
         raise MotionFileError(path, "", "no such file", "an .npz written by `mmmd generate`") from None
     except (OSError, ValueError, EOFError, KeyError) as error:
-        raise MotionFileError(path, "", f"not a readable npz ({error})", "an .npz without pickled objects") from error
+        found = f"not a readable npz ({error})" if zipfile.is_zipfile(path) else "no npz: not even a zip archive"
+        raise MotionFileError(path, "", found, "an .npz without pickled objects") from error
     for key in ("joints", "fps"):
         if key not in fields:
             raise MotionFileError(path, key, f"missing; found {sorted(fields)}", "joints (T,22,3) in metres and fps")
@@ -157,6 +159,14 @@ def load_npz(path: Path | str) -> Motion:
     if joints_m.ndim != 3 or joints_m.shape[1:] != (N_JOINTS, 3) or len(joints_m) == 0:
         raise MotionFileError(
             path, "joints", f"shape {joints_m.shape}", "(T, 22, 3) with T >= 1, HumanML3D joint order"
+        )
+    if joints_m.dtype.kind not in "fiu":
+        raise MotionFileError(path, "joints", f"values of type {joints_m.dtype}", "numbers, metres")
+    finite = np.isfinite(joints_m).all((1, 2))
+    if not finite.all():
+        found = f"NaN or infinite values in frame {int(finite.argmin())}, {int((~finite).sum())} such frames"
+        raise MotionFileError(
+            path, "joints", found, "finite metres in every frame; cut those frames out or fill them in"
         )
     T = len(joints_m)
     identity = np.tile(np.array([1, 0, 0, 0], np.float32), (T, 1))

@@ -3,7 +3,7 @@
 RetargetError
 ├── UnknownRobotError(name, known)                 no robot of that name                    (LookupError)
 ├── RobotFileError(path, key, found, allowed)      a robot file or description that cannot be used  (ValueError)
-└── MotionError(key, found, allowed)               a human motion that cannot be retargeted (ValueError)
+└── MotionError(key, found, allowed, of)           a human motion that cannot be retargeted (ValueError)
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ class RobotFileError(RetargetError, ValueError):
 
 
 class MotionError(RetargetError, ValueError):
-    """A human motion that cannot be retargeted."""
+    """A human motion that cannot be retargeted; `of` says which, a file where it comes from one."""
 
-    def __init__(self, key: str, found: str, allowed: str) -> None:
-        self.key, self.found, self.allowed = key, found, allowed
-        super().__init__(f"motion: {key}: {found}; allowed: {allowed}")
+    def __init__(self, key: str, found: str, allowed: str, of: str = "motion") -> None:
+        self.key, self.found, self.allowed, self.of = key, found, allowed, of
+        super().__init__(f"{of}: {key}: {found}; allowed: {allowed}")

@@ -48,20 +48,28 @@ class Retargeter:
         contact: its distances to itself.
     """
 
-    def __init__(self, robot: RobotModel, arms_follow: ArmsFollow = "chest", *, keep_contacts: bool = False) -> None:
+    def __init__(
+        self,
+        robot: RobotModel,
+        arms_follow: ArmsFollow = "chest",
+        *,
+        keep_contacts: bool = False,
+        contact: SelfContact | None = None,
+    ) -> None:
         """Set up for a robot.
 
         Args:
             robot: the robot.
             arms_follow: arms keep their directions against the chest, or against the world as the pelvis faces it.
             keep_contacts: hands that touch each other or the body touch there on the robot too, whatever its proportions.
+            contact: what knows the robot's distances to itself; None: all that its description says.
         """
         self.robot = robot
         self.kinematics = Kinematics(robot)
         self.limits = JointLimits.of(robot)
         self._poser = Poser(self.kinematics, self.limits, arms_follow)
         self.arms: tuple[ArmChain, ...] = self._poser.chains
-        self.contact = SelfContact(robot)
+        self.contact = contact or SelfContact(robot)
         self._hands = Hands(self.kinematics, self.contact, self.limits) if keep_contacts else None
         self._avoidance = Avoidance(robot, self.contact, self.limits, self._poser.stiffness)
 
@@ -135,16 +143,13 @@ class Retargeter:
         When `continued`, the first pose is the one before the block.
         """
         before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
-        eased, interventions = posed, 0
+        eased, interventions = self._avoidance.lead_round(posed, begin.position_rad)
         path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
-        if hit.any():
-            eased, interventions = self._avoidance.lead_round(eased, begin.position_rad)
-            path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
         for strength in STRENGTHS:
             if not hit.any():
                 break
             interventions += stretches(hit)
-            eased = self._avoidance.push(eased, path, hit[: len(path) - 2], strength)
+            eased = self._avoidance.push(eased, path, _of_frames(hit, len(path)), strength)
             path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
         if hit.any():
             path = self._stop_before_contact(path, hit, period)
@@ -274,3 +279,10 @@ def _controls(frames: Array, before: Array) -> Array:
     """
     more = np.concatenate([before, frames, frames[-1:], frames[-1:]])
     return (5 * (more[1:-2] + more[2:-1]) - more[:-3] - more[3:]) / 8
+
+
+def _of_frames(hit: NDArray[np.bool_], n: int) -> NDArray[np.bool_]:
+    """(n - 2,) segments of n control points that touch; what touches while braking after them is the last one's doing."""
+    of = hit[: n - 2].copy()
+    of[-1] |= hit[n - 2 :].any()
+    return of

@@ -37,6 +37,9 @@ class _Untouchable(SelfContact):
     def along(self, control_rad: Array) -> NDArray[np.bool_]:
         return np.zeros(len(control_rad) - 2, bool)
 
+    def frames(self, q_rad: Array, share: float = 1.0) -> NDArray[np.bool_]:
+        return np.zeros(len(q_rad), bool)
+
 
 @dataclass(frozen=True)
 class _Errors:
@@ -50,8 +53,7 @@ class _Errors:
 
 
 def _errors(robot: RobotModel, motions: list[Motion]) -> list[_Errors]:
-    retargeter, through_itself = Retargeter(robot), Retargeter(robot)
-    through_itself.contact = _Untouchable(robot)
+    retargeter, through_itself = Retargeter(robot), Retargeter(robot, contact=_Untouchable(robot))
     every: list[_Errors] = []
     for motion in motions:
         poses, T = retargeter.poses(read_human(motion)), len(motion.joints_m)

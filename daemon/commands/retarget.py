@@ -55,9 +55,14 @@ def retarget(
         dask: address of a Dask scheduler to use instead.
         json: print the report, or the counts of a folder, as one JSON object.
     """
+    from daemon.errors import CommandError
     from daemon.retarget_files import Settings, retarget_file
 
+    _refuse("--fps", fps, 1000.0, "frames per second")
+    _refuse("--most-error-deg", most_error_deg, 180.0, "degrees")
     settings = Settings(robot, arms_follow, keep_contacts, most_error_deg, fps)
+    if not motion.is_dir() and not out.parent.is_dir():
+        raise CommandError(f"--out {out}: there is no folder {out.parent}; make it, or name a file in one there is")
     if motion.is_dir():
         return _folder(settings, motion, out, jobs or os.cpu_count() or 1, dask, json=json)
     from rich.console import Console
@@ -72,6 +77,14 @@ def retarget(
         for key, value in report.items():
             console.print(f"  {key}: {value}", highlight=False)
     return 0
+
+
+def _refuse(option: str, value: float | None, most: float, unit: str) -> None:
+    """Stop at a number that makes no sense; NaN and infinity are none that do."""
+    from daemon.errors import CommandError
+
+    if value is not None and not 0 < value <= most:
+        raise CommandError(f"{option} {value:g}: expected more than 0 and at most {most:g} {unit}")
 
 
 def _folder(settings: Settings, folder: Path, out: Path, jobs: int, dask: str | None, *, json: bool) -> int:

@@ -56,6 +56,22 @@ def test_a_folder_is_written_once_and_gone_on_with(
     }
 
 
+@pytest.mark.parametrize(
+    ("option", "value"), [("--fps", "0"), ("--fps", "-3"), ("--fps", "nan"), ("--most-error-deg", "nan")]
+)
+def test_a_number_that_makes_no_sense_is_refused(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], option: str, value: str
+) -> None:
+    assert main(["retarget", str(folder / "wave.npy"), "--out", str(tmp_path / "o.npz"), f"{option}={value}"]) == 2
+    assert f"{option} {value}: expected more than 0" in capsys.readouterr().err
+    assert not (tmp_path / "o.npz").exists()
+
+
+def test_a_folder_that_is_not_there_is_named(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["retarget", str(folder / "wave.npy"), "--out", str(tmp_path / "none" / "o.npz")]) == 2
+    assert f"there is no folder {tmp_path / 'none'}; make it" in capsys.readouterr().err
+
+
 def test_another_robot_needs_another_folder(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert run(folder, out) == 0

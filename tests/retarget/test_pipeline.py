@@ -193,6 +193,9 @@ def test_the_command_names_a_file_it_cannot_use(tmp_path: Path, capsys: pytest.C
     np.savez(tmp_path / "bad.npz", joints=np.zeros((4, 21, 3)), fps=20.0)
     assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 1
     assert "(T, 22, 3)" in capsys.readouterr().err
+    (tmp_path / "text.npz").write_text("a note")
+    assert main(["retarget", str(tmp_path / "text.npz"), "--out", str(tmp_path / "out.npz")]) == 1
+    assert "not even a zip archive" in capsys.readouterr().err
     assert not (tmp_path / "out.npz").exists()
 
 
@@ -246,8 +249,13 @@ def test_one_frame_is_a_path() -> None:
 BAD_FILES = [
     ("no fps", {"fps": None}, "fps"),
     ("fps of nothing", {"fps": 0.0}, "fps"),
-    ("not a number", {"joints": lambda j: _with(j, 20, np.full_like(j[:, 20], np.nan))}, "finite|NaN"),
-    ("infinite", {"joints": lambda j: _with(j, 20, np.full_like(j[:, 20], np.inf))}, "finite|NaN"),
+    ("not a number", {"joints": lambda j: _with(j, 20, np.full_like(j[:, 20], np.nan))}, "'joints'.*NaN.*frame 0, 30"),
+    (
+        "infinite",
+        {"joints": lambda j: np.where(np.arange(30)[:, None, None] == 7, np.inf, j)},
+        "'joints'.*frame 7, 1 such",
+    ),
+    ("words", {"joints": lambda j: np.full(j.shape, "left")}, "'joints'.*numbers"),
     ("a joint short", {"joints": lambda j: j[:, :21]}, r"22, 3"),
     ("empty", {"joints": lambda j: j[:0]}, "T >= 1"),
     ("no length", {"joints": lambda j: _with(j, 20, j[:, 18])}, "left forearm"),
@@ -266,5 +274,5 @@ def test_a_bad_file_is_named_with_its_key(
     np.savez(tmp_path / "bad.npz", **{k: np.asarray(v) for k, v in fields.items() if v is not None})
     assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 1
     error = capsys.readouterr().err
-    assert re.search(said, error) and "Traceback" not in error, error
+    assert re.search(said, error) and str(tmp_path / "bad.npz") in error and "Traceback" not in error, error
     assert not (tmp_path / "out.npz").exists()
