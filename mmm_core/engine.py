@@ -21,7 +21,7 @@ from mmm_core.packed import Precision, fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
 from mmm_core.sequence import COMMAND_STRIDE, commands_of, joined
-from mmm_core.text import TextEncoder, TextStates
+from mmm_core.text import TextEncoder, TextStates, without_pictures
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
 
 SHORTEST_S = 0.8
@@ -130,7 +130,8 @@ class Engine:
 
     def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
         """The same of several texts, read together; of a text that is kept in part the states are those of that part."""
-        states = self.encoder.encode([text if text.strip() else "." for text in texts])
+        bare = [without_pictures(text) for text in texts]
+        states = self.encoder.encode([text if text.strip() else "." for text in bare])
         scope = self.model.scope
         if scope is None:
             return [(states.row(i), _without_scope(text)) for i, text in enumerate(texts)]

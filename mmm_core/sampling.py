@@ -34,9 +34,9 @@ class SamplingSettings:
         official: the released sampler's steps (`schedule.official_counts`) instead of the three numbers above.
     """
 
-    fewest_steps: int = 4
-    most_steps: int = 10
-    steps_per_token: float = 0.12
+    fewest_steps: int = 3
+    most_steps: int = 6
+    steps_per_token: float = 0.08
     temperature: float = 0.5
     guidance: float = 1.0
     schedule: Schedule = "cosine"

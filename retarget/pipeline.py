@@ -29,7 +29,8 @@ from retarget.robot import RobotModel
 Array = NDArray[np.float64]
 _SETTLE_FRAMES = 16
 """Time given to reach the last pose; what then still moves, brakes."""
-_STILL_RAD = 1e-5
+_STILL_RAD = 5e-4
+"""Less in a frame is the end of settling: a third of a tick of 4,096."""
 _MOST_FPS = 1000
 BLOCK_FRAMES, _AHEAD_FRAMES = 24, 8
 """A long motion is made into a path in blocks of so many frames, each with 0.4 s after it in view."""

@@ -17,8 +17,8 @@ from mmm_core.corpus.bending import (
     times,
 )
 from mmm_core.corpus.families import FAMILIES, MIMED, Gesture, Words
-from mmm_core.corpus.heldout import is_withheld
 from mmm_core.corpus.styles import STYLES
+from mmm_core.corpus.withheld import is_withheld
 
 OTHER = {"left": "right", "right": "left"}
 _WITH_HAND = (" with your {S} hand", " with your {S} arm", " with the {S} hand", " using your {S} hand", " with the {S} arm", " using the {S} arm")  # fmt: skip

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 HELD_OUT_VERBS = (
@@ -319,24 +318,3 @@ PROBES: tuple[Probe, ...] = (
     Probe("head shaking is followed by the right arm going up", "shake_head", "head", then=Probe("", "raise", "arm", "right")),
     Probe("hands on the hips come after a nod", "nod", "head", then=Probe("", "hands_on_hips", "arm", "both")),
 )  # fmt: skip
-_EMPTY_WORDS = frozenset((
-    "a", "an", "the", "your", "you", "me", "i", "for", "with", "using", "please", "now", "just", "and", "next", "ok", "hey", "um",
-    "thanks", "robot", "do", "give", "show", "make", "perform", "want",
-))  # fmt: skip
-"""Words that a command does not become another one by."""
-
-
-_DIGITS = dict(zip("12345678", ("one", "two", "three", "four", "five", "six", "seven", "eight"), strict=True))
-
-
-def _key(text: str) -> str:
-    text = "".join(_DIGITS.get(c, c) for c in text)
-    return " ".join(w for w in re.sub(r"[^a-z0-9]", " ", text.lower()).split() if w not in _EMPTY_WORDS)
-
-
-_WITHHELD = frozenset(_key(p.text) for p in PROBES)
-
-
-def is_withheld(phrase: str) -> bool:
-    """Whether a phrase is a probe, but for articles, politeness and the like: then no caption may say it."""
-    return _key(phrase) in _WITHHELD

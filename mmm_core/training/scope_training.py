@@ -16,6 +16,7 @@ from torch import Tensor
 from mmm_core.corpus.grammar import caption, known_commands
 from mmm_core.corpus.outside import OUTSIDE, outside_texts
 from mmm_core.corpus.synthesis import draw_spec
+from mmm_core.corpus.withheld import is_withheld
 from mmm_core.scope import ScopeClassifier, ScopeIndex, clauses_of
 from mmm_core.text import TextEncoder
 from mmm_core.training.recipe import ScopeRecipe
@@ -49,7 +50,8 @@ def scope_sentences(recipe: ScopeRecipe) -> tuple[list[str], list[str]]:
         spec = draw_spec(rng)
         said = caption(list(spec.gestures), spec.parallel, rng)
         inside += [said, *(clauses_of(said) if rng.random() < 0.3 else [])]
-    return inside, [*OUTSIDE, *outside_texts(recipe.outside, rng)]
+    outside = [*OUTSIDE, *outside_texts(recipe.outside, rng)]
+    return [t for t in inside if not is_withheld(t)], [t for t in outside if not is_withheld(t)]
 
 
 def sentence_vectors(texts: list[str], encoder: TextEncoder, batch: int = 64) -> Tensor:

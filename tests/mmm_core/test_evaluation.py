@@ -9,8 +9,9 @@ import pytest
 
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.grammar import base_phrase, known_commands
-from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, Probe, is_withheld
+from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, Probe
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthesise_spec
+from mmm_core.corpus.withheld import is_withheld
 from mmm_core.evaluation import checks
 from mmm_core.evaluation.checks import Shown
 from mmm_core.evaluation.kept import performed, shown

@@ -132,6 +132,8 @@ def test_what_was_learnt_is_taken(engine: Engine, text: str) -> None:
 
 def test_a_picture_beside_words_is_no_reason_to_refuse(engine: Engine) -> None:
     assert engine.understand("wave 👋")[1].status != "rejected"
+    assert engine.understand("👏🏽 clap your hands 👏🏽!")[1].score == engine.understand("clap your hands !")[1].score
+    assert engine.understand("👋")[1].status == "rejected", "a picture alone is no word"
 
 
 class TestPartOfACommand:
