@@ -216,8 +216,8 @@ class Retargeter:
         points = np.concatenate([[before], self._joined(wanted, shown, led, before, position, period)])
         if settle:
             n = len(points)
-            moving = np.flatnonzero((np.abs(np.diff(points, axis=0)) > _STILL_RAD).any(1))
-            last = max(n - _SETTLE_FRAMES, int(moving[-1]) + 2 if len(moving) else 0)
+            moved = (np.abs(np.diff(points[n - _SETTLE_FRAMES - 1 :], axis=0)) > _STILL_RAD).any(1)
+            last = n - _SETTLE_FRAMES + (len(moved) if moved.all() else int(moved.argmin()))  # there it first stands
             points = self._held(points[:last], period, last + 1)
             return points, self.contact.along(points)
         hit = self.contact.along(np.concatenate([points, self._braking(points, period)]))
