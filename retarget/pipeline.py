@@ -216,8 +216,9 @@ class Retargeter:
         points = np.concatenate([[before], self._joined(wanted, shown, led, before, position, period)])
         if settle:
             n = len(points)
-            moved = (np.abs(np.diff(points[n - _SETTLE_FRAMES - 1 :], axis=0)) > _STILL_RAD).any(1)
-            last = n - _SETTLE_FRAMES + (len(moved) if moved.all() else int(moved.argmin()))  # there it first stands
+            moves = np.abs(np.diff(points[n - _SETTLE_FRAMES - 1 :], axis=0)).max(1) > _STILL_RAD
+            still = np.flatnonzero(~moves)
+            last = n - _SETTLE_FRAMES + (int(still[0]) if len(still) else len(moves))  # where it first stands
             points = self._held(points[:last], period, last + 1)
             return points, self.contact.along(points)
         hit = self.contact.along(np.concatenate([points, self._braking(points, period)]))
