@@ -25,7 +25,7 @@ _WEIGHTS = {
     "twist": 2.2, "tilt_head": 2.2, "beckon": 1.5, "arms_down": 1.5, "hands_up": 1.6, "stop": 1.6, "arm_forward": 1.6, "arm_side": 1.6,
     "t_pose": 1.3, "cross_arms": 1.3, "hands_on_hips": 1.3, "salute": 1.3, "shrug": 1.2, "arm_circle": 1.6, "stand": 1.2, "think": 1.2, "heart": 1.2,
 }  # fmt: skip
-"""How often a family is drawn: what people ask for most, and what can be counted, more than once in a hundred times."""
+"""How often a family is drawn, the others 0.8: what people ask for most, and what can be counted, more often."""
 _NAMES = list(FAMILIES)
 _P = np.array([_WEIGHTS.get(name, 0.8) for name in _NAMES])
 _P /= _P.sum()

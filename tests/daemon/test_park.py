@@ -34,6 +34,15 @@ def assert_never_in_itself(r: Rig) -> None:
     assert report["violations"] == 0, report["details"]
 
 
+def assert_parks(r: Rig) -> None:
+    """It goes to the park pose, goes limp there, and was never in itself."""
+    r.link.request(BusRequest.PARK)
+    r.cycle()
+    r.until(BusState.LIMP, within_s=60)
+    assert r.goals_rad()[-1] == pytest.approx(r.robot.park_rad, abs=1e-9)
+    assert_never_in_itself(r)
+
+
 def into_itself(name: str, seed: int = 0) -> np.ndarray:
     """A pose in which the robot is deep in itself."""
     poses = np.array([drawn(name, np.random.default_rng((seed, k))) for k in range(500)])
@@ -74,11 +83,7 @@ def test_whatever_it_is_sent_it_is_led_to_park_off_itself(name, seed, actions):
             r.cycle(n)
             if r.state is BusState.LIMP:
                 r.arm()
-        r.link.request(BusRequest.PARK)
-        r.cycle()
-        r.until(BusState.LIMP, within_s=60)
-        assert r.goals_rad()[-1] == pytest.approx(r.robot.park_rad, abs=1e-9)
-        assert_never_in_itself(r)
+        assert_parks(r)
 
 
 @pytest.mark.parametrize("name", ROBOTS)
@@ -114,11 +119,7 @@ def test_where_the_straight_way_to_park_goes_through_the_robot_it_goes_round(nam
     with rig(name, start_rad=start) as r:
         r.streamer.rest_rad = start
         r.arm()
-        r.link.request(BusRequest.PARK)
-        r.cycle()
-        r.until(BusState.LIMP, within_s=60)
-        assert r.goals_rad()[-1] == pytest.approx(r.robot.park_rad, abs=1e-9)
-        assert_never_in_itself(r)
+        assert_parks(r)
 
 
 def test_without_a_free_way_to_park_it_holds_says_so_and_goes_limp_in_time(monkeypatch):
