@@ -6,12 +6,15 @@ traceback.
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import importlib.metadata
 import os
+import signal
 import sys
+import threading
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 
 
@@ -87,7 +90,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _guarded(name: str, arguments: list[str]) -> int:
     """Run a command; whatever it raises becomes one message and an exit status."""
     try:
-        return _run(name, _load(name), arguments)
+        with _ended_by_sigterm():
+            return _run(name, _load(name), arguments)
     except SystemExit as stop:  # argument parsing: 0 after --help, 2 after bad use
         return stop.code if isinstance(stop.code, int) else BAD_USE
     except KeyboardInterrupt:
@@ -97,6 +101,23 @@ def _guarded(name: str, arguments: list[str]) -> int:
         return FAILED
     except Exception as error:  # the border to people
         return _explain(error)
+
+
+@contextlib.contextmanager
+def _ended_by_sigterm() -> Generator[None]:
+    """SIGTERM unwinds a command, so that what it started ends with it; commands with an end of their own take it over."""
+
+    def unwind(number: int, _frame: object) -> None:
+        raise SystemExit(128 + number)
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, unwind)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _load(name: str) -> Callable[..., int | None]:

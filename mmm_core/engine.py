@@ -13,31 +13,48 @@ from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
 from mmm_core.corpus.mirroring import canonical, mirror_words
+from mmm_core.eight_bit import can_eight_bit, to_eight_bit
 from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.features import Root, mirror, recover, recover_from_positions
 from mmm_core.generation import Clock, Generation, no_motion, understood
 from mmm_core.motion import FPS, Motion
-from mmm_core.packed import Precision, fastest_precision, pack
+from mmm_core.packed import fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
 from mmm_core.sequence import COMMAND_STRIDE, commands_of, joined
 from mmm_core.text import TextEncoder, TextStates, without_pictures
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
 
+Precision = Literal["fp32", "bf16", "int8"]
+"""Of the matrix products. Any but fp32 is another model's choice of tokens now and then."""
 SHORTEST_S = 0.8
 MOST_CANDIDATES = 64
 CANDIDATE_STRIDE = 7_919_999
 """Between the seeds of candidates, so that neighbouring seeds do not share any."""
+_TYPICAL = (
+    ("wave with your right hand", 9.6), ("raise both arms, then clap twice", 4.0), ("bow deeply", 3.0),
+    ("turn your head to the left", 2.0), ("box", 6.0), ("play the guitar", 5.0), ("point up with your left hand", 2.4),
+    ("shrug", 2.0), ("hammer a nail three times", 5.0), ("cross your arms", 3.0),
+)  # fmt: skip
+"""Texts and seconds that show eight-bit layers the range of their inputs."""
 
 
 class Engine:
     """The motion model, ready to be asked. Not for several threads at once."""
 
-    def __init__(self, model: Model, encoder: TextEncoder, checkpoint_hash: str, settings: SamplingSettings) -> None:
+    def __init__(
+        self,
+        model: Model,
+        encoder: TextEncoder,
+        checkpoint_hash: str,
+        settings: SamplingSettings,
+        precision: Precision = "fp32",
+    ) -> None:
         self.model = model
         self.encoder = encoder
         self.checkpoint_hash = checkpoint_hash
         self.settings = settings
+        self.precision: Precision = precision
 
     @classmethod
     def load(
@@ -46,7 +63,7 @@ class Engine:
         *,
         threads: int | None = 1,
         settings: SamplingSettings | None = None,
-        precision: Precision | Literal["auto"] = "fp32",
+        precision: Precision | Literal["auto"] | None = None,
     ) -> Engine:
         """The engine with the checkpoint at `path` (the shipped one when None).
 
@@ -54,10 +71,12 @@ class Engine:
             path: checkpoint.
             threads: torch's threads for the whole process; None leaves them as they are.
             settings: how the model is asked; None takes what suits the checkpoint.
-            precision: of the matrix products; bf16 is another model's choice of tokens now and then, "auto" times both.
+            precision: of the transformer; None takes int8 for a model of this repository on a processor that multiplies
+                eight-bit integers, else fp32; "auto" times fp32 and bf16.
 
         Raises:
             CheckpointError: a file is missing or does not fit.
+            GenerationError: the precision cannot be had here.
         """
         if threads is not None:
             torch.set_num_threads(threads)
@@ -68,10 +87,23 @@ class Engine:
         if getattr(encoder.config, "embedding", encoder.config.width) != model.transformer.config.text_dim:
             expected = "one with CLIP's text tower in it: import it with --clip and --vocabulary"
             raise CheckpointError(path, "text", "no text encoder of its width", expected)
+        if precision is None:
+            precision = "int8" if model.rest_pose == "mmmd" and can_eight_bit() else "fp32"
         chosen = fastest_precision() if precision == "auto" else precision
-        pack(model.transformer, chosen)
-        pack(encoder, chosen)
-        return cls(model, encoder, file_hash(path), settings or plain)
+        if chosen == "int8" and not can_eight_bit():
+            raise GenerationError("precision int8 was asked for", "fp32 or bf16: this processor or PyTorch has no VNNI")
+        pack(encoder, "bf16" if chosen == "bf16" else "fp32")
+        engine = cls(model, encoder, file_hash(path), settings or plain, chosen)
+        if chosen == "int8":
+            to_eight_bit(model.transformer, engine.run_typical)
+        else:
+            pack(model.transformer, chosen)
+        return engine
+
+    def run_typical(self) -> None:
+        """Generate what is typical, and forget it."""
+        for i, (text, seconds) in enumerate(_TYPICAL):
+            self.generate(text, seed=i, seconds=seconds)
 
     def generate(self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int = 1) -> Generation:
         """The motion for `text`; the same text, seed and seconds give the same motion.

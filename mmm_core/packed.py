@@ -14,7 +14,7 @@ from typing import Literal
 import torch
 from torch import Tensor, nn
 
-Precision = Literal["fp32", "bf16"]
+Packing = Literal["fp32", "bf16"]
 
 PACKED_FOR_ROWS = 51
 """Rows the packing is chosen for; any number works."""
@@ -30,7 +30,7 @@ _APPLY = getattr(torch.ops.mkldnn, "_linear_pointwise", None)
 class PackedLinear(nn.Module):
     """A linear layer for inference; `gelu` adds the activation that follows it."""
 
-    def __init__(self, linear: nn.Linear, precision: Precision, *, gelu: bool = False) -> None:
+    def __init__(self, linear: nn.Linear, precision: Packing, *, gelu: bool = False) -> None:
         super().__init__()
         self._activation = "gelu" if gelu else "none"
         self._dtype = torch.bfloat16 if precision == "bf16" else torch.float32
@@ -51,7 +51,7 @@ def can_pack() -> bool:
     return torch.backends.mkldnn.is_available() and _PACK is not None and _APPLY is not None
 
 
-def fastest_precision(width: int = 1024, n_calls: int = 8) -> Precision:
+def fastest_precision(width: int = 1024, n_calls: int = 8) -> Packing:
     """The faster of the two here, by timing a layer of `width`: about 20 ms. fp32 unless bf16 gains a quarter."""
     if not can_pack():
         return "fp32"
@@ -67,7 +67,7 @@ def fastest_precision(width: int = 1024, n_calls: int = 8) -> Precision:
     return "bf16" if seconds["bf16"] < 0.75 * seconds["fp32"] else "fp32"
 
 
-def pack(module: nn.Module, precision: Precision = "fp32") -> nn.Module:
+def pack(module: nn.Module, precision: Packing = "fp32") -> nn.Module:
     """Replace the linear layers of `module` in place, for inference only; returns it.
 
     bf16 halves the memory traffic and is faster where the processor has matrix units for it (AMX); it changes tokens.
@@ -77,7 +77,7 @@ def pack(module: nn.Module, precision: Precision = "fp32") -> nn.Module:
     return module
 
 
-def _replace(module: nn.Module, precision: Precision) -> None:
+def _replace(module: nn.Module, precision: Packing) -> None:
     children = list(module.named_children())
     for i, (name, child) in enumerate(children):
         if isinstance(child, nn.Linear) and min(child.weight.shape) >= SMALLEST:

@@ -16,7 +16,7 @@ from daemon.bench.report import context, percentiles_ms
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
 from daemon.demo import free_endpoints
-from daemon.events import Done, Failed, Progress, Rejected
+from daemon.events import Cancelled, Done, Failed, Progress, Rejected
 from daemon.keys import KeyFolder
 from daemon.requests import Say
 
@@ -80,15 +80,15 @@ def _times(
     """
     first_s: list[float] = []
     generate_s: list[float] = []
-    refused: list[str] = []
+    refused: dict[str, str] = {}
     for i, text in enumerate(texts):
         if before:
             client.story(before, loop=True, seed=seed + i, wait=False)
             client.wait_for("moving", timeout_s=10)
             time.sleep(STORY_S)
-        first_ms, generate_ms = _first_motion(client, f"{name}-{i}", text, seed + i)
+        first_ms, generate_ms, reason = _first_motion(client, f"{name}-{i}", text, seed + i)
         if first_ms is None:
-            refused.append(text)
+            refused[text] = reason
         else:
             first_s.append(first_ms / 1e3)
             generate_s.append(generate_ms / 1e3)
@@ -102,21 +102,22 @@ def _times(
         else:
             time.sleep(REST_S)
     if not first_s:
-        raise RuntimeError(f"no text moved the robot; refused: {refused}")
+        raise RuntimeError(f"no text moved the robot ({name}): {refused}")
     figures: dict[str, Any] = percentiles_ms(first_s) | {"n": len(first_s), "generate": percentiles_ms(generate_s)}
     return figures | ({"without_motion": refused} if refused else {})
 
 
-def _first_motion(client: Client, command_id: str, text: str, seed: int) -> tuple[float | None, float]:
-    """Milliseconds to the first moving frame (None when nothing moved) and spent in the generator."""
-    generate_ms = 0.0
+def _first_motion(client: Client, command_id: str, text: str, seed: int) -> tuple[float | None, float, str]:
+    """Milliseconds to the first moving frame (None when nothing moved) and spent in the generator; why nothing moved."""
+    generate_ms, reason = 0.0, "no end was told"
     for event in client.events_of(Say(id=command_id, text=text, seed=seed)):
         generate_ms = getattr(event, "generate_ms", generate_ms)
         if isinstance(event, Progress | Done) and event.first_motion_ms is not None:
-            return event.first_motion_ms, generate_ms
-        if isinstance(event, Rejected | Failed):
+            return event.first_motion_ms, generate_ms, ""
+        if isinstance(event, Rejected | Failed | Cancelled | Done):
+            reason = str(event)
             break
-    return None, generate_ms
+    return None, generate_ms, reason
 
 
 @contextlib.contextmanager

@@ -55,7 +55,7 @@ def bench_generate(seed: int = 0) -> dict[str, Any]:
         "in_turn_ms": round(1e3 * in_turn_s, 1),
         "reference_forward_ms": round(1e3 * forward_s, 1),
         "ratio": round(motion_s / forward_s, 3),
-        "precision": "fp32",
+        "precision": engine.precision,
         "steps": engine.settings.n_steps(n_tokens),
         "guidance": engine.settings.guidance,
         "n": REPEATS,

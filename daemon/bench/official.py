@@ -15,13 +15,14 @@ N_TOKENS = 49
 
 
 def bench_official(seed: int = 0) -> dict[str, Any]:
-    """`fp32_s`, `bf16_s`, `reference_forward_ms`, `tokens_identical`, and the ratio of the first to the third.
+    """`fp32_s`, `bf16_s`, `int8_s` (where the processor can), `reference_forward_ms`, `tokens_identical`, and ratios to one.
 
     Random weights: speed does not depend on them. `tokens_identical` compares the packed fp32 model with the plain one,
     by arg-max and by sampling. The steps are the released ten; the released code needs ten plain passes and more.
     """
     import torch
 
+    from mmm_core.eight_bit import can_eight_bit, to_eight_bit
     from mmm_core.packed import pack
     from mmm_core.sampling import OFFICIAL_SAMPLING, empty_row, fill
     from mmm_core.text import TextStates
@@ -35,8 +36,11 @@ def bench_official(seed: int = 0) -> dict[str, Any]:
     words = torch.randn(1, 77, OFFICIAL.text_dim)
     text = TextStates(words, torch.ones(1, 77, dtype=torch.bool), words.mean(1))
     closed = torch.full((1, N_TOKENS + 1, 1), plain.ids.mask)
-    models = {"fp32": pack(copy.deepcopy(plain)), "bf16": pack(copy.deepcopy(plain), "bf16")}
     row = [empty_row(plain, N_TOKENS)]
+    models = {"fp32": pack(copy.deepcopy(plain)), "bf16": pack(copy.deepcopy(plain), "bf16")}
+    if can_eight_bit():
+        eight = copy.deepcopy(plain)
+        models["int8"] = to_eight_bit(eight, lambda: fill(eight, text, row, [seed], OFFICIAL_SAMPLING))
 
     def forward() -> None:
         with torch.inference_mode():
@@ -46,7 +50,7 @@ def bench_official(seed: int = 0) -> dict[str, Any]:
         with torch.inference_mode():
             tokenizer.decode(fill(model, text, row, [seed], OFFICIAL_SAMPLING)[0][None])
 
-    times: dict[str, list[float]] = {"forward": [], "fp32": [], "bf16": []}
+    times: dict[str, list[float]] = {"forward": [], **{name: [] for name in models}}
     for repeat in range(REPEATS + 1):
         for name, kept in times.items():
             start = time.perf_counter()
@@ -60,14 +64,13 @@ def bench_official(seed: int = 0) -> dict[str, Any]:
         torch.equal(*(fill(m, text, row, [seed], how)[0] for m in (plain, models["fp32"])))  # type: ignore[arg-type]
         for how in (OFFICIAL_SAMPLING, replace(OFFICIAL_SAMPLING, temperature=1.0))
     )
-    forward_s, fp32_s, bf16_s = (statistics.median(times[name]) for name in ("forward", "fp32", "bf16"))
+    seconds = {name: statistics.median(kept) for name, kept in times.items()}
+    forward_s = seconds.pop("forward")
     return {
-        "fp32_s": round(fp32_s, 3),
-        "bf16_s": round(bf16_s, 3),
+        **{f"{name}_s": round(took_s, 3) for name, took_s in seconds.items()},
+        **{f"{name}_in_forwards": round(took_s / forward_s, 2) for name, took_s in seconds.items()},
         "reference_forward_ms": round(1e3 * forward_s, 1),
         "tokens_identical": identical,
-        "fp32_in_forwards": round(fp32_s / forward_s, 2),
-        "bf16_in_forwards": round(bf16_s / forward_s, 2),
         "steps": 10,
         "n": REPEATS,
         **context(seed, f"median of {REPEATS} alternating runs, one thread, 196 frames, tokens and features, no text"),

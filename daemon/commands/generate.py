@@ -36,7 +36,7 @@ class SceneLine(msgspec.Struct, forbid_unknown_fields=True):
     seconds: float | None = None
 
 
-Precision = Literal["fp32", "bf16", "auto"]
+Precision = Literal["fp32", "bf16", "int8", "auto"]
 Line = TypeVar("Line", bound=msgspec.Struct)
 
 
@@ -51,7 +51,7 @@ def generate(
     candidates: int = 1,
     model: Path | None = None,
     threads: int = 1,
-    precision: Precision = "fp32",
+    precision: Precision | None = None,
     json: bool = False,
 ) -> int:
     """Turn a text into the motion of 22 joints at 20 fps, in an .npz file, and a .bvh for Blender on request.
@@ -75,7 +75,8 @@ def generate(
         candidates: motions made at once, of which the model's likeliest is kept.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
-        precision: of matrix products; auto times both here. bf16 may choose another token now and then.
+        precision: of matrix products; int8 for the shipped model where the processor multiplies such integers (VNNI), else
+            fp32; auto times fp32 and bf16. Another precision may choose another token now and then.
         json: print one JSON object for each motion.
     """
     if sum(source is not None for source in (text, batch, story)) != 1:
@@ -150,7 +151,7 @@ def _tell(path: Path, out: Path, bvh: Path | None, seed: int, engine: Engine) ->
     return 0 if len(whole.joints_m) else 1
 
 
-def _load(model: Path | None, threads: int, precision: Precision) -> Engine:
+def _load(model: Path | None, threads: int, precision: Precision | None) -> Engine:
     from mmm_core.engine import Engine
 
     return Engine.load(model, threads=threads, precision=precision)

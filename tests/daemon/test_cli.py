@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import signal
 import subprocess
 import sys
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -184,3 +187,27 @@ def test_generate_writes_what_the_design_names(tmp_path):
     with np.load(tmp_path / "many" / "a.npz") as again, np.load(tmp_path / "many" / "b.npz") as other:
         assert np.array_equal(again["joints"], joints)  # the same seed, the same motion
         assert len(other["joints"]) == 40
+
+
+@needs_model
+def test_a_command_that_is_terminated_takes_along_what_it_started():
+    bench = subprocess.Popen([sys.executable, "-m", "daemon.cli", "bench", "stream", "--n", "500"], text=True)
+    try:
+        daemon = _started_by(bench.pid, "run")
+        bench.terminate()
+        assert bench.wait(20) == 128 + signal.SIGTERM
+        assert not Path(f"/proc/{daemon}").exists()
+    finally:
+        bench.kill()
+        bench.wait()
+
+
+def _started_by(pid: int, command: str) -> int:
+    """A process with `command` among its arguments that `pid` has started."""
+    end_s = time.monotonic() + 20
+    while time.monotonic() < end_s:
+        for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split():
+            if command in Path(f"/proc/{child}/cmdline").read_text().split("\0"):
+                return int(child)
+        time.sleep(0.05)
+    raise AssertionError(f"process {pid} started no {command}")
