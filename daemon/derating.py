@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from daemon.bus.reading import UNKNOWN, BusReading
 from daemon.errors import CommandError
-from daemon.shared import Setpoint
 
 Array = NDArray[np.float64]
 
@@ -143,51 +142,3 @@ class Derating:
 def _between(x: Array, low: Array, high: Array) -> Array:
     """Shares that fall from 1 at `high` to `LEAST_SHARE` at `low`."""
     return LEAST_SHARE + (1 - LEAST_SHARE) * np.minimum(np.maximum((x - low) / (high - low), 0.0), 1.0)
-
-
-class Source(Protocol):
-    """Where setpoints come from."""
-
-    def take_setpoint(self) -> Setpoint | None:
-        """The next one; None when there is none."""
-        ...
-
-
-class SlowedSetpoints:
-    """Setpoints at a share of their rate, between two of them where a cycle falls between.
-
-    At full speed they pass as they are, so that a replay is the same bit for bit.
-    """
-
-    def __init__(self, source: Source) -> None:
-        self._source = source
-        self._pair: tuple[Setpoint, Setpoint] | None = None
-        self._phase = 0.0
-
-    def reset(self) -> None:
-        """A new motion begins."""
-        self._pair, self._phase = None, 0.0
-
-    def take(self, share: float) -> Setpoint | None:
-        """The setpoint of this cycle; None when it has not come yet."""
-        if self._pair is None:
-            first = self._source.take_setpoint()
-            if share >= 1.0 or first is None or first.last:
-                return first
-            second = self._source.take_setpoint()
-            if second is None:
-                return first
-            self._pair, self._phase = (first, second), 0.0
-            return first
-        self._phase += share
-        while self._phase >= 1.0:
-            before = self._pair[1]
-            following = None if before.last else self._source.take_setpoint()
-            if following is None:  # the end, or the front is late: from here it goes on as from anywhere
-                self.reset()
-                return before
-            self._pair, self._phase = (before, following), self._phase - 1.0
-        a, b = self._pair
-        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is the gate's to refuse
-            q_rad = a.q_rad + self._phase * (b.q_rad - a.q_rad)
-        return Setpoint(a.plan_id, a.frame, False, q_rad)

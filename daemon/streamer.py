@@ -22,9 +22,10 @@ from daemon.bus.packet import ALERT_BIT
 from daemon.bus.reading import BusReading
 from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.clock import Clock
-from daemon.derating import Derating, SlowedSetpoints, read_limits
+from daemon.derating import Derating, read_limits
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
+from daemon.pace import Pace, SlowedSetpoints
 from daemon.shared import BusLink, BusRequest, BusState, Readiness, valid_requests
 from retarget.collision import SelfContact
 from retarget.free_way import WaySearch
@@ -97,7 +98,7 @@ class Streamer:
         self._torque_off_left = 0
         self._made_limp = False
         self._derating = Derating(robot.n_servos, robot.bus.period_s)
-        self._setpoints = SlowedSetpoints(link)
+        self._setpoints, self._pace = SlowedSetpoints(link), Pace(robot.bus.period_s)
         self._asked: list[BusRequest] = []
         self._fed_s = clock.now_s()
 
@@ -308,7 +309,7 @@ class Streamer:
             self._setpoints.reset()
 
     def _play(self) -> NDArray[np.float64]:
-        setpoint = self._setpoints.take(self._derating.share)
+        setpoint = self._setpoints.take(min(self._derating.share, self._pace.update(held=self._gate.held)))
         if setpoint is not None:
             self._plan_id, self._frame, self._last = setpoint.plan_id, setpoint.frame, setpoint.last
             self._setpoint_rad = setpoint.q_rad

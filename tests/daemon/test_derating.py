@@ -6,12 +6,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from daemon.bus.reading import BusReading
-from daemon.derating import LEAST_SHARE, DeratedBy, Derating, ServoLimits, SlowedSetpoints
-from daemon.shared import BusState, Setpoint
+from daemon.derating import LEAST_SHARE, DeratedBy, Derating, ServoLimits
+from daemon.shared import BusState
 from sim.faults import Fault
 from tests.daemon.rig import rig, swing
 
@@ -57,39 +55,6 @@ def test_a_moment_of_high_current_slows_nothing_and_the_share_never_jumps():
         shares.append(derating.share)
     assert min(shares[:1000]) == 1.0 and shares[-1] < 0.4
     assert np.abs(np.diff(shares)).max() <= 0.5 * PERIOD_S + 1e-9
-
-
-class Ring:
-    """Setpoints in a list."""
-
-    def __init__(self, q: np.ndarray) -> None:
-        self.left = [Setpoint(1, i, i == len(q) - 1, row) for i, row in enumerate(q)]
-
-    def take_setpoint(self) -> Setpoint | None:
-        return self.left.pop(0) if self.left else None
-
-
-@given(st.lists(st.floats(LEAST_SHARE, 1.0), min_size=1, max_size=200), st.integers(2, 60))
-def test_slowed_setpoints_keep_to_the_path_and_come_to_its_end(shares, n):
-    """On a straight ramp the value tells the place: it never goes back, never faster than the share, to the very end."""
-    q = np.linspace(0, n - 1, n)[:, None]
-    slowed, places = SlowedSetpoints(Ring(q)), []
-    for i in range(10 * n):
-        setpoint = slowed.take(shares[i % len(shares)])
-        if setpoint is None:
-            break
-        places.append(float(setpoint.q_rad[0]))
-    assert places[0] == 0 and places[-1] == n - 1 and setpoint is None
-    steps = np.diff(places)
-    assert steps.min() >= -1e-12 and steps.max() <= 1 + 1e-9
-
-
-def test_at_full_speed_every_setpoint_passes_as_it_is():
-    q = np.random.default_rng(0).normal(size=(50, 3))
-    slowed = SlowedSetpoints(Ring(q))
-    given_out = [slowed.take(1.0) for _ in range(50)]
-    assert all(np.array_equal(s.q_rad, row) for s, row in zip(given_out, q, strict=True))
-    assert [s.last for s in given_out] == [False] * 49 + [True]
 
 
 def test_a_hot_servo_slows_the_robot_before_it_trips_and_it_comes_to_the_same_end():
