@@ -17,8 +17,13 @@ from retarget.spans import Known, Spans
 
 KEPT = 0.8
 """Share of the margin that is proved for every instant of a path."""
+_FROM_WITHIN = 0.1
+"""A path that begins within a margin may come nearer by this share of it while it turns away."""
 _DEEPEST = 8
 """Halvings of a segment after which it counts as touching; distances that near and movements that small do not occur."""
+_ROUNDING_M = 1e-6
+Allowed = tuple[Array, Array]
+"""(P,) metres that each pair keeps at the borders of segments, and at every instant."""
 
 
 class SelfContact(PairDistances):
@@ -101,16 +106,30 @@ class SelfContact(PairDistances):
         moved = above[:, some_of].any(1) if some_of else solid
         return np.flatnonzero(solid & moved & ~above[:, none_of].any(1))
 
-    def along(self, control_rad: Array) -> NDArray[np.bool_]:
-        """(N - 2,) whether the robot may touch itself in each segment of a quadratic spline of N control points."""
+    def allowed_from(self, q_rad: Array) -> Allowed | None:
+        """What a path that begins in a pose (J,) within a margin keeps of it; None where the pose keeps them all."""
+        distance_m = self.distances_m(q_rad[None])[0]
+        within = distance_m < self._margin_m
+        if not within.any():
+            return None
+        least_m = np.minimum(KEPT * self._margin_m, distance_m - _FROM_WITHIN * self._margin_m)
+        return np.where(within, distance_m - _ROUNDING_M, self._margin_m), np.where(
+            within, least_m, KEPT * self._margin_m
+        )
+
+    def along(self, control_rad: Array, allowed: Allowed | None = None) -> NDArray[np.bool_]:
+        """(N - 2,) whether the robot may touch itself in each segment of a quadratic spline of N control points.
+
+        `allowed` is that of a pose within a margin in which a path began: nobody could ever leave such a pose otherwise.
+        """
+        margin_m, kept_m = (self._margin_m, KEPT * self._margin_m) if allowed is None else allowed
         known = self._known((control_rad[:-1] + control_rad[1:]) / 2, self._every)
         border = known.distance
-        touching = np.asarray((border < self._margin_m).any(1), bool)
+        touching = np.asarray((border < margin_m).any(1), bool)
         hit = touching[:-1] | touching[1:]
         step_rad = np.abs(control_rad[1:] - control_rad[:-1])
         step = step_rad @ self._sweep_m.T  # (N - 1, P)
         # Speed changes in a straight line, so a segment moves by no more than the mean of the speeds at its ends.
-        kept_m = KEPT * self._margin_m
         near = np.asarray(border[:-1] + border[1:] - (step[:-1] + step[1:]) / 2 < 2 * kept_m, bool) & ~hit[:, None]
         segment, of = np.flatnonzero(near.any(1)), np.flatnonzero(near.any(0))
         if not len(segment):
@@ -119,7 +138,7 @@ class SelfContact(PairDistances):
         moved = np.maximum(step[:-1], step[1:])
         bend_rad = np.abs(control_rad[2:] - 2 * control_rad[1:-1] + control_rad[:-2])
         bent = self._spans.bends_m(step_rad, bend_rad, moved)[segment][:, of]
-        moved, near, kept_m, margin_m = moved[segment][:, of], near[segment][:, of], kept_m[of], self._margin_m[of]
+        moved, near, kept_m, margin_m = moved[segment][:, of], near[segment][:, of], kept_m[of], margin_m[of]
         known, ends = known.of(of), np.stack([segment, segment + 1])
         u = np.tile((0.0, 1.0), (len(segment), 1))
         for _ in range(_DEEPEST):

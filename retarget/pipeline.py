@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mmm_core.motion import Motion
 from retarget.arm_chain import ArmChain
 from retarget.avoidance import STRENGTHS, Avoidance, stretches
-from retarget.collision import SelfContact
+from retarget.collision import Allowed, SelfContact
 from retarget.errors import MotionError
 from retarget.following import limit_path
 from retarget.hands import Hands, HumanContacts, read_contacts
@@ -29,6 +29,8 @@ from retarget.robot import RobotModel
 Array = NDArray[np.float64]
 _SETTLE_FRAMES = 16
 """Time given to reach the last pose; what then still moves, brakes."""
+_AWAY_FRAMES = 8
+"""Time given to leave a pose within a margin where the way to the motion from there touches."""
 _STILL_RAD = 5e-4
 """Less in a frame is the end of settling: a third of a tick of 4,096."""
 _MOST_FPS = 1000
@@ -145,15 +147,20 @@ class Retargeter:
         """
         before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
         eased, interventions = self._avoidance.lead_round(posed, begin.position_rad)
-        path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
+        allowed = self.contact.allowed_from(begin.position_rad)
+        path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
         for strength in STRENGTHS:
             if not hit.any():
                 break
             interventions += stretches(hit)
             eased = self._avoidance.push(eased, path, _of_frames(hit, len(path)), strength)
-            path, hit = self._limited(eased, posed, before, begin, period, keep, settle)
+            path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
+        if hit.any() and allowed is not None:  # it begins too near itself to turn to the motion: away from there first
+            eased = eased.copy()
+            eased[:_AWAY_FRAMES] = self._avoidance.lead_round(begin.position_rad[None], begin.position_rad)[0]
+            path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
         if hit.any():
-            path = self._stop_before_contact(path, hit, period)
+            path = self._stop_before_contact(path, hit, period, allowed)
         return path, interventions
 
     def poses(self, human: HumanPose, start: JointState | None = None) -> Poses:
@@ -181,14 +188,16 @@ class Retargeter:
         first, _ = self._avoidance.lead_round(wanted[:1], self.robot.rest_rad)
         return JointState(first[0], np.zeros(self.robot.n_joints))
 
-    def _stop_before_contact(self, path: Array, hit: NDArray[np.bool_], period: float) -> Array:
+    def _stop_before_contact(
+        self, path: Array, hit: NDArray[np.bool_], period: float, allowed: Allowed | None
+    ) -> Array:
         """The path up to where it can brake before it first touches, then held; the last resort."""
         first = int(hit.argmax())
         back = 1
         while True:
             kept = max(2, min(first + 2 - back, len(path)))
             stopped = self._held(path[:kept], period, len(path))
-            if kept == 2 or not self.contact.along(stopped).any():
+            if kept == 2 or not self.contact.along(stopped, allowed).any():
                 return stopped
             back *= 2
 
@@ -200,7 +209,15 @@ class Retargeter:
         return np.array(points)
 
     def _limited(
-        self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, keep: int, settle: bool
+        self,
+        eased: Array,
+        posed: Array,
+        pose_before: Array,
+        start: JointState,
+        period: float,
+        keep: int,
+        settle: bool,
+        allowed: Allowed | None,
     ) -> tuple[Array, NDArray[np.bool_]]:
         """Control points of a path near `eased` (T, J) that keeps every limit, and which segments touch.
 
@@ -220,11 +237,11 @@ class Retargeter:
             still = np.flatnonzero(~moves)
             last = n - _SETTLE_FRAMES + (int(still[0]) if len(still) else len(moves))  # where it first stands
             points = self._held(points[:last], period, last + 1)
-            return points, self.contact.along(points)
-        hit = self.contact.along(np.concatenate([points, self._braking(points, period)]))
+            return points, self.contact.along(points, allowed)
+        hit = self.contact.along(np.concatenate([points, self._braking(points, period)]), allowed)
         if keep < len(eased):
             cut = points[: keep + 2]
-            hit[keep - 1] |= self.contact.along(np.concatenate([cut[-2:], self._braking(cut, period)])).any()
+            hit[keep - 1] |= self.contact.along(np.concatenate([cut[-2:], self._braking(cut, period)]), allowed).any()
         return points, hit
 
     def _braking(self, control: Array, period: float) -> Array:

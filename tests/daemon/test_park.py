@@ -8,12 +8,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig import Rig, rig
 
+from daemon.pace import WAIT_S
 from daemon.shared import BusRequest, BusState
 from daemon.streamer import NO_WAY_LIMP_S
 from retarget import free_way
 from retarget.collision import SelfContact
 from retarget.limits import JointLimits
+from retarget.paths import JointState
+from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
+from tests.retarget.gestures import gesture
 
 ROBOTS = ("op2", "reference", "toddlerbot")
 BODIES = {name: SelfContact(load_robot(name), margin_m=0.0) for name in ROBOTS}
@@ -99,6 +103,25 @@ def test_a_plan_into_the_body_is_held_before_it_and_parked_from_there(name):
         r.cycle()
         r.until(BusState.LIMP, within_s=60)
         assert_never_in_itself(r)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_after_a_plan_into_the_body_the_next_motion_is_played(name):
+    """It stands nearer to itself than paths keep, and is led away all the same; the plan before does not wait for ever."""
+    with rig(name) as r:
+        r.arm()
+        r.push(np.repeat(into_itself(name)[None], 100, 0))
+        r.cycle(5)
+        assert r.state is BusState.PLAYING
+        r.until(BusState.HOLDING, within_s=1.0 + 2 * WAIT_S)
+        stands = r.goals_rad()[-1]
+        path = Retargeter(r.robot).retarget(gesture("wave"), JointState(stands, np.zeros(r.robot.n_joints)))
+        q = path.at_rate(r.robot.bus.rate_hz)
+        r.push(q[:100], 2)
+        r.cycle(120)
+        assert np.abs(r.goals_rad()[-1] - stands).max() > 0.2
+        assert np.abs(r.goals_rad()[-1] - q[99]).max() < 0.1  # where it then brakes
+        assert_parks(r)
 
 
 def blocked(name: str) -> np.ndarray:

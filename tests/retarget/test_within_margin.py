@@ -1,0 +1,56 @@
+"""A robot that stands nearer to itself than paths keep (a stop, a hand led it there) is led away, and never deeper."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from daemon.gate import GATE_SHARE, Gate
+from retarget.collision import KEPT, SelfContact
+from retarget.limits import JointLimits
+from retarget.paths import JointState
+from retarget.pipeline import Retargeter
+from retarget.robot import RobotModel, load_robot
+from tests.retarget.gestures import gesture
+
+ROBOTS = ("reference", "op2", "op3", "toddlerbot", "poppy_torso")
+N_POSES = 10
+
+
+def poses_within(robot: RobotModel, contact: SelfContact) -> NDArray[np.float64]:
+    """Poses that no path comes to, but that the gate lets be."""
+    rng, limits = np.random.default_rng(3), JointLimits.of(robot)
+    anywhere = rng.uniform(limits.position_min_rad, limits.position_max_rad, (4000, robot.n_joints))
+    q_rad = robot.rest_rad + rng.random((4000, 1)) * (anywhere - robot.rest_rad)
+    room, gate_room = contact.rooms_m(q_rad, 1.0).min(1), contact.rooms_m(q_rad, 1.05 * GATE_SHARE).min(1)
+    return q_rad[(room < 0) & (gate_room > 0)][:N_POSES]
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_motion_leaves_a_pose_within_the_margin(name: str) -> None:
+    robot = load_robot(name)
+    contact = SelfContact(robot)
+    retargeter, motion = Retargeter(robot, contact=contact), gesture("wave")
+    poses = poses_within(robot, contact)
+    assert len(poses) == N_POSES
+    stayed = 0
+    for pose in poses:
+        path = retargeter.retarget(motion, JointState(pose, np.zeros(robot.n_joints)))
+        q_rad = path.at_rate(4 * robot.bus.rate_hz)
+        start_m = contact.room_m(pose, 0.0)
+        margin_m = start_m - contact.room_m(pose, 1.0)
+        least_m = np.minimum(KEPT * margin_m, start_m - 0.1 * margin_m)
+        assert (contact.distances_m(q_rad) >= least_m - 1e-5).all()
+        gate, goals = Gate(robot, contact=contact), []
+        gate.reset(pose)
+        for target in path.at_rate(robot.bus.rate_hz):
+            goals.append(gate.step(target))
+        stayed += bool(np.abs(np.array(goals) - pose).max() < 0.05)
+    assert stayed <= 1, f"{stayed} of {N_POSES} motions did not leave"
+
+
+def test_a_pose_that_keeps_the_margins_is_given_nothing() -> None:
+    robot = load_robot("reference")
+    contact = SelfContact(robot)
+    assert contact.allowed_from(robot.rest_rad) is None
