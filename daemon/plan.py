@@ -6,6 +6,7 @@ What was played is forgotten, so that a loop or a story may last for ever.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +22,31 @@ KEPT_FRAMES = 512
 
 
 @dataclass(frozen=True)
+class Piece:
+    """A path, as far as it is made.
+
+    Attributes:
+        path: of the joints.
+        posture: what it was made of, from its first frame to the end of what is being made, later pieces included.
+        raw: the same without layers.
+        is_last: whether nothing of that is left.
+        complete: whether the plan ends with it.
+    """
+
+    path: JointPath
+    posture: Posture
+    raw: Posture
+    is_last: bool
+    complete: bool
+
+
+@dataclass(frozen=True)
 class Stretch:
-    """A path, the posture it was made of, and that without layers; its frames begin at `first` and end before `end`."""
+    """A piece in its plan: its bus frames begin at `first` and end before `end`."""
 
     first: int
     end: int
-    posture: Posture
-    raw: Posture
-    path: JointPath
+    piece: Piece
 
 
 class Plan:
@@ -56,14 +74,14 @@ class Plan:
         self.end: int | None = None
         self.pushed = 0
 
-    def append(self, path: JointPath, posture: Posture, *, complete: bool, raw: Posture | None = None) -> None:
-        """Add a stretch, which must begin where `state_at(n_frames - 1)` ends; `raw` is its posture without layers."""
-        frames = path.at_rate(self._rate_hz)
-        self._stretches.append(Stretch(self.n_frames, self.n_frames + len(frames), posture, raw or posture, path))
+    def append(self, piece: Piece) -> None:
+        """Add a piece, which must begin where `state_at(n_frames - 1)` ends."""
+        frames, report = piece.path.at_rate(self._rate_hz), piece.path.report
+        self._stretches.append(Stretch(self.n_frames, self.n_frames + len(frames), piece))
         self._frames.append(frames)
         self.n_frames += len(frames)
-        self.complete = complete
-        self.statistics.take_report(path.report, len(frames))
+        self.complete = piece.complete
+        self.statistics.take_report(report, len(frames))
         while len(self._stretches) > 1 and self._stretches[1].first < self.pushed - KEPT_FRAMES:
             self._kept_from += len(self._frames.pop(0))
             del self._stretches[0]
@@ -75,7 +93,8 @@ class Plan:
             self._frames.pop()
             self._stretches.pop()
         last = self._stretches[-1]
-        self._stretches[-1] = replace(last, end=n)
+        # What it was made of still tells what was to follow, so what comes next does not.
+        self._stretches[-1] = replace(last, end=n, piece=replace(last.piece, is_last=False))
         self._frames[-1] = self._frames[-1][: n - last.first]
         self.n_frames, self.complete = n, False
 
@@ -112,8 +131,9 @@ class Plan:
     def state_at(self, frame: int) -> JointState:
         """Position and velocity at a frame."""
         stretch = self._stretch(frame)
-        t_s = min((frame - stretch.first + 1) / self._rate_hz, stretch.path.duration_s)
-        return JointState(self.frames(frame, frame + 1)[0].copy(), stretch.path.velocity_at(np.array([t_s]))[0])
+        path = stretch.piece.path
+        t_s = min((frame - stretch.first + 1) / self._rate_hz, path.duration_s)
+        return JointState(self.frames(frame, frame + 1)[0].copy(), path.velocity_at(np.array([t_s]))[0])
 
     def step_at(self, frame: int) -> JointState:
         """Position at a frame and the difference quotient up to it, which is what the gate goes on from."""
@@ -125,16 +145,21 @@ class Plan:
     def posture_from(self, frame: int, n: int, *, raw: bool = False) -> Posture:
         """`n` frames of posture that follow bus frame `frame`; what is not planned stays as the last one is."""
         stretch = self._stretch(max(0, min(frame, self.n_frames - 1)))
-        fps = stretch.posture.fps
-        first = round((frame - stretch.first + 1) / self._rate_hz * fps)
-        return (stretch.raw if raw else stretch.posture).at(first + np.arange(n))
+        posture = stretch.piece.raw if raw else stretch.piece.posture
+        return posture.at(self._posture_frame(stretch, frame) + np.arange(n))
 
     def rest_raw(self, frame: int) -> Posture:
-        """What was planned to follow bus frame `frame`, without layers; at least one frame."""
+        """What is to follow bus frame `frame`, made already or not, without layers; at least one frame."""
         stretch = self._stretch(frame)
-        first = round((frame - stretch.first + 1) / self._rate_hz * stretch.raw.fps)
-        later = self._stretches[self._stretches.index(stretch) + 1 :]
-        return joined([stretch.raw[min(first, len(stretch.raw) - 1) :], *(s.raw for s in later)])
+        first = self._posture_frame(stretch, frame)
+        parts = [stretch.piece.raw[min(first, len(stretch.piece.raw) - 1) :]]
+        for before, following in pairwise(self._stretches[self._stretches.index(stretch) :]):
+            if before.piece.is_last:  # else it is in what the one before was made of
+                parts.append(following.piece.raw)
+        return joined(parts)
+
+    def _posture_frame(self, stretch: Stretch, frame: int) -> int:
+        return round((frame - stretch.first + 1) / self._rate_hz * stretch.piece.posture.fps)
 
     def _stretch(self, frame: int) -> Stretch:
         for stretch in self._stretches:

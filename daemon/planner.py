@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bus_view import BusView
-from daemon.plan import Plan
+from daemon.plan import Piece, Plan
 from daemon.plan_statistics import PlanStatistics
 from daemon.posture import Posture, posture_of, standing
 from daemon.shared import N_SETPOINTS, BusLink
@@ -23,12 +24,12 @@ from daemon.stream_plan import StreamPlan
 from daemon.stream_score import StreamScore
 from retarget.as_human import joints_of_path
 from retarget.human import read_human
-from retarget.paths import JointPath, JointState
-from retarget.pipeline import Retargeter
+from retarget.paths import JointState
+from retarget.pipeline import BLOCK_FRAMES, Retargeter
 from retarget.robot import RobotModel
 
-FIRST_RETARGET_S = 0.06
-"""Assumed time of the first retargeting; later ones are measured."""
+FIRST_RETARGET_S = 0.03
+"""Assumed time until the first piece of the first path is made; later ones are measured."""
 RETARGET_MARGIN = 1.5
 """The hand-over frame is so much later than retargeting is expected to take."""
 FADE_FRAMES = 8
@@ -100,16 +101,30 @@ class Planner:
         state = plan.step_at(frame) if at_once else plan.state_at(frame)
         return HandOver(state, plan.posture_from(frame, FADE_FRAMES), frame)
 
-    def retarget(self, posture: Posture, start: JointState, *, settle: bool = True) -> JointPath:
-        """The path of a posture from `start`; may run in a worker thread, one at a time.
+    def pieces(self, posture: Posture, raw: Posture, start: JointState, *, complete: bool) -> Iterator[Piece]:
+        """The path of a posture from `start`, piece by piece as it is made; each may be asked for in a worker thread.
+
+        Args:
+            posture: as it is played.
+            raw: the same without layers.
+            start: of the joints.
+            complete: whether the plan ends with it, at rest.
 
         Raises:
             MotionError: the motion cannot be retargeted.
         """
         began = time.perf_counter()
-        path = self._retargeter.retarget(posture.motion(), start, settle=settle)
-        self._retarget_s += 0.3 * (time.perf_counter() - began - self._retarget_s)
-        return path
+        motion, first, frames = posture.motion(), 0, BLOCK_FRAMES / posture.fps * self._rate_hz
+        if abs(frames - round(frames)) < 1e-9:
+            paths = self._retargeter.pieces(motion, start, settle=complete)
+        else:  # a piece would end between two frames of the bus
+            paths = iter([(self._retargeter.retarget(motion, start, settle=complete), len(posture))])
+        for path, n in paths:
+            if not first:
+                self._retarget_s += 0.3 * (time.perf_counter() - began - self._retarget_s)
+            is_last = first + n >= len(posture)
+            yield Piece(path, posture[first:], raw[first:], is_last, is_last and complete)
+            first += n
 
     @property
     def hand_over_missed(self) -> bool:
@@ -122,14 +137,11 @@ class Planner:
         self._last_id += 1
         return self._last_id
 
-    def commit(
-        self, path: JointPath, posture: Posture, plan_id: int, command_id: str, epoch: int, t_received_ns: int,
-        *, complete: bool = True, raw: Posture | None = None,
-    ) -> Plan:  # fmt: skip
+    def commit(self, piece: Piece, plan_id: int, command_id: str, epoch: int, t_received_ns: int) -> Plan:
         """Make a path the current plan; its frames follow those of the plan before it."""
         statistics = PlanStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
         plan = Plan(plan_id, command_id, epoch, self._rate_hz, statistics)
-        plan.append(path, posture, complete=complete, raw=raw)
+        plan.append(piece)
         self._succeed(plan)
         self.pump()
         return plan

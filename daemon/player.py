@@ -9,7 +9,7 @@ import asyncio
 import logging
 import math
 import time
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Iterator
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from daemon.follower import Follower
 from daemon.idle import IdleScore
 from daemon.layers import Layers
 from daemon.ledger import Entry, Ledger
-from daemon.plan import Plan
+from daemon.plan import Piece, Plan
 from daemon.planner import FADE_FRAMES, HandOver, Planner
 from daemon.posture import Posture, distance_deg, faded_in, standing
 from daemon.replies import NotPlayableError, as_failure, ending, failed
@@ -32,7 +32,6 @@ from daemon.stream_plan import StreamPlan
 from daemon.stream_score import StreamScore
 from daemon.stream_watch import StreamWatch
 from retarget.errors import RetargetError
-from retarget.paths import JointPath
 
 log = logging.getLogger(__name__)
 
@@ -63,6 +62,8 @@ class Player:
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._feeding = False
+        self._pieces: Iterator[Piece] | None = None
+        self._is_last = False
         self._moving_told = False
         self._held = False
         self._held_since_s: float | None = None
@@ -89,7 +90,8 @@ class Player:
                 start = self._planner.hand_over()
                 stretch = stretch or await asyncio.to_thread(score.next)
                 raw, last = stretch
-                posture, path = await asyncio.to_thread(self._made, raw, start, last, entry is None)
+                pieces = self._making(raw, start, complete=last, easy=entry is None)
+                piece = await asyncio.to_thread(next, pieces)
                 if not alive():
                     self._planner.give_up()
                     return False
@@ -101,7 +103,8 @@ class Player:
             self._begin(entry, score)
             t_received_ns = entry.t_received_ns if entry is not None else time.monotonic_ns()
             command_id = entry.id if entry is not None else ""
-            self._planner.commit(path, posture, plan_id, command_id, epoch, t_received_ns, complete=last, raw=raw)
+            self._planner.commit(piece, plan_id, command_id, epoch, t_received_ns)
+            self._make_on(pieces, piece, last)
             self._tell_taken_over(before, previous, entry)
             return True
 
@@ -176,7 +179,7 @@ class Player:
         if isinstance(plan, StreamPlan) and entry is not None:
             self._stream.look(plan, entry)
         if not plan.complete:
-            ready = self._score.ready
+            ready = self._pieces is not None or self._score.ready
             due = self._planner.ahead_s < FEED_AHEAD_S and plan.epoch == self._planner.epoch
             if ready and due and not self._feeding:
                 self._feeding = True
@@ -236,7 +239,7 @@ class Player:
             log.error("a stretch could not be made", exc_info=error)
 
     def _begin(self, entry: Entry | None, score: Score | StreamScore) -> None:
-        self.entry, self._score = entry, score
+        self.entry, self._score, self._pieces = entry, score, None
         self._moving_told, self._held_since_s = False, None
         self._held = entry is not None and isinstance(entry.request, Play) and entry.request.hold
         if entry is not None:
@@ -244,7 +247,11 @@ class Player:
         self._follower.idling = entry is None
 
     def _forget(self) -> None:
-        self.entry, self._score = None, None  # what was idling stays so until the bus process has played it out
+        self.entry, self._score, self._pieces = (
+            None,
+            None,
+            None,
+        )  # what was idling stays so until the bus process has played it out
         self._still_since_s = time.monotonic()
 
     def _fail(self, entry: Entry | None, found: str, plan_id: int) -> None:
@@ -292,11 +299,15 @@ class Player:
             plan, score = self._planner.current, self._score
             if plan is None or score is None or isinstance(score, StreamScore) or plan.complete or plan.end is not None:
                 return
-            raw, last = await asyncio.to_thread(score.next)
-            start = HandOver(plan.state_at(plan.n_frames - 1), raw, plan.n_frames - 1)
-            posture, path = await asyncio.to_thread(self._made, raw, start, last, False)
+            pieces, last = self._pieces, self._is_last
+            if pieces is None:
+                raw, last = await asyncio.to_thread(score.next)
+                start = HandOver(plan.state_at(plan.n_frames - 1), raw, plan.n_frames - 1)
+                pieces = self._making(raw, start, complete=last)
+            piece = await asyncio.to_thread(next, pieces)
             if plan is self._planner.current and score is self._score and plan.epoch == self._planner.epoch:
-                plan.append(path, posture, complete=last, raw=raw)
+                plan.append(piece)
+                self._make_on(pieces, piece, last)
                 self._planner.pump()
 
     def _give_up(self, score: Score | StreamScore | None, event: Rejected | Failed) -> None:
@@ -325,18 +336,20 @@ class Player:
         plan = self._planner.current
         if plan is None or start.frame is None:
             return
-        complete, rest = plan.complete, plan.rest_raw(start.frame)
-        posture, path = await asyncio.to_thread(self._made, rest, start, complete, False)
+        last = self._is_last
+        pieces = self._making(plan.rest_raw(start.frame), start, complete=last)
+        piece = await asyncio.to_thread(next, pieces)
         if plan is not self._planner.current or plan.epoch != self._planner.epoch or self._planner.hand_over_missed:
             self._planner.give_up()
             return
         plan.cut(start.frame)
-        plan.append(path, posture, complete=complete, raw=rest)
+        plan.append(piece)
+        self._make_on(pieces, piece, last)
         self._planner.give_up()  # it takes over from itself
         self._planner.pump()
 
-    def _made(self, raw: Posture, start: HandOver, last: bool, easy: bool) -> tuple[Posture, JointPath]:
-        """The posture as it is played, growing out of what was before, and its path. In a worker thread."""
+    def _making(self, raw: Posture, start: HandOver, *, complete: bool, easy: bool = False) -> Iterator[Piece]:
+        """The path of a stretch, growing out of what was before, piece by piece. Asked for in a worker thread."""
         posture = self._layers.over(raw)
         if start.before is not raw:
             n = FADE_FRAMES
@@ -344,7 +357,11 @@ class Player:
                 far_deg = float(distance_deg(start.before[-1:], posture[:1])[0])
                 n = max(n, math.ceil(far_deg / _EASY_DEG_S * posture.fps))
             posture = faded_in(posture, start.before, n)
-        return posture, self._planner.retarget(posture, start.state, settle=last)
+        yield from self._planner.pieces(posture, raw, start.state, complete=complete)
+
+    def _make_on(self, pieces: Iterator[Piece], made: Piece, is_last: bool) -> None:
+        """Keep what is left of a stretch that is being made, and whether it is the last."""
+        self._pieces, self._is_last = None if made.is_last else pieces, is_last
 
     async def _until_at_rest(self) -> None:
         end_s = time.monotonic() + BRAKING_TIMEOUT_S

@@ -5,6 +5,7 @@ human -> waist -> neck -> arms -> unseen joints rest -> limits -> self-contact -
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -96,12 +97,7 @@ class Retargeter:
         Raises:
             MotionError: the motion is empty or has bones that no human has.
         """
-        if not 1 <= motion.fps <= _MOST_FPS:
-            raise MotionError("fps", str(motion.fps), f"1 to {_MOST_FPS} frames per second")
-        poses = self.poses(read_human(motion), start)
-        contacts = read_contacts(motion) if self._hands else HumanContacts({})
-        if self._hands and contacts.any:
-            poses = replace(poses, q_rad=self._hands.keep(poses.q_rad, contacts))
+        poses, contacts = self._wanted(motion, start)
         path = self._path(poses, contacts, motion.fps, start, settle, 1.0)
         for stretch in _STRETCHES:
             if most_error_deg is None or path.report.direction_mean_deg <= most_error_deg:
@@ -112,31 +108,66 @@ class Retargeter:
             path = slower
         return path
 
+    def pieces(
+        self, motion: Motion, start: JointState | None = None, *, settle: bool = True
+    ) -> Iterator[tuple[JointPath, int]]:
+        """The path of `retarget`, block after block as each is made, and how many frames of the motion each is.
+
+        Each begins where the one before ends, and should no other follow there is a free way to brake at its end. All but
+        the last are of `BLOCK_FRAMES`.
+
+        Raises:
+            MotionError: as in `retarget`.
+        """
+        poses, _ = self._wanted(motion, start)
+        first = 0
+        for block, n, changes in self._blocks(poses.q_rad, self._begin(poses.q_rad, start), 1.0 / motion.fps, settle):
+            part = poses.part(slice(first, first + n))
+            yield self._joint_path(block, part, HumanContacts({}), motion.fps, changes, 1.0), n
+            first += n
+
+    def _wanted(self, motion: Motion, start: JointState | None) -> tuple[Poses, HumanContacts]:
+        """The poses that a motion wants, and what its hands touch."""
+        if not 1 <= motion.fps <= _MOST_FPS:
+            raise MotionError("fps", str(motion.fps), f"1 to {_MOST_FPS} frames per second")
+        poses = self.poses(read_human(motion), start)
+        contacts = read_contacts(motion) if self._hands else HumanContacts({})
+        if self._hands and contacts.any:
+            poses = replace(poses, q_rad=self._hands.keep(poses.q_rad, contacts))
+        return poses, contacts
+
     def _path(
         self, poses: Poses, contacts: HumanContacts, fps: float, start: JointState | None, settle: bool, stretch: float
     ) -> JointPath:
-        """The path of poses that keeps every limit and touches nothing, block by block."""
-        period = 1.0 / fps
-        begin = self._begin(poses.q_rad, start)
-        T, first, interventions = len(poses.q_rad), 0, 0
-        parts: list[Array] = []
+        """The path of poses that keeps every limit and touches nothing."""
+        blocks = list(self._blocks(poses.q_rad, self._begin(poses.q_rad, start), 1.0 / fps, settle))
+        path = np.concatenate([block if i == 0 else block[2:] for i, (block, _, _) in enumerate(blocks)])
+        return self._joint_path(path, poses, contacts, fps, sum(changes for _, _, changes in blocks), stretch)
+
+    def _joint_path(
+        self, path: Array, poses: Poses, contacts: HumanContacts, fps: float, interventions: int, stretch: float
+    ) -> JointPath:
+        ends = self.limits.position_min_rad, self.limits.position_max_rad
+        comparison = self._compare(poses, contacts, path, fps, interventions, stretch)
+        return JointPath(path, self.robot.joint_names, fps, comparison, ends)
+
+    def _blocks(self, posed: Array, begin: JointState, period: float, settle: bool) -> Iterator[tuple[Array, int, int]]:
+        """Control points for poses (T, J), block by block, how many frames each is, and times it was changed.
+
+        The first two of a block are the last two of the one before.
+        """
+        T, first = len(posed), 0
         while first < T:
             # A block is solved with some frames after it in view; a rest that is hardly longer is part of it.
             is_last = first + BLOCK_FRAMES + _AHEAD_FRAMES >= T
             last = T if is_last else first + BLOCK_FRAMES + _AHEAD_FRAMES
             keep = last - first if is_last else BLOCK_FRAMES
-            block, changes = self._block(
-                poses.q_rad[max(first - 1, 0) : last], begin, period, keep, settle and is_last, first > 0
-            )
-            interventions += changes
+            view = posed[max(first - 1, 0) : last]
+            block, changes = self._block(view, begin, period, keep, settle and is_last, first > 0)
             block = block if is_last else block[: keep + 2]
-            parts.append(block if first == 0 else block[2:])
+            yield block, keep, changes
             begin = JointState((block[-2] + block[-1]) / 2, (block[-1] - block[-2]) / period)
             first += keep
-        path = np.concatenate(parts)
-        ends = self.limits.position_min_rad, self.limits.position_max_rad
-        comparison = self._compare(poses, contacts, path, fps, interventions, stretch)
-        return JointPath(path, self.robot.joint_names, fps, comparison, ends)
 
     def _block(
         self, posed: Array, begin: JointState, period: float, keep: int, settle: bool, continued: bool

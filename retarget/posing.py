@@ -53,6 +53,10 @@ class Poses:
     upper: Array
     fore: Array
 
+    def part(self, frames: slice) -> Poses:
+        """Some of the frames."""
+        return Poses(self.q_rad[frames], self.outside[frames], self.upper[:, frames], self.fore[:, frames])
+
     def stretched(self, times: float) -> Poses:
         """The same, so many times slower."""
         T = len(self.q_rad)

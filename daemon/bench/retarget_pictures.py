@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from daemon.bench.motions import bench_motions
 from daemon.bench.retarget import causal_path, with_common_limits, wrist_speed_m_s
 from mmm_core.motion import FPS, Motion
-from retarget.collision import SelfContact
+from retarget.collision import Allowed, SelfContact
 from retarget.human import read_human
 from retarget.pipeline import Retargeter
 from retarget.robot import RobotModel, list_robots, load_robot
@@ -34,7 +34,7 @@ _BLUE, _ORANGE, _GREY, _RED = "#3b6ea8", "#d98032", "#8a8a8a", "#b03a3a"
 class _Untouchable(SelfContact):
     """A robot that may go through itself: what is left of the error then is reach and limits."""
 
-    def along(self, control_rad: Array) -> NDArray[np.bool_]:
+    def along(self, control_rad: Array, allowed: Allowed | None = None) -> NDArray[np.bool_]:
         return np.zeros(len(control_rad) - 2, bool)
 
     def frames(self, q_rad: Array, share: float = 1.0) -> NDArray[np.bool_]:

@@ -65,10 +65,16 @@ class Bench:
         """Take over as the performer does; retargeting takes some bus cycles meanwhile."""
         posture = posture_of(motion)
         start = self.planner.hand_over()
-        path = self.planner.retarget(posture, start.state)
+        pieces = list(self.planner.pieces(posture, posture, start.state, complete=True))
         self.cycle(retarget_cycles)
         assert not self.planner.hand_over_missed
-        return self.planner.commit(path, posture, self.planner.new_plan_id(), plan_name, self.planner.epoch, 0)
+        return self.commit(pieces, plan_name)
+
+    def commit(self, pieces, plan_name: str = "c"):
+        plan = self.planner.commit(pieces[0], self.planner.new_plan_id(), plan_name, self.planner.epoch, 0)
+        for piece in pieces[1:]:
+            plan.append(piece)
+        return plan
 
     def finish(self) -> None:
         for _ in range(1500):
@@ -176,7 +182,7 @@ def test_a_late_front_brakes_and_the_next_motion_starts_from_there(bench):
     bench.play(RIGHT)
     bench.cycle(20)
     start = bench.planner.hand_over()
-    path = bench.planner.retarget(LEFT_POSTURE, start.state)
+    next(bench.planner.pieces(LEFT_POSTURE, LEFT_POSTURE, start.state, complete=True))
     bench.cycle(60, pump=True)  # retargeting takes far longer than foreseen
     assert bench.planner.hand_over_missed
     for _ in range(300):
@@ -185,8 +191,7 @@ def test_a_late_front_brakes_and_the_next_motion_starts_from_there(bench):
             break
     start = bench.planner.hand_over().state
     assert np.array_equal(start.position_rad, bench.view.goal_rad) and not start.velocity_rad_s.any()
-    path = bench.planner.retarget(LEFT_POSTURE, start)
-    bench.planner.commit(path, LEFT_POSTURE, bench.planner.new_plan_id(), "c", bench.planner.epoch, 0)
+    bench.commit(list(bench.planner.pieces(LEFT_POSTURE, LEFT_POSTURE, start, complete=True)))
     bench.finish()
     assert_within_limits(bench)
 

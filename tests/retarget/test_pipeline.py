@@ -18,7 +18,7 @@ from retarget.errors import MotionError
 from retarget.kinematics import Kinematics
 from retarget.limits import limit_step
 from retarget.paths import JointPath, JointState
-from retarget.pipeline import Retargeter
+from retarget.pipeline import BLOCK_FRAMES, Retargeter
 from retarget.robot import load_robot
 
 RETARGETERS = {name: Retargeter(load_robot(name)) for name in ("reference", "op3")}
@@ -276,3 +276,17 @@ def test_a_bad_file_is_named_with_its_key(
     error = capsys.readouterr().err
     assert re.search(said, error) and str(tmp_path / "bad.npz") in error and "Traceback" not in error, error
     assert not (tmp_path / "out.npz").exists()
+
+
+@pytest.mark.parametrize("settle", [True, False])
+@pytest.mark.parametrize("frames", [1, 20, 33, 75, 160])
+def test_the_pieces_of_a_path_are_the_path(frames, settle):
+    retargeter, whole = Retargeter(load_robot("reference")), random_motion(4, frames, "smooth")
+    start = JointState(retargeter.robot.rest_rad, np.zeros(retargeter.robot.n_joints))
+    path = retargeter.retarget(whole, start, settle=settle)
+    pieces = list(retargeter.pieces(whole, start, settle=settle))
+    assert sum(n for _, n in pieces) == frames
+    assert all(n == BLOCK_FRAMES for _, n in pieces[:-1])
+    np.testing.assert_allclose(
+        np.concatenate([p.at_rate(100) for p, _ in pieces]), path.at_rate(100), rtol=0, atol=1e-9
+    )
