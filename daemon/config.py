@@ -141,7 +141,7 @@ class DaemonConfig:
     motions: Path | None = None
     model_hash: str = ""
     metrics: str = ""
-    queue_s: float = 0.06
+    queue_s: float = 0.1
     state_rate_hz: float = 20.0
     generate_timeout_s: float = 10.0
     park_timeout_s: float = 20.0

@@ -30,8 +30,8 @@ from retarget.robot import RobotModel
 
 FIRST_RETARGET_S = 0.03
 """Assumed time until the first piece of the first path is made; later ones are measured."""
-RETARGET_MARGIN = 1.5
-"""The hand-over frame is so much later than retargeting is expected to take."""
+RETARGET_MARGIN, RETRY_MARGIN, SPARE_FRAMES = 1.0, 1.2, 1
+"""The hand-over frame is so much later than a first piece is expected to take, or took just now, and so many frames more."""
 FADE_FRAMES = 8
 """Frames of posture (0.4 s) over which a motion grows out of what came before it."""
 
@@ -64,6 +64,7 @@ class Planner:
         self._queue_frames = max(2, math.ceil(queue_s * self._rate_hz))
         self._stream_frames = max(2, math.ceil(stream_queue_s * self._rate_hz))
         self._from_rest = False
+        self._handing_over: int | None = None
         self._retarget_s = FIRST_RETARGET_S
         self._last_goal_tick: NDArray[np.int32] | None = None
         self._plans: list[Plan] = []
@@ -76,13 +77,16 @@ class Planner:
         """Grows with each stop, e-stop and park; a plan of a text that came before is never played."""
         return self._link.epoch
 
-    def hand_over(self, *, at_once: bool = False) -> HandOver:
-        """Where a new path must start; `commit` or `give_up` must follow.
+    def hand_over(self, *, took_s: float = 0.0) -> HandOver:
+        """Where a new path must start; `commit`, `go_on_otherwise` or `give_up` must follow.
 
-        The running plan goes on up to the frame at which the new one takes over: the next one when `at_once`, with the
-        difference quotient as velocity.
+        That is a frame of the running plan so far ahead that the first piece of the path will be there in time; the plan
+        goes on beyond it meanwhile, and if the piece is late it is tried again.
+
+        Args:
+            took_s: that piece of an attempt before.
         """
-        plan, self._from_rest = self.current, False
+        plan, self._from_rest, self._handing_over = self.current, False, None
         if isinstance(plan, StreamPlan) and self.running and self._ran_dry(plan):
             plan.end, self._from_rest = plan.pushed, True  # nothing moves until `commit`, or `give_up`
             at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
@@ -91,15 +95,26 @@ class Planner:
             self.drop()
             at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
             return HandOver(at_rest, self._posture, None)
-        lead = math.ceil(RETARGET_MARGIN * self._retarget_s * self._rate_hz) - self._link.queued_frames
-        lead -= sum(p.limit - p.pushed for p in self._plans[:-1])
-        lead = 0 if at_once else lead
+        ahead_s = max(RETARGET_MARGIN * self._retarget_s, RETRY_MARGIN * took_s)
+        waiting = sum(p.limit - p.pushed for p in self._plans[:-1])  # of plans before, and what the bus has of them
+        before = waiting + max(0, self._link.queued_frames - plan.pushed)
+        frame = self._next_frame(plan) + max(0, int(ahead_s * self._rate_hz) + SPARE_FRAMES - before)
         if isinstance(plan, StreamPlan):
-            plan.extend(plan.pushed + max(0, lead))
-        frame = max(0, min(plan.pushed + max(0, lead), plan.n_frames) - 1)
-        plan.end = frame + 1
-        state = plan.step_at(frame) if at_once else plan.state_at(frame)
-        return HandOver(state, plan.posture_from(frame, FADE_FRAMES), frame)
+            plan.extend(frame + 1)
+        frame = max(0, min(frame, plan.n_frames - 1))
+        self._handing_over = frame
+        return HandOver(plan.state_at(frame), plan.posture_from(frame, FADE_FRAMES), frame)
+
+    def hand_over_at_once(self) -> HandOver:
+        """The same after the last frame pushed, with the difference quotient as velocity; `commit_stream` must follow."""
+        plan = self.current
+        if plan is None or not self.running or self._ran_dry(plan):
+            return self.hand_over()
+        if isinstance(plan, StreamPlan):
+            plan.extend(plan.pushed)
+        self._from_rest, frame = False, max(0, min(plan.pushed, plan.n_frames) - 1)
+        self._handing_over = frame
+        return HandOver(plan.step_at(frame), plan.posture_from(frame, FADE_FRAMES), frame)
 
     def pieces(self, posture: Posture, raw: Posture, start: JointState, *, complete: bool) -> Iterator[Piece]:
         """The path of a posture from `start`, piece by piece as it is made; each may be asked for in a worker thread.
@@ -128,9 +143,13 @@ class Planner:
 
     @property
     def hand_over_missed(self) -> bool:
-        """Whether the bus process ran dry before the new path was ready: it brakes, so the path starts elsewhere."""
-        plan = self.current
-        return plan is not None and not self._from_rest and not plan.all_pushed and self._ran_dry(plan)
+        """Whether the bus process has come to the frame of the hand-over, or ran dry, before the new path was ready."""
+        plan, frame = self.current, self._handing_over
+        if plan is None or self._from_rest or frame is None or plan.epoch != self.epoch:
+            return False
+        if self._ran_dry(plan):
+            return True
+        return self._next_frame(plan) > frame and not (plan.complete and frame == plan.n_frames - 1)
 
     def new_plan_id(self) -> int:
         """The number of a plan to come."""
@@ -175,8 +194,19 @@ class Planner:
 
     def give_up(self) -> None:
         """Nothing takes over: the running plan plays to its end."""
+        self._handing_over = None
         if self.current is not None:
             self.current.end = None
+
+    def go_on_otherwise(self, piece: Piece) -> None:
+        """What follows the frame of the hand-over is another path of the same plan, of which this is the first piece."""
+        plan, frame = self.current, self._handing_over
+        assert plan is not None and frame is not None, "after a hand-over that is not from rest"
+        self._end_at_hand_over()
+        plan.cut(frame)
+        plan.append(piece)
+        plan.end = None
+        self.pump()
 
     def drop(self) -> None:
         """Forget what was planned; the bus process has been told to stop, or has nothing left to play."""
@@ -239,7 +269,20 @@ class Planner:
         if len(records):
             self._last_goal_tick = np.array(records["goal_tick"][-1])
 
+    def _next_frame(self, plan: Plan) -> int:
+        """The frame of the newest plan that the bus process takes next."""
+        return plan.pushed - min(self._link.queued_frames, plan.pushed)
+
+    def _end_at_hand_over(self) -> None:
+        """Take back what of the running plan comes after the frame of the hand-over."""
+        plan, frame, self._handing_over = self.current, self._handing_over, None
+        if plan is not None and frame is not None and plan.epoch == self.epoch:
+            plan.end = frame + 1
+            self._link.take_back(plan.pushed - plan.end)
+            plan.pushed = min(plan.pushed, plan.end)
+
     def _succeed(self, plan: Plan) -> None:
+        self._end_at_hand_over()
         self._plans = [p for p in self._plans if p.pushed < p.limit]
         self._plans.append(plan)
 

@@ -82,14 +82,15 @@ class Player:
                 assert entry is not None, "a lease is a command"
                 return await self._take_over_stream(entry, score, plan_id, epoch, alive)
             stretch: tuple[Posture, bool] | None = None
+            took_s = 0.0
             while True:
                 if self._planner.dry:
                     await self._until_at_rest()  # it brakes: from rest on nothing can be missed
                 if not alive():
                     return False
-                start = self._planner.hand_over()
                 stretch = stretch or await asyncio.to_thread(score.next)
                 raw, last = stretch
+                start, began_s = self._planner.hand_over(took_s=took_s), time.monotonic()
                 pieces = self._making(raw, start, complete=last, easy=entry is None)
                 piece = await asyncio.to_thread(next, pieces)
                 if not alive():
@@ -97,6 +98,7 @@ class Player:
                     return False
                 if not self._planner.hand_over_missed:
                     break
+                took_s = time.monotonic() - began_s
             before, previous = self.entry, self._planner.current
             if isinstance(previous, StreamPlan):
                 self._stream.end(previous)
@@ -116,7 +118,7 @@ class Player:
             await self._until_at_rest()
         if not alive():
             return False
-        start = self._planner.hand_over(at_once=True)
+        start = self._planner.hand_over_at_once()
         before, previous = self.entry, self._planner.current
         gaze = self._layers.over(standing()) if self._layers.gaze_deg is not None else None
         score.look({} if gaze is None else self._planner.gaze_rad(gaze))
@@ -342,11 +344,8 @@ class Player:
         if plan is not self._planner.current or plan.epoch != self._planner.epoch or self._planner.hand_over_missed:
             self._planner.give_up()
             return
-        plan.cut(start.frame)
-        plan.append(piece)
+        self._planner.go_on_otherwise(piece)
         self._make_on(pieces, piece, last)
-        self._planner.give_up()  # it takes over from itself
-        self._planner.pump()
 
     def _making(self, raw: Posture, start: HandOver, *, complete: bool, easy: bool = False) -> Iterator[Piece]:
         """The path of a stretch, growing out of what was before, piece by piece. Asked for in a worker thread."""

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 N_SETPOINTS = 256
 N_CYCLES = 4096
 _TEXT_BYTES = 4096
-_MAGIC = 0x6D6D6D6401
+_MAGIC = 0x6D6D6D6402
 _PREFIX = "mmmd-link-"
 
 
@@ -95,10 +95,14 @@ class Readiness(IntEnum):
 
 
 def setpoint_dtype(n_joints: int) -> np.dtype[np.void]:
-    """One setpoint: which plan and frame, whether it ends the plan, and (J,) radians."""
-    return np.dtype(
-        [("epoch", "u8"), ("plan_id", "u8"), ("frame", "u4"), ("last", "u1"), ("_", "V3"), ("q_rad", "f8", n_joints)]
-    )
+    """One setpoint: which plan and frame, whether it ends the plan, and (J,) radians.
+
+    Where `instead` is not 0 the setpoint and those after it are left out: the one of that number is next.
+    """
+    return np.dtype([
+        ("epoch", "u8"), ("plan_id", "u8"), ("instead", "u8"), ("frame", "u4"), ("last", "u1"), ("_", "V3"),
+        ("q_rad", "f8", n_joints),
+    ])  # fmt: skip
 
 
 def cycle_dtype(n_joints: int, n_servos: int) -> np.dtype[np.void]:
@@ -139,6 +143,7 @@ class BusLink:
         parts = [memory[a:b] for a, b in pairwise(starts)]
         self._words = parts[0].view(np.uint64)
         self._setpoints, self._cycles, self._text = parts[1].view(setpoints), parts[2].view(cycles), parts[3]
+        self._left_out: list[tuple[int, int]] = []
         self._asking = threading.Lock()
         self._seen = {request: int(self._words[request]) for request in BusRequest}
         if owner:
@@ -175,20 +180,29 @@ class BusLink:
 
     @property
     def queued_frames(self) -> int:
-        """Setpoints pushed and not taken yet."""
-        return int(self._words[_Word.PUSHED]) - int(self._words[_Word.POPPED])
+        """Setpoints pushed that are still to be taken."""
+        tail = int(self._words[_Word.POPPED])
+        self._left_out = [(first, end) for first, end in self._left_out if first >= tail]
+        return int(self._words[_Word.PUSHED]) - tail - sum(end - first for first, end in self._left_out)
 
     def push(self, q_rad: Array, plan_id: int, first_frame: int, epoch: int, *, last: bool) -> int:
         """Append setpoints (N, J) as far as there is room; returns how many. `last` marks the final one of the plan."""
         head = int(self._words[_Word.PUSHED])
-        n = min(len(q_rad), N_SETPOINTS - self.queued_frames)
+        n = min(len(q_rad), N_SETPOINTS - (head - int(self._words[_Word.POPPED])))
         for i in range(n):
             slot = self._setpoints[(head + i) % N_SETPOINTS]
-            slot["epoch"], slot["plan_id"], slot["frame"] = epoch, plan_id, first_frame + i
+            slot["epoch"], slot["plan_id"], slot["frame"], slot["instead"] = epoch, plan_id, first_frame + i, 0
             slot["last"] = last and i == len(q_rad) - 1
             slot["q_rad"] = q_rad[i]
         self._words[_Word.PUSHED] = head + n
         return n
+
+    def take_back(self, n: int) -> None:
+        """Leave out the last `n` setpoints pushed; none of them may be about to be taken, and none be left out already."""
+        head = int(self._words[_Word.PUSHED])
+        if n > 0:
+            self._setpoints[(head - n) % N_SETPOINTS]["instead"] = head  # one aligned word: there or not
+            self._left_out.append((head - n, head))
 
     def request(self, kind: BusRequest, *, stay_s: float = 0.0) -> None:
         """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before.
@@ -241,6 +255,9 @@ class BusLink:
         found: Setpoint | None = None
         while tail < head and found is None:
             slot = self._setpoints[tail % N_SETPOINTS]
+            if int(slot["instead"]) > tail:
+                tail = int(slot["instead"])
+                continue
             if int(slot["epoch"]) == epoch:
                 found = Setpoint(int(slot["plan_id"]), int(slot["frame"]), bool(slot["last"]), np.array(slot["q_rad"]))
             tail += 1

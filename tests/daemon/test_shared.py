@@ -3,6 +3,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from daemon.shared import N_CYCLES, N_SETPOINTS, BusLink, BusRequest, BusState, Readiness
 
@@ -59,6 +61,31 @@ def test_a_full_ring_takes_what_fits(link, bus):
         got = bus.take_setpoint()
         assert got is not None and not got.last, "the plan goes on behind what fitted"
     assert link.push(frames(3), 1, N_SETPOINTS, link.epoch, last=True) == 3
+
+
+@given(st.lists(st.tuples(st.sampled_from(["push", "take", "take_back"]), st.integers(1, 60)), max_size=60))
+def test_what_is_taken_back_never_arrives_and_the_rest_does_in_order(actions):
+    """Against a list: the bus process takes what was pushed last and not taken back, whatever else was before."""
+    link = BusLink.create(1)
+    try:
+        bus, queued, own, number = BusLink.attach(link.path, 1), [], 0, 0
+        for action, most in actions:
+            if action == "push":
+                sent = np.arange(number, number + most, dtype=float)[:, None]
+                own = link.push(sent, 1, 0, link.epoch, last=False)
+                queued, number = queued + sent[:own, 0].tolist(), number + own
+            elif action == "take_back":
+                n = min(most, own, len(queued))
+                link.take_back(n)
+                queued, own = queued[: len(queued) - n], 0
+            else:
+                for _ in range(most):
+                    got = bus.take_setpoint()
+                    assert (None if got is None else got.q_rad[0]) == (queued.pop(0) if queued else None)
+                own = min(own, len(queued))
+            assert link.queued_frames == len(queued)
+    finally:
+        link.close()
 
 
 @pytest.mark.parametrize("kind", [BusRequest.STOP, BusRequest.ESTOP, BusRequest.PARK])

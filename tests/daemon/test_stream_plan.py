@@ -49,7 +49,7 @@ class Streaming:
         self.planner.read_cycles()
         score = StreamScore(self.robot, self.guard, LeaseClock(0.2, 5.0), "test")
         self.score = score
-        score.begin(self.planner.hand_over(at_once=True).state, self.now_s)
+        score.begin(self.planner.hand_over_at_once().state, self.now_s)
         self.plan_ids += 1
         self.planner.commit_stream(score, self.plan_ids, f"lease {self.plan_ids}", self.planner.epoch, 0)
         return score
