@@ -99,6 +99,15 @@ class Plan:
         self.n_frames, self.complete = n, False
 
     @property
+    def expected_frames(self) -> int:
+        """Frames so far and those that what is being made will have, but for the last ones in which it settles."""
+        if not self._stretches or self._stretches[-1].piece.is_last:
+            return self.n_frames
+        last = self._stretches[-1]
+        posture = last.piece.posture
+        return max(self.n_frames, last.first + round(len(posture) / posture.fps * self._rate_hz))
+
+    @property
     def limit(self) -> int:
         """Frames that may be pushed."""
         return self.n_frames if self.end is None else min(self.end, self.n_frames)

@@ -157,7 +157,7 @@ class Player:
         entry, plan = self.entry, self._planner.current
         if entry is None or plan is None:
             return None
-        return CurrentCommand(entry.id, plan.plan_id, entry.request.words, plan.n_frames, plan.pushed)
+        return CurrentCommand(entry.id, plan.plan_id, entry.request.words, plan.expected_frames, plan.pushed)
 
     def watch(self, *, finish_loop: bool) -> None:
         """Tell of the first motion, make the next stretch in time, end what is over."""

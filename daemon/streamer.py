@@ -18,7 +18,6 @@ from daemon.approach import Approach
 from daemon.bus.adapter import latency_advice
 from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.bus.multi import RobotBus
-from daemon.bus.packet import ALERT_BIT
 from daemon.bus.reading import BusReading
 from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.clock import Clock
@@ -26,6 +25,7 @@ from daemon.derating import Derating, read_limits
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
 from daemon.pace import Pace, SlowedSetpoints
+from daemon.pinning import pin_where_they_stand, reading_at_rest, refuse_hardware_errors
 from daemon.shared import BusLink, BusRequest, BusState, Readiness, valid_requests
 from retarget.collision import SelfContact
 from retarget.free_way import WaySearch
@@ -52,12 +52,6 @@ TORQUE_OFF_REPEATS = 5
 MISSING_CYCLES = 20
 """Half of the servos silent for so many cycles is a fault (loose plug, power)."""
 TORQUE_CHECK_CYCLES = 5
-PIN_ATTEMPTS = 3
-SWING_OUT_S = 1.0
-_STILL_S, _STILL_TICK = 0.02, 2
-"""Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
-_PIN_TICK = 8
-"""So far may a joint be from its pinned goal when torque comes on: 0.7 degrees of a servo of 4096 ticks."""
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
 """Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
 _LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
@@ -188,14 +182,14 @@ class Streamer:
         try:
             self._bus.verify()
             self._bus.clear_watchdog()
-            reading = self._reading_at_rest()
+            reading = reading_at_rest(self._bus, self._clock)
             if not reading.valid.all():
                 silent = ", ".join(str(i) for i, ok in zip(self._bus.ids, reading.valid, strict=True) if not ok)
                 self._fault(f"cannot arm: no fresh position of servo {silent}; check cable and power")
                 return
-            self._refuse_hardware_errors(reading)
+            refuse_hardware_errors(self._bus, reading)
             self._derating.limits = read_limits(self._bus)
-            present = self._pinned(reading)
+            present = pin_where_they_stand(self._bus, self._clock, reading, PWM_START / PWM_FULL)
             self._bus.write_all("torque_enable", 1)
             without = self._bus.arm_watchdog(WATCHDOG_UNITS)
             if without:
@@ -209,76 +203,6 @@ class Streamer:
         self._gate.reset(self._ticks.tick_to_rad(present))
         self._forget_approach()
         self._enter(BusState.ARMING)
-
-    def _pinned(self, reading: BusReading) -> NDArray[np.int32]:
-        """(J,) goals pinned to where the joints stand, still so when all are: on a bad wire it takes long enough to move an arm.
-
-        Raises:
-            ServoFaultError: a goal is not taken, or a joint moves each time while goals are pinned.
-        """
-        row = 0
-        for _ in range(PIN_ATTEMPTS):
-            present = reading.position_tick.copy()
-            for servo_id, tick in zip(self._bus.ids, present, strict=True):
-                self._pin(servo_id, int(tick))
-                pinned = self._bus.read_item(servo_id, "goal_position")
-                if pinned != tick:
-                    raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
-            self._bus.set_effort(PWM_START / PWM_FULL, confirmed=True)
-            now = self._bus.exchange(None)
-            moved = np.where(now.valid, np.abs(now.position_tick - present), np.iinfo(np.int32).max)
-            if moved.max() <= _PIN_TICK:
-                return present
-            row = int(moved.argmax())
-            reading = self._reading_at_rest()
-            if not reading.valid.all():
-                break
-        raise ServoFaultError(self._bus.ids[row], "to stand still while its goal is pinned", "it moved, or was silent")
-
-    def _pin(self, servo_id: int, tick: int) -> None:
-        """Set the goal of a limp servo to where it stands.
-
-        Raises:
-            ServoFaultError: it stands outside its own position limits, and refuses.
-        """
-        try:
-            self._bus.write_item(servo_id, "goal_position", tick)
-        except ServoFaultError as error:
-            low, high = (self._bus.read_item(servo_id, f"{end}_position_limit") for end in ("min", "max"))
-            if low <= tick <= high:
-                raise
-            found = f"it takes {low} to {high} only: move the joint back by hand, then reset and arm"
-            raise ServoFaultError(servo_id, f"goal where it stands, {tick}", found) from error
-
-    def _reading_at_rest(self) -> BusReading:
-        """A whole reading of joints that stand still: limp they swing on, and a goal pinned meanwhile would jerk.
-
-        After a second with a servo silent it is the last one, as it is.
-
-        Raises:
-            ServoFaultError: one still moves after a second.
-        """
-        reading = self._bus.exchange(None)
-        moved = np.zeros(len(self._bus.ids), np.int32)
-        for _ in range(round(SWING_OUT_S / _STILL_S)):
-            before = reading.position_tick.copy()
-            self._clock.sleep_until(self._clock.now_s() + _STILL_S)
-            reading = self._bus.exchange(None)
-            moved = np.abs(reading.position_tick - before)
-            if reading.valid.all() and moved.max() <= _STILL_TICK:
-                return reading
-        if not reading.valid.all():
-            return reading
-        row = int(moved.argmax())
-        raise ServoFaultError(
-            self._bus.ids[row], f"to stand still for {SWING_OUT_S:g} s", f"moves by {moved[row]} ticks"
-        )
-
-    def _refuse_hardware_errors(self, reading: BusReading) -> None:
-        for row in np.flatnonzero(reading.error & ALERT_BIT):
-            servo_id = self._bus.ids[int(row)]
-            text = self._bus.hardware_error_text(servo_id)
-            raise ServoFaultError(servo_id, "hardware error status", f"{text}; reboot the servo")
 
     # Goals.
 
@@ -456,7 +380,7 @@ class Streamer:
                 " hangs, so it gets none; check cable and power, then reset and arm"
             )
             return
-        self._refuse_hardware_errors(reading)
+        refuse_hardware_errors(self._bus, reading)
         if self._cycle % TORQUE_CHECK_CYCLES == 0:
             row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)
             if reading.valid[row] and self._bus.poll_item(self._bus.ids[row], "torque_enable") == 0:

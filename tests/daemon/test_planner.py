@@ -132,6 +132,18 @@ def test_about_the_asked_time_of_setpoints_is_in_hand(bench):
     assert 8 <= bench.link.queued_frames <= 10
 
 
+def test_the_length_of_a_plan_is_told_from_its_first_piece_on(bench):
+    bench.arm()
+    long = posture_of(RIGHT).at(np.arange(100))
+    pieces = list(bench.planner.pieces(long, long, bench.planner.hand_over().state, complete=True))
+    assert len(pieces) > 2
+    plan = bench.planner.commit(pieces[0], 1, "c", bench.planner.epoch, 0)
+    assert plan.expected_frames == 5 * ROBOT.bus.rate_hz
+    for piece in pieces[1:]:
+        plan.append(piece)
+    assert plan.complete and 0 <= plan.expected_frames - 5 * ROBOT.bus.rate_hz <= 0.8 * ROBOT.bus.rate_hz
+
+
 def test_what_is_in_hand_is_taken_back_when_another_motion_takes_over(bench):
     """A piece that is made in no time is played after some frames, however much of the plan before was pushed."""
     bench.arm()

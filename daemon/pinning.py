@@ -1,0 +1,92 @@
+"""Before torque comes on: the joints stand still, and every servo's goal is where it stands."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.multi import RobotBus
+from daemon.bus.packet import ALERT_BIT
+from daemon.bus.reading import BusReading
+from daemon.clock import Clock
+from daemon.errors import ServoFaultError
+
+PIN_ATTEMPTS = 3
+SWING_OUT_S = 1.0
+_STILL_S, _STILL_TICK = 0.02, 2
+"""Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
+_PIN_TICK = 8
+"""So far may a joint be from its pinned goal when torque comes on: 0.7 degrees of a servo of 4096 ticks."""
+
+
+def reading_at_rest(bus: RobotBus, clock: Clock) -> BusReading:
+    """A whole reading of joints that stand still: limp they swing on, and a goal pinned meanwhile would jerk.
+
+    After a second with a servo silent it is the last one, as it is.
+
+    Raises:
+        ServoFaultError: one still moves after a second.
+    """
+    reading = bus.exchange(None)
+    moved = np.zeros(len(bus.ids), np.int32)
+    for _ in range(round(SWING_OUT_S / _STILL_S)):
+        before = reading.position_tick.copy()
+        clock.sleep_until(clock.now_s() + _STILL_S)
+        reading = bus.exchange(None)
+        moved = np.abs(reading.position_tick - before)
+        if reading.valid.all() and moved.max() <= _STILL_TICK:
+            return reading
+    if not reading.valid.all():
+        return reading
+    row = int(moved.argmax())
+    raise ServoFaultError(bus.ids[row], f"to stand still for {SWING_OUT_S:g} s", f"moves by {moved[row]} ticks")
+
+
+def refuse_hardware_errors(bus: RobotBus, reading: BusReading) -> None:
+    """Raises ServoFaultError for a servo that tells of a hardware error."""
+    for row in np.flatnonzero(reading.error & ALERT_BIT):
+        servo_id = bus.ids[int(row)]
+        text = bus.hardware_error_text(servo_id)
+        raise ServoFaultError(servo_id, "hardware error status", f"{text}; reboot the servo")
+
+
+def pin_where_they_stand(bus: RobotBus, clock: Clock, reading: BusReading, effort: float) -> NDArray[np.int32]:
+    """(S,) goals pinned to where the joints stand, still so when all are: on a bad wire it takes long enough to move an arm.
+
+    Raises:
+        ServoFaultError: a goal is not taken, or a joint moves each time while goals are pinned.
+    """
+    row = 0
+    for _ in range(PIN_ATTEMPTS):
+        present = reading.position_tick.copy()
+        for servo_id, tick in zip(bus.ids, present, strict=True):
+            _pin(bus, servo_id, int(tick))
+            pinned = bus.read_item(servo_id, "goal_position")
+            if pinned != tick:
+                raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
+        bus.set_effort(effort, confirmed=True)
+        now = bus.exchange(None)
+        moved = np.where(now.valid, np.abs(now.position_tick - present), np.iinfo(np.int32).max)
+        if moved.max() <= _PIN_TICK:
+            return present
+        row = int(moved.argmax())
+        reading = reading_at_rest(bus, clock)
+        if not reading.valid.all():
+            break
+    raise ServoFaultError(bus.ids[row], "to stand still while its goal is pinned", "it moved, or was silent")
+
+
+def _pin(bus: RobotBus, servo_id: int, tick: int) -> None:
+    """Set the goal of a limp servo to where it stands.
+
+    Raises:
+        ServoFaultError: it stands outside its own position limits, and refuses.
+    """
+    try:
+        bus.write_item(servo_id, "goal_position", tick)
+    except ServoFaultError as error:
+        low, high = (bus.read_item(servo_id, f"{end}_position_limit") for end in ("min", "max"))
+        if low <= tick <= high:
+            raise
+        found = f"it takes {low} to {high} only: move the joint back by hand, then reset and arm"
+        raise ServoFaultError(servo_id, f"goal where it stands, {tick}", found) from error
