@@ -249,11 +249,8 @@ class Player:
         self._follower.idling = entry is None
 
     def _forget(self) -> None:
-        self.entry, self._score, self._pieces = (
-            None,
-            None,
-            None,
-        )  # what was idling stays so until the bus process has played it out
+        self.entry, self._score = None, None  # what was idling stays so until the bus process has played it out
+        self._pieces = None
         self._still_since_s = time.monotonic()
 
     def _fail(self, entry: Entry | None, found: str, plan_id: int) -> None:

@@ -32,9 +32,8 @@ MOST_CANDIDATES = 64
 CANDIDATE_STRIDE = 7_919_999
 """Between the seeds of candidates, so that neighbouring seeds do not share any."""
 _TYPICAL = (
-    ("wave with your right hand", 9.6), ("raise both arms, then clap twice", 4.0), ("bow deeply", 3.0),
-    ("turn your head to the left", 2.0), ("box", 6.0), ("play the guitar", 5.0), ("point up with your left hand", 2.4),
-    ("shrug", 2.0), ("hammer a nail three times", 5.0), ("cross your arms", 3.0),
+    ("wave with your right hand", 9.6), ("raise both arms, then clap twice", 3.2), ("bow deeply", 2.0),
+    ("turn your head to the left", 1.2), ("play the guitar", 3.2), ("point up with your left hand", 1.6),
 )  # fmt: skip
 """Texts and seconds that show eight-bit layers the range of their inputs."""
 
@@ -87,11 +86,14 @@ class Engine:
         if getattr(encoder.config, "embedding", encoder.config.width) != model.transformer.config.text_dim:
             expected = "one with CLIP's text tower in it: import it with --clip and --vocabulary"
             raise CheckpointError(path, "text", "no text encoder of its width", expected)
+        config = model.transformer.config
+        can_int8 = can_eight_bit() and config.n_out == config.n_codebooks  # one that only edits cannot show its inputs
         if precision is None:
-            precision = "int8" if model.rest_pose == "mmmd" and can_eight_bit() else "fp32"
+            precision = "int8" if model.rest_pose == "mmmd" and can_int8 else "fp32"
         chosen = fastest_precision() if precision == "auto" else precision
-        if chosen == "int8" and not can_eight_bit():
-            raise GenerationError("precision int8 was asked for", "fp32 or bf16: this processor or PyTorch has no VNNI")
+        if chosen == "int8" and not can_int8:
+            needed = "int8 needs a processor and PyTorch with VNNI, and a model of whole motions"
+            raise GenerationError("precision int8 was asked for", f"fp32 or bf16: {needed}")
         pack(encoder, "bf16" if chosen == "bf16" else "fp32")
         engine = cls(model, encoder, file_hash(path), settings or plain, chosen)
         if chosen == "int8":
