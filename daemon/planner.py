@@ -1,6 +1,6 @@
 """Motions to setpoints: the plan that is played, what takes over from it, and how much the bus process has in hand.
 
-A new path starts from a frame of the running plan that is not yet pushed, with its position and velocity, so that the
+A new path starts from a frame of the running plan that is not yet played, with its position and velocity, so that the
 joints go over without a jump; its first frames of posture grow out of those that would have followed. Without a running
 plan it starts at rest from the goal the servos hold.
 """

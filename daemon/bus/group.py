@@ -127,7 +127,7 @@ class FastGroupReply:
         self._crc_of = FixedCrc(n, self._part_bytes - _CRC_BYTES)
         self._packet, self._packet_crc = self._buffer[:-_CRC_BYTES].reshape(1, -1), self._crc[-1:]
         self._packet_crc_of = FixedCrc(1, self.n_bytes - _CRC_BYTES)
-        self._all, self._id_bytes = np.ones(n, bool), bytes(servo_ids)
+        self._all = np.ones(n, bool)
         body_zeros = bytes(self._part_bytes - _CRC_BYTES)
         # With state (high, low) the two CRC bytes that follow it, low first, both become low ^ high.
         start = position_table(2)
@@ -148,9 +148,9 @@ class FastGroupReply:
         if not raw.startswith(self._head) or n > self.n_bytes:
             return np.zeros(len(self._ids), bool)
         self._buffer[:n] = np.frombuffer(raw, np.uint8)
-        if n == self.n_bytes and self._id.tobytes() == self._id_bytes:
-            if self._packet_crc_of.of(self._packet)[0] == self._packet_crc[0]:
-                return self._all  # the last CRC covers all; those between are the servos' own business (manual)
+        same_ids = n == self.n_bytes and self._id.tobytes() == self._ids.tobytes()
+        if same_ids and self._packet_crc_of.of(self._packet)[0] == self._packet_crc[0]:
+            return self._all  # the last CRC covers all; those between are the servos' own business (manual)
         self._start[0] = self._first
         self._carry.take(self._low[:-1] ^ self._high[:-1], out=self._start[1:])
         whole = ((self._crc_of.of(self._body) ^ self._start) == self._crc) & (self._id == self._ids)
