@@ -1,6 +1,11 @@
-"""Before torque comes on: the joints stand still, and every servo's goal is where it stands."""
+"""Before torque comes on: the joints stand still, and every servo's goal is where it stands.
+
+Generators: between their steps the bus process goes on with its cycles.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Generator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +24,7 @@ _PIN_TICK = 8
 """So far may a joint be from its pinned goal when torque comes on: 0.7 degrees of a servo of 4096 ticks."""
 
 
-def reading_at_rest(bus: RobotBus, clock: Clock) -> BusReading:
+def reading_at_rest(bus: RobotBus, clock: Clock) -> Generator[None, None, BusReading]:
     """A whole reading of joints that stand still: limp they swing on, and a goal pinned meanwhile would jerk.
 
     After a second with a servo silent it is the last one, as it is.
@@ -27,11 +32,12 @@ def reading_at_rest(bus: RobotBus, clock: Clock) -> BusReading:
     Raises:
         ServoFaultError: one still moves after a second.
     """
-    reading = bus.exchange(None)
+    reading, began_s = bus.exchange(None), clock.now_s()
     moved = np.zeros(len(bus.ids), np.int32)
-    for _ in range(round(SWING_OUT_S / _STILL_S)):
-        before = reading.position_tick.copy()
-        clock.sleep_until(clock.now_s() + _STILL_S)
+    while clock.now_s() - began_s < SWING_OUT_S:
+        before, since_s = reading.position_tick.copy(), clock.now_s()
+        while clock.now_s() - since_s < _STILL_S:
+            yield
         reading = bus.exchange(None)
         moved = np.abs(reading.position_tick - before)
         if reading.valid.all() and moved.max() <= _STILL_TICK:
@@ -50,8 +56,12 @@ def refuse_hardware_errors(bus: RobotBus, reading: BusReading) -> None:
         raise ServoFaultError(servo_id, "hardware error status", f"{text}; reboot the servo")
 
 
-def pin_where_they_stand(bus: RobotBus, clock: Clock, reading: BusReading, effort: float) -> NDArray[np.int32]:
+def pin_where_they_stand(
+    bus: RobotBus, clock: Clock, reading: BusReading, effort: float
+) -> Generator[None, None, NDArray[np.int32]]:
     """(S,) goals pinned to where the joints stand, still so when all are: on a bad wire it takes long enough to move an arm.
+
+    No cycle comes between the last look and its end, so that torque may come on at once.
 
     Raises:
         ServoFaultError: a goal is not taken, or a joint moves each time while goals are pinned.
@@ -70,7 +80,7 @@ def pin_where_they_stand(bus: RobotBus, clock: Clock, reading: BusReading, effor
         if moved.max() <= _PIN_TICK:
             return present
         row = int(moved.argmax())
-        reading = reading_at_rest(bus, clock)
+        reading = yield from reading_at_rest(bus, clock)
         if not reading.valid.all():
             break
     raise ServoFaultError(bus.ids[row], "to stand still while its goal is pinned", "it moved, or was silent")

@@ -157,11 +157,15 @@ class Planner:
         return self._last_id
 
     def commit(self, piece: Piece, plan_id: int, command_id: str, epoch: int, t_received_ns: int) -> Plan:
-        """Make a path the current plan; its frames follow those of the plan before it."""
+        """Make a path the current plan; its frames follow those of the plan before it.
+
+        So many of those as the bus process takes beyond the hand-over meanwhile, which begin as the new ones do, are left
+        out of the new ones.
+        """
         statistics = PlanStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
         plan = Plan(plan_id, command_id, epoch, self._rate_hz, statistics)
         plan.append(piece)
-        self._succeed(plan)
+        plan.pushed = min(self._succeed(plan), plan.n_frames - 1)
         self.pump()
         return plan
 
@@ -202,10 +206,10 @@ class Planner:
         """What follows the frame of the hand-over is another path of the same plan, of which this is the first piece."""
         plan, frame = self.current, self._handing_over
         assert plan is not None and frame is not None, "after a hand-over that is not from rest"
-        self._end_at_hand_over()
+        beyond = self._end_at_hand_over()
         plan.cut(frame)
         plan.append(piece)
-        plan.end = None
+        plan.end, plan.pushed = None, min(plan.pushed + beyond, plan.n_frames - 1)
         self.pump()
 
     def drop(self) -> None:
@@ -273,18 +277,22 @@ class Planner:
         """The frame of the newest plan that the bus process takes next."""
         return plan.pushed - min(self._link.queued_frames, plan.pushed)
 
-    def _end_at_hand_over(self) -> None:
-        """Take back what of the running plan comes after the frame of the hand-over."""
+    def _end_at_hand_over(self) -> int:
+        """Take back what of the running plan comes after the frame of the hand-over; how much of it is played already."""
         plan, frame, self._handing_over = self.current, self._handing_over, None
-        if plan is not None and frame is not None and plan.epoch == self.epoch:
-            plan.end = frame + 1
-            self._link.take_back(plan.pushed - plan.end)
-            plan.pushed = min(plan.pushed, plan.end)
+        if plan is None or frame is None or plan.epoch != self.epoch:
+            return 0
+        plan.end = frame + 1
+        beyond = self._link.take_back(plan.pushed - plan.end) if plan.pushed > plan.end else 0
+        plan.pushed = min(plan.pushed, plan.end)
+        return beyond
 
-    def _succeed(self, plan: Plan) -> None:
-        self._end_at_hand_over()
+    def _succeed(self, plan: Plan) -> int:
+        """Let a plan follow the current one; how many frames beyond the hand-over are played already."""
+        beyond = self._end_at_hand_over()
         self._plans = [p for p in self._plans if p.pushed < p.limit]
         self._plans.append(plan)
+        return beyond
 
     def _shown(self, q_rad: NDArray[np.float64]) -> Posture:
         """One frame: a person held as the robot in a pose (J,)."""

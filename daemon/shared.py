@@ -182,8 +182,8 @@ class BusLink:
     def queued_frames(self) -> int:
         """Setpoints pushed that are still to be taken."""
         tail = int(self._words[_Word.POPPED])
-        self._left_out = [(first, end) for first, end in self._left_out if first >= tail]
-        return int(self._words[_Word.PUSHED]) - tail - sum(end - first for first, end in self._left_out)
+        self._left_out = [(first, end) for first, end in self._left_out if end > tail]
+        return int(self._words[_Word.PUSHED]) - tail - sum(end - max(first, tail) for first, end in self._left_out)
 
     def push(self, q_rad: Array, plan_id: int, first_frame: int, epoch: int, *, last: bool) -> int:
         """Append setpoints (N, J) as far as there is room; returns how many. `last` marks the final one of the plan."""
@@ -197,12 +197,19 @@ class BusLink:
         self._words[_Word.PUSHED] = head + n
         return n
 
-    def take_back(self, n: int) -> None:
-        """Leave out the last `n` setpoints pushed; none of them may be about to be taken, and none be left out already."""
+    def take_back(self, n: int) -> int:
+        """Leave out the last `n` setpoints pushed; how many of them the bus process had come to already.
+
+        None may be left out before. Each tells where to go on, the last first: wherever the bus process is just then, it
+        leaves out what it has not come to.
+        """
         head = int(self._words[_Word.PUSHED])
-        if n > 0:
-            self._setpoints[(head - n) % N_SETPOINTS]["instead"] = head  # one aligned word: there or not
-            self._left_out.append((head - n, head))
+        for index in range(head - 1, head - n - 1, -1):
+            self._setpoints[index % N_SETPOINTS]["instead"] = head  # one aligned word: there or not
+        first = max(head - n, int(self._words[_Word.POPPED]))
+        if first < head:
+            self._left_out.append((first, head))
+        return min(n, first - (head - n))
 
     def request(self, kind: BusRequest, *, stay_s: float = 0.0) -> None:
         """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before.

@@ -9,23 +9,23 @@ from __future__ import annotations
 
 import gc
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from daemon.approach import Approach
+from daemon.arming import Armed, arm_in_steps
 from daemon.bus.adapter import latency_advice
 from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.bus.multi import RobotBus
 from daemon.bus.reading import BusReading
-from daemon.bus.registers import WATCHDOG_UNIT_S
 from daemon.clock import Clock
-from daemon.derating import Derating, read_limits
+from daemon.derating import Derating
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
+from daemon.judging import MAY_HAVE_TRIPPED_S, Judge
 from daemon.pace import Pace, SlowedSetpoints
-from daemon.pinning import pin_where_they_stand, reading_at_rest, refuse_hardware_errors
 from daemon.shared import BusLink, BusRequest, BusState, Readiness, valid_requests
 from retarget.collision import SelfContact
 from retarget.free_way import WaySearch
@@ -45,13 +45,8 @@ SEARCH_PIECES_PER_S = 200
 """So much of the search for a way is done in a second: a piece or a few in a cycle."""
 _HELD_S, _SEARCHES = 0.5, 3
 """A slow move that the gate has held for so long is looked for anew from where it stands, so many times."""
-WATCHDOG_UNITS = 10
-"""Servo bus watchdog, 20 ms each: 200 ms without any packet on the bus and the servos stop by themselves."""
 TORQUE_OFF_REPEATS = 5
 """Torque off is a packet that nobody answers: it is sent again, so that a spoilt one or a lost port costs nothing."""
-MISSING_CYCLES = 20
-"""Half of the servos silent for so many cycles is a fault (loose plug, power)."""
-TORQUE_CHECK_CYCLES = 5
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
 """Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
 _LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
@@ -86,11 +81,13 @@ class Streamer:
         self._setpoint_rad = robot.park_rad.copy()
         self._plan_id, self._frame, self._last = 0, 0, True
         self._underrun = False
-        self._cycle, self._late_cycles, self._missing_cycles = 0, 0, 0
+        self._cycle, self._late_cycles = 0, 0
         self._pwm: int | None = None
         self._front_lost_s: float | None = None
         self._torque_off_left = 0
         self._made_limp = False
+        self._arming: Generator[None, None, Armed] | None = None
+        self._judge = Judge(robot, bus)
         self._derating = Derating(robot.n_servos, robot.bus.period_s)
         self._setpoints, self._pace = SlowedSetpoints(link), Pace(robot.bus.period_s)
         self._asked: list[BusRequest] = []
@@ -125,12 +122,15 @@ class Streamer:
             self._repeat_torque_off()
             self._watch_heartbeat()
             self._limp_when_due()
+            self._go_on_arming()
             self._check_stall()
             goal_rad = self._next_goal()
             if goal_rad is not None and self._goal_tick is not None:
                 self._goal_tick = np.rint(self._ticks.to_ticks(goal_rad)).astype(np.int32)
             reading = self._bus.exchange(self._goal_tick if self._torque else None)
-            self._judge(reading)
+            judged = self._torque and self.state not in (BusState.FAULT, BusState.ESTOP)
+            if judged and (why := self._judge.fault(reading)):
+                self._fault(why)
             self._derate(reading)
         except (LinkError, ServoFaultError) as error:
             if isinstance(error, LinkLostError):
@@ -147,14 +147,16 @@ class Streamer:
         log.info("request %s in %s", request.name, self.state.name)
         if request is BusRequest.ESTOP:
             self._link.drop_queued()
-            self._torque, self._goal_tick = False, None
+            self._torque, self._goal_tick, self._arming = False, None, None
             self._forget_approach()
             self._made_limp = True
             self._torque_off_left = TORQUE_OFF_REPEATS  # the first goes out in this cycle
             self._enter(BusState.ESTOP)
         elif request is BusRequest.STOP:
             self._link.drop_queued()
-            if self.state in _ARMED:
+            if self._arming is not None:
+                self._break_off_arming()
+            elif self.state in _ARMED:
                 self._forget_approach()
                 self._enter(BusState.STOPPING)
         elif request is BusRequest.RESET:
@@ -166,43 +168,44 @@ class Streamer:
                 self._enter(BusState.LIMP)
         elif request is BusRequest.PARK:
             self._link.drop_queued()
-            if self.state in _ARMED:
+            if self._arming is not None:
+                self._break_off_arming()
+            elif self.state in _ARMED:
                 self._forget_approach()
                 self._enter(BusState.PARKING)
         elif request is BusRequest.ARM:
             if self.state is BusState.LIMP:
-                self._arm()
+                self._link.drop_queued()
+                self._link.set_text("")
+                self._arming = arm_in_steps(self.robot, self._bus, self._clock, PWM_START / PWM_FULL)
+                self._enter(BusState.ARMING)
         else:
             self.stopping = True
 
-    def _arm(self) -> None:
-        """Torque on over goals pinned to fresh positions, then a slow way to rest. Any doubt is a fault, torque off."""
-        self._link.drop_queued()
-        self._link.set_text("")
+    def _go_on_arming(self) -> None:
+        """A step towards torque; then a slow way to rest. Any doubt is a fault, torque off."""
+        if self._arming is None:
+            return
         try:
-            self._bus.verify()
-            self._bus.clear_watchdog()
-            reading = reading_at_rest(self._bus, self._clock)
-            if not reading.valid.all():
-                silent = ", ".join(str(i) for i, ok in zip(self._bus.ids, reading.valid, strict=True) if not ok)
-                self._fault(f"cannot arm: no fresh position of servo {silent}; check cable and power")
-                return
-            refuse_hardware_errors(self._bus, reading)
-            self._derating.limits = read_limits(self._bus)
-            present = pin_where_they_stand(self._bus, self._clock, reading, PWM_START / PWM_FULL)
-            self._bus.write_all("torque_enable", 1)
-            without = self._bus.arm_watchdog(WATCHDOG_UNITS)
-            if without:
-                log.warning("no bus watchdog to rely on: servo %s", ", ".join(map(str, without)))
+            next(self._arming)
+        except StopIteration as done:
+            self._armed(done.value)
         except DaemonError as error:
             self._cut_torque()
             self._fault(f"cannot arm: {error}")
-            return
-        self._torque, self._goal_tick, self._pwm, self._made_limp = True, present, PWM_START, False
+
+    def _armed(self, armed: Armed) -> None:
+        self._arming, self._torque, self._pwm, self._made_limp = None, True, PWM_START, False
+        self._goal_tick, self._derating.limits = armed.goal_tick, armed.limits
         self._fed_s = self._clock.now_s()
-        self._gate.reset(self._ticks.tick_to_rad(present))
+        self._judge.armed()
+        self._gate.reset(self._ticks.tick_to_rad(armed.goal_tick))
         self._forget_approach()
-        self._enter(BusState.ARMING)
+
+    def _break_off_arming(self) -> None:
+        """Before torque is on there is nothing to bring to rest."""
+        self._cut_torque()
+        self._enter(BusState.LIMP)
 
     # Goals.
 
@@ -322,7 +325,7 @@ class Streamer:
     # Judgement.
 
     def _watch_heartbeat(self) -> None:
-        if not self._watch_front or not self._torque or self.state in (BusState.PARKING, BusState.ESTOP):
+        if not self._watch_front or not (self._torque or self._arming) or self.state is BusState.PARKING:
             self._front_lost_s = None
             return
         age_s = self._link.heartbeat_age_s
@@ -354,39 +357,12 @@ class Streamer:
     def _check_stall(self) -> None:
         """After a pause in which the servos' watchdog may have run out: they then stand still and refuse goals."""
         pause_s, self._fed_s = self._clock.now_s() - self._fed_s, self._clock.now_s()
-        if not self._torque or self._goal_tick is None or pause_s < 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S:
+        if not self._torque or self._goal_tick is None or pause_s < MAY_HAVE_TRIPPED_S:
             return
         tripped = self._bus.tripped_watchdogs()
         if tripped:
             self._goal_tick = None
             self._fault(f"the bus process was held up for {pause_s:.2f} s: servo {tripped[0]} stopped by its watchdog")
-
-    def _judge(self, reading: BusReading) -> None:
-        """A tripped servo, lost torque or half of the robot silent is a fault."""
-        if self.state in (BusState.FAULT, BusState.ESTOP):
-            return
-        silent = int((~reading.valid).sum())
-        self._missing_cycles = self._missing_cycles + 1 if silent * 2 >= len(reading.valid) else 0
-        if self._missing_cycles >= MISSING_CYCLES and self._torque:
-            self._fault(f"{silent} of {len(reading.valid)} servos are silent; check cable and power")
-            return
-        if not self._torque:
-            return
-        withheld: list[int] = np.flatnonzero(self._bus.withheld).tolist()
-        if withheld:
-            names = ", ".join(f"{self._bus.ids[i]} ({self.robot.servos[i].joint_name})" for i in withheld[:3])
-            self._fault(
-                f"servo {names} silent: it may have lost power, and the next goal would switch its torque on wherever it"
-                " hangs, so it gets none; check cable and power, then reset and arm"
-            )
-            return
-        refuse_hardware_errors(self._bus, reading)
-        if self._cycle % TORQUE_CHECK_CYCLES == 0:
-            row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)
-            if reading.valid[row] and self._bus.poll_item(self._bus.ids[row], "torque_enable") == 0:
-                self._fault(
-                    f"servo {self._bus.ids[row]} ({self.robot.servos[row].joint_name}) lost its torque; it may have rebooted"
-                )
 
     def _derate(self, reading: BusReading) -> None:
         """Slow down what is played before a servo trips."""
@@ -411,6 +387,7 @@ class Streamer:
             self._link.set_text(text)
         self._link.drop_queued()
         self._forget_approach()
+        self._arming = None
         self._enter(BusState.FAULT)
 
     def _cut_torque(self) -> None:
@@ -418,7 +395,7 @@ class Streamer:
             self._bus.send_torque_off()
         except LinkError as error:
             log.error("torque off not sent: %s", error)
-        self._torque, self._goal_tick, self._made_limp = False, None, True
+        self._torque, self._goal_tick, self._made_limp, self._arming = False, None, True, None
         self._torque_off_left = TORQUE_OFF_REPEATS
 
     def _repeat_torque_off(self) -> None:
@@ -458,6 +435,7 @@ Opener = Callable[[], RobotBus]
 
 
 AFTER_LOSS = "the bus process was lost and is back; servos may still hold: `mmmd reset` makes them limp"
+_HELD_BEFORE = "servo {} had torque before it was armed: who drove it may have been cut off; `mmmd reset` makes it limp"
 
 
 def start(
@@ -465,7 +443,8 @@ def start(
 ) -> Streamer | None:
     """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link.
 
-    `after_loss` starts it in a latched fault: what the servos do now nobody knows, and nothing may move by itself.
+    `after_loss`, or a servo that has torque already, starts it in a latched fault: nothing may move by itself, and nothing
+    may be taken for limp that is not.
     """
     try:
         bus = open_bus()
@@ -495,13 +474,16 @@ def start(
             if advice:
                 log.warning("%s", advice)
         bus.exchange(None)
+        holding = ", ".join(str(i) for i in bus.ids if bus.read_item(i, "torque_enable"))
     except DaemonError as error:
         bus.close()
         link.set_ready(Readiness.FAILED, str(error))
         return None
     streamer = Streamer(robot, bus, link, clock)
     link.drop_queued()
-    if after_loss:
+    why = AFTER_LOSS if after_loss else _HELD_BEFORE.format(holding) if holding else ""
+    if why:
+        log.error("fault: %s", why)
         streamer.state = BusState.FAULT
-    link.set_ready(Readiness.READY, AFTER_LOSS if after_loss else "")
+    link.set_ready(Readiness.READY, why)
     return streamer

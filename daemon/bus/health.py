@@ -99,6 +99,10 @@ class HealthTracker:
             self.withheld |= self._woken_by_goal & silent
         return self.withheld
 
+    def withhold_from(self, row: int) -> None:
+        """This servo gets no goals until all was verified anew: it would refuse them, or worse."""
+        self.withheld[row] = True
+
     def came_late(self, row: int) -> None:
         """An answer of this servo arrived after its deadline."""
         self.counters.late[row] += 1

@@ -130,6 +130,11 @@ class Items(Asking):
         able = [i for i, m in zip(self.ids, self.models, strict=True) if "bus_watchdog" in m.table]
         return [i for i in able if self.read_item(i, "bus_watchdog") == WATCHDOG_TRIPPED]
 
+    def withhold(self, servo_ids: Sequence[int]) -> None:
+        """No goals for these servos until `verify`."""
+        for servo_id in servo_ids:
+            self.health.withhold_from(self._row_of(servo_id))
+
     def hardware_error_text(self, servo_id: int) -> str:
         """What a servo with the alert bit set complains of."""
         row = self._row_of(servo_id)

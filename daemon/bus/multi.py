@@ -162,6 +162,11 @@ class MultiBus:
         """Ids of the servos that have stopped by their bus watchdog."""
         return [i for part in self.parts for i in part.tripped_watchdogs()]
 
+    def withhold(self, servo_ids: Sequence[int]) -> None:
+        """No goals for these servos until `verify`."""
+        for servo_id in servo_ids:
+            self._of(servo_id).withhold([servo_id])
+
     def hardware_error_text(self, servo_id: int) -> str:
         """What a servo with the alert bit set complains of."""
         return self._of(servo_id).hardware_error_text(servo_id)

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from daemon.arming import WATCHDOG_UNITS
 from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.bus.serial_port import SerialPort
 from daemon.bus.servo_bus import ServoBus
 from daemon.clock import RealClock
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
-from daemon.streamer import WATCHDOG_UNITS
 from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.pty import PtyServer
@@ -107,7 +107,7 @@ def test_killed_while_armed_the_servos_stop_by_their_watchdog(started, servos, t
     bus = started(f"dxl://{tmp_path}/servos?baud=1000000")
     bus.wait_for(lambda: bus.link.readiness is Readiness.READY)
     bus.link.request(BusRequest.ARM)
-    bus.wait_for(lambda: bus.state is BusState.ARMING)
+    bus.wait_for(lambda: bus.state is BusState.HOLDING)
     bus.process.kill()
     bus.process.wait(10)
     time.sleep(WATCHDOG_UNITS * WATCHDOG_UNIT_S + 0.1)  # the watchdog's time is real here
@@ -124,7 +124,10 @@ def test_killed_while_armed_the_servos_stop_by_their_watchdog(started, servos, t
 
     again = started(f"dxl://{tmp_path}/servos?baud=1000000")
     again.wait_for(lambda: again.link.readiness is Readiness.READY and again.link.n_cycles > 3)
-    assert again.state is BusState.LIMP, "a new process arms nothing by itself"
+    assert again.state is BusState.FAULT, "a new process arms nothing by itself, and calls nothing limp that has torque"
+    assert "torque" in again.link.text and "mmmd reset" in again.link.text
+    again.link.request(BusRequest.RESET)
+    again.wait_for(lambda: again.state is BusState.LIMP)
     again.link.request(BusRequest.ARM)
     again.wait_for(lambda: again.state is BusState.HOLDING)
     again.link.request(BusRequest.PARK)

@@ -233,6 +233,31 @@ def test_a_late_front_brakes_and_the_next_motion_starts_from_there(bench):
     assert_within_limits(bench)
 
 
+@pytest.mark.parametrize(("late", "most_jump_rad"), [(1, 0.01), (2, 0.02), (7, 0.5)])
+def test_a_front_held_up_just_before_it_hands_over_leaves_out_what_was_played(bench, late, most_jump_rad):
+    """The bus process has come some frames beyond the hand-over: what it has played of the old ones is left out of the new."""
+    bench.arm()
+    old = bench.play(RIGHT)
+    bench.cycle(25)
+    start = bench.planner.hand_over()
+    pieces = list(bench.planner.pieces(LEFT_POSTURE, LEFT_POSTURE, start.state, complete=True))
+    assert start.frame is not None
+    while bench.records[-1]["frame"] < start.frame - 1:
+        bench.cycle()
+    assert not bench.planner.hand_over_missed
+    bench.cycle(1 + late, pump=False)  # between the look and the commit: the frame of the hand-over, and some beyond it
+    plan = bench.commit(pieces)
+    first = len(bench.records)
+    bench.cycle(30)
+    played = [(int(r["plan_id"]), int(r["frame"])) for r in bench.records[first - late : first + 20]]
+    assert played[:late] == [(old.plan_id, start.frame + 1 + k) for k in range(late)]
+    assert played[late:] == [(plan.plan_id, late + k) for k in range(20)], "frame by frame, none of the old ones again"
+    jumps = np.abs(np.diff(np.array([r["setpoint_rad"] for r in bench.records[first - 3 : first + 10]]), n=2, axis=0))
+    assert jumps.max() < most_jump_rad, "both begin alike; what they differ by later, the gate smooths"
+    bench.finish()
+    assert_within_limits(bench)
+
+
 def test_giving_up_lets_the_running_plan_end(bench):
     bench.arm()
     plan = bench.play(RIGHT)
