@@ -22,7 +22,7 @@ from daemon.bus.multi import RobotBus
 from daemon.bus.reading import BusReading
 from daemon.clock import Clock
 from daemon.derating import Derating
-from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
+from daemon.errors import DaemonError, LinkError, ServoFaultError
 from daemon.gate import Gate
 from daemon.judging import MAY_HAVE_TRIPPED_S, Judge
 from daemon.pace import Pace, SlowedSetpoints
@@ -133,10 +133,6 @@ class Streamer:
                 self._fault(why)
             self._derate(reading)
         except (LinkError, ServoFaultError) as error:
-            if isinstance(error, LinkLostError):
-                self._goal_tick = (
-                    None  # when it is back its servos have stopped by themselves: no goal until armed anew
-                )
             self._fault(str(error))
         self._publish(self._bus.reading)
         self._cycle += 1

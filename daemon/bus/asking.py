@@ -147,6 +147,7 @@ class Asking:
     def _note_loss(self, error: LinkLostError) -> None:
         if self._lost_since_s is None:
             self._lost_since_s = self._reopen_due_s = self.clock.now_s()
+            self.health.withhold_all()
             self.events.add(BusEventKind.LOST, self._lost_since_s, str(error))
 
     def look_again(self) -> None:

@@ -103,6 +103,10 @@ class HealthTracker:
         """This servo gets no goals until all was verified anew: it would refuse them, or worse."""
         self.withheld[row] = True
 
+    def withhold_all(self) -> None:
+        """The port is gone: when it is back the servos have stopped by themselves, and get no goals until armed anew."""
+        self.withheld[:] = True
+
     def came_late(self, row: int) -> None:
         """An answer of this servo arrived after its deadline."""
         self.counters.late[row] += 1

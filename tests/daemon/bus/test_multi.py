@@ -11,8 +11,12 @@ from daemon.bus.models import MODELS
 from daemon.bus.multi import MultiBus, RobotBus, bus_on, open_bus
 from daemon.bus.servo_bus import ServoBus
 from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTimeoutError
+from daemon.shared import BusLink, BusRequest, BusState
+from daemon.streamer import Streamer
 from retarget.robot import load_robot
+from retarget.ticks import JointServoMap
 from sim.clock import VirtualClock
+from tests.daemon.rig import swing
 
 ROBOT = load_robot("reference")
 
@@ -125,3 +129,49 @@ def test_urls_with_commas_are_several_ports() -> None:
     one.close()
     with pytest.raises(CommandError, match="unknown scheme"):
         open_bus("sim://,usb://x", ROBOT, clock)
+
+
+def test_when_one_port_is_lost_the_servos_of_the_other_come_to_rest_within_their_limits() -> None:
+    ports, clock = two_ports()
+    link = BusLink.create(ROBOT.n_joints, ROBOT.n_servos)
+    try:
+        for port in ports:
+            for i, servo in port.servos.items():
+                servo.set(
+                    "present_position", int(JointServoMap(ROBOT).rad_to_tick(ROBOT.park_rad)[ROBOT.servo_ids.index(i)])
+                )
+        streamer = Streamer(ROBOT, joined(ports, clock), link, clock, watch_front=False)
+        link.request(BusRequest.ARM)
+        goals: list[list[int]] = []
+
+        def cycle() -> None:
+            due_s = clock.now_s() + ROBOT.bus.period_s
+            streamer.cycle()
+            clock.sleep_until(due_s)
+            goals.append([s.get("goal_position") for s in ports[1].servos.values()])
+
+        for _ in range(2000):
+            cycle()
+            if streamer.state is BusState.HOLDING:
+                break
+        assert streamer.state is BusState.HOLDING, link.text
+        link.push(swing(ROBOT, 2.0), 1, 0, link.epoch, last=True)
+        for _ in range(60):
+            cycle()
+        ports[0].unplugged = True
+        n = len(goals)
+        for _ in range(60):
+            cycle()
+        assert streamer.state is BusState.FAULT
+        path = np.array(goals[n - 4 :])
+        assert np.abs(np.diff(path, axis=0))[:4].max() > 3, "it moved when the port went"
+        most = ROBOT.acceleration_limit_rad_s2.max() * ROBOT.bus.period_s**2 / (2 * np.pi / 4096) + 2
+        assert np.abs(np.diff(path, n=2, axis=0)).max() <= most, "no goal stands still all at once"
+        assert (path[-20:] == path[-1]).all(), "at rest"
+        ports[0].unplugged = False
+        before = [s.get("goal_position") for s in ports[0].servos.values()]
+        for _ in range(100):
+            cycle()
+        assert [s.get("goal_position") for s in ports[0].servos.values()] == before, "no goal until it is armed anew"
+    finally:
+        link.close()
