@@ -9,15 +9,14 @@ its checksum; a packet with a wrong checksum is not answered.
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Sequence
 
 from daemon.bus import packet, packet1
-from daemon.bus.crc import crc16
-from daemon.bus.packet import BROADCAST_ID, Instruction, Packet, Part
+from daemon.bus.packet import BROADCAST_ID, Access, Instruction, Packet, Part
 from daemon.bus.registers import RETURN_DELAY_UNIT_S
 from retarget.robot import RobotModel
 from sim.audit import Audit
+from sim.fast_reply import shares_of
 from sim.faults import FaultSchedule
 from sim.instructions import Instructions, accesses_of
 from sim.servo import SimServo
@@ -140,7 +139,7 @@ class SimBus:
                 if access.servo_id not in by_id:
                     self._instructions.missed(self.on_wire, access, t_s)
         elif p.servo_id == BROADCAST_ID:
-            self._answer_all(p, listening, t_s, baud)
+            self._answer_all(p, by_id, t_s, baud)
         else:
             self._answer_one(p, listening, by_id, t_s, baud)
 
@@ -181,12 +180,15 @@ class SimBus:
             if _answers(servo, p.instruction):
                 self._send(servo, p.servo_id, error, parameters, t_s, baud)
 
-    def _answer_all(self, p: Packet, listening: list[SimServo], t_s: float, baud: int) -> None:
-        """A broadcast: everybody obeys, and only a ping is answered, by one after another."""
-        for servo in sorted(listening, key=lambda s: s.servo_id):
-            error, parameters = self._instructions.carry_out(servo, p, t_s)
-            if p.instruction == Instruction.PING:
-                t_s = self._send(servo, servo.servo_id, error, parameters, t_s, baud)
+    def _answer_all(self, p: Packet, by_id: dict[int, list[SimServo]], t_s: float, baud: int) -> None:
+        """A broadcast: everybody obeys, and only a ping is answered, by one id after another."""
+        for servo_id in sorted(by_id):
+            ends_s: list[float] = []
+            for servo in by_id[servo_id]:
+                error, parameters = self._instructions.carry_out(servo, p, t_s)
+                if p.instruction == Instruction.PING:
+                    ends_s.append(self._send(servo, servo_id, error, parameters, t_s, baud))
+            t_s = max(ends_s, default=t_s)
 
     def _send(self, servo: SimServo, servo_id: int, error: int, parameters: bytes, t_s: float, baud: int) -> float:
         """Put one status packet of `servo_id` on the wire; the time it ends, or would have ended."""
@@ -221,54 +223,55 @@ class SimBus:
             t_s = max(ends_s, default=t_s + (11 + access.length) * byte_s)
 
     def _answer_fast(self, p: Packet, by_id: dict[int, list[SimServo]], t_s: float, baud: int) -> None:
-        """One packet to which each servo adds its part."""
-        parts: list[Part] = []
-        speakers: list[SimServo] = []
+        """One packet to which each servo adds its part; those with one id talk at once."""
+        turns: list[list[SimServo]] = []
+        parts: list[list[Part]] = []
         accesses = accesses_of(p, 2.0)
         for access in accesses:
-            servo = by_id[access.servo_id][0] if access.servo_id in by_id else None
-            if servo is None or not servo.model.has_fast_sync(servo.firmware) or not _answers(servo, Instruction.READ):
+            able = [servo for servo in by_id.get(access.servo_id, ()) if _answers_fast(servo)]
+            if not able:
                 break
-            error, data = servo.read(access.address, access.length)
-            parts.append(Part(access.servo_id, error | servo.alert(), data.ljust(access.length, b"\0")))
-            speakers.append(servo)
-        if not parts:
+            turns.append(able)
+            parts.append([_part(servo, access) for servo in able])
+            if len({self._pause_s(servo) for servo in turns[0]}) > 1:
+                break  # two begin at different times: nobody can make out a packet to go on with
+        if not turns:
+            return
+        shares = shares_of(parts, 1 + sum(4 + access.length for access in accesses))
+        start_s = t_s + self._pause_s(turns[0][0])
+        if not self.faults.strikes_packets and all(len(said) == 1 for said in shares):  # nothing comes between them
+            self.faults.packet += len(turns)
+            self.wire.answer(start_s, b"".join(own for (own,) in shares), baud)
             return
         byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
-        start_s = t_s + self._pause_s(speakers[0])
-        whole = 1 + sum(4 + access.length for access in accesses)
-        shares = _fast_shares(parts, whole)
-        if not self.faults.strikes_packets:  # nothing comes between their shares
-            self.faults.packet += len(speakers)
-            self.wire.answer(start_s, b"".join(shares), baud)
-            return
-        for part, own in zip(parts, shares, strict=True):
-            pieces = spoil(self.faults, part.servo_id, lambda _id, own=own: own, start_s, byte_s)
+        for turn, (servos, said) in enumerate(zip(turns, shares, strict=True)):
+            pieces = [
+                (start_s if turn else t_s + self._pause_s(servo), piece)
+                for servo, own in zip(servos, said, strict=True)
+                for piece in spoil(self.faults, servo.servo_id, lambda _id, own=own: own, start_s, byte_s)
+            ]
+            for own_s, piece in pieces:
+                self.wire.answer(own_s + piece.after_s, piece.data, baud, alone=piece.alone)
             if not pieces:
                 return
-            for piece in pieces:
-                self.wire.answer(start_s + piece.after_s, piece.data, baud, alone=piece.alone)
-            start_s += len(own) * byte_s
-
-
-def _fast_shares(parts: Sequence[Part], length: int) -> list[bytes]:
-    """What each servo sends of a fast reply: the first one the head, each its part and the checksum of all so far."""
-    head = packet.HEADER + struct.pack("<BHB", BROADCAST_ID, length, Instruction.STATUS)
-    shares: list[bytes] = []
-    crc = 0
-    for part in parts:
-        own = (b"" if shares else head) + bytes([part.error, part.servo_id]) + part.data
-        crc = crc16(own, crc)
-        tail = struct.pack("<H", crc)
-        crc = crc16(tail, crc)
-        shares.append(own + tail)
-    return shares
+            start_s += len(said[0]) * byte_s
 
 
 def _answers(servo: SimServo, kind: int) -> bool:
     """Whether the status return level lets it answer."""
     level = servo.memory.get("status_return_level")
     return level == 2 or kind == Instruction.PING or (level == 1 and kind == Instruction.READ)
+
+
+def _answers_fast(servo: SimServo) -> bool:
+    """Whether it takes part in a fast read."""
+    return servo.model.has_fast_sync(servo.firmware) and _answers(servo, Instruction.READ)
+
+
+def _part(servo: SimServo, access: Access) -> Part:
+    """What it adds to the answer of a fast read."""
+    error, data = servo.read(access.address, access.length)
+    return Part(access.servo_id, error | servo.alert(), data.ljust(access.length, b"\0"))
 
 
 def _packet_ends(data: bytes | bytearray, *, with_1: bool) -> list[int]:

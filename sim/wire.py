@@ -1,8 +1,7 @@
 """One half-duplex wire and the adapter at its end: when each byte is where, and what is left of bytes that met.
 
-Ten bits a byte in both directions. Two talkers at once garble each other: bytes that start together are ANDed, as
-open-collector drivers would; others are random. The adapter hands bytes on as they come, in lumps by its latency timer
-(FTDI: when the timer fires or a USB packet is full), or in pieces cut anywhere.
+Ten bits a byte in both directions. Two talkers at once garble each other (`bursts.py`). The adapter hands bytes on as they
+come, in lumps by its latency timer (FTDI: when the timer fires or a USB packet is full), or in pieces cut anywhere.
 """
 
 from __future__ import annotations
@@ -12,12 +11,12 @@ import random
 from collections import deque
 from dataclasses import dataclass
 
+from sim.bursts import TINY_S, Burst, put
 from sim.errors import SimSettingError
 
 BITS_PER_BYTE = 10
 _GAP_S = 0.001
 """Bytes that follow each other within this are handed on as one burst: fewer wake-ups, the same end."""
-_TINY_S = 1e-9
 
 
 @dataclass(frozen=True)
@@ -52,27 +51,13 @@ class WireSettings:
             raise SimSettingError("piece_bytes", str(self.piece_bytes), "1 <= least <= most")
 
 
-@dataclass
-class _Burst:
-    """Bytes on their way to the client; `alone`: not to be joined with what follows."""
-
-    start_s: float
-    byte_s: float
-    data: bytearray
-    alone: bool = False
-
-    @property
-    def end_s(self) -> float:
-        return self.start_s + len(self.data) * self.byte_s
-
-
 class Wire:
     """What is on the wire towards the client, and what the adapter has not handed on yet."""
 
     def __init__(self, settings: WireSettings | None = None) -> None:
         self.settings = settings or WireSettings()
         self._random = random.Random(self.settings.seed)
-        self._coming: deque[_Burst] = deque()
+        self._coming: deque[Burst] = deque()
         self._held = bytearray()  # the rest of a lump that was read in part
         self._timer_s = 0.0
         self._client_start_s, self._client_end_s = -math.inf, -math.inf
@@ -88,76 +73,66 @@ class Wire:
         start_s = max(t_s, self._client_end_s)
         if patient and self._coming:
             start_s = max(start_s, self._coming[-1].end_s)
-        heard = bytearray(data)
-        self._client_start_s, self._client_end_s = start_s, start_s + len(data) * byte_s
+        heard = Burst(start_s, byte_s, bytearray(data))
+        self._client_start_s, self._client_end_s = start_s, heard.end_s
         for burst in self._coming:
-            if burst.end_s > start_s + _TINY_S and burst.start_s < self._client_end_s - _TINY_S:
-                self.garble(heard, start_s, byte_s, burst.start_s, burst.end_s)
-                self.garble(burst.data, burst.start_s, burst.byte_s, start_s, self._client_end_s)
+            if burst.end_s > start_s + TINY_S and burst.start_s < self._client_end_s - TINY_S:
+                heard.garble(burst.start_s, burst.end_s, self._random)
+                burst.garble(start_s, self._client_end_s, self._random)
                 self.collisions += 1
-        return start_s, byte_s, heard
+        return start_s, byte_s, heard.data
 
     def answer(self, start_s: float, data: bytes, baud: int, *, alone: bool = False) -> float:
         """A servo sends from `start_s` on; the time its last byte ends."""
         byte_s = 0.0 if self.settings.no_wire_delay else BITS_PER_BYTE / baud
-        burst = _Burst(start_s, byte_s, bytearray(data), alone)
-        if start_s < self._client_end_s - _TINY_S and burst.end_s > self._client_start_s + _TINY_S:
-            self.garble(burst.data, start_s, byte_s, self._client_start_s, self._client_end_s)
+        burst = Burst(start_s, byte_s, bytearray(data), alone)
+        if start_s < self._client_end_s - TINY_S and burst.end_s > self._client_start_s + TINY_S:
+            burst.garble(self._client_start_s, self._client_end_s, self._random)
             self.collisions += 1
         last = self._coming[-1] if self._coming else None
-        if last is not None and start_s < last.end_s - _TINY_S:
-            self._meet(last, burst)
+        if last is not None and start_s < last.end_s - TINY_S:
+            for part in self._overlay(burst):
+                self._add(part)
         elif (
             last is not None
             and not alone
             and not last.alone
-            and abs(start_s - last.end_s) < _TINY_S
+            and start_s < last.end_s + TINY_S
             and last.byte_s == byte_s
         ):
-            last.data += data
-            return last.end_s
-        if self.settings.piece_bytes is not None and not alone:
-            self._cut(burst)
-        elif burst.data:
-            self._coming.append(burst)
+            last.data += burst.data
+        else:
+            self._add(burst)
         return burst.end_s
 
     def echo(self, start_s: float, data: bytes, byte_s: float) -> None:
         """The client hears what it sends."""
-        self._coming.append(_Burst(start_s, byte_s, bytearray(data)))
+        for part in self._overlay(Burst(start_s, byte_s, bytearray(data))):
+            put(self._coming, part)
 
-    def garble(self, data: bytearray, start_s: float, byte_s: float, from_s: float, to_s: float) -> tuple[int, int]:
-        """Make noise of the bytes of `data` that are on the wire between two times; their range."""
-        if byte_s <= 0:
-            return 0, 0
-        first = max(0, math.floor((from_s - start_s) / byte_s + 1e-6))
-        last = min(len(data), math.ceil((to_s - start_s) / byte_s - 1e-6))
-        for i in range(first, last):
-            data[i] ^= self._random.randrange(1, 256)
-        return first, last
+    def _overlay(self, burst: Burst) -> list[Burst]:
+        """Let a burst meet all that is on the wire at its time; the parts of it that met nothing."""
+        parts = [burst]
+        for other in self._coming:
+            if other.start_s < burst.end_s - TINY_S and burst.start_s < other.end_s - TINY_S:
+                parts = [rest for part in parts for rest in other.meet(part, self._random)]
+                self.collisions += 1
+        return parts
 
-    def _meet(self, first: _Burst, second: _Burst) -> None:
-        """Two servos at once: the same bytes at the same time survive, the rest does not."""
-        self.collisions += 1
-        if abs(first.start_s - second.start_s) < _TINY_S:
-            n = min(len(first.data), len(second.data))
-            for i in range(n):
-                first.data[i] &= second.data[i]
-            del second.data[:n]
-            second.start_s += n * second.byte_s
-            return
-        self.garble(first.data, first.start_s, first.byte_s, second.start_s, second.end_s)
-        overlap = self.garble(second.data, second.start_s, second.byte_s, first.start_s, first.end_s)[1]
-        del second.data[:overlap]
-        second.start_s += overlap * second.byte_s
+    def _add(self, burst: Burst) -> None:
+        if self.settings.piece_bytes is not None and not burst.alone:
+            self._cut(burst)
+        elif burst.data:
+            put(self._coming, burst)
 
-    def _cut(self, burst: _Burst) -> None:
+    def _cut(self, burst: Burst) -> None:
         least, most = self.settings.piece_bytes or (1, 1)
         at = 0
         while at < len(burst.data):
             size = self._random.randint(least, most)
-            start_s = burst.start_s + at * burst.byte_s
-            self._coming.append(_Burst(start_s, burst.byte_s, burst.data[at : at + size], alone=True))
+            piece = burst.part(at, min(at + size, len(burst.data)))
+            piece.alone = True
+            put(self._coming, piece)
             at += size
 
     # The client's end.
@@ -210,15 +185,15 @@ class Wire:
                 break
         return bytes(out)
 
-    def _arrived(self, burst: _Burst, t_s: float) -> int:
+    def _arrived(self, burst: Burst, t_s: float) -> int:
         """How many bytes of a burst are in by `t_s`."""
-        if burst.end_s <= t_s + _TINY_S:
+        if burst.end_s <= t_s + TINY_S:
             return len(burst.data)
         if burst.byte_s <= 0:
             return 0
         return max(0, math.floor((t_s - burst.start_s) / burst.byte_s + 1e-6))
 
-    def _shorten(self, burst: _Burst, n: int) -> None:
+    def _shorten(self, burst: Burst, n: int) -> None:
         if n >= len(burst.data):
             self._coming.popleft()
         else:
@@ -227,7 +202,7 @@ class Wire:
 
     # The adapter's buffer.
 
-    def _flush_of(self, burst: _Burst) -> float:
+    def _flush_of(self, burst: Burst) -> float:
         """When the first byte of what comes next is handed on: by the timer, or when a packet is full before."""
         period, first_s = self.settings.latency_s, burst.start_s + burst.byte_s
         by_timer_s = self._timer_s + period * max(1, math.ceil((first_s - self._timer_s) / period - 1e-9))
@@ -248,7 +223,7 @@ class Wire:
             del self._held[:n]
         while self._coming and len(out) < most:
             flush_s = self._flush_of(self._coming[0])
-            if flush_s > t_s + _TINY_S:
+            if flush_s > t_s + TINY_S:
                 break
             self._timer_s = flush_s
             lump = bytearray()

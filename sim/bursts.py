@@ -1,0 +1,68 @@
+"""Bytes in time on one wire, and what is left of them when two talk at once.
+
+Bytes that begin together are ANDed bit by bit, as open-collector drivers do; where they do not line up noise is left.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections import deque
+from dataclasses import dataclass
+
+TINY_S = 1e-9
+
+
+@dataclass
+class Burst:
+    """Bytes on their way to the client; `alone`: not to be joined with what follows."""
+
+    start_s: float
+    byte_s: float
+    data: bytearray
+    alone: bool = False
+
+    @property
+    def end_s(self) -> float:
+        """When the last byte ends."""
+        return self.start_s + len(self.data) * self.byte_s
+
+    def within(self, from_s: float, to_s: float) -> tuple[int, int]:
+        """Range of the bytes that are on the wire between two times, also in part."""
+        if self.byte_s <= 0:
+            return 0, 0
+        first = max(0, math.floor((from_s - self.start_s) / self.byte_s + 1e-6))
+        last = min(len(self.data), math.ceil((to_s - self.start_s) / self.byte_s - 1e-6))
+        return first, max(first, last)
+
+    def garble(self, from_s: float, to_s: float, draw: random.Random) -> None:
+        """Make noise of the bytes that are on the wire between two times."""
+        for i in range(*self.within(from_s, to_s)):
+            self.data[i] ^= draw.randrange(1, 256)
+
+    def part(self, first: int, last: int) -> Burst:
+        """Some of its bytes, at their time."""
+        return Burst(self.start_s + first * self.byte_s, self.byte_s, self.data[first:last], self.alone)
+
+    def meet(self, other: Burst, draw: random.Random) -> list[Burst]:
+        """Two at once: what comes of it where they overlap stays in this burst; returned are the rest of `other`'s bytes."""
+        if self.byte_s <= 0 or other.byte_s <= 0:
+            return [other]
+        first, last = other.within(self.start_s, self.end_s)
+        if first == last:
+            return [other]
+        at = (other.start_s - self.start_s) / self.byte_s
+        if other.byte_s == self.byte_s and abs(at - round(at)) * self.byte_s < TINY_S:
+            for i in range(first, last):
+                self.data[i + round(at)] &= other.data[i]
+        else:
+            self.garble(other.start_s, other.end_s, draw)
+        return [part for part in (other.part(0, first), other.part(last, len(other.data))) if part.data]
+
+
+def put(bursts: deque[Burst], burst: Burst) -> None:
+    """Put a burst among others that are in the order of time and do not overlap with it."""
+    at = len(bursts)
+    while at and bursts[at - 1].start_s > burst.start_s + TINY_S:
+        at -= 1
+    bursts.insert(at, burst)

@@ -1,0 +1,33 @@
+"""The one packet that answers a fast read: what each servo adds to it when its turn comes."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+
+from daemon.bus import packet
+from daemon.bus.crc import crc16
+from daemon.bus.packet import BROADCAST_ID, Instruction, Part
+
+
+def shares_of(turns: Sequence[Sequence[Part]], length: int) -> list[list[bytes]]:
+    """What is sent in each turn: the first one's head, then a part and the checksum of all that was heard so far.
+
+    Args:
+        turns: the part of each servo whose turn it is; more than one where servos share an id. They talk at once and the
+            next one hears their AND.
+        length: of the packet, as its head says.
+    """
+    head = packet.HEADER + struct.pack("<BHB", BROADCAST_ID, length, Instruction.STATUS)
+    shares: list[list[bytes]] = []
+    crc = 0
+    for parts in turns:
+        start = b"" if shares else head
+        said = [start + bytes([part.error, part.servo_id]) + part.data for part in parts]
+        said = [own + struct.pack("<H", crc16(own, crc)) for own in said]
+        heard = int.from_bytes(said[0])
+        for own in said[1:]:
+            heard &= int.from_bytes(own)
+        crc = crc16(heard.to_bytes(len(said[0])), crc)
+        shares.append(said)
+    return shares
