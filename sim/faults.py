@@ -12,7 +12,7 @@ import math
 import random
 import tomllib
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -38,7 +38,7 @@ PACKET_KINDS = {
 STATE_KINDS = {
     "silent": "a servo does not answer",
     "unplug": "the adapter is gone; back at `end_s`, as `path` when that is given",
-    "brown_out": "the supply gives `amount` of its voltage (default 0.3): servos reset when it is too low",
+    "brown_out": "the supply, or one servo's plug, gives `amount` of its voltage (default 0.3): too little resets servos",
     "stuck": "a shaft is blocked",
     "push": "an external torque of `amount` N m on a shaft",
     "echo": "the adapter hears what it sends",
@@ -53,6 +53,19 @@ INSTANT_KINDS = {
     "clock_jump": "the client's clock jumps by `amount` seconds (default 1.0); in virtual time only",
 }
 KINDS = PACKET_KINDS | STATE_KINDS | INSTANT_KINDS
+_OF_THE_WIRE = ("unplug", "echo", "clock_jump")
+_SIGNED = ("push", "slip", "clock_jump", "hot")
+_BY_PACKET = (*PACKET_KINDS, "silent")
+_ONLY_FOR = {
+    "probability": tuple(PACKET_KINDS),
+    "servo_id": tuple(kind for kind in KINDS if kind not in _OF_THE_WIRE),
+    "first_packet": _BY_PACKET,
+    "last_packet": _BY_PACKET,
+    "amount": ("delay", "truncate", "split", "noise", "brown_out", *_SIGNED),
+    "every_s": tuple(INSTANT_KINDS),
+    "path": ("unplug",),
+}
+"""Kinds that know a key; with any other it would be passed over in silence."""
 
 
 class Fault(msgspec.Struct, forbid_unknown_fields=True):
@@ -85,6 +98,9 @@ class Fault(msgspec.Struct, forbid_unknown_fields=True):
         return self.first_packet <= number and (self.last_packet is None or number <= self.last_packet)
 
 
+_PLAIN = Fault("drop")
+
+
 class _Table(msgspec.Struct, forbid_unknown_fields=True):
     fault: list[Fault]
     seed: int = 0
@@ -92,8 +108,7 @@ class _Table(msgspec.Struct, forbid_unknown_fields=True):
 
 def _problem(fault: Fault) -> tuple[str, str, str] | None:
     """(key, found, allowed) of the first thing wrong with a fault; None when nothing is."""
-    numbers = ("start_s", "end_s", "probability", "amount", "every_s")
-    for key in numbers:
+    for key in ("start_s", "end_s", "probability", "amount", "every_s"):
         value = getattr(fault, key)
         if value is not None and math.isnan(value):
             return key, "nan", "a number"
@@ -105,18 +120,19 @@ def _problem(fault: Fault) -> tuple[str, str, str] | None:
         return "end_s", f"{fault.end_s:g}", f"more than start_s = {fault.start_s:g}"
     if not 0 <= fault.probability <= 1:
         return "probability", f"{fault.probability:g}", "0 to 1"
-    if fault.probability < 1 and fault.kind not in PACKET_KINDS:
-        return "probability", f"{fault.probability:g} for '{fault.kind}'", f"1; less only for {', '.join(PACKET_KINDS)}"
     if fault.servo_id is not None and not 0 <= fault.servo_id <= 252:
         return "servo_id", str(fault.servo_id), "0 to 252"
     if fault.first_packet < 1 or (fault.last_packet is not None and fault.last_packet < fault.first_packet):
         return "first_packet", f"{fault.first_packet} to {fault.last_packet}", "1 or more, and not after last_packet"
-    if fault.every_s is not None and (fault.every_s <= 0 or fault.kind not in INSTANT_KINDS):
-        return "every_s", f"{fault.every_s:g} for '{fault.kind}'", f"more than 0, for {', '.join(INSTANT_KINDS)}"
-    if fault.path is not None and fault.kind != "unplug":
-        return "path", f"'{fault.path}' for '{fault.kind}'", "for unplug only"
-    if fault.amount is not None and fault.kind not in ("push", "slip", "clock_jump", "hot") and fault.amount < 0:
+    if fault.every_s is not None and fault.every_s <= 0:
+        return "every_s", f"{fault.every_s:g}", "more than 0"
+    if fault.amount is not None and fault.kind not in _SIGNED and fault.amount < 0:
         return "amount", f"{fault.amount:g} for '{fault.kind}'", "0 or more"
+    for key, kinds in _ONLY_FOR.items():
+        value = getattr(fault, key)
+        if value != getattr(_PLAIN, key) and fault.kind not in kinds:
+            found = repr(value) if isinstance(value, str) else f"{value:g}"
+            return key, f"{found} for '{fault.kind}'", f"only for {', '.join(kinds)}"
     return None
 
 
@@ -168,6 +184,17 @@ class FaultSchedule:
             return cls(tuple(table.fault), table.seed)
         except FaultFileError as error:
             raise FaultFileError(path, error.where, error.found, error.allowed) from None
+
+    def check_servos(self, known: Collection[int]) -> None:
+        """Refuse faults of servos that are not there: they would never strike.
+
+        Raises:
+            FaultFileError: a `servo_id` that is not among the `known` ones.
+        """
+        for i, fault in enumerate(self.faults, 1):
+            if fault.servo_id is not None and fault.servo_id not in known:
+                allowed = ", ".join(map(str, sorted(known)))
+                raise FaultFileError("fault schedule", f"fault {i}: servo_id", str(fault.servo_id), allowed)
 
     def begin(self, t_s: float) -> list[Fault]:
         """Faults that begin by `t_s` and have not been handed out; instants again when they repeat."""

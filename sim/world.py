@@ -39,6 +39,9 @@ class World:
         body: makes the body from the robot, the motors and the start angles of the shafts; plain shafts when None.
         firmware: version of single servos, by id.
         extra: servos on the wire that belong to no joint, such as one with an id that is there twice.
+
+    Raises:
+        FaultFileError: a fault of a servo that is not there.
     """
 
     def __init__(
@@ -52,6 +55,8 @@ class World:
     ) -> None:
         pose = np.array(start_rad, np.float64) if start_rad is not None else robot.park_rad
         specs = (*robot.servos, *extra)
+        if faults is not None:
+            faults.check_servos({s.servo_id for s in specs})
         self.robot, self.faults, self.audit = robot, faults or FaultSchedule(), Audit(robot, self._true_ticks)
         motors = [motor_of(s.model.model_number) for s in specs]
         rad_per_tick = [2 * np.pi / s.model.ticks_per_turn for s in specs]
@@ -108,7 +113,8 @@ class World:
         """Faults that last: the drives are told what holds now."""
         share = np.ones(self.drives.n)
         for fault in self.faults.in_force("brown_out"):
-            share[:] = 0.3 if fault.amount is None else fault.amount
+            for servo in self._meant(fault):
+                share[servo.index] = min(share[servo.index], 0.3 if fault.amount is None else fault.amount)
         stuck = np.zeros(self.drives.n, bool)
         for fault in self.faults.in_force("stuck"):
             for servo in self._meant(fault):

@@ -40,8 +40,13 @@ def test_a_schedule_is_read_and_strikes_in_its_time(tmp_path: Path) -> None:
         ('[[fault]]\nkind = "drop"\nservo_id = 300\n', "servo_id: 300; allowed: 0 to 252"),
         ('[[fault]]\nkind = "drop"\nfirst_packet = 5\nlast_packet = 4\n', "first_packet: 5 to 4"),
         ('[[fault]]\nkind = "drop"\nevery_s = 1.0\n', "every_s: 1 for 'drop'"),
-        ('[[fault]]\nkind = "drop"\npath = "x"\n', "path: 'x' for 'drop'; allowed: for unplug only"),
+        ('[[fault]]\nkind = "drop"\npath = "x"\n', "path: 'x' for 'drop'; allowed: only for unplug"),
         ('[[fault]]\nkind = "delay"\namount = -1.0\n', "amount: -1 for 'delay'"),
+        ('[[fault]]\nkind = "drop"\namount = 2.0\n', "amount: 2 for 'drop'; allowed: only for delay"),
+        ('[[fault]]\nkind = "unplug"\nservo_id = 3\n', "fault 1: servo_id: 3 for 'unplug'; allowed: only for drop, corrupt"),
+        ('[[fault]]\nkind = "echo"\nservo_id = 3\n', "servo_id: 3 for 'echo'"),
+        ('[[fault]]\nkind = "clock_jump"\nservo_id = 3\n', "servo_id: 3 for 'clock_jump'"),
+        ('[[fault]]\nkind = "stuck"\nfirst_packet = 5\n', "first_packet: 5 for 'stuck'; allowed: only for drop"),
         ('[[fault]]\nkind = "drop"\nstart_s = "soon"\n', "fault[0].start_s: Expected `float`, got `str`"),
         ("not toml", "not TOML"),
     ],
@@ -52,6 +57,11 @@ def test_a_wrong_schedule_is_refused_with_where_and_what_is_allowed(tmp_path: Pa
     with pytest.raises(ConfigError) as caught:
         FaultSchedule.load(file)
     assert said in str(caught.value) and str(file) in str(caught.value)
+
+
+def test_a_fault_of_a_servo_that_is_not_there_is_refused_for_it_would_never_strike() -> None:
+    with pytest.raises(FaultFileError, match="fault 2: servo_id: 7; allowed: 1, 2"):
+        Bench("XM430-W350", "XL430-W250", faults=(Fault("drop"), Fault("silent", servo_id=7)))
 
 
 def test_a_missing_schedule_is_named(tmp_path: Path) -> None:
@@ -111,6 +121,16 @@ def test_a_brown_out_resets_every_servo_and_none_answers_meanwhile() -> None:
     assert [b.ask(packet.ping(i)) for i in (1, 2)] == [[], []]
     b.wait(1.2)
     assert [b.read("torque_enable", i) for i in (1, 2)] == [0, 0]
+
+
+def test_a_brown_out_of_one_servo_leaves_the_others_alone() -> None:
+    b = Bench("XM430-W350", "XM430-W350", faults=(Fault("brown_out", start_s=1.0, end_s=2.0, servo_id=2),))
+    for i in (1, 2):
+        b.ask(packet.write(i, 64, b"\1"))
+    b.wait(1.2)
+    assert [len(b.ask(packet.ping(i))) for i in (1, 2)] == [1, 0]
+    b.wait(1.2)
+    assert [b.read("torque_enable", i) for i in (1, 2)] == [1, 0]
 
 
 def test_a_little_too_low_a_voltage_is_an_alert_and_torque_stays() -> None:
