@@ -2,11 +2,13 @@
 
 Written from the robot file alone, in ticks of each servo. A goal is one step of one bus period; rounding to ticks adds at most one
 tick to a step and two to the difference of two steps. Between two goals the bus may pause (a skipped cycle), but may
-not hurry: goals that come faster than the robot's rate, more than a few in a row, are a violation of their own.
+not hurry: goals that come faster than the robot's rate, more than a few in a row, are a violation of their own. So are
+goals that lead a servo on that has said often enough that it tripped, once there was time to come to rest.
 """
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -18,10 +20,14 @@ from sim.contact_audit import ContactAudit
 
 PIN_TOLERANCE_TICK = 12
 """About one degree: torque may come on over a goal no further from where the servo stands."""
-HURRY_GOALS, HURRY_RATE = 30, 1.1
-"""So many goals may come at once (what waited in a tty while a loaded machine slept), in the long run a tenth too many."""
+HURRY_GOALS, HURRY_RATE = 4, 1.1
+"""So many goals may come at once (a cycle that was held up, those that start late behind it), in the long run a tenth too many."""
+TTY_GOALS = 30
+"""Behind a tty: so many may have waited in it while a loaded machine let the simulator sleep."""
 FAULT_GRACE_S = 0.1
 """Goals that were under way when a servo tripped are not counted against anybody."""
+ALERTS_TOLD = 10
+"""A servo's trip is known to the client after so many whole answers that say so: some may be lost on their way."""
 _MAX_DETAILS = 20
 
 
@@ -33,11 +39,19 @@ class _Track:
     maximum: int
     step: float
     bend: float
+    rest_s: float
     last: int | None = None
     before: int | None = None
     at_s: float = 0.0
-    credit: float = HURRY_GOALS
+    credit: float = math.inf
     faulted_s: float | None = None
+    alerts: int = 0
+    told_s: float = math.inf
+    told_tick: int | None = None
+
+    def well(self) -> None:
+        """Nothing is latched."""
+        self.faulted_s, self.alerts, self.told_s, self.told_tick = None, 0, math.inf, None
 
 
 @dataclass
@@ -47,8 +61,10 @@ class Audit:
     Attributes:
         measure: true ticks of the servos, for contacts that were not commanded; None where nobody can tell.
         goals: goals received.
+        waiting_goals: how many may come at once.
         violations: by kind.
-        writes_in_fault: goals to a servo whose fault has taken its torque, after a grace of 0.1 s. They move nothing.
+        writes_in_fault: goals to a servo whose fault has taken its torque, after a grace of 0.1 s. They move nothing: a group
+            is told to hold, and it is one of them. Goals that lead it on are violations.
         body_contacts: steps in which the body (MuJoCo) touched itself.
         details: the first violations in words.
     """
@@ -56,6 +72,7 @@ class Audit:
     robot: RobotModel
     measure: Callable[[], list[int]] | None = None
     goals: int = 0
+    waiting_goals: int = HURRY_GOALS
     violations: Counter[str] = field(default_factory=Counter[str])
     writes_in_fault: int = 0
     body_contacts: int = 0
@@ -72,7 +89,8 @@ class Audit:
             ticks.acceleration_limit_tick_s2.tolist(), strict=True,
         )  # fmt: skip
         for servo_id, (low, high, velocity, acceleration) in zip(self.robot.servo_ids, bounds, strict=True):
-            self._tracks[servo_id] = _Track(low, high, velocity * period + 1.0, acceleration * period**2 + 2.0)
+            step, bend = velocity * period + 1.0, acceleration * period**2 + 2.0
+            self._tracks[servo_id] = _Track(low, high, step, bend, velocity / acceleration + FAULT_GRACE_S)
 
     def torque(self, t_s: float, servo_id: int, on: bool, goal_tick: int, present_tick: int) -> None:
         """Torque was switched."""
@@ -80,7 +98,7 @@ class Audit:
         if track is None:
             return
         track.last = track.before = goal_tick if on else None
-        track.faulted_s = None
+        track.well()
         if on:
             self.contacts.begin(servo_id, goal_tick)
         if on and abs(goal_tick - present_tick) > PIN_TOLERANCE_TICK:
@@ -89,6 +107,19 @@ class Audit:
     def torque_in_fault(self, t_s: float, servo_id: int) -> None:
         """Somebody asked a servo for torque that has latched a fault."""
         self._violate(t_s, servo_id, "torque_in_fault", "it has to be rebooted first")
+
+    def torque_limit(self, t_s: float, servo_id: int, limit: int, most: int) -> None:
+        """A servo of Protocol 1.0 was given a torque limit, over the `most` that its owner has allowed it."""
+        if limit > most:
+            self._violate(t_s, servo_id, "torque_limit", f"{limit}, its max torque is {most}")
+
+    def told_alert(self, t_s: float, servo_id: int) -> None:
+        """A servo whose fault has taken its torque has said so, in an answer that went out whole."""
+        track = self._tracks.get(servo_id)
+        if track is not None:
+            track.alerts += 1
+            if track.alerts == ALERTS_TOLD:
+                track.told_s = t_s
 
     def goal(self, t_s: float, servo_id: int, tick: int, torque: bool, *, faulted: bool = False) -> None:
         """A servo received a goal."""
@@ -99,6 +130,7 @@ class Audit:
         self.contacts.told(t_s, servo_id, tick, track.last is not None)
         if not torque:
             self._count_in_fault(track, t_s, faulted)
+            self._judge_in_fault(track, t_s, servo_id, tick)
             return
         # Where a joint stood outside its range when torque came on, it may only come back.
         low, high = track.minimum, track.maximum
@@ -149,23 +181,33 @@ class Audit:
 
     def _count_in_fault(self, track: _Track, t_s: float, faulted: bool) -> None:
         if not faulted:
-            track.faulted_s = None
+            track.well()
             return
         if track.faulted_s is None:
             track.faulted_s = t_s
         self.writes_in_fault += t_s > track.faulted_s + FAULT_GRACE_S
 
+    def _judge_in_fault(self, track: _Track, t_s: float, servo_id: int, tick: int) -> None:
+        """A servo that has told of its trip may be told to stand still, with its group, and nothing else."""
+        if t_s > track.told_s + track.rest_s and track.told_tick not in (None, tick):
+            self._violate(
+                t_s, servo_id, "goal_in_fault", f"led from {track.told_tick} to {tick}, though it has tripped"
+            )
+        track.told_tick = tick
+
     def _count_hurry(self, track: _Track, t_s: float, servo_id: int, tick: int) -> None:
         """Goals that move the servo are paid for by time."""
         earned = (t_s - track.at_s) * self.robot.bus.rate_hz * HURRY_RATE
-        track.credit, track.at_s = min(float(HURRY_GOALS), track.credit + max(0.0, earned)), max(track.at_s, t_s)
+        track.credit, track.at_s = min(float(self.waiting_goals), track.credit + max(0.0, earned)), max(track.at_s, t_s)
         if tick == track.last:
             return
         track.credit -= 1
         if track.credit < 0:
             track.credit = 0.0
             rate_hz = self.robot.bus.rate_hz
-            self._violate(t_s, servo_id, "hurry", f"more than {HURRY_GOALS} goals faster than {rate_hz:g} a second")
+            self._violate(
+                t_s, servo_id, "hurry", f"more than {self.waiting_goals} goals faster than {rate_hz:g} a second"
+            )
 
     def _violate(self, t_s: float, servo_id: int, kind: str, text: str) -> None:
         self.violations[kind] += 1

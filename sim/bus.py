@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from daemon.bus import packet, packet1
-from daemon.bus.packet import BROADCAST_ID, Access, Instruction, Packet, Part
+from daemon.bus.packet import ALERT_BIT, BROADCAST_ID, Access, Instruction, Packet, Part
 from daemon.bus.registers import RETURN_DELAY_UNIT_S
 from retarget.robot import RobotModel
 from sim.audit import Audit
@@ -20,7 +20,7 @@ from sim.fast_reply import shares_of
 from sim.faults import FaultSchedule
 from sim.instructions import Instructions, accesses_of
 from sim.servo import SimServo
-from sim.spoil import spoil
+from sim.spoil import Piece, spoil
 from sim.wire import Wire, WireSettings
 from sim.world import World
 
@@ -195,9 +195,13 @@ class SimBus:
         byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
         status = packet.status if servo.model.protocol == 2.0 else packet1.status
         start_s = t_s + self._pause_s(servo)
-        error |= servo.alert()
+        alert = servo.alert()
+        error |= alert
         end_s = start_s + byte_s * (len(parameters) + (11 if servo.model.protocol == 2.0 else 6))
-        for piece in spoil(self.faults, servo_id, lambda i: status(i, error, parameters), start_s, byte_s):
+        pieces = spoil(self.faults, servo_id, lambda i: status(i, error, parameters), start_s, byte_s)
+        if alert and servo.is_faulted and pieces == [Piece(status(servo_id, error, parameters))]:
+            self.audit.told_alert(t_s, servo.spec.servo_id)
+        for piece in pieces:
             sent_s = self.wire.answer(start_s + piece.after_s, piece.data, baud, alone=piece.alone)
             end_s = max(end_s, sent_s) if not piece.after_s else end_s
         return end_s
@@ -241,6 +245,9 @@ class SimBus:
         start_s = t_s + self._pause_s(turns[0][0])
         if not self.faults.strikes_packets and all(len(said) == 1 for said in shares):  # nothing comes between them
             self.faults.packet += len(turns)
+            for (servo,), (part,) in zip(turns, parts, strict=True):
+                if part.error & ALERT_BIT and servo.is_faulted:
+                    self.audit.told_alert(t_s, servo.spec.servo_id)
             self.wire.answer(start_s, b"".join(own for (own,) in shares), baud)
             return
         byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud

@@ -92,6 +92,9 @@ class Instructions:
                 self._audit.goal(t_s, servo_id, tick, had_torque, faulted=was_faulted)
                 if self.on_goal is not None:
                     self.on_goal(t_s, servo_id, tick)
+        if "torque_limit" in servo.asked and not error:
+            limit, most = servo.memory.get("torque_limit"), servo.memory.get("max_torque")
+            self._audit.torque_limit(t_s, servo_id, limit, most)
         if "torque_enable" in servo.asked and error and was_faulted:
             self._audit.torque_in_fault(t_s, servo_id)
         if servo.torque != had_torque:

@@ -18,6 +18,7 @@ import tty
 from pathlib import Path
 
 from daemon.errors import CommandError
+from sim.audit import TTY_GOALS
 from sim.bus import SimBus
 from sim.errors import FaultFileError
 
@@ -34,6 +35,7 @@ class PtyServer:
 
     def __init__(self, bus: SimBus, link: Path | None = None, baud: int | None = None) -> None:
         self.bus, self.link = bus, link
+        bus.audit.waiting_goals = TTY_GOALS
         if any(f.kind == "clock_jump" for f in bus.faults.faults):
             raise FaultFileError("fault schedule", "kind", "clock_jump behind a tty", "virtual time: sim:// in process")
         if baud is not None:

@@ -101,7 +101,7 @@ class SimServo1(SimServo):
         speed = get("moving_speed")
         per_unit = self._tick_s_per_unit
         d.mode[i] = Mode.VELOCITY if self._is_wheel else Mode.POSITION
-        d.limit_duty[i] = min(get("torque_limit"), get("max_torque")) / _FULL
+        d.limit_duty[i] = get("torque_limit") / _FULL  # max torque is only what it begins with (manual, address 14)
         d.goal_tick_s[i] = speed * per_unit
         d.velocity_p_gain[i], d.velocity_i_gain[i] = 1.0 / (50 * per_unit), 1.0 / (5 * per_unit)
         d.profile_tick_s[i] = abs(speed) * per_unit if speed and not self._is_wheel else math.inf

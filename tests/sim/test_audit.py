@@ -6,12 +6,17 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from servo_bench import Bench
 
+from daemon.bus import packet
 from retarget.collision import SelfContact
 from retarget.robot import load_robot
 from retarget.ticks import JointServoMap
-from sim.audit import Audit
+from sim.audit import ALERTS_TOLD, TTY_GOALS, Audit
 from sim.contact_audit import ContactAudit
+from sim.faults import Fault
 
 ROBOT = load_robot("reference")
 SERVO = ROBOT.servos[2]  # waist_yaw: an XM430 without gear
@@ -75,18 +80,33 @@ def test_goals_without_torque_are_counted_but_not_judged() -> None:
     assert (audit.goals, dict(audit.violations)) == (1, {})
 
 
-def test_goals_faster_than_the_robots_rate_are_a_violation_unless_they_only_waited() -> None:
-    def hurried(period_s: float, n: int, wait_s: float = 0.0) -> bool:
-        audit = Audit(ROBOT)
-        audit.torque(0.0, SERVO.servo_id, True, 2048, 2048)
-        for i in range(n):
-            audit.goal(wait_s + period_s * i, SERVO.servo_id, 2048 + i % 2, True)
-        return "hurry" in audit.violations
+def hurried(period_s: float, n: int, wait_s: float = 0.0, **options: int) -> bool:
+    """Whether `n` goals that move a servo, `period_s` apart, are too many; the first `wait_s` after torque came on."""
+    audit = Audit(ROBOT, **options)
+    audit.torque(0.0, SERVO.servo_id, True, 2048, 2048)
+    for i in range(n):
+        audit.goal(wait_s + period_s * i, SERVO.servo_id, 2048 + i % 2, True)
+    return "hurry" in audit.violations
 
+
+def test_goals_faster_than_the_robots_rate_are_a_violation_unless_they_only_waited() -> None:
     assert not hurried(0.01, 500)
     assert hurried(0.005, 100), "twice the rate of the robot's file"
-    assert not hurried(0.0015, 25, wait_s=0.25), "what waited in a tty comes at once"
+    assert hurried(0.0015, 25, wait_s=0.25), "in process nothing waits"
+    assert not hurried(0.0015, 25, wait_s=0.25, waiting_goals=TTY_GOALS), "what waited in a tty comes at once"
     assert not hurried(0.02, 200)
+
+
+@given(st.lists(st.floats(0.0, 0.99), min_size=1, max_size=200))
+def test_cycles_that_are_late_but_never_by_a_period_are_no_burst(late: list[float]) -> None:
+    """A cycle that was held up is made up for by the next ones, which start at once: that is as it should be."""
+    audit, period_s = Audit(ROBOT), ROBOT.bus.period_s
+    audit.torque(0.0, SERVO.servo_id, True, 2048, 2048)
+    t_s = 0.0
+    for i, share in enumerate(late):
+        t_s = max(t_s, (i + share) * period_s)
+        audit.goal(t_s, SERVO.servo_id, 2048 + i % 2, True)
+    assert not audit.violations
 
 
 def test_a_goal_lost_on_the_wire_is_a_step_of_the_wires_and_not_of_the_daemons() -> None:
@@ -108,8 +128,57 @@ def test_goals_to_a_tripped_servo_are_counted_after_a_moment_and_asking_it_for_t
     for i in range(30):
         audit.goal(0.01 * i, SERVO.servo_id, 2048, False, faulted=True)
     assert audit.report()["writes_in_fault"] == 19 and audit.report()["violations"] == 0
+    for _ in range(ALERTS_TOLD):
+        audit.told_alert(0.3, SERVO.servo_id)
+    for i in range(300):
+        audit.goal(0.3 + 0.01 * i, SERVO.servo_id, 2048, False, faulted=True)
+    assert audit.report()["violations"] == 0, "a group that holds may tell it to stand still"
     audit.torque_in_fault(1.0, SERVO.servo_id)
     assert audit.report()["violations_by_kind"] == {"torque_in_fault": 1}
+
+
+def led_on(alerts: int, for_s: float) -> dict[str, int]:
+    """A servo that has tripped and told so often is led on for so long."""
+    audit = Audit(ROBOT)
+    audit.torque(0.0, SERVO.servo_id, True, 2048, 2048)
+    for _ in range(alerts):
+        audit.told_alert(0.0, SERVO.servo_id)
+    for i in range(round(for_s * 100)):
+        audit.goal(0.01 * i, SERVO.servo_id, 2048 + i, False, faulted=True)
+    return dict(audit.violations)
+
+
+def test_a_servo_that_has_tripped_and_said_so_is_not_led_on_but_may_come_to_rest() -> None:
+    rest_s = JOINT.velocity_limit_rad_s / JOINT.acceleration_limit_rad_s2
+    assert led_on(ALERTS_TOLD, rest_s) == {}
+    assert led_on(ALERTS_TOLD - 1, rest_s + 5.0) == {}, "nobody may have heard it"
+    assert led_on(ALERTS_TOLD, rest_s + 0.2).keys() == {"goal_in_fault"}
+
+
+ASKS = {
+    "read": packet.read(1, 132, 4),
+    "sync": packet.sync_read(132, 4, [1]),
+    "fast": packet.sync_read(132, 4, [1], fast=True),
+}
+
+
+@pytest.mark.parametrize(
+    ("ask", "spoilt", "kind"),
+    [("read", None, "goal_in_fault"), ("sync", None, "goal_in_fault"), ("fast", None, "goal_in_fault"),
+     ("sync", "drop", None), ("sync", "corrupt", None), ("fast", "corrupt", None)],
+)  # fmt: skip
+def test_a_trip_is_known_to_the_client_when_whole_answers_have_told_it(
+    ask: str, spoilt: str | None, kind: str | None
+) -> None:
+    b = Bench(faults=(Fault("overload", start_s=1.0), *([Fault(spoilt)] if spoilt else [])))
+    b.send(packet.write(1, 64, b"\1"))
+    b.wait(1.1)
+    for i in range(100):
+        b.send(ASKS[ask])
+        b.send(packet.sync_write(116, 4, [(1, (2048 + i).to_bytes(4, "little"))]))
+        b.wait(0.01)
+    assert set(b.bus.audit.violations) == ({kind} if kind else set())
+    assert b.bus.audit.writes_in_fault > 0
 
 
 def test_a_robot_that_touches_itself_is_seen() -> None:

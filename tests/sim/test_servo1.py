@@ -111,6 +111,21 @@ def test_an_overload_takes_torque_and_its_limit_until_the_limit_is_written_again
     assert b.write("torque_enable", 1) == 0
 
 
+def test_the_torque_limit_alone_is_in_force_and_one_over_the_owners_max_torque_is_a_violation() -> None:
+    """Max torque is only what the limit begins with when power comes on: who writes all over it undoes what the owner set."""
+    b = Bench("AX-12A")
+    b.write("max_torque", 300)
+    assert b.read("torque_limit") == 1023, "not before power comes on"
+    b.servo.lose_power()
+    b.servo.restore_power()
+    b.wait(0.3)
+    assert (b.read("torque_limit"), b.world.drives.limit_duty[0]) == (300, pytest.approx(300 / 1023))
+    assert b.write("torque_limit", 200) == 0 and not b.bus.audit.violations
+    assert b.write("torque_limit", 1023) == 0, "the servo takes it"
+    assert b.world.drives.limit_duty[0] == 1.0
+    assert b.bus.audit.violations == {"torque_limit": 1}
+
+
 def test_both_protocols_share_one_wire_without_hearing_each_other() -> None:
     b = Bench("XM430-W350", "AX-12A")
     assert b.ask(packet1.ping(2))[0].servo_id == 2
