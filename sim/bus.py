@@ -16,7 +16,7 @@ from daemon.bus.packet import ALERT_BIT, BROADCAST_ID, Access, Instruction, Pack
 from daemon.bus.registers import RETURN_DELAY_UNIT_S
 from retarget.robot import RobotModel
 from sim.audit import Audit
-from sim.fast_reply import shares_of
+from sim.fast_reply import share_as, shares_of
 from sim.faults import FaultSchedule
 from sim.instructions import Instructions, accesses_of
 from sim.servo import SimServo
@@ -241,7 +241,8 @@ class SimBus:
                 break  # two begin at different times: nobody can make out a packet to go on with
         if not turns:
             return
-        shares = shares_of(parts, 1 + sum(4 + access.length for access in accesses))
+        length = 1 + sum(4 + access.length for access in accesses)
+        shares = shares_of(parts, length)
         start_s = t_s + self._pause_s(turns[0][0])
         if not self.faults.strikes_packets and all(len(said) == 1 for said in shares):  # nothing comes between them
             self.faults.packet += len(turns)
@@ -251,17 +252,17 @@ class SimBus:
             self.wire.answer(start_s, b"".join(own for (own,) in shares), baud)
             return
         byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
-        for turn, (servos, said) in enumerate(zip(turns, shares, strict=True)):
+        for turn, servos in enumerate(turns):
             pieces = [
                 (start_s if turn else t_s + self._pause_s(servo), piece)
-                for servo, own in zip(servos, said, strict=True)
-                for piece in spoil(self.faults, servo.servo_id, lambda _id, own=own: own, start_s, byte_s)
+                for servo, part in zip(servos, parts[turn], strict=True)
+                for piece in spoil(self.faults, part.servo_id, share_as(parts[:turn], part, length), start_s, byte_s)
             ]
             for own_s, piece in pieces:
                 self.wire.answer(own_s + piece.after_s, piece.data, baud, alone=piece.alone)
             if not pieces:
                 return
-            start_s += len(said[0]) * byte_s
+            start_s += len(shares[turn][0]) * byte_s
 
 
 def _answers(servo: SimServo, kind: int) -> bool:

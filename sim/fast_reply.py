@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from daemon.bus import packet
 from daemon.bus.crc import crc16
@@ -31,3 +31,8 @@ def shares_of(turns: Sequence[Sequence[Part]], length: int) -> list[list[bytes]]
         crc = crc16(heard.to_bytes(len(said[0])), crc)
         shares.append(said)
     return shares
+
+
+def share_as(before: Sequence[Sequence[Part]], part: Part, length: int) -> Callable[[int], bytes]:
+    """Makes what a servo adds to a fast reply, under the id it is to carry."""
+    return lambda servo_id: shares_of([*before, [part._replace(servo_id=servo_id)]], length)[-1][0]

@@ -39,6 +39,7 @@ class SimServo(ServoPower):
     """
 
     errors = Errors(ErrorCode.INSTRUCTION, ErrorCode.DATA_LENGTH, ErrorCode.ACCESS)
+    has_encoder_error = True
 
     def __init__(self, spec: ServoSpec, drives: Drives, index: int, firmware: int | None = None) -> None:
         super().__init__(spec, drives, index, firmware)

@@ -25,6 +25,7 @@ class SimServo1(SimServo):
     """Registers of one AX or MX of Protocol 1.0."""
 
     errors = Errors(INSTRUCTION_ERROR, INSTRUCTION_ERROR, INSTRUCTION_ERROR)
+    has_encoder_error = False
     _measured_at = range(0)
 
     @property

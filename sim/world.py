@@ -15,6 +15,7 @@ from retarget.ticks import JointServoMap
 from sim.audit import Audit
 from sim.body import Body, PlainBody
 from sim.drive import STEP_S, Drives
+from sim.errors import FaultFileError
 from sim.faults import Fault, FaultSchedule
 from sim.motors import motor_of
 from sim.servo import SimServo
@@ -41,7 +42,7 @@ class World:
         extra: servos on the wire that belong to no joint, such as one with an id that is there twice.
 
     Raises:
-        FaultFileError: a fault of a servo that is not there.
+        FaultFileError: a fault of a servo that is not there, or that it cannot have.
     """
 
     def __init__(
@@ -71,6 +72,7 @@ class World:
         self.servos = {s.servo_id: servo for s, servo in zip(robot.servos, self.all[: len(robot.servos)], strict=True)}
         for servo in self.all:
             servo.set_baud(robot.bus.baud)
+        self._check_encoder_faults()
         self.t_s = 0.0
         self.lock = threading.RLock()
         """Held while anything is asked of the servos: doors may be served by threads of their own."""
@@ -141,7 +143,7 @@ class World:
             i = servo.index
             if fault.kind in ("overload", "trip"):
                 servo.trip(OVERLOAD_BIT)
-            elif fault.kind == "encoder":
+            elif fault.kind == "encoder" and servo.has_encoder_error:
                 servo.trip(ENCODER_BIT)
             elif fault.kind == "hot":
                 self.drives.temperature_c[i] = 90.0 if fault.amount is None else fault.amount
@@ -155,6 +157,15 @@ class World:
                 )
         if fault.kind == "clock_jump" and self.on_clock_jump is not None:
             self.on_clock_jump(1.0 if fault.amount is None else fault.amount)
+
+    def _check_encoder_faults(self) -> None:
+        """Refuse encoder faults of servos that have no such error (Protocol 1.0)."""
+        able = [servo.spec.servo_id for servo in self.all if servo.has_encoder_error]
+        for i, fault in enumerate(self.faults.faults, 1):
+            if fault.kind == "encoder" and (fault.servo_id not in able if fault.servo_id is not None else not able):
+                whom = "any servo" if fault.servo_id is None else f"servo {fault.servo_id}"
+                allowed = f"Protocol 2.0: servo {', '.join(map(str, able)) or 'none'}"
+                raise FaultFileError("fault schedule", f"fault {i}: kind", f"'encoder' for {whom}", allowed)
 
     def _meant(self, fault: Fault) -> list[SimServo]:
         return [s for s in self.all if fault.servo_id is None or s.spec.servo_id == fault.servo_id]

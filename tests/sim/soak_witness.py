@@ -40,7 +40,7 @@ class Expected:
 
     Attributes:
         words: a pattern that a warning or error of its log has to match; COUNTED, or UNNOTICED for nothing at all.
-        of_servo: whether the same line names the servo.
+        of_servo: whether the same line names the servo, if it is a fault of one.
         why: may it pass unnoticed, the reason.
     """
 
@@ -72,6 +72,14 @@ EXPECTED: dict[str, Expected] = {
     "split": Expected(UNNOTICED, why="an answer in two pieces is an answer"),
     "noise": Expected(UNNOTICED, why="bytes before an answer are passed over"),
 }  # fmt: skip
+
+WHOLLY_DEAF = Expected(SILENT)
+"""Deaf to every packet, and for longer than it takes to be missed."""
+
+
+def expected_of(fault: Fault) -> Expected:
+    """What the daemon has to say of a fault."""
+    return WHOLLY_DEAF if fault.kind == "deaf" and fault.probability == 1.0 else EXPECTED[fault.kind]
 
 
 @dataclass(frozen=True)
@@ -126,7 +134,7 @@ class Witness(logging.Handler):
         self._look_for_stopped(now_s)
 
     def _judge(self, case: _Case) -> None:
-        fault, expected = case.fault, EXPECTED[case.fault.kind]
+        fault, expected = case.fault, expected_of(case.fault)
         if expected.words == COUNTED:
             struck = self._struck(fault) - case.struck
             seen, must = self._counted() > case.counted, struck >= STRUCK_OFTEN
@@ -145,9 +153,10 @@ class Witness(logging.Handler):
     def _was_said(self, case: _Case, expected: Expected) -> bool:
         if expected.words is UNNOTICED:
             return False
+        of_servo = expected.of_servo and case.fault.servo_id is not None
         servo = rf"servos? [^;:]*?\b{case.fault.servo_id}\b|^\s+{case.fault.servo_id}\s"
         return any(
-            re.search(expected.words, text) and (not expected.of_servo or re.search(servo, text, re.MULTILINE))
+            re.search(expected.words, text) and (not of_servo or re.search(servo, text, re.MULTILINE))
             for t_s, text in self._said
             if case.fault.start_s - TOLD_AGAIN_S <= t_s <= case.due_s
         )

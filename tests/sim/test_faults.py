@@ -8,6 +8,7 @@ import pytest
 from servo_bench import Bench
 
 from daemon.bus import packet
+from daemon.bus.crc import crc16
 from daemon.bus.packet import Packet, PacketDecoder
 from daemon.errors import ConfigError, LinkLostError
 from sim.clock import VirtualClock
@@ -62,6 +63,30 @@ def test_a_wrong_schedule_is_refused_with_where_and_what_is_allowed(tmp_path: Pa
 def test_a_fault_of_a_servo_that_is_not_there_is_refused_for_it_would_never_strike() -> None:
     with pytest.raises(FaultFileError, match="fault 2: servo_id: 7; allowed: 1, 2"):
         Bench("XM430-W350", "XL430-W250", faults=(Fault("drop"), Fault("silent", servo_id=7)))
+
+
+@pytest.mark.parametrize("servo_id", [None, 1])
+def test_a_servo_without_an_encoder_error_cannot_have_one(servo_id: int | None) -> None:
+    with pytest.raises(
+        FaultFileError, match=r"fault 1: kind: 'encoder' for (servo 1|any servo); allowed: Protocol 2.0"
+    ):
+        Bench("MX-28", faults=(Fault("encoder", servo_id=servo_id),))
+    b = Bench("MX-28", "XM430-W350", faults=(Fault("encoder"),))
+    b.wait(0.1)
+    assert [servo.alert() for servo in b.world.all] == [0, packet.ALERT_BIT]
+
+
+@pytest.mark.parametrize("kind", ["wrong_id", "foreign"])
+def test_in_a_fast_read_another_id_is_in_the_answer_too(kind: str) -> None:
+    def answer(*faults: Fault) -> bytes:
+        return Bench("XM430-W350", "XM430-W350", faults=faults).send(packet.sync_read(132, 4, [1, 2], fast=True))
+
+    whole, spoilt = answer(), answer(Fault(kind, servo_id=2))
+    if kind == "wrong_id":
+        assert (spoilt[:17], spoilt[17], spoilt[18:22]) == (whole[:17], 3, whole[18:22])
+        assert spoilt[-2:] == crc16(spoilt[:-2]).to_bytes(2, "little")
+    else:
+        assert (spoilt[:16], spoilt[17], spoilt[24:]) == (whole[:16], 102, whole[16:])
 
 
 def test_a_missing_schedule_is_named(tmp_path: Path) -> None:
