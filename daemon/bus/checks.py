@@ -13,11 +13,13 @@ from retarget.robot import RobotModel, ServoSpec
 from retarget.ticks import JointServoMap
 
 _POSITION_MODE, _EXTENDED_MODE = 3, 4
-_REVERSED, _TIME_BASED = 0b001, 0b100
+_REVERSED, _TIME_BASED, _TORQUE_BY_GOAL = 0b0001, 0b0100, 0b1000
+"""Of drive_mode. Torque by goal: after a reboot the next goal would switch torque on, wherever the joint hangs by then."""
+_TORQUE_AT_POWER_ON = 0b01  # of startup_configuration
 _SHUTDOWN_ON = 0b100100  # overheating, overload: the same bits in both protocols
 _ITEMS = (
     "return_delay_time", "drive_mode", "operating_mode", "homing_offset", "temperature_limit", "max_position_limit",
-    "min_position_limit", "shutdown", "torque_enable", "status_return_level", "hardware_error_status",
+    "min_position_limit", "startup_configuration", "shutdown", "status_return_level", "hardware_error_status",
     "present_input_voltage", "present_temperature",
 )  # fmt: skip
 _HOT_MARGIN_C = 10
@@ -121,10 +123,15 @@ def _of_servo(
         expected = f"{mode} ({meaning})"
         note("operating_mode", str(v["operating_mode"]), expected, NEEDED, set_("operating_mode", mode), mode)
     drive = v.get("drive_mode", 0)
-    if drive & (_REVERSED | _TIME_BASED):
-        right = drive & ~(_REVERSED | _TIME_BASED)
-        expected = f"{right} (direction is the robot file's, profiles in velocity)"
+    right = drive & ~(_REVERSED | _TIME_BASED | _TORQUE_BY_GOAL)
+    if drive != right:
+        expected = f"{right} (direction is the robot file's, profiles in velocity, no torque by goal)"
         note("drive_mode", str(drive), expected, NEEDED, set_("drive_mode", right), right)
+    startup = v.get("startup_configuration", 0)
+    if startup & _TORQUE_AT_POWER_ON:
+        right = startup & ~_TORQUE_AT_POWER_ON
+        expected = f"{right} (no torque at power-on)"
+        note("startup_configuration", str(startup), expected, NEEDED, set_("startup_configuration", right), right)
     if v["shutdown"] & _SHUTDOWN_ON != _SHUTDOWN_ON:
         right = v["shutdown"] | _SHUTDOWN_ON
         expected = f"{right} (overheating and overload cut the torque)"

@@ -1,0 +1,51 @@
+"""Settings that must not stand in a servo's memory: found on simulated servos, refused, corrected only when told to."""
+
+from __future__ import annotations
+
+import pytest
+from rig_bus import BusRig, bus_rig
+
+from daemon.bus.checks import NEEDED, Finding, check_servos, fix, require_needed
+from daemon.errors import BusMismatchError
+
+
+def findings_of(rig: BusRig, servo_id: int, severity: str) -> dict[str, Finding]:
+    """What is said of one servo, by item."""
+    found = check_servos(rig.bus, rig.robot)
+    return {f.item: f for f in found if (f.servo_id, f.severity) == (servo_id, severity)}
+
+
+@pytest.mark.parametrize(
+    ("item", "value", "right"),
+    [
+        ("drive_mode", 0b1000, 0), ("drive_mode", 0b1101, 0), ("drive_mode", 0b0010, None),
+        ("startup_configuration", 0b01, 0), ("startup_configuration", 0b11, 0b10), ("startup_configuration", 0b10, None),
+    ],
+)  # fmt: skip
+def test_a_servo_that_would_switch_its_torque_on_by_itself_is_refused(item: str, value: int, right: int | None) -> None:
+    """With drive mode bit 3 the first goal after a reboot put torque on wherever the joint had fallen to by then."""
+    rig = bus_rig()
+    rig.bus.verify()
+    servo = rig.servos.servos[1]
+    servo._set(item, value)
+    found = findings_of(rig, 1, NEEDED)
+    assert {i: f.fix for i, f in found.items()} == ({} if right is None else {item: right})
+    assert servo.get(item) == value, "looking changes nothing"
+    if right is None:
+        return
+    with pytest.raises(BusMismatchError, match=rf"{item} {right} \(.*no torque (by goal|at power-on)"):
+        require_needed(list(found.values()))
+    fix(rig.bus, list(found.values()))
+    assert servo.get(item) == right and not findings_of(rig, 1, NEEDED)
+    servo.reboot()
+    rig.clock.sleep_until(rig.clock.now_s() + 1.0)
+    rig.bus.exchange(rig.bus.exchange(None).position_tick)
+    assert not servo.torque
+
+
+@pytest.mark.parametrize("name", ["op2", "op3", "poppy_torso", "reachy_2021", "toddlerbot"])
+def test_servos_without_such_items_are_checked_as_well(name: str) -> None:
+    """MX has no startup configuration, and Protocol 1.0 neither item."""
+    rig = bus_rig(name=name)
+    rig.bus.verify()
+    require_needed(check_servos(rig.bus, rig.robot))
