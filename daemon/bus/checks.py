@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from daemon.bus.models import BusModel
 from daemon.bus.multi import RobotBus
-from daemon.bus.registers import hardware_error_text
+from daemon.bus.registers import EXTENDED_POSITION_MODE, POSITION_MODE, hardware_error_text
 from daemon.errors import BusMismatchError, CommandError, MismatchRow
 from retarget.robot import RobotModel, ServoSpec
 from retarget.ticks import JointServoMap
 
-_POSITION_MODE, _EXTENDED_MODE = 3, 4
+_MODES = {False: (POSITION_MODE, "position"), True: (EXTENDED_POSITION_MODE, "extended position")}
 _REVERSED, _TIME_BASED, _TORQUE_BY_GOAL = 0b0001, 0b0100, 0b1000
 """Of drive_mode. Torque by goal: after a reboot the next goal would switch torque on, wherever the joint hangs by then."""
 _TORQUE_AT_POWER_ON = 0b01  # of startup_configuration
@@ -118,10 +118,15 @@ def _of_servo(
     if v["status_return_level"] != 2:
         found = str(v["status_return_level"])
         note("status_return_level", found, "2 (answers all)", NEEDED, set_("status_return_level", 2), 2)
-    mode, meaning = (_EXTENDED_MODE, "extended position") if servo.extended else (_POSITION_MODE, "position")
+    mode, meaning = _MODES[servo.extended]
     if v.get("operating_mode", mode) != mode:
         expected = f"{mode} ({meaning})"
         note("operating_mode", str(v["operating_mode"]), expected, NEEDED, set_("operating_mode", mode), mode)
+    offset = v.get("homing_offset", 0)
+    if offset and servo.extended and model.has_watchdog(firmware):
+        expected = "0 (its bus watchdog stays off: a trip would move the joint by the offset)"
+        remedy = f"{set_('homing_offset', 0)}, which moves its zero by {-offset} ticks: then mmmd calibrate --limp"
+        note("homing_offset", f"{offset} ticks", expected, ADVISED, remedy)
     drive = v.get("drive_mode", 0)
     right = drive & ~(_REVERSED | _TIME_BASED | _TORQUE_BY_GOAL)
     if drive != right:

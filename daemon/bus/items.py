@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from daemon.bus.asking import Asking
 from daemon.bus.events import BusEventKind
 from daemon.bus.group import GroupWrite, GroupWrite1
-from daemon.bus.registers import WATCHDOG_TRIPPED, Item, hardware_error_text
+from daemon.bus.registers import POSITION_MODE, WATCHDOG_TRIPPED, Item, hardware_error_text
 from daemon.errors import CommandError
 
 _GAP_BYTES = 12
@@ -103,15 +103,22 @@ class Items(Asking):
     def arm_watchdog(self, units: int) -> tuple[int, ...]:
         """Arm the bus watchdog (20 ms units) of every servo that has one; the ids of those without, or of no use.
 
-        Firmware of the 330 size that flags the trip but keeps moving is armed as well, and named here.
+        Firmware of the 330 size that flags the trip but keeps moving is armed as well, and named here. Where a trip would
+        move the joint the watchdog stays off.
         """
         without: list[int] = []
         for servo_id, model, firmware in zip(self.ids, self.models, self.firmware, strict=True):
-            if model.has_watchdog(firmware or 255):
+            able = model.has_watchdog(firmware or 255) and not self._trip_moves(servo_id)
+            if able:
                 self.write_item(servo_id, "bus_watchdog", units)
-            if not (model.has_watchdog(firmware or 255) and model.watchdog_stops):
+            if not (able and model.watchdog_stops):
                 without.append(servo_id)
         return tuple(without)
+
+    def _trip_moves(self, servo_id: int) -> bool:
+        """Whether a trip would move the joint by its homing offset (DynamixelSDK#584: seen in extended position mode)."""
+        values = self.read_items(servo_id, ("operating_mode", "homing_offset"))
+        return values["homing_offset"] != 0 and values["operating_mode"] != POSITION_MODE
 
     def clear_watchdog(self) -> None:
         """Clear every bus watchdog; a servo that has tripped loses its torque first.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rig_bus import BusRig, bus_rig
 
-from daemon.bus.checks import NEEDED, Finding, check_servos, fix, require_needed
+from daemon.bus.checks import ADVISED, NEEDED, Finding, check_servos, fix, require_needed
 from daemon.errors import BusMismatchError
 
 
@@ -49,3 +49,32 @@ def test_servos_without_such_items_are_checked_as_well(name: str) -> None:
     rig = bus_rig(name=name)
     rig.bus.verify()
     require_needed(check_servos(rig.bus, rig.robot))
+
+
+@pytest.mark.parametrize(("offset", "armed"), [(200, False), (-7, False), (0, True)])
+def test_a_watchdog_that_would_move_its_joint_is_not_armed(offset: int, armed: bool) -> None:
+    """In extended position mode a trip moved the joint by its homing offset: a stall of 1 s moved it by 199 ticks."""
+    rig = bus_rig(name="toddlerbot")
+    servo = rig.servos.servos[17]
+    servo.write(servo.items["homing_offset"].address, offset.to_bytes(4, "little", signed=True))
+    rig.bus.verify()
+    said = findings_of(rig, 17, ADVISED).get("homing_offset")
+    assert (said is None) == armed
+    if said is not None:
+        assert said.fix is None and "mmmd servo set 17 homing_offset 0" in said.remedy and "calibrate" in said.remedy
+    rig.bus.exchange(rig.bus.exchange(None).position_tick)
+    rig.bus.write_all("torque_enable", 1)
+    before = rig.bus.exchange(None).position_tick.copy()
+    assert (17 in rig.bus.arm_watchdog(10)) != armed
+    rig.clock.sleep_until(rig.clock.now_s() + 1.0)
+    after = rig.bus.exchange(None).position_tick
+    assert abs(after - before).max() <= 5
+    assert set(rig.bus.ids) - set(rig.bus.tripped_watchdogs()) == (set() if armed else {17})
+
+
+def test_a_homing_offset_in_position_mode_keeps_the_watchdog() -> None:
+    rig = bus_rig(name="op3")
+    servo = rig.servos.servos[1]
+    servo.write(servo.items["homing_offset"].address, (20).to_bytes(4, "little"))
+    rig.bus.verify()
+    assert 1 not in rig.bus.arm_watchdog(10) and "homing_offset" not in findings_of(rig, 1, ADVISED)
