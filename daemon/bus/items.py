@@ -10,16 +10,31 @@ from numpy.typing import NDArray
 from daemon.bus.asking import Asking
 from daemon.bus.events import BusEventKind
 from daemon.bus.group import GroupWrite, GroupWrite1
+from daemon.bus.models import BusModel
+from daemon.bus.port import Port
 from daemon.bus.registers import POSITION_MODE, WATCHDOG_TRIPPED, Item, hardware_error_text
+from daemon.bus.timing import MARGIN_S
+from daemon.clock import Clock
 from daemon.errors import CommandError
+from retarget.robot import ServoSpec
 
 _GAP_BYTES = 12
 """Items no farther apart are read in one question."""
-_FULL_EFFORT = {"goal_pwm": 885, "torque_limit": 1023}
+_EFFORT_LIMITS = {"goal_pwm": "pwm_limit", "torque_limit": "max_torque"}
+"""What sets the effort of a servo in RAM, and the item kept without power that it may not pass."""
 
 
 class Items(Asking):
-    """Reads and writes items of servos of either protocol."""
+    """Reads and writes items of servos of either protocol.
+
+    Attributes:
+        effort_limit: (S,) pwm_limit of each servo, max_torque on protocol 1.0; from the factory until it was read.
+    """
+
+    def __init__(self, port: Port, servos: Sequence[ServoSpec], clock: Clock, *, margin_s: float = MARGIN_S) -> None:
+        super().__init__(port, servos, clock, margin_s=margin_s)
+        limits = [m.table[_EFFORT_LIMITS[_effort_item(m)]].initial or 0 for m in self.models]
+        self.effort_limit = np.array(limits, np.int32)
 
     def read_item(self, servo_id: int, name: str) -> int:
         """Value of one item of one servo."""
@@ -77,28 +92,32 @@ class Items(Asking):
 
     def send_all(self, name: str, value: int) -> None:
         """Set one item of every servo that has it, with packets that nobody answers."""
-        values = np.full(len(self.ids), value, np.int32)
-        self._send(b"".join(write.frame(values[rows]) for rows, write in self._writers(name)))
+        self._send(self._group_writes(name, np.full(len(self.ids), value, np.int32)))
 
     def send_torque_off(self) -> None:
         """Cut the torque of every servo with packets that nobody has to answer."""
         self._expect_torque(on=False)
         self.send_all("torque_enable", 0)
 
+    def read_effort_limit(self, servo_id: int) -> None:
+        """Ask a servo how much its own memory lets it exert; `set_effort` gives shares of that."""
+        row = self._row_of(servo_id)
+        self.effort_limit[row] = self.read_item(servo_id, _EFFORT_LIMITS[_effort_item(self.models[row])])
+
     def set_effort(self, share: float, *, confirmed: bool = False) -> None:
-        """Limit what every servo may exert, as a share of all: goal PWM, or torque limit on protocol 1.0.
+        """Limit what every servo may exert, as a share of its own limit: goal PWM, or torque limit on protocol 1.0.
 
         Args:
             share: 0 to 1.
             confirmed: each servo is told by itself and has to answer; else all at once, unanswered.
         """
-        for name, full in _FULL_EFFORT.items():
-            able = [i for i, m in zip(self.ids, self.models, strict=True) if name in m.table]
-            value = round(full * min(1.0, max(0.0, share)))
-            if able and not confirmed:
-                self.send_all(name, value)
-            for servo_id in able if confirmed else ():
-                self.write_item(servo_id, name, value)
+        values = np.rint(self.effort_limit * min(1.0, max(0.0, share))).astype(np.int32)
+        items = [_effort_item(m) for m in self.models]
+        if not confirmed:
+            self._send(b"".join(self._group_writes(name, values) for name in dict.fromkeys(items)))
+            return
+        for servo_id, name, value in zip(self.ids, items, values.tolist(), strict=True):
+            self.write_item(servo_id, name, value)
 
     def arm_watchdog(self, units: int) -> tuple[int, ...]:
         """Arm the bus watchdog (20 ms units) of every servo that has one; the ids of those without, or of no use.
@@ -155,6 +174,10 @@ class Items(Asking):
         self._ask(self._of(row).reboot(servo_id), row, 0)
         self.health.faulted[row] = True
 
+    def _group_writes(self, name: str, values: NDArray[np.int32]) -> bytes:
+        """Packets that set one item of every servo that has it to its own value of (S,)."""
+        return b"".join(write.frame(values[rows]) for rows, write in self._writers(name))
+
     def _writers(
         self, name: str, of: NDArray[np.bool_] | None = None
     ) -> list[tuple[NDArray[np.intp], GroupWrite | GroupWrite1]]:
@@ -179,3 +202,8 @@ class Items(Asking):
         if name not in table:
             raise CommandError(f"servo {self.ids[row]} has no item '{name}'; it has: {', '.join(table)}")
         return table[name]
+
+
+def _effort_item(model: BusModel) -> str:
+    """What sets the effort of this model."""
+    return next(name for name in _EFFORT_LIMITS if name in model.table)

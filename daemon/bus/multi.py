@@ -13,6 +13,7 @@ from daemon.bus.open import PortContext, open_port
 from daemon.bus.port import Port
 from daemon.bus.rate_plan import RatePlan
 from daemon.bus.reading import BusReading
+from daemon.bus.scan import Found
 from daemon.bus.servo_bus import ServoBus
 from daemon.clock import Clock
 from daemon.errors import BusMismatchError, CommandError, DaemonError, LinkTimeoutError, MismatchRow
@@ -96,6 +97,15 @@ class MultiBus:
                 hint = str(error).splitlines()[-1]
         if rows:
             raise BusMismatchError(rows, hint)
+
+    def let_answer(self) -> None:
+        """Set status return level 2 on servos that answer pings only."""
+        for part in self.parts:
+            part.let_answer()
+
+    def strangers(self) -> list[Found]:
+        """Servos of Protocol 2.0 on any port that are none of this robot's."""
+        return [f for part in self.parts for f in part.strangers() if f.servo_id not in self.ids]
 
     def plan(self) -> RatePlan:
         """The budget of the slowest port."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from daemon.bus import packet, packet1
 from daemon.bus.dialect import DIALECTS
+from daemon.bus.feedback import is_status
 from daemon.bus.models import MODELS
 from daemon.bus.packet import BROADCAST_ID, Packet
 from daemon.bus.port import Port
@@ -91,6 +92,11 @@ def scan(
     return ScanResult(tuple(found), tuple(garbled))
 
 
+def answering(port: Port, clock: Clock) -> list[Found]:
+    """All servos of Protocol 2.0 at the port's baud, by one ping to all."""
+    return [Found(port.baud, 2.0, *answer) for answer in _broadcast(port, clock)[0]]
+
+
 def _broadcast(port: Port, clock: Clock) -> tuple[list[tuple[int, int, int]], bool]:
     """(id, model number, firmware) of all that answer one ping to all, and whether nothing else came."""
     decoder, heard = packet.PacketDecoder(), b""
@@ -114,27 +120,35 @@ def _broadcast(port: Port, clock: Clock) -> tuple[list[tuple[int, int, int]], bo
     return sorted(set(answers)), not noise
 
 
+def identify(port: Port, clock: Clock, servo_id: int, protocol: float) -> tuple[int, int] | None:
+    """Model number and firmware of the servo of this id, asked once in this protocol; None when it does not answer."""
+    request = packet.ping(servo_id) if protocol == 2.0 else packet1.read(servo_id, 0, 3)
+    answer = _asked(port, clock, protocol, servo_id, request, 3)
+    return None if answer is None else (int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2])
+
+
 def _single(port: Port, clock: Clock, servo_id: int) -> list[tuple[int, int, int]]:
     """The servo of this id in protocol 1.0: a ping finds it, a read names it."""
-    if _asked(port, clock, servo_id, packet1.ping(servo_id), 0) is None:
+    if _asked(port, clock, 1.0, servo_id, packet1.ping(servo_id), 0) is None:
         return []
-    answer = _asked(port, clock, servo_id, packet1.read(servo_id, 0, 3), 3)
-    if answer is None:
-        return [(servo_id, 0, 0)]
-    return [(servo_id, int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2])]
+    number, firmware = identify(port, clock, servo_id, 1.0) or (0, 0)
+    return [(servo_id, number, firmware)]
 
 
-def _asked(port: Port, clock: Clock, servo_id: int, request: bytes, length: int) -> Packet | None:
+def _asked(port: Port, clock: Clock, protocol: float, servo_id: int, request: bytes, length: int) -> Packet | None:
+    """One question; the answer that has so many parameters, or None."""
     _drain(port)
-    decoder = DIALECTS[1.0].decoder()
+    dialect = DIALECTS[protocol]
+    decoder = dialect.decoder()
     port.write(request)
-    deadline_s = clock.now_s() + (len(request) + 6 + length) * BITS_PER_BYTE / port.baud + _ANSWER_S
+    n_bytes = len(request) + dialect.status_bytes + length
+    deadline_s = clock.now_s() + n_bytes * BITS_PER_BYTE / port.baud + _ANSWER_S
     while (left_s := deadline_s - clock.now_s()) > 0:
         data = port.read(256, left_s)
         if not data:
             return None
         for p in decoder.feed(data):
-            if p.servo_id == servo_id and len(p.parameters) == length:
+            if p.servo_id == servo_id and is_status(p) and len(p.parameters) == length:
                 return p
     return None
 

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 
 from daemon.bus.asking import TRIES
 from daemon.bus.cycle import Cycle
 from daemon.bus.events import BusEventKind
 from daemon.bus.feedback import FastSyncStep
-from daemon.bus.models import MODELS
+from daemon.bus.identity import MUTE_TEXT, PINGS_ONLY, Identity, identity_text, mismatch_hint, silence_text
 from daemon.bus.rate_plan import RatePlan, plan_of
 from daemon.bus.registers import RETURN_DELAY_UNIT_S
+from daemon.bus.scan import Found, answering
+from daemon.bus.timing import SETUP_MARGIN_S
 from daemon.errors import BusMismatchError, LinkTimeoutError, MismatchRow, ServoFaultError
 
 log = logging.getLogger(__name__)
 
+_SILENT_ENOUGH = 4
+"""When the first so many servos are silent, the others are not asked."""
 _SLOW_BYTES = 14 + 11 + 7
 """Question and answer of the slow registers of one servo."""
 
@@ -31,25 +36,34 @@ class ServoBus(Cycle):
             exchanges; 0 never.
     """
 
-    def ping_all(self, *, patient: bool = False) -> dict[int, tuple[int, int]]:
+    def ping_all(self, *, patient: bool = False) -> dict[int, Identity]:
         """Model number and firmware of each servo that answers; all are asked when `patient`, however silent it is."""
-        found: dict[int, tuple[int, int]] = {}
+        found: dict[int, Identity] = {}
         for row, servo_id in enumerate(self.ids):
             try:
                 found[servo_id] = self._identify(row)
             except LinkTimeoutError:
                 pass
-            if not patient and servo_id == self.ids[3 % len(self.ids)] and not found:
-                break  # the first four are silent: wrong baud or no power; do not wait for the rest
+            if not patient and row == _SILENT_ENOUGH - 1 and not found:
+                break  # wrong baud or no power: do not wait for the rest
         return found
 
-    def _identify(self, row: int) -> tuple[int, int]:
+    def _identify(self, row: int) -> Identity:
         dialect, servo_id = self._of(row), self.ids[row]
         if dialect.version == 2.0:
             answer = self._ask(dialect.ping(servo_id), row, 3)
             return int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2]
-        answer = self._ask(dialect.read(servo_id, 0, 3), row, 3)  # a ping of protocol 1.0 names no model
+        try:
+            answer = self._ask(dialect.read(servo_id, 0, 3), row, 3)  # a ping of protocol 1.0 names no model
+        except LinkTimeoutError:
+            if self._answers_ping(row):
+                return PINGS_ONLY
+            raise
         return int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2]
+
+    def _answers_ping(self, row: int) -> bool:
+        """Whether a servo that does not answer questions is there."""
+        return self._ask_once(self._of(row).ping(self.ids[row]), row, None, SETUP_MARGIN_S) is not None
 
     def verify(self) -> None:
         """Compare the bus with the robot file, and find out what this firmware can.
@@ -59,17 +73,13 @@ class ServoBus(Cycle):
         """
         found = self.ping_all()
         rows = [
-            MismatchRow(s.servo_id, s.joint_name, s.model.name, _found_text(found.get(s.servo_id)))
-            for s in self.servos
+            self._mismatch(row, found.get(s.servo_id), nothing=not found)
+            for row, s in enumerate(self.servos)
             if s.servo_id not in found or found[s.servo_id][0] != s.model.model_number
         ]
+        rows = rows or self._read_effort_limits()
         if rows:
-            hint = "check ids and cables: a servo keeps its id, a chain is cut behind the last one that answers"
-            if not found:
-                hint = (
-                    f"nothing answers at {self.port.baud} baud on {self.port.name}: check power, and the baud"
-                    " (?baud=...; mmmd scan tries all)"
-                )
+            hint = mismatch_hint(self.port, [r.found for r in rows], any_answers=bool(found))
             raise BusMismatchError(rows, hint)
         known, self.firmware = self.firmware, [found[i][1] for i in self.ids]
         if known != self.firmware:  # found out once
@@ -80,6 +90,44 @@ class ServoBus(Cycle):
         self.health.cleared()
         self._careful = 0
         self._build_steps()
+
+    def _mismatch(self, row: int, identity: Identity | None, *, nothing: bool) -> MismatchRow:
+        """A servo that is not as expected; one that is silent is asked in the other protocol, the first few if all are."""
+        s = self.servos[row]
+        if identity is not None:
+            text = identity_text(identity)
+        elif nothing and row >= _SILENT_ENOUGH:
+            text = "no answer"
+        else:
+            text = silence_text(self.port, self.clock, s.servo_id, self._of(row).version)
+        return MismatchRow(s.servo_id, s.joint_name, s.model.name, text)
+
+    def _read_effort_limits(self) -> list[MismatchRow]:
+        """How much each servo may exert; those that answered a ping and do not answer this."""
+        mute: list[MismatchRow] = []
+        for row, s in enumerate(self.servos):
+            try:
+                self.read_effort_limit(s.servo_id)
+            except LinkTimeoutError:
+                if not self._answers_ping(row):
+                    raise
+                mute.append(MismatchRow(s.servo_id, s.joint_name, s.model.name, MUTE_TEXT))
+        return mute
+
+    def let_answer(self) -> None:
+        """Set status return level 2 on servos that answer pings only. Nothing else can be asked of them before."""
+        for row, servo_id in enumerate(self.ids):
+            try:
+                self.read_item(servo_id, "status_return_level")
+            except LinkTimeoutError:
+                if self._answers_ping(row):
+                    with contextlib.suppress(LinkTimeoutError):  # `verify` says who still does not answer
+                        self.write_item(servo_id, "status_return_level", 2)
+
+    def strangers(self) -> list[Found]:
+        """Servos of Protocol 2.0 that answer a ping to all, and are none of this bus; takes about 0.2 s."""
+        self._settle()
+        return [f for f in answering(self.port, self.clock) if f.servo_id not in self.ids]
 
     def _measure_turnaround(self) -> None:
         """Read each servo's return delay; what the quickest question took beyond it and its bytes is the turnaround."""
@@ -142,10 +190,3 @@ class ServoBus(Cycle):
                 return
         text = f"no whole answer of servos {', '.join(str(self.ids[i]) for i in rows)}; plain sync reads from now on"
         self.events.add(BusEventKind.FAST_SYNC_OFF, self.clock.now_s(), text)
-
-
-def _found_text(found: tuple[int, int] | None) -> str:
-    if found is None:
-        return "no answer"
-    name = MODELS[found[0]].name if found[0] in MODELS else "unknown"
-    return f"{name} (model {found[0]}), firmware {found[1]}"

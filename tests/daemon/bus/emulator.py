@@ -153,12 +153,13 @@ class FakePort:
                 if version == 1.0 and kind == Instruction.BULK_READ:
                     break  # each waits for the one before it
                 continue
+            level = servo.get("status_return_level")
             alert = servo.hardware_error and (packet.ALERT_BIT if version == 2.0 else servo.hardware_error)
             if a.data:
                 error = servo.write(a.address, a.data) if version == 2.0 else servo.write(a.address, a.data) * 0
-                if request.servo_id != BROADCAST_ID:
+                if request.servo_id != BROADCAST_ID and level == 2:  # a new level counts from the next packet on
                     out.append((a.servo_id, codec.status(a.servo_id, error | alert)))
-            else:
+            elif level:
                 out += [(a.servo_id, codec.status(a.servo_id, alert, servo.read(a.address, a.length)))] * (
                     1 + servo.doubled
                 )

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from emulator import fake, spec
 from rig_bus import bus_rig
 
+from daemon.bus.models import MODEL_NUMBERS, MODELS
+from daemon.bus.servo_bus import ServoBus
 from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTimeoutError, ServoFaultError
-from sim.faults import Fault
+from sim.faults import Fault, FaultSchedule
 
 
 def test_an_exchange_writes_every_goal_and_reads_every_servo() -> None:
@@ -80,6 +83,79 @@ def test_other_servos_than_the_file_says_are_shown_in_a_table() -> None:
     assert [r.servo_id for r in caught.value.rows] == [2, 16]
     assert "head_pitch" in text and "XL330-M288" in text and "model 1060" in text and "no answer" in text
     assert "head_yaw" not in text, "only what differs is listed"
+
+
+@pytest.mark.parametrize(("n", "silent"), [(1, [0]), (2, [0]), (3, [0]), (3, [0, 1]), (4, [0, 1, 2]), (9, [0, 1, 2])])
+def test_whoever_answers_is_found_behind_silent_ones(n: int, silent: list[int]) -> None:
+    """Of three servos the first was taken for the fourth: when it was silent all three were "no answer", wrong baud."""
+    rig = bus_rig()
+    ids = rig.bus.ids[:n]
+    rig.servos.faults = FaultSchedule([Fault("silent", servo_id=ids[i]) for i in silent])
+    bus = ServoBus(rig.port, rig.robot.servos[:n], rig.clock)
+    with pytest.raises(BusMismatchError) as caught:
+        bus.verify()
+    assert [r.servo_id for r in caught.value.rows] == [ids[i] for i in silent]
+    assert ("nothing answers" in str(caught.value)) == (len(silent) == n)
+
+
+def test_a_silent_bus_is_given_up_after_four_servos() -> None:
+    rig = bus_rig(Fault("silent"))
+    with pytest.raises(BusMismatchError, match="nothing answers") as caught:
+        rig.bus.verify()
+    assert [r.found for r in caught.value.rows] == ["no answer"] * 16
+    assert rig.clock.now_s() < 0.6
+
+
+@pytest.mark.parametrize(("there", "expected"), [("MX-28", "MX-28-2"), ("MX-64-2", "MX-64")])
+def test_a_servo_of_the_other_protocol_is_named(there: str, expected: str) -> None:
+    far, _, clock = fake("XM430-W350", there)
+    bus = ServoBus(far, [spec("XM430-W350", 1), spec(expected, 2)], clock)
+    with pytest.raises(BusMismatchError) as caught:
+        bus.verify()
+    model = MODELS[MODEL_NUMBERS[there]]
+    (row,) = caught.value.rows
+    assert row.found == f"speaks protocol {model.protocol}: {there} (model {model.model_number}), firmware 52"
+    assert "one protocol on a bus" in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["XM430-W350", "AX-12A"])
+def test_a_servo_that_answers_pings_only_is_named_as_such(name: str) -> None:
+    """It was said to have no cable or no power."""
+    far, servos, clock = fake("XL430-W250", name)
+    far.servos[2].set("status_return_level", 0)
+    bus = ServoBus(far, servos, clock)
+    with pytest.raises(BusMismatchError, match="doctor --fix") as caught:
+        bus.verify()
+    assert [(r.servo_id, r.found) for r in caught.value.rows] == [(2, "answers pings only: status return level 0")]
+    bus.let_answer()
+    bus.verify()
+
+
+@pytest.mark.parametrize(("limit", "steps"), [(600, (150, 300, 600)), (200, (50, 100, 200)), (885, (221, 442, 885))])
+def test_effort_is_a_share_of_what_a_servo_allows_itself(limit: int, steps: tuple[int, ...]) -> None:
+    """Steps of 885 units were refused without a word by a servo of limit 600, and one of 200 could not be armed."""
+    rig = bus_rig()
+    servo = rig.servos.servos[5]
+    servo._set("pwm_limit", limit)
+    rig.bus.verify()
+    for confirmed in (True, False):
+        for share, value in zip((0.25, 0.5, 1.0), steps, strict=True):
+            rig.bus.set_effort(share, confirmed=confirmed)
+            rig.bus.exchange(None)
+            assert servo.get("goal_pwm") == value
+            assert rig.servos.servos[6].get("goal_pwm") == round(885 * share)
+
+
+def test_a_torque_limit_does_not_pass_the_max_torque_that_was_set() -> None:
+    rig = bus_rig(name="op2")
+    servo = rig.servos.servos[3]
+    servo._set("max_torque", 400)
+    rig.bus.verify()
+    rig.bus.set_effort(1.0, confirmed=True)
+    assert servo.get("torque_limit") == 400 and rig.servos.servos[4].get("torque_limit") == 1023
+    rig.bus.set_effort(0.5)
+    rig.bus.exchange(None)
+    assert servo.get("torque_limit") == 200 and rig.servos.servos[4].get("torque_limit") == 512
 
 
 def test_a_wrong_baud_is_named_as_a_possible_cause() -> None:

@@ -1,0 +1,47 @@
+"""Who a servo is, in words, and what is behind one that does not answer as the robot file says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from daemon.bus.models import MODELS
+from daemon.bus.port import Port
+from daemon.bus.scan import identify
+from daemon.clock import Clock
+
+Identity = tuple[int, int]
+"""Model number and firmware."""
+PINGS_ONLY: Identity = (0, 0)
+"""It answers a ping, but nothing that could name it (protocol 1.0, status return level 0)."""
+MUTE_TEXT = "answers pings only: status return level 0"
+_OTHER_PROTOCOL = "speaks protocol"
+
+
+def identity_text(identity: Identity) -> str:
+    """Model and firmware as the tools print them."""
+    if identity == PINGS_ONLY:
+        return MUTE_TEXT
+    name = MODELS[identity[0]].name if identity[0] in MODELS else "unknown"
+    return f"{name} (model {identity[0]}), firmware {identity[1]}"
+
+
+def silence_text(port: Port, clock: Clock, servo_id: int, protocol: float) -> str:
+    """What there is instead of a servo that does not answer in its protocol: it is asked once in the other."""
+    other = 1.0 if protocol == 2.0 else 2.0
+    identity = identify(port, clock, servo_id, other)
+    return "no answer" if identity is None else f"{_OTHER_PROTOCOL} {other}: {identity_text(identity)}"
+
+
+def mismatch_hint(port: Port, found_texts: Iterable[str], *, any_answers: bool) -> str:
+    """What to do about servos of which this was found; `any_answers`: whether another one is there."""
+    texts = tuple(found_texts)
+    if MUTE_TEXT in texts:
+        return "a servo that answers pings only: mmmd doctor --fix lets it answer everything (status_return_level 2)"
+    if any(text.startswith(_OTHER_PROTOCOL) for text in texts):
+        return (
+            "one protocol on a bus: set the servo's protocol with the DYNAMIXEL Wizard, or correct the robot file (MX"
+            " servos flashed to 2.0 end in '-2')"
+        )
+    if any_answers:
+        return "check ids and cables: a servo keeps its id, a chain is cut behind the last one that answers"
+    return f"nothing answers at {port.baud} baud on {port.name}: check power, and the baud (?baud=...; mmmd scan tries all)"
