@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass
 
+from daemon.bus.identity import MUTE_TEXT, PINGS_ONLY
 from daemon.bus.models import MODELS, BusModel
 from daemon.bus.port import Port
 from daemon.bus.registers import Item
@@ -14,8 +15,13 @@ from daemon.errors import CommandError, LinkTimeoutError
 from retarget.robot import ServoSpec
 from retarget.servos import servo_models
 
-MOVES = ("goal_position", "goal_velocity", "goal_pwm", "goal_current", "moving_speed", "goal_torque", "torque_enable")
-"""Items that can set a joint in motion: the daemon's alone, behind its gate."""
+MOVES = (
+    "goal_position", "goal_velocity", "goal_pwm", "goal_current", "moving_speed", "goal_torque", "torque_enable",
+    "bus_watchdog",
+)  # fmt: skip
+"""Items that can set a joint in motion: the daemon's alone, behind its gate. A bus watchdog that trips or is cleared can."""
+_HOLDS = ("torque_enable", "torque_limit")
+"""Items whose lower value lets a joint fall."""
 _BOOT_S, _ASK_EVERY_S = 2.0, 0.1
 """After a reboot a servo is asked for so long, so often, whether it is back."""
 
@@ -43,11 +49,12 @@ class SingleServo:
             raise CommandError(f"{self.model.name} has no item '{name}'; it has: {', '.join(self.model.table)}")
         return self.model.table[name]
 
-    def set(self, name: str, value: int) -> None:
+    def set(self, name: str, value: int, *, drop: bool = False) -> None:
         """Write an item and read it back.
 
         Raises:
-            CommandError: it would move the joint, is out of range, or needs torque off.
+            CommandError: it would move the joint, is out of range, or needs torque off; or it would let go of a joint that
+                is held, and `drop` was not said.
         """
         item = self.item(name)
         if name in MOVES and not (name == "torque_enable" and value == 0):
@@ -59,6 +66,10 @@ class SingleServo:
         if not item.takes(value):
             raise CommandError(f"'{name}' = {value} is outside [{item.low}, {item.high}] of {self.model.name}")
         self._require_free(item)
+        if name in _HOLDS and not drop and self.get("torque_enable") and value < self.get(name):
+            raise CommandError(
+                f"servo {self.servo_id} holds torque: '{name}' = {value} lets its joint fall; --drop to do it"
+            )
         self.bus.write_item(self.servo_id, name, value)
         found = self.get(name)
         if found != value:
@@ -107,7 +118,7 @@ class SingleServo:
         if self.model.protocol == 1.0:
             raise CommandError(
                 f"{self.model.name} (protocol 1.0) knows no reboot; take its power away for a moment, or clear an alarm with"
-                f" mmmd servo set {self.servo_id} torque_limit 1023"
+                f" mmmd servo set {self.servo_id} torque_limit {self.get('max_torque')}"
             )
         if self.get("torque_enable") and not drop:
             raise CommandError(f"servo {self.servo_id} holds torque: a reboot lets its joint fall; --drop to do it")
@@ -134,6 +145,10 @@ def find(port: Port, clock: Clock, servo_id: int, protocol: float | None = None)
         bus = _bus(port, clock, servo_id, guess)
         found = bus.ping_all().get(servo_id)
         if found is not None:
+            if found == PINGS_ONLY:
+                raise CommandError(
+                    f"servo {servo_id} {MUTE_TEXT}; mmmd doctor --fix with its robot file lets it answer everything"
+                )
             number, firmware = found
             if number not in MODELS:
                 raise CommandError(f"servo {servo_id} is of model {number}, which is not known here")

@@ -40,7 +40,8 @@ def servo(
         servo_id: which servo.
         arguments: of the verb.
         bus: where it is.
-        drop: with reboot: also when the servo holds torque, which it then drops.
+        drop: with reboot, and with set of torque_enable 0 or a lower torque_limit: also when the servo holds torque, so
+            that its joint falls.
         json: print one JSON object.
     """
     from rich.console import Console
@@ -73,7 +74,7 @@ def servo(
             console.print(_table(f"servo {servo_id}: {one.model.name}, firmware {one.firmware}", items, values))
             return 0
         if verb == "set":
-            one.set(arguments[0], int(number))
+            one.set(arguments[0], int(number), drop=drop)
             did = f"{arguments[0]} = {number}"
         elif verb == "reboot":
             one.reboot(drop=drop)
