@@ -9,9 +9,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from daemon.bus.adapter import GOOD_LATENCY_MS, adapter_at, latency_remedy, latency_timer_ms
-from daemon.bus.checks import ADVISED, NEEDED, Finding, check_servos, fix
+from daemon.bus.checks import check_servos, check_strangers, fix
+from daemon.bus.identity import MUTE_TEXT
 from daemon.bus.multi import RobotBus, bus_on
 from daemon.bus.port import Port
+from daemon.bus.rules import ADVISED, NEEDED, Finding
 from daemon.clock import Clock
 from daemon.errors import BusMismatchError, ConfigError, DaemonError, PortError
 from retarget.robot import RobotModel
@@ -65,7 +67,7 @@ def diagnose(
             checks += _adapter(port)
         try:
             bus = bus_on(ports, robot, clock)
-            bus.verify()
+            _verify(bus, correct=correct)
         except BusMismatchError as error:
             rows = [
                 Check(f"servo {r.servo_id} ({r.joint_name})", r.found, BAD, f"expected {r.expected}")
@@ -125,8 +127,19 @@ def _adapter(port: Port) -> list[Check]:
     return checks
 
 
+def _verify(bus: RobotBus, *, correct: bool) -> None:
+    """Verify; with `correct` servos that answer pings only are first told to answer everything."""
+    try:
+        bus.verify()
+    except BusMismatchError as error:
+        if not (correct and any(row.found == MUTE_TEXT for row in error.rows)):
+            raise
+        bus.let_answer()
+        bus.verify()
+
+
 def _settings(bus: RobotBus, robot: RobotModel, *, correct: bool) -> list[Check]:
-    findings = check_servos(bus, robot)
+    findings = check_servos(bus, robot) + check_strangers(bus)
     fixed: list[Finding] = []
     if correct:
         left = fix(bus, findings)

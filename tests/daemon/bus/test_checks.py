@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from rig_bus import BusRig, bus_rig
 
-from daemon.bus.checks import ADVISED, NEEDED, Finding, check_servos, fix, require_needed
+from daemon.bus.checks import check_servos, fix, require_needed, verify_before_torque
+from daemon.bus.rules import ADVISED, NEEDED, Finding
 from daemon.errors import BusMismatchError
 
 
@@ -43,6 +44,19 @@ def test_a_servo_that_would_switch_its_torque_on_by_itself_is_refused(item: str,
     assert not servo.torque
 
 
+@pytest.mark.parametrize(("name", "item"), [("reference", "pwm_limit"), ("op2", "max_torque")])
+def test_a_servo_that_may_exert_nothing_is_refused_and_a_low_limit_is_not(name: str, item: str) -> None:
+    rig = bus_rig(name=name)
+    rig.bus.verify()
+    servo_id = rig.bus.ids[2]
+    for value, refused in ((300, False), (0, True)):
+        rig.servos.servos[servo_id]._set(item, value)
+        found = findings_of(rig, servo_id, NEEDED)
+        assert list(found) == [item] * refused and all(f.fix is None for f in found.values())
+    with pytest.raises(BusMismatchError, match=rf"torque off: mmmd servo set {servo_id} {item} \d+ or less$"):
+        require_needed(list(found.values()))
+
+
 @pytest.mark.parametrize("name", ["op2", "op3", "poppy_torso", "reachy_2021", "toddlerbot"])
 def test_servos_without_such_items_are_checked_as_well(name: str) -> None:
     """MX has no startup configuration, and Protocol 1.0 neither item."""
@@ -78,3 +92,21 @@ def test_a_homing_offset_in_position_mode_keeps_the_watchdog() -> None:
     servo.write(servo.items["homing_offset"].address, (20).to_bytes(4, "little"))
     rig.bus.verify()
     assert 1 not in rig.bus.arm_watchdog(10) and "homing_offset" not in findings_of(rig, 1, ADVISED)
+
+
+@pytest.mark.parametrize("name", ["toddlerbot", "op2"])
+def test_before_torque_ids_and_settings_are_compared_with_four_questions_a_servo(name: str) -> None:
+    rig = bus_rig(name=name)
+    rig.bus.verify()
+    sent: list[bytes] = []
+    write = rig.port.write
+    rig.port.write = lambda data: (sent.append(data), write(data))[1]  # type: ignore[method-assign]
+    verify_before_torque(rig.bus, rig.robot)
+    assert len(sent) == 4 * len(rig.bus.ids)
+    servo = rig.servos.servos[rig.bus.ids[0]]
+    servo._set("status_return_level", 1)
+    with pytest.raises(BusMismatchError, match="status_return_level 2"):
+        verify_before_torque(rig.bus, rig.robot)
+    servo._set("model_number", 9)
+    with pytest.raises(BusMismatchError, match="unknown"):
+        verify_before_torque(rig.bus, rig.robot)

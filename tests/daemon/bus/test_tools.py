@@ -13,9 +13,10 @@ from emulator import FakePort, FakeServo, fake
 
 from daemon.bus.adapter import Adapter, adapter_at, device_of, latency_advice, latency_remedy, latency_timer_ms
 from daemon.bus.calibration import Ranges, calibrate, write_robot_file
-from daemon.bus.checks import ADVISED, NEEDED, check_servos, fix, require_needed
+from daemon.bus.checks import check_servos, fix, require_needed
 from daemon.bus.doctor import BAD, GOOD, diagnose
 from daemon.bus.models import MODEL_NUMBERS, MODELS
+from daemon.bus.rules import ADVISED, NEEDED
 from daemon.bus.scan import scan
 from daemon.bus.serial_port import SerialPort
 from daemon.bus.servo_bus import ServoBus
@@ -86,6 +87,7 @@ def test_settings_are_written_read_back_and_guarded() -> None:
     assert far.servos[1].get("return_delay_time") == 0 and far.servos[2].get("punch") == 40
     for servo, item, value, said in (
         (one, "goal_position", 5, "the daemon's alone"), (one, "torque_enable", 1, "the daemon's alone"),
+        (one, "bus_watchdog", 10, "the daemon's alone"),
         (one, "shutdown", 200, r"outside \[0, 63\] of XM430-W350"), (one, "id", 5, "mmmd servo id"),
         (one, "baud_rate", 3, "mmmd servo baud"), (one, "elan", 3, "no item 'elan'"), (old, "moving_speed", 9, "the daemon's"),
         (one, "present_position", 3, "read only"),
@@ -98,11 +100,30 @@ def test_settings_are_written_read_back_and_guarded() -> None:
     with pytest.raises(CommandError, match="lets its joint fall"):
         one.reboot(drop=False)
     one.reboot(drop=True)
-    one.set("torque_enable", 0)
     with pytest.raises(CommandError, match="knows no reboot"):
         old.reboot(drop=True)
     with pytest.raises(LinkTimeoutError, match="mmmd scan"):
         find(far, clock, 77)
+
+
+@pytest.mark.parametrize(
+    ("servo_id", "item", "value"), [(1, "torque_enable", 0), (2, "torque_enable", 0), (2, "torque_limit", 99)]
+)
+def test_a_joint_that_is_held_is_let_go_only_when_it_is_said(servo_id: int, item: str, value: int) -> None:
+    """`mmmd servo set 3 torque_enable 0` dropped an arm, which `reboot` refuses to do unasked."""
+    far, _, clock = fake("XM430-W350", "AX-12A")
+    one, there = find(far, clock, servo_id), far.servos[servo_id]
+    if servo_id == 2:
+        there.set("torque_limit", 500)
+    there.set("torque_enable", 1)
+    before = there.get(item)
+    with pytest.raises(CommandError, match=rf"holds torque: '{item}' = {value} lets its joint fall; --drop"):
+        one.set(item, value)
+    assert there.get(item) == before
+    one.set(item, value, drop=True)
+    assert there.get(item) == value
+    there.set("torque_enable", 0)
+    one.set(item, 0)
 
 
 def test_an_id_is_changed_only_when_it_is_free_and_the_new_one_answers() -> None:
@@ -173,7 +194,6 @@ def test_what_is_wrong_with_the_settings_is_found_and_corrected_only_when_told_t
     with pytest.raises(BusMismatchError) as caught:
         require_needed(findings)
     assert "operating_mode 3 (position)" in str(caught.value) and "mmmd doctor --fix" in str(caught.value)
-    s[2].set("status_return_level", 2)  # the fake servos answer at any level
     assert fix(bus, check_servos(bus, ROBOT)) == []
     assert check_servos(bus, ROBOT) == []
     require_needed(())
@@ -202,6 +222,39 @@ def test_what_only_a_person_can_do_is_left() -> None:
 
 
 # Doctor.
+
+
+@pytest.mark.parametrize("level", [0, 1])
+@pytest.mark.parametrize("name", ["reference", "op2"])
+def test_the_doctor_lets_servos_answer_before_it_writes_anything_else(name: str, level: int) -> None:
+    """At level 1 the return delay was written first, and not confirmed: "check its cable and power"; at 0 nothing was read."""
+    robot = load_robot(name)
+    bus, port, clock = wired(robot)
+    fix(bus, check_servos(bus, robot))
+    for servo_id in robot.servo_ids[1:3]:
+        port.servos[servo_id].set("status_return_level", level)
+        port.servos[servo_id].set("return_delay_time", 250)
+    seen = diagnose(robot, lambda: [port], clock)
+    rows = [c for c in seen.checks if c.verdict == BAD and f"servo {robot.servo_ids[1]} " in c.what]
+    assert len(rows) == 1 and "status" in rows[0].what + rows[0].found
+    if not level:
+        assert any("mmmd doctor --fix" in c.remedy for c in seen.checks)
+    port.unplugged = False
+    mended = diagnose(robot, lambda: [port], clock, correct=True)
+    assert not mended.bad, mended
+    for servo_id in robot.servo_ids:
+        assert port.servos[servo_id].get("status_return_level") == 2
+        assert port.servos[servo_id].get("return_delay_time") == 0
+
+
+def test_a_servo_that_the_robot_file_does_not_name_is_mentioned() -> None:
+    bus, port, clock = wired()
+    fix(bus, check_servos(bus, ROBOT))
+    port.servos[77] = FakeServo(MODELS[1020], 77)
+    seen = diagnose(ROBOT, lambda: [port], clock)
+    assert not seen.bad
+    (row,) = [c for c in seen.checks if c.what == "servo 77 (no joint) id"]
+    assert row.found == "XM430-W350 (model 1020), firmware 52" and "take it off the bus" in row.remedy
 
 
 def test_the_doctor_names_everything_with_its_remedy() -> None:

@@ -1,0 +1,159 @@
+"""What the registers of one servo should hold for a robot: each rule with the reason, the severity and the remedy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from daemon.bus.models import BusModel
+from daemon.bus.registers import EXTENDED_POSITION_MODE, POSITION_MODE, hardware_error_text
+from retarget.robot import ServoSpec
+
+ITEMS = (
+    "return_delay_time", "drive_mode", "operating_mode", "homing_offset", "temperature_limit", "max_position_limit",
+    "min_position_limit", "startup_configuration", "shutdown", "status_return_level", "hardware_error_status",
+    "pwm_limit", "max_torque", "present_input_voltage", "present_temperature",
+)  # fmt: skip
+"""What the rules look at."""
+NEEDED, ADVISED = "needed", "advised"
+"""Severity: without it the robot does not do what it is told, or only less well."""
+_MODES = {False: (POSITION_MODE, "position"), True: (EXTENDED_POSITION_MODE, "extended position")}
+_REVERSED, _TIME_BASED, _TORQUE_BY_GOAL = 0b0001, 0b0100, 0b1000
+"""Of drive_mode. Torque by goal: after a reboot the next goal would switch torque on, wherever the joint hangs by then."""
+_TORQUE_AT_POWER_ON = 0b01  # of startup_configuration
+_SHUTDOWN_ON = 0b100100  # overheating, overload: the same bits in both protocols
+_HOT_MARGIN_C = 10
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One setting that is not as it should be.
+
+    Attributes:
+        servo_id: of the servo.
+        joint_name: it drives.
+        item: of the control table.
+        found, expected: in words.
+        severity: NEEDED or ADVISED.
+        remedy: what to do by hand.
+        fix: value that `fix` writes; None where a person has to act.
+    """
+
+    servo_id: int
+    joint_name: str
+    item: str
+    found: str
+    expected: str
+    severity: str
+    remedy: str
+    fix: int | None = None
+
+
+def findings_of(
+    servo: ServoSpec, ends_tick: tuple[int, int], model: BusModel, firmware: int, values: dict[str, int]
+) -> list[Finding]:
+    """What is not as it should be in one servo.
+
+    Args:
+        servo: as in the robot file.
+        ends_tick: lowest and highest goal that its joint may get.
+        model: of it.
+        firmware: that it answered with.
+        values: of those of ITEMS that it has.
+    """
+    rules = _Rules(servo, model, firmware, values)
+    rules.answers()
+    rules.motion(ends_tick)
+    rules.torque()
+    rules.condition()
+    return rules.findings
+
+
+@dataclass
+class _Rules:
+    """The rules, over the values of one servo."""
+
+    servo: ServoSpec
+    model: BusModel
+    firmware: int
+    values: dict[str, int]
+    findings: list[Finding] = field(default_factory=list[Finding])
+
+    def answers(self) -> None:
+        """How it answers."""
+        delay, level = self.values["return_delay_time"], self.values["status_return_level"]
+        if delay:
+            self._set("return_delay_time", f"{2 * delay} us", 0, "0 us", ADVISED)
+        if level != 2:
+            self._set("status_return_level", str(level), 2, "2 (answers all)", NEEDED)
+
+    def motion(self, ends_tick: tuple[int, int]) -> None:
+        """What a goal means to it."""
+        v, extended = self.values, self.servo.extended
+        mode, meaning = _MODES[extended]
+        if v.get("operating_mode", mode) != mode:
+            self._set("operating_mode", str(v["operating_mode"]), mode, f"{mode} ({meaning})", NEEDED)
+        offset = v.get("homing_offset", 0)
+        if offset and extended and self.model.has_watchdog(self.firmware):
+            expected = "0 (its bus watchdog stays off: a trip would move the joint by the offset)"
+            remedy = f"{self._command('homing_offset', 0)}, which moves its zero by {-offset} ticks: then mmmd calibrate --limp"
+            self._note("homing_offset", f"{offset} ticks", expected, ADVISED, remedy)
+        drive = v.get("drive_mode", 0)
+        right = drive & ~(_REVERSED | _TIME_BASED | _TORQUE_BY_GOAL)
+        if drive != right:
+            expected = f"{right} (direction is the robot file's, profiles in velocity, no torque by goal)"
+            self._set("drive_mode", str(drive), right, expected, NEEDED)
+        if not extended:
+            low, high = ends_tick
+            self._limit("min_position_limit", low, refuses=v["min_position_limit"] > low)
+            self._limit("max_position_limit", high, refuses=v["max_position_limit"] < high)
+
+    def torque(self) -> None:
+        """When it switches torque on and off by itself, and how much it may exert."""
+        startup, shutdown = self.values.get("startup_configuration", 0), self.values["shutdown"]
+        if startup & _TORQUE_AT_POWER_ON:
+            right = startup & ~_TORQUE_AT_POWER_ON
+            self._set("startup_configuration", str(startup), right, f"{right} (no torque at power-on)", NEEDED)
+        if shutdown & _SHUTDOWN_ON != _SHUTDOWN_ON:
+            right = shutdown | _SHUTDOWN_ON
+            expected = f"{right} (overheating and overload cut the torque)"
+            self._set("shutdown", str(shutdown), right, expected, ADVISED)
+        for item in ("pwm_limit", "max_torque"):
+            if self.values.get(item) == 0:
+                remedy = f"{self._command(item, self.model.table[item].high or 0)} or less"
+                self._note(item, "0", "above 0 (it exerts nothing)", NEEDED, remedy)
+
+    def condition(self) -> None:
+        """Errors, supply, temperature, firmware."""
+        v = self.values
+        if v.get("hardware_error_status"):
+            text = hardware_error_text(v["hardware_error_status"])
+            self._note("hardware_error_status", text, "none", ADVISED, f"mmmd servo reboot {self.servo.servo_id}")
+        volts, (low, high) = v["present_input_voltage"] / 10, self.model.voltage_v
+        if not low <= volts <= high:
+            expected = f"{low:g} to {high:g} V"
+            self._note("present_input_voltage", f"{volts:.1f} V", expected, ADVISED, "check supply and wiring")
+        if v["present_temperature"] > v["temperature_limit"] - _HOT_MARGIN_C:
+            found, expected = f"{v['present_temperature']} degC", f"well below {v['temperature_limit']} degC"
+            self._note("present_temperature", found, expected, ADVISED, "let it cool; look for a joint that binds")
+        since = self.model.watchdog_firmware
+        if since is not None and self.firmware < since:
+            expected = f"{since} or later (bus watchdog)"
+            remedy = "update it with the DYNAMIXEL Wizard"
+            self._note("firmware_version", str(self.firmware), expected, ADVISED, remedy)
+
+    def _limit(self, item: str, needed: int, *, refuses: bool) -> None:
+        """A position limit that is not the joint's; `refuses`: goals within the joint's."""
+        found = self.values[item]
+        if found != needed:
+            self._set(item, str(found), needed, f"{needed} (the joint's limit)", NEEDED if refuses else ADVISED)
+
+    def _set(self, item: str, found: str, right: int, expected: str, severity: str) -> None:
+        """A finding that `fix` can correct."""
+        self._note(item, found, expected, severity, self._command(item, right), right)
+
+    def _command(self, item: str, value: int) -> str:
+        return f"mmmd servo set {self.servo.servo_id} {item} {value}"
+
+    def _note(self, item: str, found: str, expected: str, severity: str, remedy: str, fix: int | None = None) -> None:
+        s = self.servo
+        self.findings.append(Finding(s.servo_id, s.joint_name, item, found, expected, severity, remedy, fix))
