@@ -13,6 +13,9 @@ from daemon.mcap_log import LogWriter
 from sim.replay import Stretch, compare
 from tests.daemon.rig import rig, swing
 
+TICK_DEG = 360 / 4096
+"""The two may be a step of the simulation (2 ms) out of phase; at this speed that is up to 0.082 degrees."""
+
 
 @pytest.fixture(scope="module")
 def run():
@@ -37,7 +40,7 @@ def test_a_simulated_run_is_what_the_simulator_makes_of_its_log(run):
     robot, records = run
     found = compare([stretch_of(records)], robot)
     assert found.refused_goals == 0
-    assert found.rms_deg < 0.05, [(s.joint_name, s.rms_deg) for s in found.servos]
+    assert found.rms_deg < TICK_DEG, [(s.joint_name, s.rms_deg) for s in found.servos]
     lags = [(s.lag_logged_ms, s.lag_simulated_ms) for s in found.servos if s.lag_logged_ms is not None]
     assert len(lags) > 10
     assert all(abs(a - b) <= 6 and 10 < b < 120 for a, b in lags)
@@ -79,7 +82,9 @@ def test_the_command_says_it_in_words_and_as_json(run, tmp_path: Path, capsys):
         writer.finish()
     assert main(["sim", "--replay", str(path), "--json"]) == 0
     figures = json.loads(capsys.readouterr().out)
-    assert figures["robot"] == "reference" and len(figures["servos"]) == robot.n_joints and figures["rms_deg"] < 0.05
+    assert (
+        figures["robot"] == "reference" and len(figures["servos"]) == robot.n_joints and figures["rms_deg"] < TICK_DEG
+    )
     assert main(["sim", "--replay", str(path)]) == 0
     assert "all servos:" in capsys.readouterr().out
     assert main(["sim", "--replay", str(tmp_path / "none.mcap")]) == 1
