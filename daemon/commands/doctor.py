@@ -9,9 +9,9 @@ import json as json_module
 def doctor(robot: str = "reference", bus: str = "dxl:///dev/ttyUSB0", fix: bool = False, json: bool = False) -> int:
     """Check rights, adapter, servos, their settings and the rate; every finding comes with the exact remedy.
 
-    Nothing moves. With --fix the servos' return delay, status return level, operating mode, drive mode, shutdown mask
-    and position limits are set as the robot file needs them; torque must be off. Exit status 1 when something does not
-    work.
+    Nothing moves. With --fix the servos' return delay, status return level, operating mode, drive mode, startup
+    configuration, shutdown mask and position limits are set as the robot file needs them; torque must be off. Exit status 1
+    when something does not work.
 
     Example: mmmd doctor --robot op3 --bus "dxl:///dev/ttyUSB0?baud=2000000"
     and then: mmmd doctor --robot op3 --bus "dxl:///dev/ttyUSB0?baud=2000000" --fix

@@ -27,7 +27,8 @@ def servo(
     """Read or set up one servo, of either protocol. Nothing here moves a joint: goals and torque are the daemon's.
 
     Settings kept without power are written only with torque off, ids only when they are free, values only in the range
-    of the manual, and everything is read back. The daemon must not run: it owns the port.
+    of the manual, and everything is read back. What lets a held joint fall needs --drop. The daemon must not run: it owns
+    the port.
 
     Example: mmmd servo get 3
     or: mmmd servo get 3 present_temperature --bus "dxl:///dev/ttyUSB0?baud=57600"

@@ -130,3 +130,16 @@ def test_answers_lost_now_and_then_withhold_no_goal():
             assert r.state is BusState.HOLDING, r.link.text
         assert sum((~x["valid"].astype(bool)).sum() for x in r.records) > 50
         r.assert_limits_kept()
+
+
+@pytest.mark.parametrize("limit", [200, 600])
+def test_a_servo_of_a_lower_pwm_limit_is_armed_and_ends_at_its_own_limit(limit):
+    """Of limit 200 it could not be armed; of 600 the ramp ended at 568, for later steps were refused."""
+    with rig() as r:
+        r.sim.servos[ID]._set("pwm_limit", limit)
+        r.arm()
+        r.cycle(100)
+        assert {s.spec.servo_id: s.get("goal_pwm") for s in r.sim.servos.values()} == {
+            i: limit if i == ID else 885 for i in r.robot.servo_ids
+        }
+        r.assert_limits_kept()
