@@ -10,6 +10,7 @@ from __future__ import annotations
 import gc
 import logging
 from collections.abc import Callable, Generator
+from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -398,8 +399,9 @@ class Streamer:
         if self._torque:
             return
         if self._torque_off_left:
-            self._bus.send_torque_off()
-            self._torque_off_left -= 1
+            with suppress(LinkLostError):  # the exchange tells of it, and reads the ports that are left
+                self._bus.send_torque_off()
+                self._torque_off_left -= 1
             return
         holding = np.flatnonzero(self._bus.reading.torque == 1) if self._made_limp else ()
         if len(holding):  # read since: it heard none of them, a cable may have been loose

@@ -78,7 +78,7 @@ class Asking:
         deadline_s = sent_s + self.timing.longest_s(n_bytes, 1) - self.timing.margin_s + margin_s
         skip = self._echo * len(request)
         while (left_s := deadline_s - self.clock.now_s()) > 0:
-            data = self.port.read(256, left_s)
+            data = self._read(256, left_s)
             if not data:
                 break
             if not self._echo and self._is_echo(data):
@@ -124,6 +124,14 @@ class Asking:
             raise
         return self.clock.now_s()
 
+    def _read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Bytes that have come; a loss is noted."""
+        try:
+            return self.port.read(max_bytes, timeout_s)
+        except LinkLostError as error:
+            self._note_loss(error)
+            raise
+
     def _drop_late_answers(self) -> None:
         """Throw away what arrived after its deadline, or this cycle would read the last one's answers for ever."""
         while late := self.port.read(4096, 0.0):
@@ -145,6 +153,10 @@ class Asking:
         return True
 
     def _note_loss(self, error: LinkLostError) -> None:
+        """The port is gone: whatever this cycle was to bring does not come."""
+        self.reading.valid[:] = False
+        self.reading.age_cycles += 1
+        self.health.port_lost()
         if self._lost_since_s is None:
             self._lost_since_s = self._reopen_due_s = self.clock.now_s()
             self.health.withhold_all()

@@ -17,7 +17,7 @@ from daemon.bus.reading import NEVER_CYCLES, BusReading
 from daemon.bus.slow import SlowReader
 from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
-from daemon.errors import LinkLostError, ServoFaultError
+from daemon.errors import ServoFaultError
 from retarget.robot import ServoSpec
 
 _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
@@ -150,16 +150,12 @@ class Cycle(Items):
         if expected_s - now_s > _SLEEP_FROM_S:
             self.clock.sleep_until(expected_s - _WAKE_BEFORE_S)
             now_s = self.clock.now_s()
-        try:
-            while len(raw) < need:  # after the deadline what has come meanwhile is still taken
-                data = self.port.read(need - len(raw), max(0.0, deadline_s - now_s))
-                raw += data
-                now_s = self.clock.now_s()
-                if not data or (len(raw) < need and step.ends(raw)):
-                    break
-        except LinkLostError as error:
-            self._note_loss(error)
-            raise
+        while len(raw) < need:  # after the deadline what has come meanwhile is still taken
+            data = self._read(need - len(raw), max(0.0, deadline_s - now_s))
+            raw += data
+            now_s = self.clock.now_s()
+            if not data or (len(raw) < need and step.ends(raw)):
+                break
         del raw[:skip]
         if not self._echo and self._is_echo(raw):
             del raw[: len(self._sent)]
@@ -195,7 +191,7 @@ class Cycle(Items):
             left_s = deadline_s - self.clock.now_s()
             if not len(missing) or not noise or left_s <= 0 or step.ends(self._raw):
                 break
-            data = self.port.read(256, left_s)
+            data = self._read(256, left_s)
             if not data:
                 break
             self._raw += data

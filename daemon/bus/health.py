@@ -92,6 +92,11 @@ class HealthTracker:
         self._probe_due_s[gone] = now_s + PROBE_EVERY_S
         return True
 
+    def port_lost(self) -> None:
+        """Nobody can answer, and nobody is to blame: nothing is counted."""
+        self.state[self.asked] = Health.MISSING
+        self._well = False
+
     def withhold(self, read_s: NDArray[np.float64], now_s: float) -> NDArray[np.bool_]:
         """(S,) servos that get no goals now, by when each answered last."""
         if self._missed.any():

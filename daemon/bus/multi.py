@@ -73,8 +73,8 @@ class MultiBus:
         for part, rows in zip(self.parts, self._rows, strict=True):
             begun.append(_done(lambda p=part, r=rows: p.begin(None if goal_ticks is None else goal_ticks[r]), lost))
         for part, rows, sent in zip(self.parts, self._rows, begun, strict=True):
-            if not (sent and _done(part.finish, lost)):
-                part.reading.valid[:] = False
+            if sent:
+                _done(part.finish, lost)
             for name in _FIELDS:
                 getattr(self.reading, name)[rows] = getattr(part.reading, name)
         if lost:
