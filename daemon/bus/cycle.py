@@ -250,9 +250,9 @@ class Cycle(Items):
         for row in np.flatnonzero(self.health.counters.alerts > alerts_before):
             text = f"servo {self.ids[row]} ({self.servos[row].joint_name}) reports one"
             self.events.add(BusEventKind.HARDWARE_ERROR, now_s, text, self.ids[row])
-        missing = self.health.asked & ~valid
-        if missing.any() and len(self.ids) > 2 and 2 * missing.sum() >= self.health.asked.sum():
-            ids = ", ".join(str(self.ids[i]) for i in np.flatnonzero(missing))
+        silent = np.flatnonzero(self.health.silent_at_once())
+        if len(silent):
+            ids = ", ".join(str(self.ids[i]) for i in silent)
             text = f"servos {ids} silent at once: power or a cable near the adapter"
             self.events.add(BusEventKind.BROWN_OUT, now_s, text)
 

@@ -13,6 +13,8 @@ from daemon.bus.packet import ALERT_BIT
 QUARANTINE_AFTER = 10
 """Cycles in a row without an answer after which a servo is asked no more but once a second: at 100 Hz a tenth of a second."""
 PROBE_EVERY_S = 1.0
+BROWN_OUT_AFTER = 3
+"""Cycles in a row without an answer of many, before power is suspected: one may be a spoilt group read."""
 WITHHELD_S, _WITHHELD_CYCLES = 0.15, 3
 """A servo whose torque a goal switches on, and that has been silent for so long and so many cycles, gets no goal any more: it
 may have lost its power, started again (which takes longer) and hang limp wherever it fell."""
@@ -84,13 +86,22 @@ class HealthTracker:
         self.state[missing] = Health.MISSING
         self._well = not (self.state.any() or self._alerted.any() or self._missed.any() or self.faulted.any())
         gone = self.asked & (self._missed >= QUARANTINE_AFTER)
-        # Half of them silent at once is no matter of single servos (power, cable): all are asked on.
-        if not gone.any() or 2 * int(missing.sum()) >= int(self.asked.sum()) > 1:
+        if not gone.any() or self._are_many(missing):
             return False
         self.asked &= ~gone
         self.state[gone] = Health.QUARANTINED
         self._probe_due_s[gone] = now_s + PROBE_EVERY_S
         return True
+
+    def silent_at_once(self) -> NDArray[np.bool_]:
+        """(S,) servos that take part and have long been silent, when they are many; else none."""
+        silent = self.asked & (self._missed >= BROWN_OUT_AFTER)
+        return silent if self._are_many(silent) else np.zeros_like(silent)
+
+    def _are_many(self, silent: NDArray[np.bool_]) -> bool:
+        """Whether these are a matter of power or of a cable: half of those asked. One alone never is, as others answer."""
+        n = int(silent.sum())
+        return n > 1 and 2 * n >= int(self.asked.sum())
 
     def port_lost(self) -> None:
         """Nobody can answer, and nobody is to blame: nothing is counted."""

@@ -8,9 +8,11 @@ from emulator import fake
 from rig_bus import bus_rig
 from test_multi import joined, two_ports
 
+from daemon.bus.events import BusEventKind
 from daemon.bus.health import Health
 from daemon.bus.servo_bus import ServoBus
 from daemon.errors import LinkLostError
+from sim.clock import VirtualClock
 from sim.faults import Fault
 
 
@@ -65,3 +67,56 @@ def test_of_two_ports_the_lost_one_ages_alone() -> None:
     on_lost = np.array([i % 2 == 0 for i in bus.ids])
     assert (bus.reading.age_cycles == np.where(on_lost, 5, 0)).all()
     assert (bus.reading.valid == ~on_lost).all()
+
+
+def rate_hz(bus: ServoBus, clock: VirtualClock, cycles: int) -> float:
+    """Cycles a second of this many."""
+    start_s = clock.now_s()
+    for _ in range(cycles):
+        bus.exchange(np.full(len(bus.ids), 100, np.int32))
+    return cycles / (clock.now_s() - start_s)
+
+
+@pytest.mark.parametrize("names", [("XM430-W350",) * 2, ("MX-28",) * 2, ("AX-12A",) * 2], ids=["fast", "mx1", "ax"])
+@pytest.mark.parametrize("dead", [1, 2])
+def test_one_dead_servo_of_two_is_quarantined_as_the_other_answers(names: tuple[str, ...], dead: int) -> None:
+    """One of two is half of them, and was taken for a brown-out for good: the rate fell from 1316 to 208 Hz."""
+    far, servos, clock = fake(*names)
+    bus = ServoBus(far, servos, clock)
+    bus.verify()
+    before_hz = rate_hz(bus, clock, 50)
+    far.servos[dead].silent = True
+    rate_hz(bus, clock, 40)
+    assert bus.health.state[dead - 1] == Health.QUARANTINED
+    assert BusEventKind.BROWN_OUT not in [e.kind for e in bus.take_events()]
+    assert rate_hz(bus, clock, 3000) > 0.95 * before_hz
+
+
+def test_servos_that_die_one_after_the_other_are_quarantined_down_to_the_last() -> None:
+    far, servos, clock = fake(*("XM430-W350",) * 4)
+    bus = ServoBus(far, servos, clock)
+    bus.verify()
+    for servo_id in (1, 2, 3, 4):
+        far.servos[servo_id].silent = True
+        rate_hz(bus, clock, 40)
+        assert bus.health.asked.tolist() == [i > servo_id for i in (1, 2, 3, 4)]
+    for servo in far.servos.values():
+        servo.silent = False
+    while not bus.health.asked.all():
+        clock.sleep_until(clock.now_s() + 0.01)
+        bus.exchange(None)
+    assert bus.exchange(None).valid.all()
+
+
+@pytest.mark.parametrize("n", [2, 3, 8])
+def test_many_silent_at_once_are_a_brown_out_and_nobody_is_given_up(n: int) -> None:
+    far, servos, clock = fake(*("2XL430-W250",) * n)
+    bus = ServoBus(far, servos, clock)
+    bus.verify()
+    for servo_id in range(1, 1 + max(2, (n + 1) // 2)):
+        far.servos[servo_id].silent = True
+    bus.exchange(None)
+    assert bus.take_events() == [], "one cycle may be a spoilt answer"
+    rate_hz(bus, clock, 40)
+    assert [e.kind for e in bus.take_events()] == [BusEventKind.BROWN_OUT]
+    assert bus.health.asked.all()
