@@ -37,8 +37,9 @@ _WARM_CYCLES, _BLOCK = 50, 10
 _METHOD = (
     "20 servos on a pty whose other end, a process of its own, holds every byte back for its time on the wire; a cycle"
     " writes 20 goals and reads current, velocity and position of all, one cycle ahead (the next request goes out before"
-    " the last answers are parsed). share: wire time / median cycle (means of ten); cpu_us: processor time of one. loss and dead"
-    " servo at 1 Mbit/s by sync read, rates by mean. codec_us: build goals, parse 20 answers, store the values; median"
+    " the last answers are parsed). share: wire time / median cycle (means of ten); cpu_us: processor time of one. loss at"
+    " 1 Mbit/s by sync and by fast sync read (of each servo's part; a fast answer ends there), dead servo by sync read, rates"
+    " by mean. codec_us: build goals, parse 20 answers, store the values; median"
 )
 
 
@@ -56,7 +57,9 @@ def bench_bus(seconds: float = 3.0, seed: int = 0) -> dict[str, Any]:
     figures["no_wire"] = {name: _no_wire(fast=name == "fast", seconds=seconds) for name in ("sync", "fast")}
     console.print(f"no wire: {figures['no_wire']}")
     figures |= _losses(seconds)
-    console.print(f"loss: {figures['loss']}; dead servo: {figures['dead_servo_rate_share']}")
+    console.print(
+        f"loss: {figures['loss']}; fast: {figures['loss_fast']}; dead servo: {figures['dead_servo_rate_share']}"
+    )
     figures["peers"] = {name: _peer(name, seconds) for name in installed()}
     console.print(f"peers: {figures['peers']}")
     return figures | {"servos": N_SERVOS, "realtime": realtime, **context(seed, _METHOD)}
@@ -190,12 +193,8 @@ def _no_wire(*, fast: bool, seconds: float) -> dict[str, float]:
 
 def _losses(seconds: float) -> dict[str, Any]:
     """Rates with losses and with a dead servo, as shares of the rate without."""
-    rates: dict[float, tuple[float, float]] = {}
-    for loss in (0.0, *LOSSES):
-        with _emulator(BAUDS[0], fast=False, loss=loss) as device, _bus(device, BAUDS[0]) as bus:
-            took, _, valid = _run(bus, 2 * seconds)
-            rates[loss] = 1 / float(took.mean()), valid
-    whole_hz = rates[0.0][0]
+    loss, whole_hz = _loss(seconds, fast=False)
+    loss_fast, whole_fast_hz = _loss(seconds, fast=True)
     with _emulator(BAUDS[0], fast=False, dead=7) as device, _bus(device, BAUDS[0], verify=False) as bus:
         goals = np.full(N_SERVOS, POSITION_TICK, np.int32)
         start_s = time.perf_counter()
@@ -204,15 +203,28 @@ def _losses(seconds: float) -> dict[str, Any]:
         before_hz = int(bus.timeouts[6]) / (time.perf_counter() - start_s)
         took, _, _ = _run(bus, 2 * seconds)
     return {
-        "loss": {
-            str(loss): {"rate_share": round(hz / whole_hz, 4), "valid_share": round(valid, 5)}
-            for loss, (hz, valid) in rates.items()
-            if loss
-        },
+        "loss": loss,
+        "loss_fast": loss_fast,
         "lossless_hz": round(whole_hz, 1),
+        "lossless_fast_hz": round(whole_fast_hz, 1),
         "dead_servo_rate_share": round(1 / float(took.mean()) / whole_hz, 4),
         "dead_servo_rate_share_before_quarantine": round(before_hz / whole_hz, 4),
     }
+
+
+def _loss(seconds: float, *, fast: bool) -> tuple[dict[str, Any], float]:
+    """Rate with each loss as a share of the rate without, share of valid values; and that rate."""
+    rates: dict[float, tuple[float, float]] = {}
+    for loss in (0.0, *LOSSES):
+        with _emulator(BAUDS[0], fast=fast, loss=loss) as device, _bus(device, BAUDS[0]) as bus:
+            took, _, valid = _run(bus, 2 * seconds)
+            rates[loss] = 1 / float(took.mean()), valid
+    whole_hz = rates.pop(0.0)[0]
+    shares = {
+        str(loss): {"rate_share": round(hz / whole_hz, 4), "valid_share": round(valid, 5)}
+        for loss, (hz, valid) in rates.items()
+    }
+    return shares, whole_hz
 
 
 def _peer(name: str, seconds: float) -> dict[str, Any]:

@@ -100,7 +100,10 @@ class Emulator:
                 self._cache[request] = replies
         if not self._loss:
             return replies
-        kept = [r for r in replies if self._random.random() >= self._loss]
+        lost = [self._random.random() < self._loss for _ in replies]
+        if request[7] == Instruction.FAST_SYNC_READ and True in lost:
+            replies = replies[: lost.index(True)]  # nobody goes on behind a part that is missing
+        kept = [r for r, gone in zip(replies, lost, strict=False) if not gone]
         return [b"".join(kept)] if kept and not self._byte_s else kept
 
     def _built(self, request: bytes) -> list[bytes]:

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bus.chained import ChainedReads
 from daemon.bus.dialect import DIALECTS, Dialect
 from daemon.bus.events import BusEventKind
 from daemon.bus.feedback import FastSyncStep, Protocol1Step, Step, is_status, steps_for
 from daemon.bus.items import Items
-from daemon.bus.packet import Packet
+from daemon.bus.packet import BROADCAST_ID, Packet
 from daemon.bus.port import Port
 from daemon.bus.reading import NEVER_CYCLES, BusReading
 from daemon.bus.slow import SlowReader
@@ -22,8 +23,6 @@ from retarget.robot import ServoSpec
 
 _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
 """Through a long answer we sleep, and wake so long before its computed end: one wake-up, not one for every chunk."""
-_CAREFUL_CYCLES = 25
-"""After a chained read that broke off: so long each servo answers for itself, until the silent one is quarantined."""
 
 
 class Cycle(Items):
@@ -34,7 +33,8 @@ class Cycle(Items):
     ) -> None:
         super().__init__(port, servos, clock, margin_s=margin_s)
         self._fast = [False] * len(self.ids)
-        self._careful = 0
+        self._chained = ChainedReads()
+        self._broke_at: int | None = None
         self._goal_writes = self._writers("goal_position")
         self._build_steps()
         self._slow = SlowReader(self.models)
@@ -92,7 +92,7 @@ class Cycle(Items):
 
         The wire is busy while they are parsed; what is returned is one cycle older. For groups that are one request.
         """
-        if len(self._steps) != 1 or self._careful:
+        if len(self._steps) != 1:
             return self.exchange(goal_ticks)
         request = (b"" if goal_ticks is None else self._goal_packet(goal_ticks)) + self._steps[0].request
         before, self._in_flight = self._in_flight, None
@@ -173,17 +173,21 @@ class Cycle(Items):
         valid[rows[whole]] = True
         if not isinstance(step, FastSyncStep):
             self._take_bytewise(step, valid, sent_s)
-        elif not whole.all():
-            self._careful = _CAREFUL_CYCLES
+        elif len(self._raw) == step.reply_bytes:
+            self.health.counters.crc[rows[~whole]] += 1
+        if step.chained:
+            silent = len(rows) - int(valid[rows][::-1].argmax()) if valid[rows].any() else 0
+            if silent < len(rows) - 1:  # the last one silent takes nobody with it
+                self._broke_at = int(rows[silent])
         self.reading.read_s[rows[valid[rows]]] = sent_s
 
     def _take_bytewise(self, step: Step, valid: NDArray[np.bool_], sent_s: float) -> None:
         """The byte parser over `_raw`; goes on reading when noise has taken the place of answers."""
-        dialect, decoder = self._dialect(step), self._decoders[self._dialect(step).version]
+        decoder = self._decoders[self._dialect(step).version]
         bad_before = decoder.bad_checksums
         deadline_s = sent_s + self.timing.longest_s(len(step.request) + step.reply_bytes, step.answers)
         data = bytes(self._raw)
-        noise = len(data) >= step.reply_bytes or self._echo
+        noise = (len(data) >= step.reply_bytes or self._echo) and self._in_flight is None  # what comes next is its own
         while True:
             for answer in decoder.feed(data):
                 self._take_answer(step, answer, valid)
@@ -196,12 +200,12 @@ class Cycle(Items):
                 break
             self._raw += data
         self.health.counters.crc[missing] += decoder.bad_checksums > bad_before
-        if len(missing) and len(step.rows) > 1 and dialect.version == 1.0:
-            self._careful = _CAREFUL_CYCLES
 
     def _take_answer(self, step: Step, answer: Packet, valid: NDArray[np.bool_]) -> None:
         row = self._row.get(answer.servo_id)
         now_s = self.clock.now_s()
+        if answer.servo_id == BROADCAST_ID and is_status(answer):
+            return  # a fast answer, come late
         if not is_status(answer):
             text = f"instruction {answer.instruction:#04x} to servo {answer.servo_id} that we did not send"
             self.events.add(BusEventKind.FOREIGN_PACKET, now_s, text + ": another controller on the same wire")
@@ -230,7 +234,8 @@ class Cycle(Items):
     def _judge(self, valid: NDArray[np.bool_]) -> None:
         """Ages, health, quarantine."""
         reading, now_s = self.reading, self.clock.now_s()
-        if valid.all() and self.health.all_well(reading.error) and not self._careful:
+        broke_at, self._broke_at = self._broke_at, None
+        if valid.all() and self._chained.at_ease and self.health.all_well(reading.error):
             reading.age_cycles[:] = 0
             return
         reading.age_cycles += 1
@@ -242,11 +247,10 @@ class Cycle(Items):
                     f"servo {self.ids[row]} ({self.servos[row].joint_name}) is silent; asked once a second from now on"
                 )
                 self.events.add(BusEventKind.QUARANTINED, now_s, text, self.ids[row])
+            self._chained.resume()
             self._build_steps()
-        elif self._careful:
-            self._careful -= 1
-            if self._careful in (0, _CAREFUL_CYCLES - 1):
-                self._build_steps()
+        elif self._chained.after_cycle(broke_at):
+            self._build_steps()
         for row in np.flatnonzero(self.health.counters.alerts > alerts_before):
             text = f"servo {self.ids[row]} ({self.servos[row].joint_name}) reports one"
             self.events.add(BusEventKind.HARDWARE_ERROR, now_s, text, self.ids[row])
@@ -259,7 +263,7 @@ class Cycle(Items):
     def _build_steps(self) -> None:
         rows = [i for i in range(len(self.ids)) if self.health.asked[i]]
         pick = [self.ids[i] for i in rows], [self.models[i] for i in rows], [self._fast[i] for i in rows]
-        self._steps = steps_for(rows, *pick, chained=not self._careful)
+        self._steps = steps_for(rows, *pick, chained=self._chained.used)
 
     def _probe(self, row: int) -> None:
         """Ask a quarantined servo whether it is back, and whether it is what it was."""

@@ -55,13 +55,17 @@ def _index(rows: Sequence[int]) -> NDArray[np.intp] | slice:
 
 
 class Step(Protocol):
-    """One request and its answers; `index` picks its rows out of a reading's columns."""
+    """One request and its answers; `index` picks its rows out of a reading's columns.
+
+    `chained`: a servo's silence silences those behind it.
+    """
 
     rows: NDArray[np.intp]
     index: NDArray[np.intp] | slice
     request: bytes
     reply_bytes: int
     answers: int
+    chained: bool
 
     def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
         """Store the answers in `raw`; (rows,) who gave one. False where `raw` needs the byte parser."""
@@ -94,6 +98,7 @@ class SyncStep:
         self._columns = _Columns(self._reply, layout)
         self._all = np.ones(len(rows), bool)
         self._none = np.zeros(len(rows), bool)
+        self.chained = False
 
     def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
         """All answers at once, or none."""
@@ -126,6 +131,7 @@ class FastSyncStep:
         self.request = packet.sync_read(layout.address, layout.length, servo_ids, fast=True)
         self._reply = FastGroupReply(servo_ids, layout.length)
         self.reply_bytes, self.answers = self._reply.n_bytes, 1
+        self.chained = True
         self._columns = _Columns(self._reply, layout)
 
     def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
@@ -185,6 +191,7 @@ class Protocol1Step:
             self.request = packet1.read(servo_ids[0], PROTOCOL_1_ADDRESS, PROTOCOL_1_LENGTH)
         self.reply_bytes, self.answers = len(rows) * (6 + PROTOCOL_1_LENGTH), len(rows)
         names = ("present_position", "present_speed", "present_load")
+        self.chained = len(rows) > 1
         self._items = {row: tuple(m.table[name] for name in names) for row, m in zip(rows, models, strict=True)}
         self._none = np.zeros(len(rows), bool)
 

@@ -88,7 +88,7 @@ class ServoBus(Cycle):
         if self._slow_every:
             self._map_windows()
         self.health.cleared()
-        self._careful = 0
+        self._chained.resume()
         self._build_steps()
 
     def _mismatch(self, row: int, identity: Identity | None, *, nothing: bool) -> MismatchRow:

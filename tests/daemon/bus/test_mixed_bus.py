@@ -104,7 +104,7 @@ def test_one_dead_servo_costs_itself_only_and_after_quarantine_nearly_nothing(na
     far.servos[2].silent = True
     valid = np.array([bus.exchange(None).valid.copy() for _ in range(15)])
     chained = (far.servos[1].fast and names[0].startswith("XM")) or names[0] == "MX-28"
-    assert valid[1 if chained else 0 :, [0, *range(2, len(names))]].all(), (
+    assert valid[2 if chained else 0 :, [0, *range(2, len(names))]].all(), (
         "the others answer, for themselves if need be"
     )
     assert not valid[:, 1].any()
