@@ -10,6 +10,7 @@ DaemonError
 ├── BusMismatchError(rows)         other servos than the robot file says
 ├── LinkError                      bytes lost or bad
 │   ├── LinkTimeoutError           no answer in time                                 (TimeoutError)
+│   │   └── LinkGarbledError       bytes each time, and no answer
 │   ├── LinkLostError              the device is gone
 │   └── PacketError                bytes that are no whole packet                    (ValueError)
 ├── LogError(path)                 a log that cannot be read                         (ValueError)
@@ -89,6 +90,14 @@ class LinkTimeoutError(LinkError, TimeoutError):
     """No answer in time."""
 
 
+class LinkGarbledError(LinkTimeoutError):
+    """Bytes came each time one servo was asked, and never an answer: two servos have its id, or there is noise."""
+
+    def __init__(self, servo_id: int, port: str, tries: int) -> None:
+        self.servo_id = servo_id
+        super().__init__(f"servo {servo_id}: {tries} answers came garbled on {port}: {two_of(servo_id)}")
+
+
 class LinkLostError(LinkError):
     """The device is gone: unplugged, or its other end closed."""
 
@@ -124,3 +133,8 @@ class UnknownGestureError(ClipError):
         self.name, self.near = name, tuple(near)
         like = f"; near to it: {', '.join(near)}" if near else ""
         super().__init__(f"gesture {name!r}: not among the {known} known ones{like}; `mmmd gesture list` shows all")
+
+
+def two_of(servo_id: int) -> str:
+    """What garbled answers of one servo mean, and what to do."""
+    return f"two servos with id {servo_id}, or noise; unplug one of them and give the other a new id (mmmd servo id)"

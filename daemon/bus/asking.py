@@ -16,7 +16,7 @@ from daemon.bus.port import Port, Reopenable
 from daemon.bus.reading import UNKNOWN, BusReading
 from daemon.bus.timing import MARGIN_S, SETUP_MARGIN_S, Timing
 from daemon.clock import Clock
-from daemon.errors import CommandError, ConfigError, LinkLostError, LinkTimeoutError, ServoFaultError
+from daemon.errors import CommandError, ConfigError, LinkGarbledError, LinkLostError, LinkTimeoutError, ServoFaultError
 from retarget.robot import ServoSpec
 
 TRIES = 3
@@ -52,6 +52,8 @@ class Asking:
         self._torque_expected = False
         self._echo = 0
         self._sent = b""
+        self._garbled = False
+        self._garbled_rows = np.zeros(len(self.ids), bool)
         self._lost_since_s: float | None = None
         self._reopen_due_s = 0.0
 
@@ -59,17 +61,29 @@ class Asking:
         """Send one instruction and return the servo's answer; asked again when it stays silent.
 
         Only instructions that may be repeated are sent this way.
+
+        Raises:
+            LinkTimeoutError: it stayed silent.
+            LinkGarbledError: bytes came each time, and no answer.
         """
+        n_garbled, self._garbled_rows[row] = 0, False
         for i in range(TRIES):
             self.health.counters.retries[row] += i > 0
             answer = self._ask_once(request, row, answer_bytes, SETUP_MARGIN_S)
             if answer is not None:
                 return answer
+            n_garbled += self._garbled
+        self._garbled_rows[row] = n_garbled == TRIES
+        if self._garbled_rows[row]:
+            raise LinkGarbledError(self.ids[row], self.port.name, TRIES)
         text = f"servo {self.ids[row]} did not answer {TRIES} times on {self.port.name}; check its cable and power"
         raise LinkTimeoutError(text)
 
     def _ask_once(self, request: bytes, row: int, answer_bytes: int | None, margin_s: float) -> Packet | None:
-        """One question; None when nothing came. `answer_bytes` None takes an answer of any length."""
+        """One question; None when no answer came. `answer_bytes` None takes an answer of any length.
+
+        `_garbled` is set when bytes came that made no packet at all.
+        """
         self._settle()
         dialect, servo_id = self._of(row), self.ids[row]
         decoder = self._decoders[dialect.version]
@@ -77,6 +91,8 @@ class Asking:
         n_bytes = len(request) + dialect.status_bytes + (3 if answer_bytes is None else answer_bytes)
         deadline_s = sent_s + self.timing.longest_s(n_bytes, 1) - self.timing.margin_s + margin_s
         skip = self._echo * len(request)
+        heard = understood = False
+        self._garbled = False
         while (left_s := deadline_s - self.clock.now_s()) > 0:
             data = self._read(256, left_s)
             if not data:
@@ -84,7 +100,9 @@ class Asking:
             if not self._echo and self._is_echo(data):
                 skip = len(request)
             data, skip = data[skip:], max(0, skip - len(data))
+            heard |= bool(data)
             for p in decoder.feed(data):
+                understood = True
                 if p.servo_id != servo_id or not is_status(p):
                     continue
                 refused = dialect.refusal(p.error)
@@ -92,6 +110,7 @@ class Asking:
                     raise ServoFaultError(servo_id, f"instruction {request.hex(' ')}", refused)
                 if answer_bytes in (None, len(p.parameters)):  # an answer to something else has another length
                     return p
+        self._garbled = heard and not understood
         return None
 
     @property

@@ -11,34 +11,30 @@ from daemon.bus.chained import ChainedReads
 from daemon.bus.dialect import DIALECTS, Dialect
 from daemon.bus.events import BusEventKind
 from daemon.bus.feedback import FastSyncStep, Protocol1Step, Step, is_status, steps_for
-from daemon.bus.items import Items
 from daemon.bus.packet import BROADCAST_ID, Packet
 from daemon.bus.port import Port
+from daemon.bus.probing import Probing
 from daemon.bus.reading import NEVER_CYCLES, BusReading
-from daemon.bus.slow import SlowReader
 from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
-from daemon.errors import ServoFaultError
 from retarget.robot import ServoSpec
 
 _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
 """Through a long answer we sleep, and wake so long before its computed end: one wake-up, not one for every chunk."""
 
 
-class Cycle(Items):
+class Cycle(Probing):
     """Exchanges goals and measurements; see `ServoBus`."""
 
     def __init__(
         self, port: Port, servos: Sequence[ServoSpec], clock: Clock, *, margin_s: float = MARGIN_S, slow_every: int = 0
     ) -> None:
-        super().__init__(port, servos, clock, margin_s=margin_s)
+        super().__init__(port, servos, clock, margin_s=margin_s, slow_every=slow_every)
         self._fast = [False] * len(self.ids)
         self._chained = ChainedReads()
         self._broke_at: int | None = None
         self._goal_writes = self._writers("goal_position")
         self._build_steps()
-        self._slow = SlowReader(self.models)
-        self._slow_every, self._cycle = slow_every, 0
         self._in_flight: tuple[Step, float, int] | None = None
         self._raw = bytearray()
 
@@ -184,7 +180,7 @@ class Cycle(Items):
     def _take_bytewise(self, step: Step, valid: NDArray[np.bool_], sent_s: float) -> None:
         """The byte parser over `_raw`; goes on reading when noise has taken the place of answers."""
         decoder = self._decoders[self._dialect(step).version]
-        bad_before = decoder.bad_checksums
+        bad_before = decoder.bad_checksums + decoder.skipped_bytes
         deadline_s = sent_s + self.timing.longest_s(len(step.request) + step.reply_bytes, step.answers)
         data = bytes(self._raw)
         noise = (len(data) >= step.reply_bytes or self._echo) and self._in_flight is None  # what comes next is its own
@@ -199,7 +195,7 @@ class Cycle(Items):
             if not data:
                 break
             self._raw += data
-        self.health.counters.crc[missing] += decoder.bad_checksums > bad_before
+        self.health.counters.crc[missing] += decoder.bad_checksums + decoder.skipped_bytes > bad_before
 
     def _take_answer(self, step: Step, answer: Packet, valid: NDArray[np.bool_]) -> None:
         row = self._row.get(answer.servo_id)
@@ -223,13 +219,8 @@ class Cycle(Items):
 
     def _finish_cycle(self, valid: NDArray[np.bool_]) -> None:
         self._judge(valid)
-        self._cycle += 1
-        now_s = self.clock.now_s()
-        probe = self.health.probe_due(now_s)
-        if probe is not None:
-            self._probe(probe)
-        elif self._slow_every and self._cycle % self._slow_every == 0:
-            self._read_slow()
+        if self._ask_beside():
+            self._build_steps()
 
     def _judge(self, valid: NDArray[np.bool_]) -> None:
         """Ages, health, quarantine."""
@@ -264,51 +255,6 @@ class Cycle(Items):
         rows = [i for i in range(len(self.ids)) if self.health.asked[i]]
         pick = [self.ids[i] for i in rows], [self.models[i] for i in rows], [self._fast[i] for i in rows]
         self._steps = steps_for(rows, *pick, chained=self._chained.used)
-
-    def _probe(self, row: int) -> None:
-        """Ask a quarantined servo whether it is back, and whether it is what it was."""
-        try:
-            answer = self._ask_once(self._of(row).ping(self.ids[row]), row, None, self.timing.margin_s)
-            back = answer is not None
-            if back and self._torque_expected and self.poll_item(self.ids[row], "torque_enable") != 1:
-                self._note_reboot(row)
-        except ServoFaultError:
-            back = True
-        self.health.probed(row, answered=back, now_s=self.clock.now_s())
-        if back:
-            text = f"servo {self.ids[row]} ({self.servos[row].joint_name}) answers again"
-            self.events.add(BusEventKind.RETURNED, self.clock.now_s(), text, self.ids[row])
-            self._build_steps()
-
-    def _note_reboot(self, row: int) -> None:
-        self.health.faulted[row] = True
-        name = f"servo {self.ids[row]} ({self.servos[row].joint_name})"
-        now_s, n_lost = self.clock.now_s(), int(self.health.faulted.sum())
-        text = f"{name} has lost torque and settings; to be armed anew"
-        self.events.add(BusEventKind.REBOOTED, now_s, text, self.ids[row])
-        if 2 * n_lost >= len(self.ids) > 2:
-            text = f"{n_lost} of {len(self.ids)} servos have lost their torque: the supply voltage broke down"
-            self.events.add(BusEventKind.BROWN_OUT, now_s, text)
-
-    def _read_slow(self) -> None:
-        """Slow registers of the next servo in turn; what they reveal is an event."""
-        row = self._slow.next_row(self.health.asked)
-        if row is None:
-            return
-        request, length = self._slow.request(row, self.ids[row])
-        asked_s = self.clock.now_s()
-        try:
-            answer = self._ask_once(request, row, length, self.timing.margin_s)
-        except ServoFaultError:
-            answer = None
-        if answer is None:
-            return
-        if not self._slow.store(row, answer, self.reading):
-            self._note_reboot(row)
-            return
-        self.reading.slow_read_s[row] = asked_s
-        if self._torque_expected and self.reading.torque[row] == 0 and not self.health.faulted[row]:
-            self._note_reboot(row)
 
     def _dialect(self, step: Step) -> Dialect:
         return DIALECTS[1.0 if isinstance(step, Protocol1Step) else 2.0]

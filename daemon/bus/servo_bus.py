@@ -14,7 +14,7 @@ from daemon.bus.rate_plan import RatePlan, plan_of
 from daemon.bus.registers import RETURN_DELAY_UNIT_S
 from daemon.bus.scan import Found, answering
 from daemon.bus.timing import SETUP_MARGIN_S
-from daemon.errors import BusMismatchError, LinkTimeoutError, MismatchRow, ServoFaultError
+from daemon.errors import BusMismatchError, LinkTimeoutError, MismatchRow, ServoFaultError, two_of
 
 log = logging.getLogger(__name__)
 
@@ -72,11 +72,14 @@ class ServoBus(Cycle):
             BusMismatchError: with a table of what was expected and what was found.
         """
         found = self.ping_all()
+        garbled = self.look_for_collisions(list(found))
         rows = [
-            self._mismatch(row, found.get(s.servo_id), nothing=not found)
+            self._mismatch(row, found.get(s.servo_id), nothing=not found, garbled=s.servo_id in garbled)
             for row, s in enumerate(self.servos)
-            if s.servo_id not in found or found[s.servo_id][0] != s.model.model_number
+            if s.servo_id not in found or found[s.servo_id][0] != s.model.model_number or s.servo_id in garbled
         ]
+        if garbled:
+            raise BusMismatchError(rows, two_of(garbled[0]))
         rows = rows or self._read_effort_limits()
         if rows:
             hint = mismatch_hint(self.port, [r.found for r in rows], any_answers=bool(found))
@@ -91,10 +94,12 @@ class ServoBus(Cycle):
         self._chained.resume()
         self._build_steps()
 
-    def _mismatch(self, row: int, identity: Identity | None, *, nothing: bool) -> MismatchRow:
+    def _mismatch(self, row: int, identity: Identity | None, *, nothing: bool, garbled: bool) -> MismatchRow:
         """A servo that is not as expected; one that is silent is asked in the other protocol, the first few if all are."""
         s = self.servos[row]
-        if identity is not None:
+        if garbled:
+            text = "answers collide"
+        elif identity is not None:
             text = identity_text(identity)
         elif nothing and row >= _SILENT_ENOUGH:
             text = "no answer"
