@@ -104,7 +104,8 @@ class FastGroupReply:
     """The common answer to a fast sync read; each servo's part is checked by itself.
 
     A part's CRC goes on from the CRC before it, so a part is good when it follows from the CRC that was received before
-    it: what another servo's part lost costs that part alone.
+    it: what another servo's part lost costs that part alone. The last CRC alone proves nothing of the others: the servos
+    compute it over what they hear, and what two servos with one id said at once they hear as we do.
 
     Args:
         servo_ids: as asked.
@@ -125,9 +126,6 @@ class FastGroupReply:
         self._crc = np.ndarray((n,), "<u2", self._buffer.data, _HEAD_BYTES + self._part_bytes - _CRC_BYTES, stride)
         self._low, self._high = parts[:, -2], parts[:, -1]
         self._crc_of = FixedCrc(n, self._part_bytes - _CRC_BYTES)
-        self._packet, self._packet_crc = self._buffer[:-_CRC_BYTES].reshape(1, -1), self._crc[-1:]
-        self._packet_crc_of = FixedCrc(1, self.n_bytes - _CRC_BYTES)
-        self._all = np.ones(n, bool)
         body_zeros = bytes(self._part_bytes - _CRC_BYTES)
         # With state (high, low) the two CRC bytes that follow it, low first, both become low ^ high.
         start = position_table(2)
@@ -148,14 +146,31 @@ class FastGroupReply:
         if not raw.startswith(self._head) or n > self.n_bytes:
             return np.zeros(len(self._ids), bool)
         self._buffer[:n] = np.frombuffer(raw, np.uint8)
-        same_ids = n == self.n_bytes and self._id.tobytes() == self._ids.tobytes()
-        if same_ids and self._packet_crc_of.of(self._packet)[0] == self._packet_crc[0]:
-            return self._all  # the last CRC covers all; those between are the servos' own business (manual)
         self._start[0] = self._first
         self._carry.take(self._low[:-1] ^ self._high[:-1], out=self._start[1:])
         whole = ((self._crc_of.of(self._body) ^ self._start) == self._crc) & (self._id == self._ids)
         if n < self.n_bytes:
             whole[(n - _HEAD_BYTES) // self._part_bytes :] = False
+        return whole if whole.all() else self._salvaged(raw, whole)
+
+    def _salvaged(self, raw: bytes | bytearray, whole: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Also the parts whose checksum follows from all bytes before it, as they came.
+
+        A servo behind two that have one id goes on from what it has heard, which is not what either of them meant. Where
+        no part between is right and the last one is, the servos leave those checksums empty, as the manual lets them; of two
+        servos that cannot be told from a collision.
+        """
+        crc, end, follows = crc16(self._head), _HEAD_BYTES, False
+        for i in range(len(self._ids)):
+            start, end = end, end + self._part_bytes
+            if end > len(raw):
+                return whole
+            crc = crc16(raw[start : end - _CRC_BYTES], crc)
+            follows = raw[end - _CRC_BYTES : end] == struct.pack("<H", crc) and raw[start + 1] == self._ids[i]
+            whole[i] |= follows
+            crc = crc16(raw[end - _CRC_BYTES : end], crc)
+        if follows and len(self._ids) > 2 and not whole[:-1].any() and self._id.tobytes() == self._ids.tobytes():
+            whole[:] = True
         return whole
 
 

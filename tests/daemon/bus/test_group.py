@@ -122,3 +122,20 @@ def test_anything_else_is_no_reply(raw: bytes) -> None:
     assert not GroupReply([1, 2], 10).parse(raw)
     assert not FastGroupReply([1, 2], 10).parse(raw).any()
     assert not GroupReply([1, 2], 10).ends(raw)
+
+
+@pytest.mark.parametrize("at", range(5))
+def test_what_two_servos_with_one_id_said_at_once_is_not_taken_though_the_last_checksum_is_right(at: int) -> None:
+    """The servos behind go on from what they heard, and what was heard came to us: the last checksum proved it all."""
+    ids, n = [3, 1, 2, 9, 7], 5
+    raw, crc = fast_status([Part(i, 0, bytes(10)) for i in ids])[:8], 0
+    for i, servo_id in enumerate(ids):
+        own = (raw if not i else b"") + bytes([0, servo_id]) + bytes(range(i, i + 10))
+        said = own + struct.pack("<H", crc16(own, crc))
+        if i == at:
+            twin = own[:-10] + bytes(range(5, 15))
+            other = twin + struct.pack("<H", crc16(twin, crc))
+            said = bytes(a & b for a, b in zip(said, other, strict=True))
+        crc = crc16(said, crc)
+        raw = said if not i else raw + said
+    assert FastGroupReply(ids, 10).parse(raw).tolist() == [i != at for i in range(n)]
