@@ -274,7 +274,7 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
             await asyncio.sleep(0.05)
 
     async def watch(self, *topics: str, timeout_s: float = REPLY_TIMEOUT_S) -> AsyncGenerator[tuple[str, AnyEvent]]:
-        """Yield (topic, event) of `v1/state` and `v1/event` (all when none is named), without end.
+        """Yield (topic, event) of `v1/state`, `v1/health` and `v1/event` (all when none is named), without end.
 
         Raises:
             NoAnswerError: nothing was published for `timeout_s`.

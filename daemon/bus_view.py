@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bus.health import Health
 from daemon.derating import DeratedBy
+from daemon.events import ServoHealth
 from daemon.shared import BusLink, BusState
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
@@ -77,6 +79,15 @@ class BusView:
     def silent_s(self) -> float:
         """Seconds since the newest cycle; before the first, since the first look for one."""
         return 0.0 if self._last_cycle_s is None else time.monotonic() - self._last_cycle_s
+
+    def health(self) -> list[ServoHealth]:
+        """Each servo as the bus process sees it now; none before its first cycle."""
+        if not self._link.n_cycles:
+            return []
+        return [
+            ServoHealth(s.servo_id, s.joint_name, Health(state).name.lower(), *counts)
+            for s, (state, _, *counts) in zip(self._robot.servos, self._link.health.tolist(), strict=True)
+        ]
 
     @property
     def message(self) -> str:

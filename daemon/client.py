@@ -335,7 +335,7 @@ class Client(CompositionCalls[Said]):
             time.sleep(0.05)
 
     def watch(self, *topics: str, timeout_s: float = REPLY_TIMEOUT_S) -> Iterator[tuple[str, AnyEvent]]:
-        """Yield (topic, event) of `v1/state` and `v1/event` (all when none is named), without end.
+        """Yield (topic, event) of `v1/state`, `v1/health` and `v1/event` (all when none is named), without end.
 
         Raises:
             NoAnswerError: nothing was published for `timeout_s`.

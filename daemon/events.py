@@ -305,6 +305,45 @@ class CurrentCommand(msgspec.Struct):
     frames_pushed: int
 
 
+class ServoHealth(msgspec.Struct):
+    """What can be said of a servo, and what was counted since its port was opened.
+
+    Attributes:
+        id: of the servo.
+        joint: name of the servo in the robot file.
+        state: ok, late (its last answer came after the deadline), missing (none in the last cycle), faulted (reports a
+            hardware error, or came back without torque or settings) or quarantined (long silent, asked once a second).
+        timeouts: cycles without its answer.
+        crc: of those, with bytes that were no answer.
+        late: answers after the deadline.
+        retries: questions outside the cycle that were asked again.
+        alerts: hardware alerts that began.
+    """
+
+    id: int
+    joint: str
+    state: str
+    timeouts: int = 0
+    crc: int = 0
+    late: int = 0
+    retries: int = 0
+    alerts: int = 0
+
+
+class HealthEvent(Event, tag="health"):
+    """Every servo, once a second on `v1/health`.
+
+    Attributes:
+        robot: name of the robot.
+        servos: in the order of the robot file; none before the first bus cycle.
+        silent_ms: since the newest bus cycle: what is said of the servos is as old.
+    """
+
+    robot: str
+    servos: list[ServoHealth]
+    silent_ms: float
+
+
 class StateEvent(Event, tag="state"):
     """The robot and the daemon, 20 times a second on `v1/state` and in answer to `status`.
 
@@ -325,6 +364,7 @@ class StateEvent(Event, tag="state"):
         present_rad: (J,) what they last measured.
         queued_ms: setpoints that the bus process has in hand.
         bus_info: counters of the bus process.
+        servos_not_ok: those whose state is not ok; all are on `v1/health`.
         recording: path of the log, empty when there is none; says so when recording has stopped.
         uptime_s: since the start of the daemon.
     """
@@ -347,11 +387,14 @@ class StateEvent(Event, tag="state"):
     idle: str = "off"
     gaze_deg: tuple[float, float] | None = None
     stream: StreamInfo | None = None
+    servos_not_ok: list[ServoHealth] = msgspec.field(default_factory=list[ServoHealth])
 
 
 AnyEvent = (
-    Accepted | Progress | Done | Cancelled | Rejected | ErrorEvent | Failed | Ack | StateEvent | CapabilitiesEvent
-)
+    Accepted | Progress | Done | Cancelled | Rejected | ErrorEvent | Failed | Ack | StateEvent | HealthEvent
+    | CapabilitiesEvent
+)  # fmt: skip
 EVENTS: tuple[type[Event], ...] = (
-    Accepted, Progress, Done, Cancelled, Rejected, ErrorEvent, Failed, Ack, StateEvent, CapabilitiesEvent,
+    Accepted, Progress, Done, Cancelled, Rejected, ErrorEvent, Failed, Ack, StateEvent, HealthEvent,
+    CapabilitiesEvent,
 )  # fmt: skip

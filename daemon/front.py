@@ -22,7 +22,7 @@ from daemon.bus_view import BusView
 from daemon.config import DaemonConfig
 from daemon.control import ControlThread
 from daemon.desk import Desk
-from daemon.events import Event, Rejected, StateEvent
+from daemon.events import Event, HealthEvent, Rejected, StateEvent
 from daemon.follower import Follower
 from daemon.front_controls import FrontControls
 from daemon.generation import GeneratorClient
@@ -45,6 +45,7 @@ log = logging.getLogger(__name__)
 
 DRAIN_LIMIT = 10_000
 PARK_AGAIN_S = 1.0
+HEALTH_EVERY_S = 1.0
 STREAM_PAUSE_S = 0.001
 """Between two targets that are read; of those that come meanwhile the newest counts."""
 SWITCH_S = 0.001
@@ -135,6 +136,7 @@ class Front:
         self.view.begin()
         serve = (
             self._serve_cmd, self._serve_subscriptions, self._serve_stream, self._tick_forever, self._publish_state_forever,
+            self._publish_health_forever,
         )  # fmt: skip
         self._tasks = [asyncio.create_task(s(), name=s.__name__) for s in serve]
         self._control.start()
@@ -246,6 +248,13 @@ class Front:
             self._publish("v1/state", encode(self.ledger.stamp(self.state_event())))
             await asyncio.sleep(1 / self._config.state_rate_hz)
 
+    async def _publish_health_forever(self) -> None:
+        while True:
+            silent_ms = round(1e3 * self.view.silent_s, 1)
+            event = HealthEvent(robot=self._robot.name, servos=self.view.health(), silent_ms=silent_ms)
+            self._publish("v1/health", encode(self.ledger.stamp(event)))
+            await asyncio.sleep(HEALTH_EVERY_S)
+
     async def _serve_subscriptions(self) -> None:
         """Send the last value of each topic to whoever subscribes to it."""
         while True:
@@ -294,6 +303,7 @@ class Front:
             idle=self.performer.layers.idle_style or "off",
             gaze_deg=self.performer.layers.gaze_deg,
             stream=self._targets.info(self._config.endpoints.stream),
+            servos_not_ok=[s for s in self.view.health() if s.state != "ok"],
         )
 
 

@@ -5,21 +5,29 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
+from daemon.bus.health import Health
 from daemon.config import config_error
-from daemon.events import StateEvent
+from daemon.events import ServoHealth, StateEvent
 from daemon.state import RobotState
 
 log = logging.getLogger(__name__)
 
 REQUEST_TIMEOUT_S = 2.0
 _LONGEST_REQUEST_BYTES = 8192
+_SERVO_COUNTERS = {
+    "timeouts": "cycles without its answer",
+    "crc": "cycles in which its answer was spoilt",
+    "late": "answers after the deadline",
+    "retries": "questions that were asked again",
+    "alerts": "hardware alerts that began",
+}
 _COUNTERS = ("cycles", "cycles_lost", "underruns", "requests_dropped")
 
 
-def exposition(state: StateEvent, events: Mapping[str, int]) -> str:
-    """The figures of a state event, and how many events of each type there have been."""
+def exposition(state: StateEvent, events: Mapping[str, int], servos: Sequence[ServoHealth] = ()) -> str:
+    """The figures of a state event, how many events of each type there have been, and the health of each servo."""
     label = f'robot="{_escaped(state.robot)}"'
     lines = ["# HELP mmmd_state 1 for the state the robot is in", "# TYPE mmmd_state gauge"]
     lines += [f'mmmd_state{{{label},state="{s.value}"}} {int(s.value == state.state)}' for s in RobotState]
@@ -40,7 +48,22 @@ def exposition(state: StateEvent, events: Mapping[str, int]) -> str:
         lines.append(f"mmmd_{name}_total{{{label}}} {int(state.bus_info.get(name, 0))}")
     lines += ["# HELP mmmd_events_total events by type", "# TYPE mmmd_events_total counter"]
     lines += [f'mmmd_events_total{{{label},type="{kind}"}} {n}' for kind, n in sorted(events.items())]
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines + _servo_lines(label, servos)) + "\n"
+
+
+def _servo_lines(label: str, servos: Sequence[ServoHealth]) -> list[str]:
+    """Per servo: 1 for the state it is in, and its counters."""
+    labels = [f'{label},servo="{s.id}",joint="{_escaped(s.joint)}"' for s in servos]
+    lines = ["# HELP mmmd_servo_state 1 for the state the servo is in", "# TYPE mmmd_servo_state gauge"]
+    lines += [
+        f'mmmd_servo_state{{{own},state="{h.name.lower()}"}} {int(h.name.lower() == s.state)}'
+        for own, s in zip(labels, servos, strict=True)
+        for h in Health
+    ]
+    for name, text in _SERVO_COUNTERS.items():
+        lines += [f"# HELP mmmd_servo_{name}_total {text}", f"# TYPE mmmd_servo_{name}_total counter"]
+        lines += [f"mmmd_servo_{name}_total{{{own}}} {getattr(s, name)}" for own, s in zip(labels, servos, strict=True)]
+    return lines
 
 
 def _escaped(text: str) -> str:

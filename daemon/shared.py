@@ -20,12 +20,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bus.health import HEALTH
+
 Array = NDArray[np.float64]
 
 N_SETPOINTS = 256
 N_CYCLES = 4096
 _TEXT_BYTES = 4096
-_MAGIC = 0x6D6D6D6402
+_MAGIC = 0x6D6D6D6403
 _PREFIX = "mmmd-link-"
 
 
@@ -132,7 +134,9 @@ class BusLink:
     def __init__(self, path: Path, n_joints: int, n_servos: int, *, owner: bool) -> None:
         self.path, self.n_joints, self._owner = path, n_joints, owner
         setpoints, cycles = setpoint_dtype(n_joints), cycle_dtype(n_joints, n_servos)
-        sizes = [64 * 8, N_SETPOINTS * setpoints.itemsize, N_CYCLES * cycles.itemsize, _TEXT_BYTES]
+        sizes = [
+            64 * 8, N_SETPOINTS * setpoints.itemsize, N_CYCLES * cycles.itemsize, _TEXT_BYTES, n_servos * HEALTH.itemsize,
+        ]  # fmt: skip
         starts = np.concatenate([[0], np.cumsum(sizes)])
         if owner:
             with path.open("wb") as f:
@@ -143,6 +147,8 @@ class BusLink:
         parts = [memory[a:b] for a, b in pairwise(starts)]
         self._words = parts[0].view(np.uint64)
         self._setpoints, self._cycles, self._text = parts[1].view(setpoints), parts[2].view(cycles), parts[3]
+        self.health: NDArray[np.void] = parts[4].view(HEALTH)
+        """(S,) state and counters of each servo; the bus process writes them in every cycle, anybody reads."""
         self._left_out: list[tuple[int, int]] = []
         self._asking = threading.Lock()
         self._seen = {request: int(self._words[request]) for request in BusRequest}

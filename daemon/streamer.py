@@ -426,6 +426,7 @@ class Streamer:
         record["present_tick"], record["valid"] = reading.position_tick, reading.valid
         record["present_velocity_raw"], record["present_current_raw"] = reading.velocity_raw, reading.current_raw
         record["error"] = reading.error
+        self._bus.show_health(self._link.health)
         self._link.publish()
 
 

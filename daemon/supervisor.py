@@ -166,7 +166,7 @@ class Supervisor:
         """Metrics on request; readiness and signs of life for systemd."""
         if self._config.metrics:
             self._metrics = MetricsServer(
-                self._config.metrics, lambda: exposition(front.state_event(), front.ledger.counts)
+                self._config.metrics, lambda: exposition(front.state_event(), front.ledger.counts, front.view.health())
             )  # fmt: skip
             await self._metrics.start()
         self._notifier.ready(f"robot {self._robot.name} on {self._config.bus}")

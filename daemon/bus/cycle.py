@@ -121,6 +121,10 @@ class Cycle(Probing):
         self.reading.valid[:] = False
         return self.reading.valid
 
+    def show_health(self, table: NDArray[np.void]) -> None:
+        """Copy state and counters of each servo into (S,) `daemon.bus.health.HEALTH`."""
+        self.health.show(table)
+
     @property
     def withheld(self) -> NDArray[np.bool_]:
         """(S,) servos that get no goals until `verify`: silent for long, and a goal would switch their torque on."""

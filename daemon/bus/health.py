@@ -34,6 +34,11 @@ class Health(IntEnum):
     """It has been missing for long and is left out of the cycle; asked once a second."""
 
 
+COUNTERS = ("timeouts", "crc", "late", "retries", "alerts")
+HEALTH = np.dtype([("state", "u1"), ("_", "V3"), *((name, "u4") for name in COUNTERS)])
+"""A servo as the bus process shows it to others."""
+
+
 @dataclass
 class Counters:
     """(S,) events of each servo since the start."""
@@ -107,6 +112,12 @@ class HealthTracker:
         """Nobody can answer, and nobody is to blame: nothing is counted."""
         self.state[self.asked] = Health.MISSING
         self._well = False
+
+    def show(self, table: NDArray[np.void], rows: NDArray[np.intp] | slice = slice(None)) -> None:
+        """Copy state and counters into the `rows` of a table of `HEALTH`."""
+        table["state"][rows] = self.state
+        for name in COUNTERS:
+            table[name][rows] = getattr(self.counters, name)
 
     def withhold(self, read_s: NDArray[np.float64], now_s: float) -> NDArray[np.bool_]:
         """(S,) servos that get no goals now, by when each answered last."""

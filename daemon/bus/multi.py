@@ -54,6 +54,11 @@ class MultiBus:
         """(S,) cycles in which each servo did not answer."""
         return self._merged([part.timeouts for part in self.parts])
 
+    def show_health(self, table: NDArray[np.void]) -> None:
+        """Copy state and counters of each servo into (S,) `daemon.bus.health.HEALTH`."""
+        for part, rows in zip(self.parts, self._rows, strict=True):
+            part.health.show(table, rows)
+
     @property
     def withheld(self) -> NDArray[np.bool_]:
         """(S,) servos that get no goals until `verify`; see `ServoBus`."""

@@ -10,7 +10,9 @@ from tyro.conf import OmitArgPrefixes
 from daemon.commands.connection import Connection
 
 if TYPE_CHECKING:
-    from daemon.events import StateEvent
+    from daemon.events import ServoHealth, StateEvent
+
+_COUNTED = {"timeouts": "time-outs", "crc": "spoilt", "late": "late", "retries": "asked again", "alerts": "alerts"}
 
 
 def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
@@ -45,6 +47,7 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
         "in hand": f"{now.queued_ms:.0f} ms of setpoints",
         "generator": now.generator,
         "recording": now.recording or "-",
+        "servos": "; ".join(_servo(s) for s in now.servos_not_ok) or "-",
         "bus": ", ".join(f"{k} {v}" for k, v in now.bus_info.items()),
         "up": f"{now.uptime_s:.0f} s",
     }
@@ -53,6 +56,12 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
         table.add_row(f"[bold]{key}[/bold]", value)
     Console().print(table)
     return 3 if now.state == "fault" else 0
+
+
+def _servo(servo: ServoHealth) -> str:
+    """A servo that is not ok, and what was counted."""
+    counted = ", ".join(f"{n} {text}" for name, text in _COUNTED.items() if (n := getattr(servo, name)))
+    return f"{servo.id} ({servo.joint}) {servo.state}{f': {counted}' if counted else ''}"
 
 
 def _stream(now: StateEvent) -> str:

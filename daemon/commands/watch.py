@@ -1,4 +1,4 @@
-"""`mmmd watch`: events and state as they happen."""
+"""`mmmd watch`: events, state and health as they happen."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def watch(
     json: bool = False,
     n: int | None = None,
 ) -> int:
-    """Follow events and changes of state until interrupted.
+    """Follow events and changes of state and of servos' health until interrupted.
 
     Example: mmmd watch --json
 
@@ -23,10 +23,10 @@ def watch(
         json: print every message as one JSON object a line, all states included.
         n: end after so many lines.
     """
-    from daemon.events import StateEvent
+    from daemon.events import HealthEvent, StateEvent
     from daemon.wire import encode
 
-    shown, last_state = 0, ""
+    shown, last_state, last_health = 0, "", ""
     with at.client() as robot:
         for topic, event in robot.watch("v1/", timeout_s=at.timeout_s):
             if json:
@@ -36,6 +36,12 @@ def watch(
                     continue
                 last_state = event.state
                 line = f"{event.t_mono:.3f} state {event.state}" + (f": {event.reason}" if event.reason else "")
+            elif isinstance(event, HealthEvent):
+                health = ", ".join(f"servo {s.id} ({s.joint}) {s.state}" for s in event.servos if s.state != "ok")
+                if health == last_health:
+                    continue
+                last_health = health
+                line = f"{event.t_mono:.3f} health {health or 'every servo ok'}"
             else:
                 from daemon.commands.playing import describe
 
