@@ -38,8 +38,9 @@ class Probing(Items):
         """
         for servo_id in servo_ids:
             row = self._row_of(servo_id)
+            own = self._own[row]
             try:
-                self._ask(self._of(row).read(servo_id, self._own[row].address, self._own[row].length), row, None)
+                self._ask(self._of(row).read(servo_id, own.address, own.length), row, own.length)
             except (LinkTimeoutError, ServoFaultError):
                 continue
         return [i for i in self.ids if self._garbled_rows[self._row[i]]]

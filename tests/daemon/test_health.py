@@ -57,7 +57,7 @@ def test_while_the_port_is_gone_no_servo_is_said_to_be_well() -> None:
 
 def test_servos_on_several_ports_stand_in_the_robots_order() -> None:
     clock = VirtualClock()
-    world = World(ROBOT, FaultSchedule((Fault("silent", start_s=5.0, servo_id=4),)))
+    world = World(ROBOT, FaultSchedule((Fault("silent", start_s=5.0, servo_id=16),)))
     halves = [[i for i in ROBOT.servo_ids if i % 2 == odd] for odd in (0, 1)]
     ports = [SimPort(SimBus(ROBOT, world=world, servo_ids=half), clock) for half in halves]
     bus = bus_on(ports, ROBOT, clock)
@@ -67,7 +67,7 @@ def test_servos_on_several_ports_stand_in_the_robots_order() -> None:
         bus.exchange(None)
     table = np.zeros(ROBOT.n_servos, HEALTH)
     bus.show_health(table)
-    row = ROBOT.servo_ids.index(4)
+    row = ROBOT.servo_ids.index(16)
     assert table["state"].tolist() == [Health.MISSING if i == row else Health.OK for i in range(ROBOT.n_servos)]
     assert table["timeouts"].tolist() == [3 if i == row else 0 for i in range(ROBOT.n_servos)]
 
