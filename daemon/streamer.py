@@ -23,7 +23,7 @@ from daemon.bus.multi import RobotBus
 from daemon.bus.reading import BusReading
 from daemon.clock import Clock
 from daemon.derating import Derating
-from daemon.errors import DaemonError, LinkError, ServoFaultError
+from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
 from daemon.judging import MAY_HAVE_TRIPPED_S, Judge
 from daemon.pace import Pace, SlowedSetpoints
