@@ -24,7 +24,7 @@ from daemon.client_compositions import (
     CompositionCalls,
     patience_s,
 )
-from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
+from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, stamp, unexpected
 from daemon.client_streams import AsyncStream, LeaseNews, begun
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
@@ -69,7 +69,7 @@ class _Line:
             self._reader = asyncio.create_task(self._read())
         heard: asyncio.Queue[AnyEvent] = asyncio.Queue()
         self._waiting[request.id] = heard
-        request.t_mono = time.monotonic()
+        stamp(request)
         try:
             await self._socket.send(encode(request))
             yield heard

@@ -18,7 +18,7 @@ from daemon.client_compositions import (
     CompositionCalls,
     patience_s,
 )
-from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
+from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, stamp, unexpected
 from daemon.client_streams import LeaseNews, Stream, begun
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
@@ -378,7 +378,7 @@ class Client(CompositionCalls[Said]):
                 raise RefusedError(event)
 
     def _send(self, socket: zmq.Socket[bytes], request: Request, endpoint: str) -> None:
-        request.t_mono = time.monotonic()
+        stamp(request)
         try:
             socket.send(encode(request), zmq.DONTWAIT)
         except zmq.Again:

@@ -1,12 +1,14 @@
-"""What a client may run into, and what it hears of a command."""
+"""What a client may run into, what it hears of a command, and how it says when it was sent."""
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
+from daemon.clock import clock_id
 from daemon.errors import DaemonError
 from daemon.events import AnyEvent, Done, Event, Refusal
-from daemon.requests import tag_of
+from daemon.requests import Request, tag_of
 
 
 class NoAnswerError(DaemonError, TimeoutError):
@@ -53,6 +55,11 @@ class Said:
         """The figures of the motion, when it was played to its end."""
         last = self.events[-1] if self.events else None
         return last if isinstance(last, Done) else None
+
+
+def stamp(request: Request) -> None:
+    """Write into a request when it is sent, and on which clock."""
+    request.t_mono, request.clock = time.monotonic(), clock_id() or None
 
 
 def unexpected(event: Event, asked: str) -> DaemonError:

@@ -4,32 +4,35 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable
+from collections import deque
+from dataclasses import dataclass
 from typing import Protocol
 
 import zmq
 
 from daemon.events import Ack, Event, Rejected
-from daemon.ledger import split_route
+from daemon.ledger import Route, split_route
 from daemon.realtime import CONTROL_PRIORITY, take_fifo
 from daemon.replies import refusal
-from daemon.requests import Arm, CtlRequest, Estop, Park, Reset, Status, Stop
+from daemon.requests import Arm, CtlRequest, Estop, Park, Reset, Status, Stop, tag_of
 from daemon.state import CommandRefusedError
 from daemon.wire import WireError, decode_ctl, encode, error_event
 
 log = logging.getLogger(__name__)
 
 POLL_MS = 100
+MOST_READ = 4096
+"""Requests that are read ahead of their turn, to find an e-stop among them; more wait in the sockets of their senders."""
 
 
 class Controls(Protocol):
-    """What the thread acts on; every call returns at once and may come from this thread."""
+    """What the thread acts on; called from this thread. None waits long for anything, and none while a request waits."""
 
-    def stop(self) -> str:
+    def stop(self, request: Stop) -> str:
         """Brake within the limits and hold; returns the state before."""
         ...
 
-    def estop(self) -> str:
+    def estop(self, request: Estop) -> str:
         """Cut torque; returns the state before."""
         ...
 
@@ -41,7 +44,7 @@ class Controls(Protocol):
         """Torque on; returns the state before."""
         ...
 
-    def park(self) -> str:
+    def park(self, request: Park) -> str:
         """Park; returns the state before."""
         ...
 
@@ -54,12 +57,22 @@ class Controls(Protocol):
         ...
 
 
+@dataclass(eq=False)
+class _Waiting:
+    """A request that was read and not yet served; `overtaken` by an e-stop it is not carried out any more."""
+
+    route: Route
+    request: CtlRequest | WireError
+    overtaken: bool = False
+
+
 class ControlThread:
     """Serves the `ctl` socket until closed."""
 
     def __init__(self, socket: zmq.Socket[bytes], controls: Controls) -> None:
         self._socket = socket
         self._controls = controls
+        self._queue: deque[_Waiting] = deque()
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._run, name="ctl", daemon=True)
 
@@ -81,45 +94,76 @@ class ControlThread:
         if take_fifo(CONTROL_PRIORITY):
             log.info("the ctl thread has FIFO priority")
         while not self._stopping.is_set():
-            if not self._socket.poll(POLL_MS):
+            if not self._queue and not self._socket.poll(POLL_MS):
                 continue
-            route, parts = split_route(self._socket.recv_multipart())
+            self._read()
+            waiting = self._queue.popleft()
             try:
-                event = self._answer(parts)
+                event = self._answer(waiting)
             except Exception as error:  # the thread that can stop the robot must outlive every bug
                 log.exception("a ctl request failed")
                 event = Rejected(code="internal", asked="ctl", found=str(error), allowed="", do="see the daemon's log")
             reply = encode(self._controls.sent(event))
             try:
-                self._socket.send_multipart([*route.frames, reply], zmq.DONTWAIT)
+                self._socket.send_multipart([*waiting.route.frames, reply], zmq.DONTWAIT)
             except zmq.ZMQError as error:
                 log.warning("a ctl reply was lost: %s", error)
 
-    def _answer(self, parts: list[bytes]) -> Event:
-        try:
-            if len(parts) != 1:
-                raise WireError(
-                    "frames", "read a request", f"{len(parts)} frames", "1 frame", "send the request as one frame"
-                )
-            request = decode_ctl(parts[0])
-        except WireError as error:
-            return error_event(error)
+    def _read(self) -> None:
+        """Read what waits in the socket; an e-stop goes before all that was read already, and overtakes it."""
+        while len(self._queue) < MOST_READ and self._socket.poll(0):
+            route, parts = split_route(self._socket.recv_multipart())
+            waiting = _Waiting(route, _decoded(parts))
+            if not isinstance(waiting.request, Estop):
+                self._queue.append(waiting)
+                continue
+            for earlier in self._queue:
+                earlier.overtaken = True
+            self._queue.appendleft(waiting)
+
+    def _answer(self, waiting: _Waiting) -> Event:
+        request = waiting.request
+        if isinstance(request, WireError):
+            return error_event(request)
+        if waiting.overtaken and isinstance(request, Reset | Arm | Park):
+            return _overtaken(request)
         try:
             return self._carry_out(request)
         except CommandRefusedError as error:
             return refusal(request.id, error)
 
     def _carry_out(self, request: CtlRequest) -> Event:
-        verbs: dict[type, Callable[[], str]] = {
-            Stop: self._controls.stop,
-            Estop: self._controls.estop,
-            Reset: self._controls.reset,
-            Arm: self._controls.arm,
-            Park: self._controls.park,
-        }
-        if isinstance(request, Status):
-            event = self._controls.status()
-            event.id = request.id
-            return event
-        state = verbs[type(request)]()
-        return Ack(id=request.id, verb=str(type(request).__struct_config__.tag), state=state)
+        match request:
+            case Status():
+                event = self._controls.status()
+                event.id = request.id
+                return event
+            case Stop():
+                state = self._controls.stop(request)
+            case Estop():
+                state = self._controls.estop(request)
+            case Park():
+                state = self._controls.park(request)
+            case Reset():
+                state = self._controls.reset()
+            case Arm():
+                state = self._controls.arm()
+        return Ack(id=request.id, verb=tag_of(request), state=state)
+
+
+def _decoded(parts: list[bytes]) -> CtlRequest | WireError:
+    try:
+        if len(parts) != 1:
+            found = f"{len(parts)} frames"
+            raise WireError("frames", "read a request", found, "1 frame", "send the request as one frame")
+        return decode_ctl(parts[0])
+    except WireError as error:
+        return error
+
+
+def _overtaken(request: CtlRequest) -> Rejected:
+    """The event of what an e-stop voids: it came before, and would undo it when it was carried out afterwards."""
+    return Rejected(
+        id=request.id, code="overtaken", asked=tag_of(request), found="an e-stop that came after it and was served first",
+        allowed="reset, then arm", do="ask again once the e-stop is answered",
+    )  # fmt: skip

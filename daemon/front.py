@@ -122,7 +122,7 @@ class Front:
                 socket.close(0)
             self._ctl_context.term()
             raise
-        self._control = ControlThread(ctl, FrontControls(self))
+        self._control = ControlThread(ctl, FrontControls(self, ctl.poll))
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop:

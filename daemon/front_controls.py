@@ -1,12 +1,15 @@
-"""What the `ctl` thread does: the bus process first, the event loop afterwards."""
+"""What the `ctl` thread does: the bus process first, the event loop afterwards, and no longer than nobody else asks."""
 
 from __future__ import annotations
 
 import asyncio
 import threading
+import time
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from daemon.events import Event, StateEvent
+from daemon.requests import Estop, Park, Stop
 from daemon.shared import BusRequest
 from daemon.state import CommandRefusedError, Trigger
 
@@ -15,25 +18,32 @@ if TYPE_CHECKING:
 
 DRAIN_TIMEOUT_S = 0.05
 """Longest wait of a `stop` reply for the texts that came before it; the stop itself does not wait."""
+LOOK_MS = 1
+"""How often that wait looks whether it is over."""
 
 
 class FrontControls:
-    """The verbs of `ctl` on a front."""
+    """The verbs of `ctl` on a front.
 
-    def __init__(self, front: Front) -> None:
-        self._front = front
+    Args:
+        front: the front.
+        next_request: waits so many milliseconds for another request on `ctl`; whether there is one.
+    """
 
-    def stop(self) -> str:
+    def __init__(self, front: Front, next_request: Callable[[int], int]) -> None:
+        self._front, self._next_request = front, next_request
+
+    def stop(self, request: Stop) -> str:
         """Brake within the limits and hold; returns the state before."""
-        return self._halt(Trigger.STOP)
+        return self._halt(Trigger.STOP, request)
 
-    def estop(self) -> str:
+    def estop(self, request: Estop) -> str:
         """Cut torque; returns the state before."""
-        return self._halt(Trigger.ESTOP)
+        return self._halt(Trigger.ESTOP, request)
 
-    def park(self) -> str:
+    def park(self, request: Park) -> str:
         """Park, then torque off; returns the state before."""
-        return self._halt(Trigger.PARK)
+        return self._halt(Trigger.PARK, request)
 
     def reset(self) -> str:
         """Leave fault or e-stop; returns the state before."""
@@ -64,10 +74,10 @@ class FrontControls:
             self._front.publish_from_thread(event)
         return event
 
-    def _halt(self, command: Trigger) -> str:
+    def _halt(self, command: Trigger, request: Stop | Estop | Park) -> str:
         front, performer, state = self._front, self._front.performer, self._front.machine.state
         front.machine.check(command)
-        performer.halts.note(command.value)
+        performer.halts.note(command.value, request)
         front.follower.stopped = command is Trigger.STOP
         front.link.request(BusRequest[command.name])
         ended = threading.Event()
@@ -80,7 +90,9 @@ class FrontControls:
 
         try:
             asyncio.run_coroutine_threadsafe(end_commands(), front.loop)
-            ended.wait(DRAIN_TIMEOUT_S)
         except RuntimeError:  # the loop is closed: there is nothing left to end
+            return state.value
+        end_s = time.monotonic() + DRAIN_TIMEOUT_S
+        while not ended.is_set() and time.monotonic() < end_s and not self._next_request(LOOK_MS):
             pass
         return state.value

@@ -162,4 +162,4 @@ def _any_number(event: Event) -> bool:
 
 def _without_stamp(request: Command) -> Command:
     """What was asked, whenever and as whichever message it was sent."""
-    return msgspec.structs.replace(request, seq=None, t_mono=None)
+    return msgspec.structs.replace(request, seq=None, t_mono=None, clock=None)

@@ -10,6 +10,7 @@ from msgspec import Meta
 PROTOCOL_VERSION = 1
 MAX_TEXT_CHARS = 2000
 MAX_ID_CHARS = 128
+MAX_CLOCK_CHARS = 64
 MAX_SEED = 2**31 - 1
 SHORTEST_S, LONGEST_S = 0.2, 9.8
 """Lengths of motion that may be asked for: one token and a whole window of the model."""
@@ -31,12 +32,14 @@ class Request(msgspec.Struct, tag_field="type", forbid_unknown_fields=True, kw_o
         id: chosen by the sender, returned in every event; empty lets the daemon choose.
         seq: the sender's count of messages; kept in the log.
         t_mono: the sender's monotonic clock in seconds; kept in the log.
+        clock: which clock that is, as `daemon.clock.clock_id` names it; only times of the same clock are compared.
     """
 
     v: int = PROTOCOL_VERSION
     id: Id = ""
     seq: int | None = None
     t_mono: float | None = None
+    clock: Annotated[str, Meta(max_length=MAX_CLOCK_CHARS)] | None = None
 
 
 class Command(Request, kw_only=True):

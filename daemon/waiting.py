@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections import OrderedDict
 from dataclasses import dataclass
 
+from daemon.clock import clock_id
 from daemon.ledger import Entry
+from daemon.requests import Request
 
 MOST_WAITING = 64
-OVERTAKEN_S = 5.0
-"""How much later than a stop a command may arrive that says it was sent before: it is not played."""
 SHADOW_S = 0.1
-"""A command that does not say when it was sent and comes so soon after a stop was on its way when it was given."""
+"""A command that comes so soon after a stop was on its way when it was given, unless its sender's clock shows otherwise."""
+CLOCKS_KEPT = 64
+"""Clocks of other machines, of which the newest halt is remembered."""
 
 
 @dataclass(eq=False)
@@ -42,26 +45,49 @@ class Pending:
 
 
 class Halts:
-    """When a person last stopped, parked or cut torque, and what that means for a command. Written by the ctl thread."""
+    """When a person last stopped, parked or cut torque, and what that means for a command.
 
-    def __init__(self) -> None:
+    Times are compared only where they are of one clock: what was sent from this machine against when the halt came here,
+    what was sent from another against when a halt was sent from there. `note` is called by the ctl thread.
+    """
+
+    def __init__(self, clock: str | None = None) -> None:
+        self._clock = clock_id() if clock is None else clock
+        self._sent_s: OrderedDict[str, float] = OrderedDict()
+        self._from = ""
         self.at_s, self.by = float("-inf"), ""
 
-    def note(self, by: str) -> None:
-        """A halt was given."""
-        self.at_s, self.by = time.monotonic(), by
+    def note(self, by: str, request: Request | None = None) -> None:
+        """A halt was given, by a request that may say when it was sent."""
+        sent_s, clock = (None, None) if request is None else (request.t_mono, request.clock)
+        self.at_s, self.by, self._from = time.monotonic(), by, clock or ""
+        if clock and clock != self._clock and sent_s is not None:
+            self._sent_s[clock] = max(sent_s, self._sent_s.pop(clock, sent_s))
+            if len(self._sent_s) > CLOCKS_KEPT:
+                self._sent_s.popitem(last=False)
 
     def overtook(self, entry: Entry) -> bool:
-        """Whether a command that arrives now was sent before the halt."""
-        sent_s, now_s = entry.request.t_mono, time.monotonic()
-        if sent_s is None:
-            return now_s - self.at_s < SHADOW_S
-        return self.at_s - OVERTAKEN_S < sent_s < self.at_s
+        """Whether a command that arrives now was sent before the halt; of one that cannot show it, that is assumed."""
+        after = self._sent_after(entry.request)
+        return time.monotonic() - self.at_s < SHADOW_S if after is None else not after
 
     def spares(self, entry: Entry) -> bool:
-        """Whether a command that came before the halt was served says that it was sent after it."""
-        sent_s = entry.request.t_mono
-        return sent_s is not None and self.at_s < sent_s <= time.monotonic()
+        """Whether a command that came before the halt was served was surely sent after it."""
+        return self._sent_after(entry.request) is True
+
+    def _sent_after(self, request: Request) -> bool | None:
+        """Whether it was sent after the newest halt; None when no clock tells."""
+        sent_s, clock = request.t_mono, request.clock
+        if sent_s is None or not clock:
+            return None
+        if clock == self._clock:
+            return self.at_s < sent_s if sent_s <= time.monotonic() else None
+        halt_s = self._sent_s.get(clock)
+        if halt_s is None:
+            return None
+        if sent_s <= halt_s:
+            return False
+        return True if clock == self._from else None  # the newest halt came from elsewhere
 
 
 class WaitingRoom:

@@ -16,6 +16,7 @@ from daemon.bench.daemon_rig import percentile, running_daemon
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
+from daemon.client_errors import stamp
 from daemon.events import AnyEvent, Progress
 from daemon.mcap_log import LoggedCycle, read_log
 from daemon.requests import Say
@@ -96,7 +97,9 @@ def _talk(client: Client, texts: list[str], rng: np.random.Generator, heard: _He
     try:
         for i, text in enumerate(texts):
             seed = int(rng.integers(0, 2**31))  # pyright: ignore[reportUnknownArgumentType]
-            socket.send(encode(Say(id=f"b{i}", text=text, seed=seed, t_mono=time.monotonic())))
+            said = Say(id=f"b{i}", text=text, seed=seed)
+            stamp(said)
+            socket.send(encode(said))
             listen(float(rng.uniform(SHORTEST_GAP_S, LONGEST_GAP_S)))
             if i % STOP_EVERY == STOP_EVERY - 1:
                 stops_s.append(time.monotonic())

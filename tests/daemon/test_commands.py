@@ -12,6 +12,7 @@ import zmq
 from daemon import events as ev
 from daemon import wire
 from daemon.client import RefusedError
+from daemon.client_errors import stamp
 from daemon.requests import Gesture, Say, tag_of
 from tests.end_to_end.harness import RunningDaemon
 
@@ -47,7 +48,7 @@ class Talk:
         self.heard: dict[str, list[ev.Event]] = {}
 
     def send(self, request) -> None:
-        request.t_mono = time.monotonic()
+        stamp(request)
         self._socket.send(wire.encode(request))
 
     def until(self, command: str, kind: type, timeout_s: float = 15.0):

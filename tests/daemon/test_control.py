@@ -1,0 +1,142 @@
+"""The `ctl` thread over real sockets: an e-stop goes before everything that waits, and what it voids stays undone."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from types import SimpleNamespace
+
+import pytest
+import zmq
+
+from daemon import events as ev
+from daemon import wire
+from daemon.control import ControlThread
+from daemon.front_controls import FrontControls
+from daemon.requests import Stop
+from daemon.shared import BusRequest
+from daemon.state import RobotState, StateMachine
+from daemon.waiting import Halts
+
+pytestmark = pytest.mark.timeout(30)
+
+
+class Robot:
+    """Writes down what it was told."""
+
+    def __init__(self) -> None:
+        self.told: list[str] = []
+
+    def _tell(self, verb: str) -> str:
+        self.told.append(verb)
+        return "idle"
+
+    def stop(self, request) -> str:
+        return self._tell("stop")
+
+    def estop(self, request) -> str:
+        return self._tell("estop")
+
+    def park(self, request) -> str:
+        return self._tell("park")
+
+    def reset(self) -> str:
+        return self._tell("reset")
+
+    def arm(self) -> str:
+        return self._tell("arm")
+
+    def status(self) -> ev.Event:
+        return ev.Ack(verb=self._tell("status"), state="idle")
+
+    def sent(self, event: ev.Event) -> ev.Event:
+        return event
+
+
+class Ctl:
+    """A robot and its ctl thread, not yet begun; what is sent before waits in the socket."""
+
+    def __init__(self) -> None:
+        self._context, self.robot = zmq.Context(), Robot()
+        server, self._client = self._context.socket(zmq.ROUTER), self._context.socket(zmq.DEALER)
+        server.bind("inproc://ctl")
+        self._client.setsockopt(zmq.RCVTIMEO, 10_000)
+        self._client.connect("inproc://ctl")
+        self._thread = ControlThread(server, self.robot)
+
+    def answers(self, *verbs: str) -> dict[str, list[ev.Event]]:
+        """What became of requests that were all there when the thread began, by verb."""
+        for verb in verbs:
+            self._client.send(f'{{"type": "{verb}", "id": "{verb}"}}'.encode())
+        self._thread.start()
+        found: dict[str, list[ev.Event]] = {verb: [] for verb in verbs}
+        for _ in verbs:
+            event = wire.decode_event(self._client.recv())
+            found[event.id].append(event)
+        return found
+
+    def close(self) -> None:
+        self._thread.close()
+        self._context.destroy(linger=0)
+
+
+@pytest.fixture
+def ctl():
+    made = Ctl()
+    yield made
+    made.close()
+
+
+def test_an_estop_goes_before_what_waits(ctl):
+    ctl.answers("stop", "status", "stop", "estop", "status")
+    assert ctl.robot.told == ["estop", "stop", "status", "stop", "status"]
+
+
+def test_what_came_before_an_estop_does_not_undo_it(ctl):
+    """Served after the e-stop that overtook them, a reset and an arm would switch the torque on again."""
+    answers = ctl.answers("stop", "reset", "arm", "park", "estop")
+    assert ctl.robot.told == ["estop", "stop"]
+    assert [a.code for verb in ("reset", "arm", "park") for a in answers[verb]] == ["overtaken"] * 3
+
+
+def test_what_comes_after_an_estop_is_carried_out(ctl):
+    answers = ctl.answers("estop", "reset", "arm")
+    assert ctl.robot.told == ["estop", "reset", "arm"]
+    assert all(isinstance(a, ev.Ack) for [a] in answers.values())
+
+
+def test_only_the_last_of_several_estops_can_be_undone(ctl):
+    answers = ctl.answers("estop", "reset", "estop", "arm")
+    assert sorted(ctl.robot.told) == ["arm", "estop", "estop"] and ctl.robot.told[-1] == "arm"
+    assert answers["reset"][0].code == "overtaken"
+
+
+def test_a_bad_frame_is_answered_in_its_turn(ctl):
+    answers = ctl.answers("stop", "dance", "status")
+    assert isinstance(answers["dance"][0], ev.ErrorEvent) and ctl.robot.told == ["stop", "status"]
+
+
+@pytest.mark.parametrize("somebody_asks", [True, False])
+def test_a_stop_waits_for_a_stalled_event_loop_only_while_nobody_asks(somebody_asks):
+    """Ten stops before an e-stop delayed it by half a second."""
+    looks, asked = [], []
+
+    def next_request(_wait_ms: int) -> int:
+        looks.append(len(asked))
+        return zmq.POLLIN if somebody_asks else 0
+
+    machine, halts, follower = StateMachine(), Halts(), SimpleNamespace(stopped=False)
+    machine.state = RobotState.MOVING
+    stalled = asyncio.new_event_loop()  # it runs nothing until the stop is answered
+    performer = SimpleNamespace(halts=halts, end_halted=lambda: asked.append("end what is played"))
+    front = SimpleNamespace(
+        machine=machine, performer=performer, follower=follower, loop=stalled,
+        link=SimpleNamespace(request=asked.append), drain_cmd=lambda: None,
+    )  # fmt: skip
+    with contextlib.closing(stalled):
+        assert FrontControls(front, next_request).stop(Stop()) == "moving"
+        assert asked == [BusRequest.STOP] and follower.stopped and halts.by == "stop"
+        while len(asked) < 2:
+            stalled.run_until_complete(asyncio.sleep(0))
+    assert looks and set(looks) == {1}, "the bus process is told first"
+    assert (len(looks) == 1) == somebody_asks

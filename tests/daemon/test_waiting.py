@@ -1,0 +1,85 @@
+"""Stops and commands that cross on their way: times are compared on one clock only, whoever sent them."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from daemon.clock import clock_id
+from daemon.ledger import Entry
+from daemon.requests import Say, Stop
+from daemon.waiting import CLOCKS_KEPT, SHADOW_S, Halts
+
+HERE, THERE, ELSEWHERE = "clock of this machine", "clock of another", "clock of a third"
+LONG_AGO_S = 10 * SHADOW_S
+
+
+def said(clock: str | None, t_mono: float | None) -> Entry:
+    return Entry("a", Say(text="wave", clock=clock, t_mono=t_mono), 0, [])
+
+
+def halted(clock: str | None, sent_s: float | None, *, ago_s: float = 0.0) -> Halts:
+    """Stopped by a request that was sent at `sent_s` of `clock` and came `ago_s` ago."""
+    halts = Halts(HERE)
+    halts.note("stop", Stop(clock=clock, t_mono=sent_s))
+    halts.at_s -= ago_s
+    return halts
+
+
+@pytest.mark.parametrize("ago_s", [0.0, LONG_AGO_S])
+def test_on_one_machine_the_clock_says_which_came_first(ago_s):
+    halts = halted(HERE, None, ago_s=ago_s)
+    before, after = said(HERE, halts.at_s - 1e-4), said(HERE, halts.at_s + 1e-6)
+    assert halts.overtook(before) and not halts.spares(before)
+    assert halts.spares(after) and not halts.overtook(after)
+    assert halts.overtook(said(HERE, halts.at_s - 3600))  # however long it was on its way
+
+
+@pytest.mark.parametrize("behind_s", [3.0, -3.0, 1e6], ids="{} s behind".format)
+def test_the_clock_of_another_machine_is_not_compared_with_ours(behind_s):
+    """A board and a PC started within seconds of each other: texts from the PC all ended `cancelled` for 3 s after a stop."""
+    for clock in (THERE, None):
+        long_after = said(clock, time.monotonic() - behind_s)
+        assert not halted(HERE, None, ago_s=LONG_AGO_S).overtook(long_after)
+        assert halted(HERE, None).overtook(long_after)  # just after: it was on its way
+        assert not halted(HERE, None).spares(long_after)
+
+
+def test_stops_and_texts_of_another_machine_are_ordered_by_its_own_clock():
+    """A text whose packets were lost comes long after the stop that was given after it: it must not be played."""
+    late, at_once = halted(THERE, 500.0, ago_s=LONG_AGO_S), halted(THERE, 500.0)
+    assert late.overtook(said(THERE, 499.0)) and not late.spares(said(THERE, 499.0))
+    assert at_once.spares(said(THERE, 500.1)) and not at_once.overtook(said(THERE, 500.1))
+    assert at_once.overtook(said(ELSEWHERE, 500.1)) and not at_once.spares(said(ELSEWHERE, 500.1))
+
+
+def test_a_later_stop_from_elsewhere_counts_for_all():
+    halts = halted(THERE, 500.0)
+    halts.note("stop", Stop(clock=HERE, t_mono=time.monotonic()))
+    assert halts.overtook(said(THERE, 499.0))
+    assert halts.overtook(said(THERE, 500.1)) and not halts.spares(
+        said(THERE, 500.1)
+    )  # within the shadow of the second
+    halts.at_s -= LONG_AGO_S
+    assert not halts.overtook(said(THERE, 500.1))
+
+
+def test_a_time_that_is_still_to_come_proves_nothing():
+    halts = halted(HERE, None)
+    assert halts.overtook(said(HERE, time.monotonic() + 3600)) and not halts.spares(said(HERE, time.monotonic() + 3600))
+
+
+def test_without_a_stop_nothing_is_overtaken():
+    assert not any(Halts(HERE).overtook(said(c, t)) for c in (HERE, THERE, None) for t in (None, -1e9, 0.0, 1e9))
+
+
+def test_clocks_that_are_remembered_are_bounded():
+    halts = Halts(HERE)
+    for i in range(10 * CLOCKS_KEPT):
+        halts.note("stop", Stop(clock=f"c{i}", t_mono=1.0))
+    assert len(halts._sent_s) == CLOCKS_KEPT and halts.spares(said(f"c{10 * CLOCKS_KEPT - 1}", 2.0))
+
+
+def test_a_clock_has_one_name_for_all_processes_of_a_start():
+    assert clock_id() == clock_id() and len(clock_id()) == 16
