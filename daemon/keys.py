@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 import os
 import re
+import struct
 import threading
 from dataclasses import dataclass
 from pathlib import Path
@@ -155,10 +156,15 @@ def checked_key(text: str) -> bytes:
         ConfigError: it is none.
     """
     key = text.strip()
+    allowed = f"allowed: {KEY_LENGTH} of Z85, as `mmmd keys list` prints them"
     if len(key) != KEY_LENGTH or not key.isascii():
-        raise ConfigError(
-            f"key of {len(key)} characters; allowed: {KEY_LENGTH} of Z85, as `mmmd keys list` prints them"
-        )
+        raise ConfigError(f"key of {len(key)} characters; {allowed}")
+    try:
+        zmq.utils.z85.decode(key)
+    except KeyError as error:
+        raise ConfigError(f"key with {chr(error.args[0])!r}; {allowed}") from None
+    except struct.error:  # five characters stand for four bytes, some for more than these hold
+        raise ConfigError(f"key that stands for no 32 bytes; {allowed}") from None
     return key.encode()
 
 
@@ -184,7 +190,8 @@ class Doorkeeper:
 
     A key that is not allowed is answered with status 300, upon which the connection is closed without a word: the
     stranger cannot tell it from a daemon that is not there. The folder is read for each question, so that a key
-    can be allowed or removed while the daemon runs.
+    can be allowed or removed while the daemon runs. ZeroMQ asks when a connection begins and never again: one that
+    stands when its key is removed goes on until either side ends.
     """
 
     def __init__(self, context: zmq.Context[Any], keys: KeyFolder) -> None:
@@ -205,19 +212,35 @@ class Doorkeeper:
 
     def _run(self) -> None:
         while not self._stopping.is_set():
-            if self._socket.poll(_POLL_MS):
-                self._socket.send_multipart(self._answer(self._socket.recv_multipart()))
+            try:
+                if self._socket.poll(_POLL_MS):
+                    self._socket.send_multipart(self._reply(self._socket.recv_multipart()))
+            except zmq.ZMQError as error:
+                log.error("the doorkeeper's socket: %s", error)
+                self._stopping.wait(_POLL_MS / 1e3)
+
+    def _reply(self, question: list[bytes]) -> list[bytes]:
+        """The answer; no, where none can be found: without this thread nobody at all would be let in."""
+        try:
+            return self._answer(question)
+        except Exception:
+            log.exception("a client was not let in")
+            return _refusal(question)
 
     def _answer(self, question: list[bytes]) -> list[bytes]:
         if len(question) != 7:  # version, sequence, domain, address, identity, mechanism, credentials
-            return [b"1.0", question[1] if len(question) > 1 else b"", b"300", b"", b"", b""]
+            return _refusal(question)
         version, sequence, _, _, _, mechanism, credentials = question
         name = next((n for n, key in self._names().items() if key == credentials), None)
         if version == b"1.0" and mechanism == b"CURVE" and name is not None:
             return [b"1.0", sequence, b"200", b"OK", name.encode(), b""]
         self.refused += 1
         log.warning("a client without an allowed key was not let in")
-        return [b"1.0", sequence, b"300", b"", b"", b""]
+        return _refusal(question)
 
     def _names(self) -> dict[str, bytes]:
         return {name: zmq.utils.z85.decode(key) for name, key in self._keys.allowed().items()}
+
+
+def _refusal(question: list[bytes]) -> list[bytes]:
+    return [b"1.0", question[1] if len(question) > 1 else b"", b"300", b"", b"", b""]

@@ -19,6 +19,9 @@ def keys(
 ) -> int:
     """Make a key, allow a client's, trust a daemon's or a generator's, list all.
 
+    To forbid a client again, remove DIR/allowed/NAME.pub: it cannot connect any more. A connection that stands goes on until the
+    client or the daemon ends.
+
     Example, on the robot: mmmd keys new && mmmd run --keys ~/.config/mmmd/keys --cmd tcp://0.0.0.0:5871 ...
 
     Example, on the robot, with what `mmmd keys new` printed on the laptop: mmmd keys allow laptop PUBLIC

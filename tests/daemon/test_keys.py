@@ -9,12 +9,15 @@ import time
 
 import pytest
 import zmq
+import zmq.utils.z85
+from hypothesis import given
+from hypothesis import strategies as st
 
 from daemon.client import Client, NoAnswerError
 from daemon.config import Endpoints
 from daemon.demo import free_endpoints
 from daemon.errors import ConfigError
-from daemon.keys import KeyFolder, checked_key
+from daemon.keys import ZAP, Doorkeeper, KeyFolder, checked_key
 from daemon.rates import BURST, RATE_HZ, Rates
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 
@@ -41,7 +44,10 @@ def test_a_key_is_made_once_and_is_ones_own(tmp_path):
         folder.own()
 
 
-@pytest.mark.parametrize("text", ["", "short", "x" * 41, "ü" * 40])
+NO_KEYS = {"a quote": '"' * 40, "a comma": "a" * 39 + ",", "a backslash": "\\" * 40, "too large a number": "#" * 40}
+
+
+@pytest.mark.parametrize("text", ["", "short", "x" * 41, "ü" * 40, *NO_KEYS.values()])
 def test_what_is_no_key_is_named(tmp_path, text):
     with pytest.raises(ConfigError, match="Z85"):
         checked_key(text)
@@ -66,8 +72,19 @@ def test_damaged_keys_are_named_and_left_out(tmp_path):
     with pytest.raises(ConfigError, match="no key pair"):
         folder.own()
     folder.allow("good", zmq.curve_keypair()[0].decode())
-    (tmp_path / "allowed" / "bad.pub").write_text("short")
+    for name, text in {"short": "short", **NO_KEYS}.items():
+        (tmp_path / "allowed" / f"{name}.pub").write_text(text)
     assert list(folder.allowed()) == ["good"]
+
+
+@given(st.text(st.characters(codec="ascii"), min_size=40, max_size=40))
+def test_every_key_that_is_taken_can_be_decoded(text):
+    """Text that was taken for a key ended the doorkeeper, and with it every new connection."""
+    try:
+        key = checked_key(text)
+    except ConfigError:
+        return
+    assert zmq.utils.z85.encode(zmq.utils.z85.decode(key)) == key
 
 
 def test_addresses_that_others_can_reach_need_keys(tmp_path):
@@ -156,6 +173,39 @@ def test_a_key_can_be_allowed_and_taken_back_while_it_runs(secured, tmp_path):
     (robot.path / "allowed" / "guest.pub").unlink()
     with Client(ends, timeout_s=0.5) as client, pytest.raises(NoAnswerError):
         client.status()
+
+
+def test_a_folder_that_cannot_be_read_keeps_clients_out_and_the_door_goes_on(tmp_path):
+    class Damaged(KeyFolder):
+        broken = True
+
+        def allowed(self):
+            if self.broken:
+                raise RuntimeError("whatever may go wrong")
+            return super().allowed()
+
+    context = zmq.Context()
+    folder = Damaged(tmp_path)
+    client = folder.new().public
+    folder.allow("client", client.decode())
+    doorkeeper = Doorkeeper(context, folder)
+    asker = context.socket(zmq.REQ)
+    asker.setsockopt(zmq.RCVTIMEO, 10_000)
+    asker.connect(ZAP)
+
+    def status(*question: bytes) -> bytes:
+        asker.send_multipart(question)
+        return asker.recv_multipart()[2]
+
+    asked = (b"1.0", b"1", b"mmmd", b"127.0.0.1", b"", b"CURVE", zmq.utils.z85.decode(client))
+    try:
+        assert status(*asked) == b"300"
+        assert status(b"nonsense") == b"300"
+        folder.broken = False
+        assert status(*asked) == b"200"
+    finally:
+        doorkeeper.close()
+        context.destroy(linger=0)
 
 
 def test_keys_by_command(tmp_path):
