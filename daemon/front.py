@@ -29,7 +29,7 @@ from daemon.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
 from daemon.keys import Doorkeeper, KeyFolder
 from daemon.ledger import Ledger, Route, split_route
-from daemon.performer import TICK_S, Performer
+from daemon.performer import Performer
 from daemon.planner import Planner
 from daemon.rates import RATE_HZ, Rates
 from daemon.realtime import CONTROL_PRIORITY, may_fifo
@@ -38,6 +38,7 @@ from daemon.sockets import bind, send_now
 from daemon.sources import Sources
 from daemon.state import RobotState, StateMachine
 from daemon.stream_desk import TargetDesk
+from daemon.until_armed import TICK_S
 from daemon.wire import WireError, decode_cmd, encode, error_event
 from retarget.robot import RobotModel
 

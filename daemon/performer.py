@@ -1,6 +1,7 @@
 """Carries commands out: make the motion, wait for its turn, arm where allowed, take over, watch it to its end.
 
-At most one motion is played; the newest `now` wins. Runs in the front's event loop.
+At most one motion is played; the newest `now` that is accepted wins (`daemon.waiting` has the rule). Runs in the front's
+event loop.
 """
 
 from __future__ import annotations
@@ -36,15 +37,14 @@ from daemon.shared import BusLink, BusRequest
 from daemon.sources import Prepared, Sources
 from daemon.state import CommandRefusedError, RobotState, StateMachine, Trigger
 from daemon.stream_score import StreamScore
+from daemon.until_armed import TICK_S, until_armed
 from daemon.waiting import MOST_WAITING, Halts, Pending, WaitingRoom
 from retarget.errors import RetargetError
 
 log = logging.getLogger(__name__)
 
-TICK_S = 0.005
-ARM_TIMEOUT_S = 30.0
-ARM_ANSWER_S = 2.0
-"""How long the bus process may take to begin arming."""
+YIELD_S = 0.25
+"""A motion that is ready waits so long at most for a newer one that is being made: most are made in a tenth of that."""
 ARMING_S = 1.5
 """A limp robot cannot begin a motion sooner: what has a shorter deadline is rejected at once."""
 
@@ -80,7 +80,7 @@ class Performer:
         return self.follower.machine
 
     def play(self, entry: Entry) -> None:
-        """Begin a command; those that it overtakes end in `cancelled`."""
+        """Begin a command; those that it overtakes end in `cancelled` once it is accepted."""
         try:
             self.machine.check(Trigger.SAY)
         except CommandRefusedError as error:
@@ -93,8 +93,9 @@ class Performer:
             self._ledger.emit(entry, lease_held(lease))
             return
         pending = Pending(entry, self.planner.epoch)
-        if entry.request.when == "now":
-            self._overtake(pending)
+        if self._waiting.full and entry.request.when == "now":  # which is let in always: one still being made gives way
+            if (oldest := self._waiting.oldest_undecided) is not None:
+                self._drop(oldest, _named(entry))
         elif self._waiting.full:
             asked, allowed = f"{tag_of(entry.request)} {entry.request.when}", f"at most {MOST_WAITING} commands waiting"
             do = "wait until some have been played, or cancel some"
@@ -203,7 +204,7 @@ class Performer:
 
     def _overtake(self, newest: Pending) -> None:
         for pending in self._waiting.overtaken_by(newest):
-            self._drop(pending, f"{tag_of(newest.entry.request)} {newest.entry.id}")
+            self._drop(pending, _named(newest.entry))
 
     def _drop(self, pending: Pending, by: str, failure: Failed | None = None) -> None:
         pending.cancelled_by = by
@@ -216,14 +217,18 @@ class Performer:
         entry = pending.entry
         try:
             prepared = await self._sources.prepare(entry, lambda: self.planner.raw_now)
+            if pending.cancelled_by:  # Python 3.11's `wait_for` may swallow the cancellation
+                return
             self._check_deadline(entry)
             plan_id = self.planner.new_plan_id()
             self._sources.kept.number(entry.id, plan_id)
             self._ledger.emit(entry, prepared.accepted(entry, plan_id))
             await self._turn(pending)
-            await self._until_armed(entry, plan_id)
+            arming = Progress(plan_id=plan_id, stage="arming")
+            await until_armed(self.follower, self._link, lambda: self._ledger.emit(entry, arming))
             if time.monotonic() > entry.deadline_s:
                 raise too_late(entry, "its turn came too late")
+            await self._yield(pending)
             await self._take_over(pending, prepared, plan_id)
         except NotPlayableError as error:
             self._ledger.emit(entry, error.event)
@@ -264,10 +269,12 @@ class Performer:
     async def _turn(self, pending: Pending) -> None:
         """Wait for the command's turn or time; it has the right to take over afterwards."""
         request = pending.entry.request
-        if request.when == "at" and request.at_s is not None:
+        if request.when == "now":
+            self._overtake(pending)
+        elif request.when == "at" and request.at_s is not None:
             while (left_s := request.at_s - time.monotonic()) > 0:
                 await asyncio.sleep(min(left_s, 1.0))
-            pending.turn = True
+            self._waiting.renew(pending)
             self._overtake(pending)
         elif request.when == "after":
             while self._player.entry is not None or not self._waiting.is_next(pending):
@@ -276,27 +283,11 @@ class Performer:
                     raise too_late(pending.entry, "its turn did not come in time")
         pending.turn = True
 
-    async def _until_armed(self, entry: Entry, plan_id: int) -> None:
-        """Arm where a command may do so, and wait until the robot can move.
-
-        Raises:
-            CommandRefusedError: the robot went into a state in which it takes no command, or did not get ready.
-        """
-        self.machine.check(Trigger.SAY)
-        if self.follower.can_take_over:
-            return
-        if self.machine.state is RobotState.LIMP:
-            self._link.request(BusRequest.ARM)
-        if self.machine.state in (RobotState.LIMP, RobotState.ARMING):
-            self._ledger.emit(entry, Progress(plan_id=plan_id, stage="arming"))
-        asked_s = time.monotonic()
-        while not self.follower.can_take_over:
-            waited_s = time.monotonic() - asked_s
-            if waited_s > (ARM_ANSWER_S if self.machine.state is RobotState.LIMP else ARM_TIMEOUT_S):
-                do = f"the robot was not ready after {waited_s:.0f} s; see the log and `mmmd status`"
-                raise CommandRefusedError(self.machine.state, Trigger.SAY, ("arm",), do)
+    async def _yield(self, pending: Pending) -> None:
+        """Wait a moment where a newer command may be about to take over: the robot does not set out twice."""
+        end_s = min(time.monotonic() + YIELD_S, pending.entry.deadline_s)
+        while self._waiting.may_be_overtaken(pending) and time.monotonic() < end_s:
             await asyncio.sleep(TICK_S)
-            self.machine.check(Trigger.SAY)
 
     async def _take_over(self, pending: Pending, prepared: Prepared, plan_id: int) -> None:
         """Make it what is played; what was played ends in `cancelled`."""
@@ -305,3 +296,8 @@ class Performer:
         alive: Callable[[], bool] = lambda: not pending.cancelled_by and pending.epoch == self.planner.epoch  # noqa: E731
         if not await self._player.take_over(entry, prepared.score, plan_id, pending.epoch, alive):
             self._ledger.emit(entry, Cancelled(plan_id=plan_id, by=pending.cancelled_by or self.halts.by or "stop"))
+
+
+def _named(entry: Entry) -> str:
+    """As those are told that end because of it."""
+    return f"{tag_of(entry.request)} {entry.id}"

@@ -1,4 +1,10 @@
-"""Commands on their way: being made, waiting for their turn or their time. The newest `now` wins over older ones."""
+"""Commands on their way: being made, waiting for their turn or their time. The newest `now` wins over older ones.
+
+The order of commands is that in which they are to take effect: a `now` and an `after` from when they came, an `at` from
+when its time has come. A command ends those before it in that moment in which it is accepted (an `at`: in which its time
+has come), never by being asked alone: one that is refused ends nothing but itself. As long as a `now` is being made that
+may be about to win, an older one does not begin to move (`Performer`), but only so long as that usually takes.
+"""
 
 from __future__ import annotations
 
@@ -42,6 +48,11 @@ class Pending:
     def when(self) -> str:
         """now, after or at."""
         return self.entry.request.when
+
+    @property
+    def undecided(self) -> bool:
+        """Whether it is a `now` that is neither accepted nor refused yet."""
+        return self.when == "now" and not self.entry.accepted
 
 
 class Halts:
@@ -119,12 +130,25 @@ class WaitingRoom:
         if pending in self._all:
             self._all.remove(pending)
 
+    def renew(self, pending: Pending) -> None:
+        """Its time has come: it is the newest of all."""
+        self._all.remove(pending)
+        self._all.append(pending)
+
     def overtaken_by(self, newest: Pending) -> list[Pending]:
-        """Those that end because `newest` takes over: all but later ones, and those whose time has not come."""
-        return [
-            p for p in self._all
-            if p is not newest and not p.committing and not (p.when == "at" and not p.turn)
-        ]  # fmt: skip
+        """Those that end because `newest` takes over: all before it but those whose time has not come."""
+        before = self._all[: self._all.index(newest)]
+        return [p for p in before if not p.committing and not (p.when == "at" and not p.turn)]
+
+    def may_be_overtaken(self, pending: Pending) -> bool:
+        """Whether a newer `now` is being made of which is not known yet whether it is accepted."""
+        newer = self._all[self._all.index(pending) + 1 :]
+        return any(p.undecided for p in newer)
+
+    @property
+    def oldest_undecided(self) -> Pending | None:
+        """The first `now` that is still being made."""
+        return next((p for p in self._all if p.undecided), None)
 
     def is_next(self, pending: Pending) -> bool:
         """Whether no command stands before this one that waits for its turn."""
