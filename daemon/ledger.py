@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import time
 import uuid
-from collections import Counter, OrderedDict
+from collections import Counter, deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -16,7 +16,7 @@ from daemon.requests import Command, tag_of
 from daemon.wire import WireError
 
 KEPT = 1024
-"""Commands that are remembered, so that the same id is the same command."""
+"""Commands that are remembered, so that the same id is the same command; beyond them those that ended first are forgotten."""
 KEPT_SCENES = 8
 """Newest scenes of a story, or newest news of a lease, that a later asker hears of."""
 LEASE_NEWS = ("held", "silent", "streaming", "bad_target")
@@ -96,7 +96,8 @@ class Ledger:
 
     def __init__(self, send: Callable[[Route, Event], None], publish: Callable[[Event], None]) -> None:
         self._send, self._publish = send, publish
-        self._entries: OrderedDict[str, Entry] = OrderedDict()
+        self._entries: dict[str, Entry] = {}
+        self._ended: deque[str] = deque()
         self._seq = itertools.count(1)
         self.counts: Counter[str] = Counter()
 
@@ -122,8 +123,8 @@ class Ledger:
             return None
         entry = Entry(request.id or uuid.uuid4().hex, request, t_received_ns, [route])
         self._entries[entry.id] = entry
-        while len(self._entries) > KEPT and next(iter(self._entries.values())).ended:
-            self._entries.popitem(last=False)
+        while len(self._entries) > KEPT and self._ended:
+            del self._entries[self._ended.popleft()]
         return entry
 
     def emit(self, entry: Entry, event: Event) -> None:
@@ -134,6 +135,8 @@ class Ledger:
         self.stamp(event)
         entry.keep(event)
         entry.ended = event.terminal
+        if entry.ended:
+            self._ended.append(entry.id)
         for route in list(entry.routes):
             self._send(route, event)
             if route.once:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from daemon.events import Accepted, Cancelled, Done, Progress
-from daemon.ledger import KEPT_SCENES, Ledger, Route, split_route
+from daemon.ledger import KEPT, KEPT_SCENES, Ledger, Route, split_route
 from daemon.requests import Say, SceneOf, Story
 from daemon.wire import WireError
 
@@ -78,6 +78,17 @@ def test_the_same_id_for_another_text_is_an_error(ledger):
     ledger.open(Say(id="a", text="wave"), DEALER, 0)
     with pytest.raises(WireError, match="new id"):
         ledger.open(Say(id="a", text="bow"), DEALER, 0)
+
+
+def test_one_that_does_not_end_keeps_no_others(ledger):
+    """A lease for days, or a command with a time far away: everything that came after it was remembered."""
+    lasting = ledger.open(Say(id="lasting", text="wave", when="at", at_s=1e9), DEALER, 0)
+    for i in range(3000):
+        ledger.emit(ledger.open(Say(id=str(i), text="wave"), DEALER, 0), done())
+    assert len(ledger._entries) <= KEPT + 1 and len(ledger._ended) <= KEPT + 1
+    assert ledger.open(lasting.request, DEALER, 0) is None  # still the same command
+    assert ledger.open(Say(id="2999", text="wave"), DEALER, 0) is None
+    assert ledger.open(Say(id="0", text="wave"), DEALER, 0) is not None  # forgotten
 
 
 def test_memory_is_bounded(ledger):
