@@ -42,6 +42,24 @@ def check_endpoint(key: str, endpoint: str, *, keys: bool = False) -> None:
         raise config_error(key, f"{endpoint!r}, which other machines can reach without a key", allowed, do)
 
 
+def metrics_address(address: str) -> tuple[str, int]:
+    """Host and port of the metrics, which anybody who reaches them may read: they are plain HTTP, without a key.
+
+    Raises:
+        ConfigError: it is no HOST:PORT, or other machines could reach it.
+    """
+    allowed = "HOST:PORT on a loopback address, for example 127.0.0.1:9109"
+    host, _, port = address.rpartition(":")
+    host = host.strip("[]")
+    if not host or not port.isascii() or not port.isdigit() or int(port) > 65535:
+        raise config_error("metrics", repr(address), allowed, "name a free port")
+    if host != "localhost" and not _is_loopback(host):
+        found = f"{address!r}, which other machines can reach without a key"
+        do = "scrape them by way of an ssh tunnel, or of a proxy on this machine that asks who is there"
+        raise config_error("metrics", found, allowed, do)
+    return host, int(port)
+
+
 def stream_beside(cmd: str, taken: Set[str] = frozenset()) -> str:
     """Where `stream` is when nobody says: four ports after `cmd` (5875), or the first free of `taken` after that.
 
@@ -116,7 +134,7 @@ class DaemonConfig:
         gestures: folder of the user's own gestures; None takes the user's data folder.
         motions: folder in which `edit` looks for files; None takes the folder the daemon was started in.
         model_hash: beginning of the checkpoint's hash that the generator must have; empty takes any.
-        metrics: HOST:PORT of Prometheus metrics, empty for none.
+        metrics: HOST:PORT of Prometheus metrics, on a loopback address; empty for none.
         queue_s: setpoints kept ready in the bus process.
         state_rate_hz: how often `v1/state` is published.
         generate_timeout_s: longest wait for the generator.
@@ -151,7 +169,7 @@ class DaemonConfig:
     stream_queue_s: float = 0.03
 
     def __post_init__(self) -> None:
-        """Check ranges and the generator's endpoint.
+        """Check ranges, the generator's endpoint and that of the metrics.
 
         Raises:
             ConfigError: a value is outside its range.
@@ -170,5 +188,7 @@ class DaemonConfig:
             raise config_error("lease_park_s", f"{self.lease_park_s:g}", allowed, "holding comes before parking")
         if self.idle not in ("off", *IDLE_STYLES):
             raise config_error("idle", repr(self.idle), ", ".join(("off", *IDLE_STYLES)), "choose one of these")
+        if self.metrics:
+            metrics_address(self.metrics)
         if self.generator is not None:
             check_endpoint("generator", self.generator, keys=self.endpoints.keys is not None)

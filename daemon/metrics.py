@@ -8,7 +8,7 @@ import logging
 from collections.abc import Callable, Mapping, Sequence
 
 from daemon.bus.health import Health
-from daemon.config import config_error
+from daemon.config import config_error, metrics_address
 from daemon.events import ServoHealth, StateEvent
 from daemon.state import RobotState
 
@@ -23,7 +23,7 @@ _SERVO_COUNTERS = {
     "retries": "questions that were asked again",
     "alerts": "hardware alerts that began",
 }
-_COUNTERS = ("cycles", "cycles_lost", "underruns", "requests_dropped")
+_COUNTERS = ("cycles", "cycles_lost", "underruns", "requests_dropped", "events_dropped", "subscribers_overrun")
 
 
 def exposition(state: StateEvent, events: Mapping[str, int], servos: Sequence[ServoHealth] = ()) -> str:
@@ -71,13 +71,14 @@ def _escaped(text: str) -> str:
 
 
 class MetricsServer:
-    """Answers GET /metrics; anything else is 404. One answer a connection."""
+    """Answers GET /metrics; anything else is 404. One answer a connection, to this machine only.
+
+    Raises:
+        ConfigError: of `metrics_address`.
+    """
 
     def __init__(self, address: str, text: Callable[[], str]) -> None:
-        host, _, port = address.rpartition(":")
-        if not host or not port.isdigit():
-            raise config_error("metrics", repr(address), "HOST:PORT, for example 127.0.0.1:9109", "name a free port")
-        self._host, self._port, self._text = host.strip("[]"), int(port), text
+        (self._host, self._port), self._text = metrics_address(address), text
         self._server: asyncio.Server | None = None
 
     async def start(self) -> None:

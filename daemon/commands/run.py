@@ -67,7 +67,7 @@ def run(
         lease_s: a streaming program silent for so long: the robot brakes and holds (0.2 when it is not given).
         lease_park_s: silent for so long: its lease ends and the robot parks (5).
         lease_limp_s: so long in the park pose after that, then limp (2).
-        metrics: HOST:PORT of Prometheus metrics; none when it is not given.
+        metrics: HOST:PORT of Prometheus metrics, for this machine only (127.0.0.1:9109); none when it is not given.
         log_json: one JSON object a line instead of text.
         quiet: log only warnings.
     """

@@ -116,6 +116,20 @@ def test_local_endpoints(cmd):
     assert Endpoints(cmd=cmd).cmd == cmd
 
 
+@pytest.mark.parametrize(
+    "address",
+    ["0.0.0.0:9109", "10.1.1.1:9109", "robot:9109", "[::]:9109", ":9109", "9109", "127.0.0.1:x", "[::1]:70000"],
+)
+def test_metrics_that_others_could_read_or_that_are_no_address(address):
+    with pytest.raises(ConfigError, match="loopback"):
+        config_of(resolve({"metrics": address}, environment={}))
+
+
+@pytest.mark.parametrize("address", ["127.0.0.1:9109", "localhost:9109", "[::1]:9109", ""])
+def test_local_metrics(address):
+    assert config_of(resolve({"metrics": address}, environment={})).metrics == address
+
+
 def test_two_sockets_at_one_place():
     with pytest.raises(ConfigError, match="different"):
         Endpoints(cmd="tcp://127.0.0.1:5872")
