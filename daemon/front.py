@@ -34,7 +34,7 @@ from daemon.planner import Planner
 from daemon.rates import RATE_HZ, Rates
 from daemon.realtime import CONTROL_PRIORITY, may_fifo
 from daemon.shared import BusLink, BusRequest
-from daemon.sockets import bind, send_now
+from daemon.sockets import bind, publish_now, send_now
 from daemon.sources import Sources
 from daemon.state import RobotState, StateMachine
 from daemon.stream_desk import TargetDesk
@@ -96,9 +96,12 @@ class Front:
         self._last_values: dict[bytes, bytes] = {}
         self._tasks: list[asyncio.Task[None]] = []
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._events_dropped = self._overruns = 0
         self._cmd = context.socket(zmq.ROUTER)
+        self._cmd.setsockopt(zmq.ROUTER_MANDATORY, 1)  # a peer that does not read is noticed
         self._pub = context.socket(zmq.XPUB)
         self._pub.setsockopt(zmq.XPUB_VERBOSE, 1)
+        self._pub.setsockopt(zmq.XPUB_NODROP, 1)
         self._stream = context.socket(zmq.SUB)
         self._stream.setsockopt(zmq.CONFLATE, 1)  # only the newest target is of use
         self._stream.subscribe(b"")
@@ -263,10 +266,10 @@ class Front:
             if frames and frames[0][:1] == b"\x01":
                 for topic, payload in list(self._last_values.items()):
                     if topic.startswith(frames[0][1:]):
-                        send_now(self._pub, [topic, payload])
+                        self._overruns += not publish_now(self._pub, [topic, payload])
 
     def _send(self, route: Route, event: Event) -> None:
-        send_now(self._cmd, [*route.frames, encode(event)])
+        self._events_dropped += not send_now(self._cmd, [*route.frames, encode(event)])
 
     def publish_from_thread(self, event: Event) -> None:
         """Publish an event from another thread; dropped once the loop has ended."""
@@ -281,7 +284,7 @@ class Front:
         self._last_values[topic.encode()] = payload
         if self._record is not None:
             self._record(topic, payload)
-        send_now(self._pub, [topic.encode(), payload])
+        self._overruns += not publish_now(self._pub, [topic.encode(), payload])
 
     def state_event(self) -> StateEvent:
         """The robot and the daemon now; may be called from any thread."""
@@ -297,7 +300,12 @@ class Front:
             goal_rad=[round(float(q), 5) for q in self.view.goal_rad],
             present_rad=[round(float(q), 5) for q in self.view.present_rad],
             queued_ms=round(1e3 * self.link.queued_frames / self._robot.bus.rate_hz, 1),
-            bus_info=self.view.counters() | {"requests_dropped": self._rates.refused},
+            bus_info=self.view.counters()
+            | {
+                "requests_dropped": self._rates.refused,
+                "events_dropped": self._events_dropped,
+                "subscribers_overrun": self._overruns,
+            },
             recording=self.recording,
             uptime_s=round(time.monotonic() - self._started_s, 2),
             waiting=self.performer.waiting_ids(),

@@ -34,10 +34,31 @@ def bind(socket: zmq.Socket[Any], key: str, endpoint: str, keys: KeyFolder | Non
         raise config_error(key, f"{endpoint}: {error}", "a free endpoint", do) from error
 
 
-def send_now(socket: zmq.asyncio.Socket, frames: list[bytes]) -> None:
+def send_now(socket: zmq.asyncio.Socket, frames: list[bytes]) -> bool:
     """Send without waiting; a peer that never reads loses its own messages and slows nobody.
 
     Through the asyncio socket: a send past it would swallow the edge that tells of received frames.
+
+    Returns:
+        False when the queue of who should have it is full, of a ROUTER only if it is `ROUTER_MANDATORY`.
     """
     sent = cast("Any", socket.send_multipart(frames, zmq.DONTWAIT))  # pyright: ignore[reportUnknownMemberType]
-    sent.add_done_callback(lambda done: done.cancelled() or done.exception())  # pyright: ignore
+    assert sent.done(), "with DONTWAIT it is known at once"
+    return not isinstance(sent.exception(), zmq.Again)
+
+
+def publish_now(socket: zmq.asyncio.Socket, frames: list[bytes]) -> bool:
+    """Send to all subscribers of an XPUB that is `XPUB_NODROP`, without waiting; one whose queue is full does without.
+
+    With that option a send fails as a whole when one queue is full, which is how a loss is noticed; without it all but
+    the full ones get the message. ZeroMQ then passes over a subscriber whose queue was full until it reads again.
+
+    Returns:
+        False when a queue has become full: from this message on one subscriber or more loses messages.
+    """
+    if send_now(socket, frames):
+        return True
+    socket.setsockopt(zmq.XPUB_NODROP, 0)
+    send_now(socket, frames)
+    socket.setsockopt(zmq.XPUB_NODROP, 1)
+    return False

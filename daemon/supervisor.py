@@ -45,6 +45,7 @@ GOOD_LIFE_S = 2.0
 """A process that lived so long did not fail to start: the wait before its next start is short again."""
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
 RECORDER_QUEUE = 2000
+RECORDER_LINGER_MS = 500
 GOOD, ROBOT_FAULT = 0, 3
 
 
@@ -67,11 +68,12 @@ class RecorderFeed:
         except zmq.Again:
             self.dropped += 1
 
-    def close(self) -> None:
-        """Hand over no more."""
+    async def close(self) -> None:
+        """Hand over no more; what was not sent yet has half a second, for which the event loop is not held up."""
         if self._open:
             self._open = False
-            self._context.destroy(linger=500)
+            self._socket.close(RECORDER_LINGER_MS)
+            await asyncio.to_thread(self._context.term)
 
 
 class BusStartError(DaemonError):
@@ -319,7 +321,7 @@ class Supervisor:
             front.recording = f"stopped (status {status}): {self._config.log}"
             log.error("recording ended with status %d; the robot goes on without a log", status)
         finally:
-            feed.close()
+            await feed.close()
 
 
 def run(config: DaemonConfig) -> int:
