@@ -1,7 +1,7 @@
 """The client for asyncio: `async with AsyncClient() as robot: await robot.say("wave with your right hand")`.
 
 The same requests, events and errors as `daemon.client`; every call has a time-out, and several may be under way at once.
-ZeroMQ connects again by itself when the daemon comes back.
+ZeroMQ connects again by itself when the daemon comes back; what could not be sent meanwhile is not sent then.
 """
 
 from __future__ import annotations
@@ -20,11 +20,13 @@ import zmq.asyncio
 from daemon.client_compositions import (
     FIRST_REPLY_TIMEOUT_S,
     MOTION_TIMEOUT_S,
+    NOT_MOVING,
     REPLY_TIMEOUT_S,
     CompositionCalls,
     patience_s,
 )
-from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, stamp, unexpected
+from daemon.client_errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
+from daemon.client_lines import Line, within
 from daemon.client_streams import AsyncStream, LeaseNews, begun
 from daemon.config import Endpoints
 from daemon.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
@@ -41,6 +43,7 @@ from daemon.requests import (
     Park,
     Play,
     PlayOptions,
+    Record,
     Release,
     Request,
     Reset,
@@ -49,49 +52,7 @@ from daemon.requests import (
     Stop,
     tag_of,
 )
-from daemon.wire import decode_event, encode
-
-LONGEST_WAIT_S = 1e9
-
-
-class _Line:
-    """One DEALER socket whose events are handed to whoever waits for their id."""
-
-    def __init__(self, socket: zmq.asyncio.Socket, endpoint: str) -> None:
-        self._socket, self.endpoint = socket, endpoint
-        self._waiting: dict[str, asyncio.Queue[AnyEvent]] = {}
-        self._reader: asyncio.Task[None] | None = None
-
-    @contextlib.asynccontextmanager
-    async def asked(self, request: Request) -> AsyncGenerator[asyncio.Queue[AnyEvent]]:
-        """Send a request; its events come through the queue."""
-        if self._reader is None:
-            self._reader = asyncio.create_task(self._read())
-        heard: asyncio.Queue[AnyEvent] = asyncio.Queue()
-        self._waiting[request.id] = heard
-        stamp(request)
-        try:
-            await self._socket.send(encode(request))
-            yield heard
-        finally:
-            self._waiting.pop(request.id, None)
-
-    async def close(self) -> None:
-        """Hear nothing more."""
-        if self._reader is not None:
-            self._reader.cancel()
-            with contextlib.suppress(asyncio.CancelledError):
-                await self._reader
-        self._socket.close(200)
-
-    async def _read(self) -> None:
-        while True:
-            event = decode_event(await self._socket.recv())
-            if event.id in self._waiting:
-                self._waiting[event.id].put_nowait(event)
-            elif isinstance(event, Refusal) and not event.id:  # a frame that had no id to be named by
-                for heard in self._waiting.values():
-                    heard.put_nowait(event)
+from daemon.wire import decode_event
 
 
 class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
@@ -106,7 +67,7 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         self.endpoints = endpoints or Endpoints()
         self._timeout_s = timeout_s
         self._context = zmq.asyncio.Context()
-        self._lines: dict[str, _Line] = {}
+        self._lines: dict[str, Line] = {}
 
     async def __aenter__(self) -> Self:
         return self
@@ -130,17 +91,25 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         seconds: float | None = None,
         wait: bool = True,
         timeout_s: float | None = None,
+        command_id: str = "",
         **options: Unpack[PlayOptions],
     ) -> Said:
         """Move as the text says; arguments and errors as for `daemon.client.Client.say`."""
-        request = Say(id=uuid.uuid4().hex, text=text, seed=seed, seconds=seconds, **options)
+        request = Say(id=command_id or uuid.uuid4().hex, text=text, seed=seed, seconds=seconds, **options)
         return await self.play(request, wait=wait, timeout_s=timeout_s)
 
     async def gesture(
-        self, name: str, *, wait: bool = True, timeout_s: float | None = None, **options: Unpack[PlayOptions]
+        self,
+        name: str,
+        *,
+        wait: bool = True,
+        timeout_s: float | None = None,
+        command_id: str = "",
+        **options: Unpack[PlayOptions],
     ) -> Said:
         """Play a clip of the library."""
-        return await self.play(Gesture(id=uuid.uuid4().hex, name=name, **options), wait=wait, timeout_s=timeout_s)
+        request = Gesture(id=command_id or uuid.uuid4().hex, name=name, **options)
+        return await self.play(request, wait=wait, timeout_s=timeout_s)
 
     async def play(self, request: Play, *, wait: bool = True, timeout_s: float | None = None) -> Said:
         """Send a request that plays something; return when it has ended, or without `wait` once it is accepted.
@@ -172,9 +141,9 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         line, asked = self._line(self.endpoints.cmd), f"{tag_of(request)} {request.words[:60]!r}"
         timeout_s = patience_s(request) if timeout_s is None else timeout_s
         end_s, limit_s = time.monotonic() + timeout_s, min(timeout_s, FIRST_REPLY_TIMEOUT_S)
-        async with line.asked(request) as heard:
+        async with line.asked(request, limit_s) as heard:
             while True:
-                event = await _within(heard, limit_s, line.endpoint, asked)
+                event = await within(heard, limit_s, line.endpoint, asked)
                 yield event
                 if event.terminal:
                     return
@@ -203,7 +172,7 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         try:
             self._secure(socket, self.endpoints.stream)
             socket.connect(self.endpoints.stream)
-            async with self._line(cmd).asked(request) as heard:
+            async with self._line(cmd).asked(request, timeout_s) as heard:
                 stream = AsyncStream(news, socket, heard)
                 await stream.until(begun, timeout_s, cmd)
                 try:
@@ -217,6 +186,10 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         finally:
             socket.close(0)
 
+    async def record(self, name: str, command_id: str = "") -> Ack:
+        """Keep the motion of a command, the newest when no id is given, as a gesture."""
+        return await self._acknowledged(Record(id=uuid.uuid4().hex, name=name, command=command_id), self.endpoints.cmd)
+
     async def capabilities(self) -> CapabilitiesEvent:
         """What this robot and this daemon can do."""
         event = await self._ask(Capabilities(id=uuid.uuid4().hex), self.endpoints.cmd)
@@ -224,17 +197,26 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
             raise unexpected(event, "capabilities")
         return event
 
-    async def stop(self) -> Ack:
-        """Brake within the limits and hold."""
-        return await self._acknowledged(Stop(id=uuid.uuid4().hex), self.endpoints.ctl)
+    async def stop(self, *, wait: bool = True) -> Ack:
+        """Brake within the limits and hold; with `wait`, return once nothing is played any more."""
+        ack = await self._acknowledged(Stop(id=uuid.uuid4().hex), self.endpoints.ctl)
+        if wait:
+            await self.wait_for(*NOT_MOVING, timeout_s=self._timeout_s)
+        return ack
 
-    async def estop(self) -> Ack:
-        """Cut torque at once, latched."""
-        return await self._acknowledged(Estop(id=uuid.uuid4().hex), self.endpoints.ctl)
+    async def estop(self, *, wait: bool = True) -> Ack:
+        """Cut torque at once, latched; with `wait`, return once the bus process has confirmed it."""
+        ack = await self._acknowledged(Estop(id=uuid.uuid4().hex), self.endpoints.ctl)
+        if wait:
+            await self.wait_for("estop", "fault", timeout_s=self._timeout_s)
+        return ack
 
-    async def reset(self) -> Ack:
+    async def reset(self, *, wait: bool = True) -> Ack:
         """Leave e-stop or fault; the robot is limp and must be armed."""
-        return await self._acknowledged(Reset(id=uuid.uuid4().hex), self.endpoints.ctl)
+        ack = await self._acknowledged(Reset(id=uuid.uuid4().hex), self.endpoints.ctl)
+        if wait and ack.state in ("fault", "estop"):
+            await self.wait_for("limp", "fault", timeout_s=self._timeout_s)
+        return ack
 
     async def arm(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
         """Torque on over a pinned goal, slow move to the rest pose."""
@@ -302,24 +284,18 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         return event
 
     async def _ask(self, request: Request, endpoint: str) -> AnyEvent:
-        async with self._line(endpoint).asked(request) as heard:
-            return await _within(heard, self._timeout_s, endpoint, tag_of(request))
+        async with self._line(endpoint).asked(request, self._timeout_s) as heard:
+            return await within(heard, self._timeout_s, endpoint, tag_of(request))
 
-    def _line(self, endpoint: str) -> _Line:
+    def _line(self, endpoint: str) -> Line:
         if endpoint not in self._lines:
             socket = self._context.socket(zmq.DEALER)
+            socket.setsockopt(zmq.IMMEDIATE, 1)
             self._secure(socket, endpoint)
             socket.connect(endpoint)
-            self._lines[endpoint] = _Line(socket, endpoint)
+            self._lines[endpoint] = Line(socket, endpoint)
         return self._lines[endpoint]
 
     def _secure(self, socket: zmq.asyncio.Socket, endpoint: str) -> None:
         if self.endpoints.keys is not None and endpoint.startswith("tcp://"):
             connect_curve(socket, KeyFolder(self.endpoints.keys), "daemon")
-
-
-async def _within(heard: asyncio.Queue[AnyEvent], timeout_s: float, endpoint: str, asked: str) -> AnyEvent:
-    try:
-        return await asyncio.wait_for(heard.get(), timeout_s if timeout_s < LONGEST_WAIT_S else None)
-    except TimeoutError:
-        raise NoAnswerError(endpoint, asked, timeout_s) from None

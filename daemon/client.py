@@ -14,6 +14,7 @@ import zmq
 from daemon.client_compositions import (
     FIRST_REPLY_TIMEOUT_S,
     MOTION_TIMEOUT_S,
+    NOT_MOVING,
     REPLY_TIMEOUT_S,
     CompositionCalls,
     patience_s,
@@ -49,13 +50,14 @@ from daemon.wire import decode_event, encode
 
 LONGEST_POLL_S = 60.0
 """A wait without limit is polled in turns: what ZeroMQ takes is a whole number of milliseconds."""
-_NOT_MOVING = ("limp", "idle", "holding", "fault", "estop")
 
 __all__ = ["CancelledByError", "Client", "NoAnswerError", "RefusedError", "Said"]
 
 
 class Client(CompositionCalls[Said]):
     """Talks to one daemon. Not for several threads at once.
+
+    ZeroMQ connects again by itself when the daemon comes back; what could not be sent meanwhile is not sent then.
 
     Args:
         endpoints: where the daemon is.
@@ -256,7 +258,7 @@ class Client(CompositionCalls[Said]):
         """
         ack = self._control(Stop(id=uuid.uuid4().hex))
         if wait:
-            self.wait_for(*_NOT_MOVING, timeout_s=self._timeout_s)
+            self.wait_for(*NOT_MOVING, timeout_s=self._timeout_s)
         return ack
 
     def estop(self, *, wait: bool = True) -> Ack:
@@ -378,11 +380,13 @@ class Client(CompositionCalls[Said]):
                 raise RefusedError(event)
 
     def _send(self, socket: zmq.Socket[bytes], request: Request, endpoint: str) -> None:
+        if not socket.poll(int(1000 * self._timeout_s), zmq.POLLOUT):
+            raise NoAnswerError(endpoint, tag_of(request), self._timeout_s)
         stamp(request)
         try:
             socket.send(encode(request), zmq.DONTWAIT)
         except zmq.Again:
-            raise NoAnswerError(endpoint, tag_of(request), 0.0) from None
+            raise NoAnswerError(endpoint, tag_of(request), self._timeout_s) from None
 
     def _receive(
         self, socket: zmq.Socket[bytes], began_s: float, timeout_s: float, endpoint: str, asked: str
@@ -407,6 +411,7 @@ class Client(CompositionCalls[Said]):
             raise NoAnswerError(endpoint, "connect", PROBE_TIMEOUT_S)
         socket = self._context.socket(zmq.DEALER)
         socket.setsockopt(zmq.LINGER, 200)
+        socket.setsockopt(zmq.IMMEDIATE, 1)
         self._secure(socket, endpoint)
         socket.connect(endpoint)
         return socket

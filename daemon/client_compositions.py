@@ -15,6 +15,8 @@ FIRST_REPLY_TIMEOUT_S = 15.0
 """For the first word about a text: longer than the daemon waits for its generator."""
 MOTION_TIMEOUT_S = 60.0
 """For a motion to end: the longest is 10 s, before which the robot may have to be armed."""
+NOT_MOVING = ("limp", "idle", "holding", "fault", "estop")
+"""States in which nothing is played."""
 
 
 class CompositionCalls(Generic[R]):

@@ -1,18 +1,24 @@
 """A Model Context Protocol server over stdio: a language model says, stops and looks, with the daemon's own limits.
 
-JSON-RPC 2.0, one message a line (MCP revision 2025-06-18, tools only). Nothing here can go round the daemon: a tool is a
+JSON-RPC 2.0, one message a line (MCP revision 2025-06-18, tools only). Every line is taken as it comes and answered when
+it is done, so that `stop`, `estop` and `status` do not wait for a motion; motions that are waited for are played one after
+the other, and a stop ends those that have not begun. Nothing here can go round the daemon: a tool is a
 request like any other, refused with the same words. Arming after a fault or e-stop stays with people: there is no tool.
 """
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
 import importlib.metadata
 import json
 import logging
-from collections.abc import Callable
+import threading
+from collections.abc import Awaitable, Callable
 from typing import IO, Any, cast
 
-from daemon.client import CancelledByError, Client
+from daemon.async_client import AsyncClient
+from daemon.client_errors import CancelledByError, Said
 from daemon.errors import DaemonError
 from daemon.requests import LEAST_AMPLITUDE, LEAST_TEMPO, LONGEST_S, MOST_AMPLITUDE, MOST_TEMPO, SHORTEST_S
 
@@ -53,29 +59,45 @@ TOOLS: list[dict[str, Any]] = [
 class McpServer:
     """Answers one client over a pair of streams."""
 
-    def __init__(self, client: Client) -> None:
+    def __init__(self, client: AsyncClient) -> None:
         self._client = client
-        self._tools: dict[str, Callable[[dict[str, Any]], str]] = {
+        self._turn = asyncio.Lock()
+        self._halts = 0
+        self._halted_by = ""
+        self._tools: dict[str, Callable[[dict[str, Any]], Awaitable[str]]] = {
             "say": self._say,
             "gesture": self._gesture,
-            "gestures": lambda _: "\n".join(f"{g.name}: {g.text}" for g in client.capabilities().gestures),
+            "gestures": self._gestures,
             "look": self._look,
-            "stop": lambda _: f"stopped; the robot is in {client.stop().state}",
-            "estop": lambda _: f"torque is cut; before, the robot was in {client.estop().state}",
-            "status": lambda _: self._status(),
+            "stop": self._stop,
+            "estop": self._estop,
+            "status": self._status,
         }
 
-    def serve(self, source: IO[str], out: IO[str]) -> None:
-        """Answer line by line until the source ends."""
-        for line in source:
-            if not line.strip():
-                continue
-            answer = self.answer(line)
+    async def serve(self, source: IO[str], out: IO[str]) -> None:
+        """Answer each line of the source, which is read in a thread, until it ends and all are answered."""
+        loop = asyncio.get_running_loop()
+        lines: asyncio.Queue[str] = asyncio.Queue()
+
+        def read() -> None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended: nobody listens any more
+                for line in source:
+                    loop.call_soon_threadsafe(lines.put_nowait, line)
+                loop.call_soon_threadsafe(lines.put_nowait, "")
+
+        async def reply(line: str) -> None:
+            answer = await self.answer(line)
             if answer is not None:
                 out.write(json.dumps(answer) + "\n")
                 out.flush()
 
-    def answer(self, line: str) -> dict[str, Any] | None:
+        threading.Thread(target=read, name="mcp", daemon=True).start()
+        async with asyncio.TaskGroup() as replies:
+            while line := await lines.get():
+                if line.strip():
+                    replies.create_task(reply(line))
+
+    async def answer(self, line: str) -> dict[str, Any] | None:
         """The reply to one message; None for a notification."""
         try:
             message = json.loads(line)
@@ -96,7 +118,7 @@ class McpServer:
         if method == "tools/list":
             return _result(request_id, {"tools": TOOLS})
         if method == "tools/call":
-            return self._call(request_id, cast("dict[str, Any]", parameters))
+            return await self._call(request_id, cast("dict[str, Any]", parameters))
         return _error(request_id, _NO_METHOD, f"method {method!r}; known: initialize, ping, tools/list, tools/call")
 
     def _initialize(self, parameters: dict[str, Any]) -> dict[str, Any]:
@@ -108,7 +130,7 @@ class McpServer:
             "instructions": "A humanoid upper body. Short commands, one motion each; a new one takes over from the old.",
         }
 
-    def _call(self, request_id: Any, parameters: dict[str, Any]) -> dict[str, Any]:
+    async def _call(self, request_id: Any, parameters: dict[str, Any]) -> dict[str, Any]:
         name, arguments = parameters.get("name"), parameters.get("arguments", {})
         tool = self._tools.get(name) if isinstance(name, str) else None
         if tool is None or not isinstance(arguments, dict):
@@ -121,27 +143,45 @@ class McpServer:
             text = f"unknown: {', '.join(sorted(unknown)) or 'none'}; missing: {', '.join(sorted(missing)) or 'none'}"
             return _error(request_id, _BAD_PARAMETERS, f"{name}: {text}; allowed: {', '.join(schema['properties'])}")
         try:
-            return _result(request_id, _text(tool(given)))
+            return _result(request_id, _text(await tool(given)))
         except CancelledByError as error:
             return _result(request_id, _text(str(error)))
         except (DaemonError, ValueError, TypeError) as error:
             return _result(request_id, _text(str(error), failed=True))
 
-    def _say(self, arguments: dict[str, Any]) -> str:
+    async def _say(self, arguments: dict[str, Any]) -> str:
         text, wait = str(arguments.pop("text")), bool(arguments.pop("wait", True))
-        said = self._client.say(text, wait=wait, **arguments)
-        return _told(said.events)
+        return await self._play(lambda: self._client.say(text, wait=wait, **arguments))
 
-    def _gesture(self, arguments: dict[str, Any]) -> str:
+    async def _gesture(self, arguments: dict[str, Any]) -> str:
         name, wait = str(arguments.pop("name")), bool(arguments.pop("wait", True))
-        return _told(self._client.gesture(name, wait=wait, **arguments).events)
+        return await self._play(lambda: self._client.gesture(name, wait=wait, **arguments))
 
-    def _look(self, arguments: dict[str, Any]) -> str:
-        note = self._client.look(arguments.get("yaw_deg"), arguments.get("pitch_deg")).note
+    async def _play(self, ask: Callable[[], Awaitable[Said]]) -> str:
+        """Ask for a motion when those before are done with; one that a stop finds waiting is not asked for any more."""
+        halts = self._halts
+        async with self._turn:
+            if halts != self._halts:
+                raise CancelledByError(self._halted_by)
+            return _told((await ask()).events)
+
+    async def _stop(self, _: dict[str, Any]) -> str:
+        self._halts, self._halted_by = self._halts + 1, "stop"
+        return f"stopped; before, the robot was in {(await self._client.stop()).state}"
+
+    async def _estop(self, _: dict[str, Any]) -> str:
+        self._halts, self._halted_by = self._halts + 1, "estop"
+        return f"torque is cut; before, the robot was in {(await self._client.estop()).state}"
+
+    async def _gestures(self, _: dict[str, Any]) -> str:
+        return "\n".join(f"{g.name}: {g.text}" for g in (await self._client.capabilities()).gestures)
+
+    async def _look(self, arguments: dict[str, Any]) -> str:
+        note = (await self._client.look(arguments.get("yaw_deg"), arguments.get("pitch_deg"))).note
         return "looking there" + (f" as far as it goes: {note}" if note else "")
 
-    def _status(self) -> str:
-        s = self._client.status()
+    async def _status(self, _: dict[str, Any]) -> str:
+        s = await self._client.status()
         doing = f"playing {s.command.text!r}" if s.command else "playing nothing"
         needs = "; a person has to arm it first" if s.must_arm else ""
         return (

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from daemon.config import Endpoints
 
 if TYPE_CHECKING:
+    from daemon.async_client import AsyncClient
     from daemon.client import Client
 
 _DEFAULT = Endpoints()
@@ -42,4 +43,23 @@ class Connection:
         """
         from daemon.client import Client
 
-        return Client(Endpoints(self.cmd, self.ctl, self.pub, self.keys, self.stream), self.timeout_s)
+        return Client(self.endpoints, self.timeout_s)
+
+    def async_client(self) -> AsyncClient:
+        """The same for asyncio.
+
+        Raises:
+            ConfigError: an endpoint is not a local one and there are no keys.
+        """
+        from daemon.async_client import AsyncClient
+
+        return AsyncClient(self.endpoints, self.timeout_s)
+
+    @property
+    def endpoints(self) -> Endpoints:
+        """Checked endpoints.
+
+        Raises:
+            ConfigError: one is not local and there are no keys.
+        """
+        return Endpoints(self.cmd, self.ctl, self.pub, self.keys, self.stream)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import sys
 
 from tyro.conf import OmitArgPrefixes
@@ -19,6 +20,9 @@ def mcp(at: OmitArgPrefixes[Connection] = Connection()) -> int:  # noqa: B008
     """
     from daemon.mcp import McpServer
 
-    with at.client() as robot:
-        McpServer(robot).serve(sys.stdin, sys.stdout)
+    async def serve() -> None:
+        async with at.async_client() as robot:
+            await McpServer(robot).serve(sys.stdin, sys.stdout)
+
+    asyncio.run(serve())
     return 0

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import inspect
 import io
 import json
+import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
 
 from daemon.async_client import AsyncClient
-from daemon.client import CancelledByError, NoAnswerError, RefusedError
+from daemon.client import CancelledByError, Client, NoAnswerError, RefusedError
 from daemon.config import Endpoints
 from daemon.mcp import TOOLS, McpServer
 from tests.end_to_end.harness import MMMD, RunningDaemon
@@ -23,8 +26,8 @@ EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 
 
 @pytest.fixture(scope="module")
-def running():
-    daemon = RunningDaemon()
+def running(tmp_path_factory):
+    daemon = RunningDaemon("--gestures", str(tmp_path_factory.mktemp("own")))
     try:
         yield daemon.until_ready()
         assert daemon.terminate() == 0
@@ -51,7 +54,9 @@ def test_the_async_client_says_stops_and_watches_at_once(running):
                         break
             with pytest.raises(RefusedError, match="legs"):
                 await robot.say("do a somersault")
-            assert (await robot.gesture("nod", tempo=2.0)).done
+            assert (await robot.gesture("nod", tempo=2.0, command_id="mine")).id == "mine"
+            assert "async_nod" in (await robot.record("async_nod", "mine")).note
+            assert (await robot.gesture("async_nod")).done
             assert len((await robot.capabilities()).gestures) >= 60
             assert (await robot.look(10)).verb == "look" and (await robot.look()).note == ""
             assert (await robot.idle(False)).verb == "idle"
@@ -69,28 +74,130 @@ def test_the_async_client_gives_up_in_time_where_nobody_is(tmp_path):
     asyncio.run(main())
 
 
-def ask(server: McpServer, method: str, **parameters) -> dict:
-    return server.answer(json.dumps({"jsonrpc": "2.0", "id": 1, "method": method, "params": parameters}))
+def public_calls(kind: type) -> dict[str, list[str]]:
+    """The calls of a client and the names of what each takes."""
+    found = {name: call for name, call in inspect.getmembers(kind, inspect.isfunction) if name[0] != "_"}
+    return {name: list(inspect.signature(call).parameters) for name, call in found.items()}
+
+
+def test_both_clients_have_the_same_calls():
+    assert public_calls(Client) == public_calls(AsyncClient)
+
+
+@pytest.fixture
+def restarted():
+    """(start, endpoints): `start` begins a daemon at these endpoints, the one before having ended."""
+    with tempfile.TemporaryDirectory(prefix="mmmd-test-") as folder, contextlib.ExitStack() as daemons:
+        ends = Endpoints(*(f"ipc://{folder}/{name}" for name in ("cmd", "ctl", "pub")))
+
+        def start() -> RunningDaemon:
+            daemon = RunningDaemon("--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub)
+            daemons.callback(daemon.close)
+            daemon.endpoints = ends
+            return daemon.until_ready()
+
+        yield start, ends
+
+
+def test_the_client_goes_on_after_a_restart_and_says_nothing_late(restarted):
+    start, ends = restarted
+    first = start()
+    with Client(ends, timeout_s=1.0) as robot:
+        assert robot.say("wave", seconds=0.8).done
+        assert first.terminate() == 0
+        for ask in (robot.status, lambda: robot.say("wave", seconds=0.8, timeout_s=1.0)):
+            with pytest.raises(NoAnswerError):
+                ask()
+        start()
+        assert robot.wait_for("limp", timeout_s=10).command is None  # what nobody heard is not carried out later
+        assert robot.capabilities().robot == "reference"
+        assert robot.status().state == "limp"
+        assert robot.gesture("nod").done
+
+
+def test_the_async_client_goes_on_after_a_restart_and_says_nothing_late(restarted):
+    start, ends = restarted
+
+    async def main() -> None:
+        first = start()
+        async with AsyncClient(ends, timeout_s=1.0) as robot:
+            assert (await robot.say("wave", seconds=0.8)).done
+            assert first.terminate() == 0
+            for ask in (robot.status, lambda: robot.say("wave", seconds=0.8, timeout_s=1.0)):
+                with pytest.raises(NoAnswerError):
+                    await ask()
+            await asyncio.to_thread(start)
+            assert (await robot.wait_for("limp", timeout_s=10)).command is None
+            assert (await robot.capabilities()).robot == "reference"
+            assert (await robot.status()).state == "limp"
+            assert (await robot.gesture("nod")).done
+
+    asyncio.run(main())
+
+
+def result_of(answer: dict) -> str:
+    return answer["result"]["content"][0]["text"]
+
+
+def calling(request_id: int, name: str, /, **arguments) -> str:
+    params = {"name": name, "arguments": arguments}
+    return json.dumps({"jsonrpc": "2.0", "id": request_id, "method": "tools/call", "params": params})
 
 
 def test_a_language_model_can_say_look_and_stop(running):
-    with running.client() as client:
-        server = McpServer(client)
-        client.arm()
-        assert ask(server, "initialize", protocolVersion="2025-03-26")["result"]["protocolVersion"] == "2025-03-26"
-        assert [t["name"] for t in ask(server, "tools/list")["result"]["tools"]] == [t["name"] for t in TOOLS]
+    async def main() -> None:
+        async with AsyncClient(running.endpoints) as client:
+            server = McpServer(client)
+            await client.arm()
 
-        def call(name: str, /, **arguments) -> dict:
-            return ask(server, "tools/call", name=name, arguments=arguments)["result"]
+            async def ask(method: str, **parameters) -> dict:
+                return (await server.answer(json.dumps({"id": 1, "method": method, "params": parameters})))["result"]
 
-        assert "done" in call("say", text="wave", seconds=1.0)["content"][0]["text"]
-        assert "nod" in call("gestures")["content"][0]["text"]
-        assert not call("gesture", name="nod", tempo=2.0)["isError"]
-        assert not call("look", yaw_deg=10)["isError"] and not call("look")["isError"]
-        assert not call("stop")["isError"] and "reference" in call("status")["content"][0]["text"]
-        refused = call("say", text="do a somersault")
-        assert refused["isError"] and "legs" in refused["content"][0]["text"]
-        assert call("say", text="wave", tempo=50)["isError"]  # the daemon's own bounds hold
+            async def call(name: str, /, **arguments) -> dict:
+                return (await server.answer(calling(1, name, **arguments)))["result"]
+
+            assert (await ask("initialize", protocolVersion="2025-03-26"))["protocolVersion"] == "2025-03-26"
+            assert [t["name"] for t in (await ask("tools/list"))["tools"]] == [t["name"] for t in TOOLS]
+            assert "done" in (await call("say", text="wave", seconds=1.0))["content"][0]["text"]
+            assert "nod" in (await call("gestures"))["content"][0]["text"]
+            assert not (await call("gesture", name="nod", tempo=2.0))["isError"]
+            assert not (await call("look", yaw_deg=10))["isError"] and not (await call("look"))["isError"]
+            assert not (await call("stop"))["isError"] and "reference" in (await call("status"))["content"][0]["text"]
+            refused = await call("say", text="do a somersault")
+            assert refused["isError"] and "legs" in refused["content"][0]["text"]
+            assert (await call("say", text="wave", tempo=50))["isError"]  # the daemon's own bounds hold
+
+    asyncio.run(main())
+
+
+@pytest.mark.parametrize("halt", ["stop", "estop"])
+def test_a_halt_does_not_wait_for_what_is_said_and_ends_what_has_not_begun(running, halt):
+    """Answered one after the other, a stop came when the motion was over."""
+
+    async def main() -> None:
+        async with AsyncClient(running.endpoints) as client:
+            server, out = McpServer(client), io.StringIO()
+            await client.reset()
+            await client.arm()
+            inlet, outlet = os.pipe()
+            with os.fdopen(inlet) as source, os.fdopen(outlet, "w", buffering=1) as host:
+                serving = asyncio.create_task(server.serve(source, out))
+                host.write(calling(1, "say", text="wave", seconds=9.0) + "\n")
+                await client.wait_for("moving", timeout_s=5)
+                host.write(
+                    "\n".join([calling(2, "say", text="left wave"), calling(3, "status"), calling(4, halt)]) + "\n"
+                )
+                host.close()
+                await serving
+            answers = {a["id"]: a for a in map(json.loads, out.getvalue().splitlines())}
+            assert answers.keys() == {1, 2, 3, 4}
+            assert [result_of(answers[n]) for n in (1, 2)] == [f"the command was cancelled by {halt}"] * 2
+            assert "playing 'wave'" in result_of(answers[3]) and "moving" in result_of(answers[4])
+            assert (await client.status()).command is None
+            await client.reset()
+            await client.arm()
+
+    asyncio.run(main())
 
 
 @pytest.mark.parametrize(
@@ -105,17 +212,23 @@ def test_a_language_model_can_say_look_and_stop(running):
         ('{"id": 1, "method": "tools/call", "params": {"name": "say", "arguments": {"text": "a", "x": 1}}}', -32602),
     ],
 )
-def test_what_is_no_request_is_answered_with_its_error(running, line, code):
-    with running.client() as client:
-        assert McpServer(client).answer(line)["error"]["code"] == code
+def test_what_is_no_request_is_answered_with_its_error(line, code):
+    async def main() -> None:
+        async with AsyncClient() as client:
+            assert (await McpServer(client).answer(line))["error"]["code"] == code
+
+    asyncio.run(main())
 
 
-def test_notifications_get_no_answer_and_lines_are_answered_in_turn(running):
-    with running.client() as client:
-        out = io.StringIO()
-        lines = ['{"method": "notifications/initialized"}', "", '{"id": 7, "method": "ping"}']
-        McpServer(client).serve(io.StringIO("\n".join(lines) + "\n"), out)
-        assert [json.loads(x) for x in out.getvalue().splitlines()] == [{"jsonrpc": "2.0", "id": 7, "result": {}}]
+def test_notifications_get_no_answer():
+    async def main() -> None:
+        async with AsyncClient() as client:
+            out = io.StringIO()
+            lines = ['{"method": "notifications/initialized"}', "", '{"id": 7, "method": "ping"}']
+            await McpServer(client).serve(io.StringIO("\n".join(lines) + "\n"), out)
+            assert [json.loads(x) for x in out.getvalue().splitlines()] == [{"jsonrpc": "2.0", "id": 7, "result": {}}]
+
+    asyncio.run(main())
 
 
 def test_the_command_serves_stdio(running):
