@@ -25,7 +25,7 @@ STRUCK_OFTEN = 20
 """Packets after which the counters have to show it; a few may have hit answers that are asked for only now and then."""
 STOPPED_S = 5.0
 """No servo stands limp or stopped for so long, and answers, while the robot is said to hold or play."""
-_KEPT = 5000
+_KEPT, _MAX_DETAILS = 5000, 20
 _WELL = (BusState.HOLDING, BusState.PLAYING)
 
 SILENT = r"silent|did not answer|no answer|no fresh position|lost (its )?torque|not those of the robot file"
@@ -190,7 +190,9 @@ class Witness(logging.Handler):
                 key = (servo.spec.servo_id, what)
                 if not (is_so and self._r.state in _WELL and self._r.bus.reading.valid[row]):
                     self._stands_since_s.pop(key, None)
-                elif now_s - self._stands_since_s.setdefault(key, now_s) > STOPPED_S:
+                elif (
+                    now_s - self._stands_since_s.setdefault(key, now_s) > STOPPED_S and len(self.stopped) < _MAX_DETAILS
+                ):
                     self.stopped.append(
                         f"{now_s:.2f} s: servo {key[0]} {what} for {STOPPED_S:g} s in {self._r.state.name}"
                     )

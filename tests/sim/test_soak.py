@@ -24,7 +24,7 @@ from daemon.bus_process import SLOW_EVERY
 from daemon.shared import BusLink, BusRequest, BusState
 from retarget.robot import RobotModel, load_robot
 from sim.faults import INSTANT_KINDS, PACKET_KINDS, Fault
-from tests.daemon.rig import Rig, swing
+from tests.daemon.rig import Rig, rig, swing
 from tests.sim.soak_witness import EXPECTED, Witness
 
 HOURS = float(os.environ.get("MMMD_SOAK_HOURS", "10"))
@@ -172,6 +172,37 @@ class Person:
 def test_the_table_says_of_every_kind_what_is_expected() -> None:
     assert EXPECTED.keys() == set(_KINDS)
     assert all(e.why for e in EXPECTED.values() if e.words is None)
+
+
+@pytest.mark.parametrize("listens", [True, False])
+def test_the_witness_finds_what_the_daemon_does_not_say(listens: bool) -> None:
+    """As if the daemon said nothing: nobody listens to it."""
+    fault = Fault("silent", start_s=0.5, end_s=1.5, servo_id=4)
+    log = logging.getLogger("daemon")
+    with rig("reference", fault) as r:
+        witness = Witness(r, [fault])
+        try:
+            if listens:
+                log.addHandler(witness)
+            for _ in range(500):
+                r.cycle()
+                witness.look()
+        finally:
+            log.removeHandler(witness)
+        assert (witness.named["silent"], len(witness.unnamed)) == ((1, 0) if listens else (0, 1))
+
+
+def test_the_witness_finds_a_servo_that_stands_limp_in_a_robot_that_holds() -> None:
+    with rig("reference") as r:
+        witness = Witness(r, [])
+        r.arm()
+        servo = next(iter(r.sim.servos.values()))
+        servo.write(servo.items["torque_enable"].address, b"\0")
+        r.streamer._judge = lambda _reading: None  # a daemon that looks at nothing
+        for _ in range(600):
+            r.cycle()
+            witness.look()
+        assert [w for w in witness.stopped if "limp" in w] and r.state is BusState.HOLDING
 
 
 def usage() -> tuple[int, int]:
