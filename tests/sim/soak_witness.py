@@ -151,12 +151,13 @@ class Witness(logging.Handler):
             self.unnamed.append(f"{fault} in {case.state}: not named; {struck=}")
 
     def _was_said(self, case: _Case, expected: Expected) -> bool:
-        if expected.words is UNNOTICED:
+        words = expected.words
+        if words is None:
             return False
         of_servo = expected.of_servo and case.fault.servo_id is not None
         servo = rf"servos? [^;:]*?\b{case.fault.servo_id}\b|^\s+{case.fault.servo_id}\s"
         return any(
-            re.search(expected.words, text) and (not of_servo or re.search(servo, text, re.MULTILINE))
+            re.search(words, text) and (not of_servo or re.search(servo, text, re.MULTILINE))
             for t_s, text in self._said
             if case.fault.start_s - TOLD_AGAIN_S <= t_s <= case.due_s
         )
