@@ -95,14 +95,14 @@ def test_a_homing_offset_in_position_mode_keeps_the_watchdog() -> None:
 
 
 @pytest.mark.parametrize("name", ["toddlerbot", "op2"])
-def test_before_torque_ids_and_settings_are_compared_with_four_questions_a_servo(name: str) -> None:
+def test_before_torque_ids_and_settings_are_compared_with_five_questions_a_servo(name: str) -> None:
     rig = bus_rig(name=name)
     rig.bus.verify()
     sent: list[bytes] = []
     write = rig.port.write
     rig.port.write = lambda data: (sent.append(data), write(data))[1]  # type: ignore[method-assign]
     verify_before_torque(rig.bus, rig.robot)
-    assert len(sent) == 4 * len(rig.bus.ids)
+    assert len(sent) == 5 * len(rig.bus.ids)
     servo = rig.servos.servos[rig.bus.ids[0]]
     servo._set("status_return_level", 1)
     with pytest.raises(BusMismatchError, match="status_return_level 2"):
