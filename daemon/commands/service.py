@@ -13,6 +13,8 @@ _UNIT = """\
 [Unit]
 Description=mmmd: text in, servo motion out
 After=network.target
+# Tried again without end: what a killed daemon left behind may keep the port for 30 s, an adapter may come back later.
+StartLimitIntervalSec=0
 
 [Service]
 Type=notify
@@ -20,20 +22,25 @@ User={user}
 ExecStart={mmmd} run --config {config} --log-json
 WatchdogSec=10
 TimeoutStartSec=180
-# SIGTERM parks the robot first: at most park_timeout_s and 10 s more, then torque is off.
-KillMode=mixed
+# Signals go to the front alone. On SIGTERM it parks the robot and ends the others: at most park_timeout_s and 25 s more.
+# When it is killed, the bus process has to live on: it holds, parks, goes limp, gives the port back and ends (30 s).
+# Every other KillMode would kill it at once, with torque on.
+KillMode=process
 TimeoutStopSec=45
-# Never by itself after a latched fault (status 3): a person has to look first.
+# A generator without memory is started again by the front while the robot goes on; systemd would stop the service.
+OOMPolicy=continue
+# Again after a crash, a kill, a port in use (status 1). Not after bad use (2), and never by itself after a latched fault
+# (3): a person has to look first.
 Restart=on-failure
 RestartPreventExitStatus=2 3
-RestartSec=2
+RestartSec=5
 LimitRTPRIO=50
 LimitMEMLOCK=infinity
 NoNewPrivileges=yes
 ProtectSystem=strict
-ReadWritePaths={state} /dev/shm
+# /tmp is shared: the lock of the port lies there, also for what a person starts and for a bus process that is left.
+ReadWritePaths={state} /tmp
 StateDirectory=mmmd
-PrivateTmp=yes
 
 [Install]
 WantedBy=multi-user.target
@@ -63,7 +70,7 @@ def install_service(root: Path = Path("/"), user: str = "", config: Path = Path(
         config: configuration that the service reads; one that exists is kept.
     """
     user = user or getpass.getuser()
-    found = shutil.which("mmmd") or sys.argv[0]
+    found = Path(shutil.which("mmmd") or sys.argv[0]).absolute()
     files = {
         Path("etc/systemd/system/mmmd.service"): _UNIT.format(
             user=user, mmmd=found, config=config, state="/var/lib/mmmd"

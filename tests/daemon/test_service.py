@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import configparser
 import json
 import logging
 import os
 import queue
+import shutil
 import socket
 import subprocess
 import sys
@@ -25,6 +27,7 @@ from daemon.mcap_log import read_log
 from daemon.rotation import RotatingLog
 from daemon.settings import DEFAULTS, config_of, resolve
 from daemon.shared import cycle_dtype
+from daemon.supervisor import BUS_END_TIMEOUT_S
 from retarget.robot import load_robot
 from tests.end_to_end.harness import RunningDaemon, mmmd
 
@@ -138,19 +141,54 @@ def test_a_service_tells_systemd_and_prometheus_and_logs_json(tmp_path):
         inbox.close()
 
 
-def test_install_service_writes_what_systemd_and_udev_read(tmp_path):
-    result = mmmd("install-service", "--root", str(tmp_path), "--user", "pi")
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory) -> Path:
+    """The folder that the service was installed below."""
+    root = tmp_path_factory.mktemp("root")
+    install_below(root)
+    return root
+
+
+def install_below(root: Path) -> None:
+    program = root / "bin" / "mmmd"
+    program.parent.mkdir(exist_ok=True)
+    program.write_text("#!/bin/sh\n")
+    program.chmod(0o755)
+    result = mmmd("install-service", "--root", str(root), "--user", "root", PATH=f"{program.parent}:{os.environ['PATH']}")
     assert result.returncode == 0 and "systemctl" in result.stdout
-    unit = (tmp_path / "etc/systemd/system/mmmd.service").read_text()
-    assert "Type=notify" in unit and "User=pi" in unit and "RestartPreventExitStatus=2 3" in unit
-    assert 'latency_timer}="1"' in (tmp_path / "etc/udev/rules.d/60-mmmd.rules").read_text()
-    config = tmp_path / "etc/mmmd/mmmd.toml"
+
+
+def test_install_service_writes_what_udev_and_the_daemon_read_and_keeps_a_configuration(installed):
+    assert 'latency_timer}="1"' in (installed / "etc/udev/rules.d/60-mmmd.rules").read_text()
+    config = installed / "etc/mmmd/mmmd.toml"
     assert not config_of(resolve({}, config, {})).auto_arm
     config.write_text('robot = "op3"\n')
-    mmmd("install-service", "--root", str(tmp_path), "--user", "pi")
+    install_below(installed)
     assert config.read_text() == 'robot = "op3"\n'
-    if verify := next((p for p in ("/usr/bin/systemd-analyze", "/bin/systemd-analyze") if Path(p).exists()), None):
-        subprocess.run([verify, "verify", str(tmp_path / "etc/systemd/system/mmmd.service")], check=False, timeout=20)
+
+
+def test_the_unit_leaves_the_bus_process_alone_when_the_front_dies_and_never_gives_up(installed):
+    """systemd.kill(5): `mixed` and `control-group` send SIGKILL to all that is left as soon as the main process is gone."""
+    unit = configparser.ConfigParser(interpolation=None)
+    unit.optionxform = str
+    unit.read(installed / "etc/systemd/system/mmmd.service")
+    service = unit["Service"]
+    assert service["ExecStart"].startswith(f"{installed}/bin/mmmd run --config /etc/mmmd/mmmd.toml")
+    assert service["Type"] == "notify" and service["User"] == "root"
+    assert service["KillMode"] == "process" and "ExecStop" not in service and "ExecStopPost" not in service
+    assert service["OOMPolicy"] == "continue"
+    assert service["Restart"] == "on-failure" and service["RestartPreventExitStatus"].split() == ["2", "3"]
+    assert unit["Unit"]["StartLimitIntervalSec"] == "0"
+    assert float(service["TimeoutStopSec"]) > config_of(resolve({}, None, {})).park_timeout_s + 3 * BUS_END_TIMEOUT_S
+    shared_tmp = "PrivateTmp" not in service and "/tmp" in service["ReadWritePaths"].split()
+    assert shared_tmp  # where `PortLock` keeps its files
+
+
+@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="needs systemd-analyze")
+def test_systemd_finds_nothing_wrong_with_the_unit(installed):
+    command = ["systemd-analyze", "verify", str(installed / "etc/systemd/system/mmmd.service")]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=30)
+    assert (result.returncode, [x for x in result.stderr.splitlines() if "mmmd" in x]) == (0, [])
 
 
 def records(n: int) -> np.ndarray:
