@@ -24,7 +24,7 @@ WatchdogSec=10
 TimeoutStartSec=180
 # Signals go to the front alone. On SIGTERM it parks the robot and ends the others: at most park_timeout_s and 25 s more.
 # When it is killed, the bus process has to live on: it holds, parks, goes limp, gives the port back and ends (30 s).
-# Every other KillMode would kill it at once, with torque on.
+# With `mixed` or `control-group` systemd kills it at once, with torque on (systemd.kill(5)).
 KillMode=process
 TimeoutStopSec=45
 # A generator without memory is started again by the front while the robot goes on; systemd would stop the service.

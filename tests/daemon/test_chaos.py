@@ -20,7 +20,7 @@ from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.faults import Fault, FaultSchedule
 from sim.pty import PtyServer
-from tests.end_to_end.harness import RunningDaemon
+from tests.end_to_end.harness import RunningDaemon, mmmd
 from tests.end_to_end.test_start_and_end import child_pid
 
 pytestmark = pytest.mark.timeout(180)
@@ -187,6 +187,20 @@ def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_p
         for servos, daemon, _ in rigs:
             daemon.close()
             servos.close()
+
+
+def test_a_second_daemon_names_the_process_that_has_the_port_and_ends_with_a_status_that_systemd_tries_again(
+    servos, tmp_path
+):
+    daemon = daemon_on(servos)
+    try:
+        ends = [f"--{name}=ipc://{tmp_path}/{name}" for name in ("cmd", "ctl", "pub")]
+        second = mmmd("run", "--bus", servos.url, *ends)
+        assert second.returncode == 1
+        assert f"in use by process {child_pid(daemon, 'daemon.bus_process')}" in second.stderr
+        assert daemon.terminate() == 0
+    finally:
+        daemon.close()
 
 
 def test_the_recorder_killed_and_frozen_changes_nothing_for_the_robot(servos, tmp_path):
