@@ -24,7 +24,7 @@ class Follower:
     Attributes:
         bus_alive: whether the bus process runs.
         fault_reason: why the robot is in fault, else empty.
-        stopped: whether a person stopped the robot since the last motion began.
+        stopped: whether a person stopped the robot since it was armed and the last motion began.
         idling: whether what is played are idle movements.
     """
 
@@ -45,8 +45,8 @@ class Follower:
         self._planner.read_cycles()
         if self.machine.state is RobotState.FAULT and self.bus_alive and self._view.message:
             self.fault_reason = self._view.message  # the bus process is back and knows better
-        reports = [self._report(state) for state in self._view.passed] or [self._report(self._view.state)]
-        return [state for report in reports if (state := self._follow(report)) is not None]
+        entered = [self._follow(self._report(state)) for state in self._view.passed or [self._view.state]]
+        return [state for state in entered if state is not None]
 
     @property
     def can_take_over(self) -> bool:
@@ -91,6 +91,7 @@ class Follower:
             log.error("fault: %s", self.fault_reason)
         elif state in (RobotState.LIMP, RobotState.ARMING):
             self._planner.stand()
+            self.stopped = False  # a stop of the limp robot is over once it is armed
         return state
 
     def _reason(self, report: Trigger) -> str:

@@ -10,6 +10,7 @@ import json
 import random
 import time
 import uuid
+from collections import Counter
 from collections.abc import Callable
 
 import pytest
@@ -31,7 +32,8 @@ AFTER = {
 }
 """Verb -> the state before -> the state it ends in when nobody interferes; where there is none it is refused."""
 ENDS_MOTION = ("park", "stop", "estop", "cancel")
-STEPS = 30
+WAY_OUT = {"limp": "arm", "estop": "reset"}
+STEPS = 40
 WITHIN_S = 12.0
 """Longest for a state to come: arming, or parking from far away, on a busy machine."""
 SETTLED_CYCLES = 10
@@ -45,6 +47,7 @@ class Sequence:
         must_arm: whether a motion may not arm the robot.
         playing: the motion that goes round, None for none.
         told: what was done, for the message of a failure.
+        tried: how often each verb was given in each state.
     """
 
     def __init__(self, client: Client, rng: random.Random) -> None:
@@ -52,12 +55,14 @@ class Sequence:
         self.state, self.must_arm = "limp", False
         self.playing: Play | None = None
         self.told: list[str] = []
+        self.tried: Counter[tuple[str, str]] = Counter()
         self._newest_id = ""
         self._stirs = False
 
     def step(self) -> None:
         """One command that is drawn by chance, and what has to come of it."""
-        verb = self._rng.choice((*PLAYS, *OTHERS))
+        verb = self._draw()
+        self.tried[verb, self.state] += 1
         self.told.append(f"{verb} in {self.state}")
         if verb in PLAYS:
             self._play(verb)
@@ -66,6 +71,17 @@ class Sequence:
         else:
             getattr(self, f"_{verb}")()
         self._agree()
+
+    def _draw(self) -> str:
+        """What was done least in this state; half of the time what leads to motion, or what ends it."""
+        verbs = (*PLAYS, *OTHERS)
+        if self._rng.random() < 0.5:
+            if self.state == "moving":
+                verbs = ENDS_MOTION
+            else:
+                verbs = PLAYS if self._moves else (WAY_OUT[self.state],)
+        least = min(self.tried[verb, self.state] for verb in verbs)
+        return self._rng.choice([verb for verb in verbs if self.tried[verb, self.state] == least])
 
     @property
     def _moves(self) -> bool:
@@ -79,7 +95,7 @@ class Sequence:
             self._refused("wrong_state", lambda: self._client.play(request, wait=False))
             return
         said = self._client.play(request, wait=not endless, timeout_s=WITHIN_S + 20)
-        self._newest_id = request.id
+        self._newest_id = self._newest_id if verb == "story" else request.id  # a story cannot be played once more
         before, self.playing = self.playing, request if endless else None
         if endless:
             self._until("moves", lambda s: s.command is not None and s.command.id == request.id)
@@ -199,21 +215,35 @@ class Sequence:
             time.sleep(0.02)
 
 
-@pytest.mark.parametrize("seed", [1, 2, None], ids=["1", "2", "fresh"])
+@pytest.mark.parametrize("seed", [1, None], ids=["1", "fresh"])
 def test_random_sequences_keep_to_the_model(seed, tmp_path):
-    seed = seed or random.SystemRandom().randrange(10**6)
+    drawn = seed or random.SystemRandom().randrange(10**6)
     daemon = RunningDaemon("--gestures", str(tmp_path))
     try:
         daemon.until_ready()
         with daemon.client() as client:
-            sequence = Sequence(client, random.Random(seed))
-            sequence.told.append(f"seed {seed}")
+            sequence = Sequence(client, random.Random(drawn))
+            sequence.told.append(f"seed {drawn}")
             for _ in range(STEPS):
                 sequence.step()
             client.estop()
             client.reset()
+        assert seed is None or all(sequence.tried[verb, "moving"] for verb in ENDS_MOTION), sequence.told
         assert daemon.terminate() == 0, sequence.told
         assert json.loads(daemon.audit.read_text())["violations"] == 0, sequence.told
         assert "Traceback" not in daemon.said and "cannot follow" not in daemon.said, sequence.told
+    finally:
+        daemon.close()
+
+
+def test_a_stop_of_a_limp_robot_is_over_once_it_is_armed():
+    """It was told as holding, and idle movements never began: the stop of before counted for what came after."""
+    daemon = RunningDaemon()
+    try:
+        with daemon.until_ready().client() as client:
+            client.stop()
+            client.arm()
+            assert client.wait_for("idle", "holding", timeout_s=10).state == "idle"
+        assert daemon.terminate() == 0
     finally:
         daemon.close()
