@@ -1,4 +1,4 @@
-"""Each process killed and frozen in each state: a named safe state within a stated time, and no limit ever broken.
+"""Processes killed and frozen in states of the robot (docs/safety.md says which in which): a named safe state within a stated time, and no limit ever broken.
 
 The servos are behind a real tty and outlive the daemon's processes; their audit watches all the time.
 """
@@ -25,6 +25,7 @@ from tests.end_to_end.test_start_and_end import child_pid
 
 pytestmark = pytest.mark.timeout(180)
 ROBOT = load_robot("reference")
+STATES = ("limp", "arming", "idle", "moving", "holding", "parking", "estop")
 FAULT_WITHIN_S = 6.0
 """From the signal to a robot in a latched fault that can be reset: 1 s of silence, 2.5 s to the kill, the restart."""
 
@@ -67,13 +68,18 @@ def within(seconds: float, what: str, condition: Callable[[], bool]) -> None:
 def bring_to(client: Client, state: str) -> None:
     """Lead the robot from anywhere to a state."""
     now = client.status().state
+    if now == "moving":  # which nothing else ends
+        client.stop()
     if now in ("fault", "estop"):
         client.reset()
         client.wait_for("limp", timeout_s=5)
-    if state in ("limp", "estop"):
+    if state in ("limp", "estop", "arming"):
         client.park()
         if state == "estop":
             client.estop()
+        elif state == "arming":
+            client.arm(wait=False)
+            client.wait_for("arming", timeout_s=5)
         return
     client.arm()
     status = client.wait_for("idle", "holding", "fault", timeout_s=10)
@@ -82,7 +88,7 @@ def bring_to(client: Client, state: str) -> None:
         client.say("wave", seconds=0.8)
         client.wait_for("idle", timeout_s=3)
         return
-    client.say("wave", seconds=6.0, wait=False)
+    client.say("wave", seconds=6.0, loop=True, wait=False)  # ended by nothing but what is done to it
     client.wait_for("moving", timeout_s=5)
     time.sleep(0.3)
     if state == "holding":
@@ -91,6 +97,14 @@ def bring_to(client: Client, state: str) -> None:
     elif state == "parking":
         client.park(wait=False)
         client.wait_for("parking", timeout_s=3)
+
+
+def bring_to_fault(client: Client, servos: Servos) -> None:
+    """The bus is unplugged in a motion, and plugged in again: the fault stays."""
+    bring_to(client, "moving")
+    servos.unplugged(True)
+    within(FAULT_WITHIN_S, "fault", lambda: client.status().state == "fault")
+    servos.unplugged(False)
 
 
 def assert_works(client: Client) -> None:
@@ -112,15 +126,13 @@ def daemon_on(servos: Servos, *options: str, model: bool = False) -> RunningDaem
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
-def test_the_bus_process_in_each_state_ends_in_a_fault_that_can_be_reset(servos, number):
-    states = (
-        ("limp", "idle", "moving", "holding", "parking", "estop") if number is signal.SIGKILL else ("idle", "moving")
-    )
+def test_the_bus_process_in_any_state_ends_in_a_fault_that_can_be_reset(servos, number):
+    states = (*STATES, "fault") if number is signal.SIGKILL else ("arming", "idle", "moving", "parking")
     daemon = daemon_on(servos)
     try:
         with daemon.client() as client:
             for state in states:
-                bring_to(client, state)
+                bring_to_fault(client, servos) if state == "fault" else bring_to(client, state)
                 bus = child_pid(daemon, "daemon.bus_process")
                 os.kill(bus, number)
                 began_s = time.monotonic()
@@ -141,16 +153,16 @@ def test_the_bus_process_in_each_state_ends_in_a_fault_that_can_be_reset(servos,
         daemon.close()
 
 
-@pytest.mark.parametrize("state", ["idle", "moving", "holding", "parking", "limp"])
+@pytest.mark.parametrize("state", STATES)
 def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, state):
     daemon = daemon_on(servos)
     try:
         with daemon.client() as client:
             bring_to(client, state)
             servos.unplugged(True)
-            if state == "limp":
+            if state == "estop":
                 time.sleep(1.0)
-                assert client.status().state in ("limp", "fault")
+                assert client.status().state in ("estop", "fault")  # both latch, without torque
             else:
                 within(FAULT_WITHIN_S, "fault", lambda: client.status().state == "fault")
                 assert client.status().reason
@@ -165,18 +177,17 @@ def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, s
 
 
 def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_path):
-    """Four daemons at once: hold after 0.5 s, park after 5 s, then the port is given back."""
-    states = ("idle", "moving", "holding", "parking")
+    """Seven daemons at once: hold after 0.5 s, park after 5 s, then the port is given back."""
     rigs: list[tuple[Servos, RunningDaemon, int]] = []
     try:
-        for state in states:
+        for state in STATES:
             folder = tmp_path / state
             folder.mkdir()
             servos = Servos(folder)
             daemon = daemon_on(servos)
+            rigs.append((servos, daemon, child_pid(daemon, "daemon.bus_process")))
             with daemon.client() as client:
                 bring_to(client, state)
-            rigs.append((servos, daemon, child_pid(daemon, "daemon.bus_process")))
             daemon.process.kill()
         for servos, daemon, bus in rigs:
             within(25, "limp", lambda servos=servos: not servos.torque)
@@ -207,11 +218,13 @@ def test_the_recorder_killed_and_frozen_changes_nothing_for_the_robot(servos, tm
     daemon = daemon_on(servos, "--log", str(tmp_path / "run.mcap"))
     try:
         with daemon.client() as client:
+            recorder = child_pid(daemon, "daemon.recorder")
+            os.kill(recorder, signal.SIGSTOP)
+            for state in STATES:
+                bring_to(client, state)
+            os.kill(recorder, signal.SIGCONT)
             bring_to(client, "moving")
-            os.kill(child_pid(daemon, "daemon.recorder"), signal.SIGSTOP)
-            assert client.say("wave", seconds=0.8).done
-            bring_to(client, "moving")
-            os.kill(child_pid(daemon, "daemon.recorder"), signal.SIGKILL)
+            os.kill(recorder, signal.SIGKILL)
             assert client.say("wave", seconds=0.8).done
             within(3, "said", lambda: "stopped" in client.status().recording)
         assert daemon.terminate() == 0
@@ -225,13 +238,11 @@ def test_the_generator_killed_and_frozen_in_each_state_is_started_again(servos):
     try:
         with daemon.client() as client:
             for state in ("limp", "idle", "moving", "holding"):
-                bring_to(client, "idle" if state == "limp" else state)
-                if state == "limp":
-                    client.park()
+                bring_to(client, state)
                 number = signal.SIGSTOP if state == "idle" else signal.SIGKILL
                 os.kill(child_pid(daemon, "daemon.generator"), number)
                 within(12, "noticed", lambda: not client.status().generator.startswith("ready"))
-                assert client.status().state in (state, "idle", "moving")  # what was played goes on to its end
+                assert client.status().state == state
                 assert client.gesture("nod").done  # the library needs no generator
                 within(60, "back", lambda: client.status().generator.startswith("ready"))
             assert client.say("nod twice").done
