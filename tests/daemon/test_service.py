@@ -154,7 +154,9 @@ def install_below(root: Path) -> None:
     program.parent.mkdir(exist_ok=True)
     program.write_text("#!/bin/sh\n")
     program.chmod(0o755)
-    result = mmmd("install-service", "--root", str(root), "--user", "root", PATH=f"{program.parent}:{os.environ['PATH']}")
+    result = mmmd(
+        "install-service", "--root", str(root), "--user", "root", PATH=f"{program.parent}:{os.environ['PATH']}"
+    )
     assert result.returncode == 0 and "systemctl" in result.stdout
 
 
