@@ -26,8 +26,8 @@ TTY_GOALS = 30
 """Behind a tty: so many may have waited in it while a loaded machine let the simulator sleep."""
 FAULT_GRACE_S = 0.1
 """Goals that were under way when a servo tripped are not counted against anybody."""
-ALERTS_TOLD = 10
-"""A servo's trip is known to the client after so many whole answers that say so: some may be lost on their way."""
+ANSWERS_TOLD = 10
+"""A servo's trip is known to the client after so many whole answers: some may be lost on their way."""
 _MAX_DETAILS = 20
 
 
@@ -113,12 +113,12 @@ class Audit:
         if limit > most:
             self._violate(t_s, servo_id, "torque_limit", f"{limit}, its max torque is {most}")
 
-    def told_alert(self, t_s: float, servo_id: int) -> None:
-        """A servo whose fault has taken its torque has said so, in an answer that went out whole."""
+    def heard_in_fault(self, t_s: float, servo_id: int) -> None:
+        """A servo whose fault has taken its torque, or that its watchdog has stopped, gave an answer that went out whole."""
         track = self._tracks.get(servo_id)
         if track is not None:
             track.alerts += 1
-            if track.alerts == ALERTS_TOLD:
+            if track.alerts == ANSWERS_TOLD:
                 track.told_s = t_s
 
     def goal(self, t_s: float, servo_id: int, tick: int, torque: bool, *, faulted: bool = False) -> None:
@@ -132,6 +132,7 @@ class Audit:
             self._count_in_fault(track, t_s, faulted)
             self._judge_in_fault(track, t_s, servo_id, tick)
             return
+        track.well()
         # Where a joint stood outside its range when torque came on, it may only come back.
         low, high = track.minimum, track.maximum
         if track.last is not None:
@@ -154,11 +155,14 @@ class Audit:
             track.before, track.last = track.last, tick
             self.contacts.told(t_s, servo_id, tick, torque=True)
 
-    def refused(self, t_s: float, servo_id: int, code: int, *, faulted: bool = False) -> None:
-        """A servo refused a goal: the daemon wrote beyond its limits, or after its watchdog had stopped it."""
+    def refused(self, t_s: float, servo_id: int, code: int, *, faulted: bool = False, tripped: bool = False) -> None:
+        """A servo refused a goal: the daemon wrote beyond its limits, or though its watchdog had stopped it.
+
+        One that was not heard since its watchdog `tripped` may get goals: nobody can know.
+        """
         track = self._tracks.get(servo_id)
-        if track is not None and faulted:
-            self._count_in_fault(track, t_s, faulted)
+        if track is not None and (faulted or (tripped and t_s <= track.told_s + FAULT_GRACE_S)):
+            self._count_in_fault(track, t_s, faulted=True)
         else:
             self._violate(t_s, servo_id, "refused_goal", f"error code {code}")
 

@@ -199,8 +199,10 @@ class SimBus:
         error |= alert
         end_s = start_s + byte_s * (len(parameters) + (11 if servo.model.protocol == 2.0 else 6))
         pieces = spoil(self.faults, servo_id, lambda i: status(i, error, parameters), start_s, byte_s)
-        if alert and servo.is_faulted and pieces == [Piece(status(servo_id, error, parameters))]:
-            self.audit.told_alert(t_s, servo.spec.servo_id)
+        if ((alert and servo.is_faulted) or servo.watchdog_tripped) and pieces == [
+            Piece(status(servo_id, error, parameters))
+        ]:
+            self.audit.heard_in_fault(t_s, servo.spec.servo_id)
         for piece in pieces:
             sent_s = self.wire.answer(start_s + piece.after_s, piece.data, baud, alone=piece.alone)
             end_s = max(end_s, sent_s) if not piece.after_s else end_s
@@ -247,8 +249,8 @@ class SimBus:
         if not self.faults.strikes_packets and all(len(said) == 1 for said in shares):  # nothing comes between them
             self.faults.packet += len(turns)
             for (servo,), (part,) in zip(turns, parts, strict=True):
-                if part.error & ALERT_BIT and servo.is_faulted:
-                    self.audit.told_alert(t_s, servo.spec.servo_id)
+                if (part.error & ALERT_BIT and servo.is_faulted) or servo.watchdog_tripped:
+                    self.audit.heard_in_fault(t_s, servo.spec.servo_id)
             self.wire.answer(start_s, b"".join(own for (own,) in shares), baud)
             return
         byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud

@@ -86,7 +86,7 @@ class Instructions:
         error = servo.write(address, data)
         if "goal_position" in servo.asked:
             if error:
-                self._audit.refused(t_s, servo_id, error, faulted=was_faulted)
+                self._audit.refused(t_s, servo_id, error, faulted=was_faulted, tripped=servo.watchdog_tripped)
             else:
                 tick = servo.memory.get("goal_position")
                 self._audit.goal(t_s, servo_id, tick, had_torque, faulted=was_faulted)

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 from daemon.bus.packet import ALERT_BIT, ErrorCode
-from daemon.bus.registers import WATCHDOG_TRIPPED, Item
+from daemon.bus.registers import Item
 from retarget.robot import ServoSpec
 from sim.drive import Drives, Mode
 from sim.memory import INDIRECT
@@ -92,7 +92,7 @@ class SimServo(ServoPower):
         name = item.name
         if item.eeprom and self.torque:
             return ErrorCode.ACCESS
-        if name in GOALS and self.memory.get("bus_watchdog") == WATCHDOG_TRIPPED:
+        if name in GOALS and self.watchdog_tripped:
             return ErrorCode.DATA_RANGE
         if not item.takes(value):
             return ErrorCode.DATA_RANGE

@@ -9,7 +9,7 @@ import math
 import struct
 
 from daemon.bus.models import MODELS
-from daemon.bus.registers import VELOCITY_UNIT_RAD_S, WATCHDOG_UNIT_S, Item
+from daemon.bus.registers import VELOCITY_UNIT_RAD_S, WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, Item
 from retarget.robot import ServoSpec
 from sim.drive import STEP_S, Drives, Mode
 from sim.errors import SimSettingError
@@ -31,6 +31,7 @@ class ServoMotor:
         index: of its motor in `drives`.
         memory: its control table.
         baud: bits per second it listens at; 0 for a code without one.
+        watchdog_tripped: whether its bus watchdog has run out: it refuses goals until that is cleared.
     """
 
     _measured_at = _LIVE_AT
@@ -49,6 +50,7 @@ class ServoMotor:
         self._torque = False
         self._fed_s = 0.0
         self._watchdog_s = math.inf
+        self.watchdog_tripped = False
         self._turn_tick = 0.0
         self._sign, self._homing_tick, self._threshold_tick_s = 1, 0, 0.0
         self._now_s = 0.0
@@ -141,6 +143,7 @@ class ServoMotor:
         watchdog = get("bus_watchdog")
         has = watchdog > 0 and self.model.has_watchdog(self.firmware)
         self._watchdog_s = watchdog * WATCHDOG_UNIT_S if has else math.inf
+        self.watchdog_tripped = watchdog == WATCHDOG_TRIPPED
         d.touch()
 
     def _profile(self) -> tuple[float, float]:

@@ -184,6 +184,7 @@ class ServoPower(ServoMotor):
         if t_s - self._fed_s <= self._watchdog_s or not self.torque:
             return
         self._set("bus_watchdog", WATCHDOG_TRIPPED)
+        self.watchdog_tripped = True
         self._watchdog_s = math.inf
         if not self.watchdog_stops:
             return  # flags the trip but keeps moving: seen on servos of the 330 size

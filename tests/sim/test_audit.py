@@ -14,7 +14,7 @@ from daemon.bus import packet
 from retarget.collision import SelfContact
 from retarget.robot import load_robot
 from retarget.ticks import JointServoMap
-from sim.audit import ALERTS_TOLD, TTY_GOALS, Audit
+from sim.audit import ANSWERS_TOLD, TTY_GOALS, Audit
 from sim.contact_audit import ContactAudit
 from sim.faults import Fault
 
@@ -128,8 +128,8 @@ def test_goals_to_a_tripped_servo_are_counted_after_a_moment_and_asking_it_for_t
     for i in range(30):
         audit.goal(0.01 * i, SERVO.servo_id, 2048, False, faulted=True)
     assert audit.report()["writes_in_fault"] == 19 and audit.report()["violations"] == 0
-    for _ in range(ALERTS_TOLD):
-        audit.told_alert(0.3, SERVO.servo_id)
+    for _ in range(ANSWERS_TOLD):
+        audit.heard_in_fault(0.3, SERVO.servo_id)
     for i in range(300):
         audit.goal(0.3 + 0.01 * i, SERVO.servo_id, 2048, False, faulted=True)
     assert audit.report()["violations"] == 0, "a group that holds may tell it to stand still"
@@ -142,7 +142,7 @@ def led_on(alerts: int, for_s: float) -> dict[str, int]:
     audit = Audit(ROBOT)
     audit.torque(0.0, SERVO.servo_id, True, 2048, 2048)
     for _ in range(alerts):
-        audit.told_alert(0.0, SERVO.servo_id)
+        audit.heard_in_fault(0.0, SERVO.servo_id)
     for i in range(round(for_s * 100)):
         audit.goal(0.01 * i, SERVO.servo_id, 2048 + i, False, faulted=True)
     return dict(audit.violations)
@@ -150,9 +150,9 @@ def led_on(alerts: int, for_s: float) -> dict[str, int]:
 
 def test_a_servo_that_has_tripped_and_said_so_is_not_led_on_but_may_come_to_rest() -> None:
     rest_s = JOINT.velocity_limit_rad_s / JOINT.acceleration_limit_rad_s2
-    assert led_on(ALERTS_TOLD, rest_s) == {}
-    assert led_on(ALERTS_TOLD - 1, rest_s + 5.0) == {}, "nobody may have heard it"
-    assert led_on(ALERTS_TOLD, rest_s + 0.2).keys() == {"goal_in_fault"}
+    assert led_on(ANSWERS_TOLD, rest_s) == {}
+    assert led_on(ANSWERS_TOLD - 1, rest_s + 5.0) == {}, "nobody may have heard it"
+    assert led_on(ANSWERS_TOLD, rest_s + 0.2).keys() == {"goal_in_fault"}
 
 
 ASKS = {
@@ -179,6 +179,27 @@ def test_a_trip_is_known_to_the_client_when_whole_answers_have_told_it(
         b.wait(0.01)
     assert set(b.bus.audit.violations) == ({kind} if kind else set())
     assert b.bus.audit.writes_in_fault > 0
+
+
+def test_a_servo_stopped_by_its_watchdog_may_refuse_goals_until_it_was_heard() -> None:
+    b = Bench("XM430-W350", "XM430-W350", faults=(Fault("deaf", start_s=1.0, end_s=1.5, servo_id=1),))
+    goals = packet.sync_write(116, 4, [(i, (2048).to_bytes(4, "little")) for i in (1, 2)])
+    for i in (1, 2):
+        b.send(packet.write(i, 64, b"\1"))
+        b.send(packet.write(i, 98, b"\x0a"))
+
+    def go_on(until_s: float, *asked: int) -> None:
+        while b.t_s < until_s:
+            b.send(goals + packet.sync_read(132, 4, asked) if asked else goals)
+            b.wait(0.01)
+
+    go_on(3.0, 2)
+    assert b.servo.watchdog_tripped and not b.bus.audit.violations, "it is asked no more: nobody can know"
+    assert b.bus.audit.writes_in_fault > 100
+    go_on(3.15, 1, 2)
+    assert not b.bus.audit.violations, "a moment to hear of it"
+    go_on(4.0, 1, 2)
+    assert b.bus.audit.violations.keys() == {"refused_goal"}
 
 
 def test_a_robot_that_touches_itself_is_seen() -> None:

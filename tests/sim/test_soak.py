@@ -198,7 +198,7 @@ def test_the_witness_finds_a_servo_that_stands_limp_in_a_robot_that_holds() -> N
         r.arm()
         servo = next(iter(r.sim.servos.values()))
         servo.write(servo.items["torque_enable"].address, b"\0")
-        r.streamer._judge = lambda _reading: None  # a daemon that looks at nothing
+        r.streamer._judge.fault = lambda _reading: ""  # a daemon that looks at nothing
         for _ in range(600):
             r.cycle()
             witness.look()
