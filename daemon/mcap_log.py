@@ -1,7 +1,8 @@
 """Logs in MCAP: what is written, and how it is read again, whole or cut off.
 
 Channels: `v1/cycle` (one JSON message a bus cycle, floats exact) and the topics of the front's publisher
-(`v1/event`, `v1/state`, ...). Metadata `mmmd`: format, robot name and file, versions. A chunk is ended about every
+(`v1/event`, `v1/state`, ...), each with the JSON schema of its messages. Metadata `mmmd`: format, robot name and file, versions,
+the daemon's settings; at the end `mmmd.end`: what could not be recorded. A chunk is ended about every
 second, so that a killed recorder loses a second at most. Each chunk has a checksum, and a chunk that fails it is not
 played. Opens in Foxglove, PlotJuggler and Rerun.
 """
@@ -25,6 +26,7 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import Writer
 
 from daemon.errors import LogError
+from daemon.log_schemas import schema_of
 from daemon.shared import BusState
 from retarget.robot import RobotModel
 
@@ -34,11 +36,13 @@ CYCLE_TOPIC = "v1/cycle"
 CHUNK_BYTES = 256 * 1024
 _LARGEST_RECORD_BYTES = 64 * 1024 * 1024
 """A longer record is damage, not data: it is not even allocated."""
+_METADATA, _METADATA_AT_END = "mmmd", "mmmd.end"
 _MAGIC_START = b"\x89MCAP"
 _ARRAYS = (
     "setpoint_rad", "goal_rad", "velocity_rad_s", "goal_tick", "present_tick", "present_velocity_raw",
     "present_current_raw", "error", "valid", "clipped",
 )  # fmt: skip
+_VERSIONS = ("numpy", "pyzmq", "msgspec", "mujoco", "torch")
 _SCALARS = ("cycle", "plan_id", "frame", "underrun", "torque", "late_cycles")
 
 
@@ -64,9 +68,15 @@ def _cycle_schema() -> bytes:
 
 
 class LogWriter:
-    """Writes one log; finish it, or what was flushed stays readable."""
+    """Writes one log; finish it, or what was flushed stays readable.
 
-    def __init__(self, stream: IO[bytes], robot: RobotModel) -> None:
+    Args:
+        stream: to write to.
+        robot: whose log it is.
+        settings: of the daemon, as a JSON object; empty when nobody says.
+    """
+
+    def __init__(self, stream: IO[bytes], robot: RobotModel, settings: str = "") -> None:
         self._writer = Writer(stream, chunk_size=CHUNK_BYTES)
         self._writer.start(profile="", library=f"mmmd {importlib.metadata.version('mmmd')}")
         metadata = {
@@ -78,11 +88,12 @@ class LogWriter:
             "servo_ids": ",".join(str(i) for i in robot.servo_ids),
             "mmmd": importlib.metadata.version("mmmd"),
             "python": platform.python_version(),
-            "numpy": np.__version__,
+            **{name: _version(name) for name in _VERSIONS},
+            "settings": settings,
             "machine": f"{platform.system()} {platform.machine()}",
             "started_utc": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
         }
-        self._writer.add_metadata("mmmd", metadata)
+        self._writer.add_metadata(_METADATA, metadata)
         schema = self._writer.register_schema("mmmd.Cycle", "jsonschema", _cycle_schema())
         self._cycle_channel = self._writer.register_channel(CYCLE_TOPIC, "json", schema, {"robot": robot.name})
         self._channels: dict[str, int] = {}
@@ -104,7 +115,7 @@ class LogWriter:
         except (msgspec.DecodeError, UnicodeDecodeError):
             payload = msgspec.json.encode({"text": payload.decode("utf-8", "replace")})
         if topic not in self._channels:
-            schema = self._writer.register_schema(f"mmmd.{topic}", "jsonschema", b'{"type": "object"}')
+            schema = self._writer.register_schema(f"mmmd.{topic}", "jsonschema", schema_of(topic))
             self._channels[topic] = self._writer.register_channel(topic, "json", schema)
         self._add(self._channels[topic], time.monotonic_ns(), payload)
 
@@ -112,8 +123,10 @@ class LogWriter:
         """End the chunk: what was written so far survives a kill."""
         self._writer.flush()
 
-    def finish(self) -> None:
-        """Write index and footer."""
+    def finish(self, cycles_dropped: int = 0, messages_dropped: int = 0) -> None:
+        """Write how much could not be recorded since the recorder began, index and footer."""
+        counts = {"cycles_dropped": str(cycles_dropped), "messages_dropped": str(messages_dropped)}
+        self._writer.add_metadata(_METADATA_AT_END, counts)
         self._writer.finish()
 
     def _add(self, channel: int, t_mono_ns: int, data: bytes) -> None:
@@ -121,12 +134,20 @@ class LogWriter:
         self._writer.add_message(channel, log_time=t_ns, publish_time=t_ns, data=data)
 
 
+def _version(package: str) -> str:
+    """Version of a package; empty where it is not installed."""
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return ""
+
+
 @dataclass
 class Log:
     """A log that was read.
 
     Attributes:
-        metadata: of the recorder.
+        metadata: of the recorder; with `cycles_dropped` and `messages_dropped` when it came to the end.
         cycles: bus cycles in order.
         n_events: messages on other topics.
         problem: what is wrong with the file and how far it was read; empty for a whole one.
@@ -211,7 +232,9 @@ def _take(path: Path, records: list[McapRecord], topics: dict[int, str], log: Lo
     cycles: list[LoggedCycle] = []
     n_events = 0
     for record in records:
-        if isinstance(record, Metadata) and record.name == "mmmd":
+        if isinstance(record, Metadata) and record.name == _METADATA_AT_END:
+            log.metadata |= record.metadata
+        elif isinstance(record, Metadata) and record.name == _METADATA:
             log.metadata = dict(record.metadata)
             found = log.metadata.get("format", "none")
             if found != str(FORMAT):

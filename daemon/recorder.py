@@ -14,8 +14,10 @@ import sys
 import time
 from pathlib import Path
 
+import msgspec
 import zmq
 
+from daemon.log_schemas import DROPPED_TOPIC, Dropped
 from daemon.logs import start_logging
 from daemon.rotation import RotatingLog
 from daemon.shared import N_CYCLES, BusLink
@@ -36,6 +38,7 @@ def main() -> int:
         parser.add_argument(name, required=True)
     for name in ("--size-mb", "--total-mb"):
         parser.add_argument(name, type=float, default=0.0)
+    parser.add_argument("--settings", default="", help="of the daemon, as JSON; kept in the log")
     arguments = parser.parse_args()
     start_logging("recorder")
     robot = load_robot(arguments.robot)
@@ -47,17 +50,18 @@ def main() -> int:
     events = context.socket(zmq.PULL)
     events.setsockopt(zmq.RCVHWM, EVENT_QUEUE)
     events.bind(arguments.events)
-    index, dropped, flushed_s = max(0, link.n_cycles - N_CYCLES // 2), 0, time.monotonic()  # what is still there
+    index, flushed_s = max(0, link.n_cycles - N_CYCLES // 2), time.monotonic()  # what is still there
     parent = os.getppid()
     try:
-        with RotatingLog(Path(arguments.out), robot, arguments.size_mb, arguments.total_mb) as writer:
+        bounds = (arguments.size_mb, arguments.total_mb)
+        with RotatingLog(Path(arguments.out), robot, *bounds, arguments.settings) as writer:
             while True:
                 last_round = bool(stopping) or os.getppid() != parent
                 events.poll(0 if last_round else round(POLL_S * 1e3))
                 records, index, lost = link.cycles_since(index)
                 if lost:
-                    dropped += lost
-                    log.warning("%d cycles dropped: the disk is too slow", dropped)
+                    writer.cycles_dropped += lost
+                    log.warning("%d cycles dropped: the disk is too slow", writer.cycles_dropped)
                 for record in records:
                     writer.cycle(record)
                 for _ in range(EVENT_QUEUE):
@@ -65,6 +69,8 @@ def main() -> int:
                         break
                     topic, payload = events.recv_multipart()
                     writer.event(topic.decode(), payload)
+                    if topic.decode() == DROPPED_TOPIC:
+                        writer.messages_dropped = msgspec.json.decode(payload, type=Dropped).messages
                 if time.monotonic() - flushed_s >= FLUSH_S:
                     flushed_s = time.monotonic()
                     writer.flush()

@@ -25,10 +25,16 @@ class RotatingLog:
         robot: whose log it is.
         size_mb: a file that has grown beyond is finished; 0 for never.
         total_mb: beyond so much together the oldest finished files are removed; 0 for never.
+        settings: of the daemon, as JSON; stands in each file.
+
+    Attributes:
+        cycles_dropped: cycles that could not be recorded so far; whoever counts them sets it.
+        messages_dropped: messages of the front, likewise.
     """
 
-    def __init__(self, path: Path, robot: RobotModel, size_mb: float, total_mb: float) -> None:
-        self._path, self._robot = path, robot
+    def __init__(self, path: Path, robot: RobotModel, size_mb: float, total_mb: float, settings: str = "") -> None:
+        self._path, self._robot, self._settings = path, robot, settings
+        self.cycles_dropped = self.messages_dropped = 0
         self._size_bytes, self._total_bytes = size_mb * _MB, total_mb * _MB
         self._number = 0
         self._full = False
@@ -43,7 +49,7 @@ class RotatingLog:
     ) -> None:
         try:
             if error is None:
-                self._writer.finish()
+                self._finish()
         finally:
             self._file.close()
 
@@ -71,7 +77,7 @@ class RotatingLog:
         """Begin the next file when this one is full; not before there is something to write."""
         if not self._full:
             return
-        self._writer.finish()
+        self._finish()
         self._file.close()
         self._finished.append(self._current)
         self._number += 1
@@ -83,9 +89,12 @@ class RotatingLog:
     def _current(self) -> Path:
         return self._path if not self._number else self._path.with_suffix(f".{self._number}{self._path.suffix}")
 
+    def _finish(self) -> None:
+        self._writer.finish(self.cycles_dropped, self.messages_dropped)
+
     def _begin(self) -> tuple[IO[bytes], LogWriter]:
         file = self._current.open("wb")
-        return file, LogWriter(file, self._robot)
+        return file, LogWriter(file, self._robot, self._settings)
 
     def _remove_oldest(self) -> None:
         if not self._total_bytes:

@@ -89,6 +89,12 @@ def config_of(settings: Mapping[str, Setting]) -> DaemonConfig:
     return DaemonConfig(endpoints=ends, **values)
 
 
+def settings_of(config: DaemonConfig) -> dict[str, Any]:
+    """Every setting that `mmmd config show` tells, as the daemon runs with it; `log_json` is not the daemon's."""
+    ends = {key: getattr(config.endpoints, key) for key in _ENDPOINT_KEYS}
+    return {key: ends[key] if key in ends else getattr(config, key) for key in DEFAULTS if key != _LOG_JSON}
+
+
 def _read(file: Path) -> dict[str, Any]:
     try:
         table = tomllib.loads(file.read_text("utf-8"))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import importlib.util
+import json
 import logging
 import os
 import signal
@@ -28,6 +29,8 @@ from daemon.generation_messages import GeneratorError
 from daemon.keys import KeyFolder
 from daemon.metrics import MetricsServer, exposition
 from daemon.notify import Notifier
+from daemon.recorder_feed import RecorderFeed
+from daemon.settings import settings_of
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
 from daemon.state import RobotState
 from retarget.robot import RobotModel, load_robot
@@ -44,36 +47,7 @@ GENERATOR_START_TIMEOUT_S = 120.0
 GOOD_LIFE_S = 2.0
 """A process that lived so long did not fail to start: the wait before its next start is short again."""
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
-RECORDER_QUEUE = 2000
-RECORDER_LINGER_MS = 500
 GOOD, ROBOT_FAULT = 0, 3
-
-
-class RecorderFeed:
-    """Hands requests and events to the recorder's bounded queue; what does not fit is dropped and counted."""
-
-    def __init__(self, endpoint: str) -> None:
-        self.endpoint, self.dropped, self._open = endpoint, 0, True
-        self._context = zmq.Context()
-        self._socket = self._context.socket(zmq.PUSH)
-        self._socket.setsockopt(zmq.SNDHWM, RECORDER_QUEUE)
-        self._socket.connect(endpoint)
-
-    def __call__(self, topic: str, payload: bytes) -> None:
-        """Hand over one message."""
-        if not self._open:
-            return
-        try:
-            self._socket.send_multipart([topic.encode(), payload], zmq.DONTWAIT)
-        except zmq.Again:
-            self.dropped += 1
-
-    async def close(self) -> None:
-        """Hand over no more; what was not sent yet has half a second, for which the event loop is not held up."""
-        if self._open:
-            self._open = False
-            self._socket.close(RECORDER_LINGER_MS)
-            await asyncio.to_thread(self._context.term)
 
 
 class BusStartError(DaemonError):
@@ -313,6 +287,7 @@ class Supervisor:
         arguments = ["--robot", self._config.robot, "--link", str(self._link.path)]
         arguments += ["--events", feed.endpoint, "--out", str(self._config.log)]
         arguments += ["--size-mb", str(self._config.log_size_mb), "--total-mb", str(self._config.log_total_mb)]
+        arguments += ["--settings", json.dumps(settings_of(self._config), default=str)]
         child = Child("recorder", "daemon.recorder", arguments)
         self._children.append(child)
         await child.start()

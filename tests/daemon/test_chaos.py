@@ -1,4 +1,4 @@
-"""Processes killed and frozen in states of the robot (docs/safety.md says which in which): a named safe state within a stated time, and no limit ever broken.
+"""Processes killed and frozen in states of the robot, as listed in docs/safety.md: a named safe state in time, every limit kept.
 
 The servos are behind a real tty and outlive the daemon's processes; their audit watches all the time.
 """

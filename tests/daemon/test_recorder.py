@@ -16,9 +16,13 @@ from mcap.writer import Writer
 from rig import rig, swing
 
 from daemon.errors import LogError
+from daemon.log_schemas import DROPPED_TOPIC
 from daemon.mcap_log import CYCLE_TOPIC, LogWriter, read_log
+from daemon.recorder_feed import RecorderFeed
+from daemon.settings import DEFAULTS
 from daemon.shared import BusLink, BusState
 from retarget.robot import RobotModel, load_robot
+from tests.end_to_end.harness import RunningDaemon
 
 
 @pytest.fixture(scope="module")
@@ -92,6 +96,87 @@ def test_any_mcap_reader_finds_named_and_typed_channels(run, tmp_path):
                 assert described["properties"][name]["type"] == kind
             times.append(message.log_time)
         assert len(times) == len(run[1]) and times == sorted(times)
+
+
+def fields_of(schema: dict, message: dict) -> dict:
+    """The schema of the kind of object that a message is."""
+    kinds = [schema["$defs"][kind["$ref"].rsplit("/", 1)[1]] for kind in schema.get("anyOf", [])] or [schema]
+    mine = [kind for kind in kinds if message.get("type") in kind["properties"].get("type", {}).get("enum", [None])]
+    assert len(mine) == 1, message
+    return mine[0]
+
+
+def assert_described(schema: dict, message: dict) -> None:
+    """Every field of a message stands in its schema with its type, and what must be there is."""
+    fields = fields_of(schema, message)
+    assert set(fields.get("required", [])) <= message.keys() <= fields["properties"].keys()
+    names = {str: "string", bool: "boolean", int: "integer", float: "number", list: "array", type(None): "null"}
+    for key, value in message.items():
+        described = fields["properties"][key]
+        kinds = {kind.get("type", "object") for kind in described.get("anyOf", [described])}
+        if "enum" in described:
+            assert value in described["enum"]
+        else:
+            assert names.get(type(value), "object") in kinds | ({"integer"} if "number" in kinds else set())
+
+
+def test_what_a_daemon_records_says_its_settings_versions_and_losses_and_describes_every_message(tmp_path):
+    daemon = RunningDaemon("--log", str(tmp_path / "run.mcap"), "--idle", "calm")
+    try:
+        with daemon.until_ready().client() as client:
+            assert client.say("wave", seconds=0.8).done
+            client.story(["wave", "left"], loop=True, wait=False)
+            client.stop()
+            client.look(10.0)
+            with client.stream("test") as stream:
+                stream.send({"r_shoulder_pitch": 0.1})
+            status = client.status()
+        assert daemon.mmmd("say", "wave", "--no-wait").returncode == 0
+        assert daemon.terminate() == 0
+    finally:
+        daemon.close()
+    metadata = read_log(tmp_path / "run.mcap").metadata
+    settings = json.loads(metadata["settings"])
+    assert set(settings) == set(DEFAULTS) - {"log_json"}
+    assert settings["idle"] == "calm" and settings["cmd"] == daemon.endpoints.cmd and settings["robot"] == "reference"
+    assert all(metadata[name] for name in ("mmmd", "python", "numpy", "pyzmq", "msgspec", "mujoco"))
+    assert metadata["cycles_dropped"] == "0" and metadata["messages_dropped"] == "0"
+    seen = set()
+    with (tmp_path / "run.mcap").open("rb") as f:
+        for schema, channel, message in make_reader(f, validate_crcs=True).iter_messages():
+            if channel.topic != CYCLE_TOPIC:
+                assert schema is not None
+                content = json.loads(message.data)
+                assert_described(json.loads(schema.data), content)
+                seen.add((channel.topic, content.get("type")))
+    assert {("v1/state", "state"), ("cmd", "say"), ("cmd", "story"), ("cmd", "lease"), ("stream", "target")} <= seen
+    events = {kind for topic, kind in seen if topic == "v1/event"}
+    assert {"accepted", "progress", "done", "cancelled", "ack"} <= events
+    assert status.generator.startswith("ready (checkpoint ")  # which model it was stands in every state
+
+
+def test_messages_that_the_recorder_was_too_slow_for_are_counted_in_the_log(tmp_path, caplog):
+    endpoint = f"ipc://{tmp_path}/events"
+    feed = RecorderFeed(endpoint, queue=10)
+    context = zmq.Context()
+    recorder = context.socket(zmq.PULL)
+    try:
+        for _ in range(50):
+            feed("v1/event", b"{}")
+        assert feed.dropped > 0 and "too slow" in caplog.text
+        recorder.bind(endpoint)
+        assert recorder.poll(5000)
+        heard: list[list[bytes]] = []
+        while DROPPED_TOPIC.encode() not in [topic for topic, _ in heard]:
+            feed("v1/state", b"{}")
+            while recorder.poll(20):
+                heard.append(recorder.recv_multipart())
+        losses = [json.loads(payload)["messages"] for topic, payload in heard if topic == DROPPED_TOPIC.encode()]
+        assert losses[-1] >= 40
+    finally:
+        asyncio.run(feed.close())
+        recorder.close(0)
+        context.term()
 
 
 def test_a_plain_text_is_recorded_as_json(run, tmp_path):
@@ -262,8 +347,10 @@ def test_a_stopped_recorder_slows_nobody_and_its_losses_are_counted(recording, r
     recording.process.terminate()
     assert recording.process.wait(60) == 0
     assert b"cycles dropped" in recording.process.stderr.read()
-    numbers = [c.cycle for c in read_log(recording.out).cycles]
+    log = read_log(recording.out)
+    numbers = [c.cycle for c in log.cycles]
     assert numbers[-1] == 5999 and len(numbers) < 5000
+    assert int(log.metadata["cycles_dropped"]) == 6000 - len(numbers)
 
 
 def test_a_file_that_cannot_be_written_ends_recording_alone(tmp_path):

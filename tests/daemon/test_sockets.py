@@ -10,7 +10,7 @@ import zmq
 import zmq.asyncio
 
 from daemon.sockets import publish_now, send_now
-from daemon.supervisor import RecorderFeed
+from daemon.recorder_feed import RecorderFeed
 
 pytestmark = pytest.mark.timeout(30)
 N, HWM = 3000, 500
