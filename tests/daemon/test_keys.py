@@ -13,12 +13,14 @@ import zmq.utils.z85
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.client import Client, NoAnswerError
+from daemon.client import Client, NoAnswerError, RefusedError
 from daemon.config import Endpoints
 from daemon.demo import free_endpoints
 from daemon.errors import ConfigError
+from daemon.generation_messages import Generated
 from daemon.keys import ZAP, Doorkeeper, KeyFolder, checked_key
 from daemon.rates import BURST, RATE_HZ, Rates
+from tests.daemon.kinematic import generate
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 
 pytestmark = pytest.mark.timeout(120)
@@ -279,14 +281,31 @@ def test_without_torch_and_generator_the_daemon_says_what_to_install(tmp_path):
 
 
 def test_another_checkpoint_than_agreed_is_not_used():
-    daemon = RunningDaemon("--model-hash", "0123")
+    """A text is refused by name and moves nothing; the generator is not even asked. What needs none goes on."""
+    asked: list[str] = []
+
+    def answer(text: str, seed: int, seconds: float | None) -> Generated:
+        asked.append(text)
+        return generate(text, seed, seconds)
+
+    daemon = RunningDaemon("--model-hash", "0123", answer=answer)
     try:
-        end_s = time.monotonic() + 20
-        with pytest.raises(AssertionError):  # never ready
-            while time.monotonic() < end_s:
-                if "checkpoint 0123" in daemon.said:
-                    raise AssertionError
-                time.sleep(0.1)
+        end_s = time.monotonic() + 40
+        while "ready: robot" not in daemon.said:
+            assert time.monotonic() < end_s, daemon.said
+            time.sleep(0.05)
+        with daemon.client() as client:
+            for _ in range(2):  # while it starts, and afterwards
+                with pytest.raises(RefusedError) as caught:
+                    client.say("wave", timeout_s=40)
+                assert caught.value.code == "generator_down" and "checkpoint 0123" in str(caught.value)
+            with pytest.raises(RefusedError, match="checkpoint 0123"):
+                client.story(["wave", "left"])
+            status = client.status()
+            assert status.state == "limp" and status.generator.startswith("down") and status.command is None
+            assert not asked
+            assert client.gesture("nod").done
+        assert daemon.terminate() == 0
     finally:
         daemon.close()
 
