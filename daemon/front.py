@@ -195,6 +195,7 @@ class Front:
     async def _serve_cmd(self) -> None:
         while True:
             self._take_frames(await self._cmd.recv_multipart())
+            await asyncio.sleep(0)  # to receive what is there already never yields: a flood would keep the robot waiting
 
     async def _serve_stream(self) -> None:
         while True:
@@ -235,8 +236,9 @@ class Front:
             self.ledger.reply(route, error_event(error))
 
     def drain_cmd(self) -> None:
-        """Take the requests that wait in the socket."""
+        """Take the requests that wait in the socket; meanwhile the bus process is told that the front is there."""
         for _ in range(DRAIN_LIMIT):
+            self.link.heartbeat()
             received = cast("asyncio.Future[list[bytes]]", self._cmd.recv_multipart(zmq.DONTWAIT))
             if received.exception() is not None:
                 return
@@ -267,6 +269,7 @@ class Front:
                 for topic, payload in list(self._last_values.items()):
                     if topic.startswith(frames[0][1:]):
                         self._overruns += not publish_now(self._pub, [topic, payload])
+            await asyncio.sleep(0)
 
     def _send(self, route: Route, event: Event) -> None:
         self._events_dropped += not send_now(self._cmd, [*route.frames, encode(event)])
