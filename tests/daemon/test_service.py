@@ -171,8 +171,7 @@ def test_install_service_writes_what_udev_and_the_daemon_read_and_keeps_a_config
 
 def test_the_unit_leaves_the_bus_process_alone_when_the_front_dies_and_never_gives_up(installed):
     """systemd.kill(5): `mixed` and `control-group` send SIGKILL to all that is left as soon as the main process is gone."""
-    unit = configparser.ConfigParser(interpolation=None)
-    unit.optionxform = str
+    unit = configparser.RawConfigParser()
     unit.read(installed / "etc/systemd/system/mmmd.service")
     service = unit["Service"]
     assert service["ExecStart"].startswith(f"{installed}/bin/mmmd run --config /etc/mmmd/mmmd.toml")
