@@ -195,9 +195,7 @@ class Front:
     async def _serve_cmd(self) -> None:
         while True:
             self._take_frames(await self._cmd.recv_multipart())
-            await asyncio.sleep(
-                0
-            )  # to receive what is there already never yields: a flood would keep the robot waiting
+            await asyncio.sleep(0)  # receiving what is there already never yields: a flood would hold up the robot
 
     async def _serve_stream(self) -> None:
         while True:
