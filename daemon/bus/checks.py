@@ -35,19 +35,6 @@ def check_strangers(bus: RobotBus) -> list[Finding]:
     ]
 
 
-def verify_before_torque(bus: RobotBus, robot: RobotModel) -> None:
-    """Ids, models and settings once more: since the start a servo may have been exchanged or set up anew.
-
-    Five questions to each servo; about 2.1 ms of wire time for each at 1 Mbit/s.
-
-    Raises:
-        BusMismatchError: with a table of what is not as it has to be.
-        LinkError: a servo, or all, fell silent meanwhile.
-    """
-    bus.verify()
-    require_needed(check_servos(bus, robot))
-
-
 def require_needed(findings: Sequence[Finding]) -> None:
     """Refuse servos whose settings would make the robot do something else than it is told.
 

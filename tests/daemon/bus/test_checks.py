@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rig_bus import BusRig, bus_rig
 
-from daemon.bus.checks import check_servos, fix, require_needed, verify_before_torque
+from daemon.bus.checks import check_servos, fix, require_needed
 from daemon.bus.rules import ADVISED, NEEDED, Finding
 from daemon.errors import BusMismatchError
 
@@ -101,12 +101,13 @@ def test_before_torque_ids_and_settings_are_compared_with_five_questions_a_servo
     sent: list[bytes] = []
     write = rig.port.write
     rig.port.write = lambda data: (sent.append(data), write(data))[1]  # type: ignore[method-assign]
-    verify_before_torque(rig.bus, rig.robot)
+    rig.bus.verify()
+    require_needed(check_servos(rig.bus, rig.robot))
     assert len(sent) == 5 * len(rig.bus.ids)
     servo = rig.servos.servos[rig.bus.ids[0]]
     servo._set("status_return_level", 1)
     with pytest.raises(BusMismatchError, match="status_return_level 2"):
-        verify_before_torque(rig.bus, rig.robot)
+        require_needed(check_servos(rig.bus, rig.robot))
     servo._set("model_number", 9)
     with pytest.raises(BusMismatchError, match="unknown"):
-        verify_before_torque(rig.bus, rig.robot)
+        rig.bus.verify()
