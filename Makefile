@@ -30,9 +30,9 @@ $(VENV)/.ready: pyproject.toml constraints.txt
 demo: setup
 	$(BIN)/mmmd demo --out out/demo
 
-# Tests of daemons wait for real time: three files at once keep two cores busy.
+# Tests of daemons wait for real time: four files at once keep two cores busy.
 test: setup
-	$(BIN)/python -m pytest -n 3 --dist loadfile
+	$(BIN)/python -m pytest -n 4 --dist loadfile
 
 check: setup
 	$(BIN)/ruff format --check .

@@ -41,6 +41,7 @@ class BusProcess:
         end_s = time.monotonic() + 30
         while not what():
             assert time.monotonic() < end_s, (self.state, self.link.text)
+            self.link.heartbeat()
             time.sleep(0.01)
 
     def close(self) -> None:

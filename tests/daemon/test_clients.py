@@ -183,7 +183,8 @@ def test_a_halt_does_not_wait_for_what_is_said_and_ends_what_has_not_begun(runni
             with os.fdopen(inlet) as source, os.fdopen(outlet, "w", buffering=1) as host:
                 serving = asyncio.create_task(server.serve(source, out))
                 host.write(calling(1, "say", text="wave", seconds=9.0) + "\n")
-                await client.wait_for("moving", timeout_s=5)
+                while (now := await client.status()).command is None or now.state != "moving":
+                    await asyncio.sleep(0.01)
                 host.write(
                     "\n".join([calling(2, "say", text="left wave"), calling(3, "status"), calling(4, halt)]) + "\n"
                 )

@@ -33,7 +33,7 @@ AFTER = {
 """Verb -> the state before -> the state it ends in when nobody interferes; where there is none it is refused."""
 ENDS_MOTION = ("park", "stop", "estop", "cancel")
 WAY_OUT = {"limp": "arm", "estop": "reset"}
-STEPS = 40
+STEPS = 25
 WITHIN_S = 12.0
 """Longest for a state to come: arming, or parking from far away, on a busy machine."""
 SETTLED_CYCLES = 10

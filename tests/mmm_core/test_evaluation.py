@@ -130,7 +130,7 @@ def drawn(name: str, n: int, seed: int = 3) -> list[tuple[Gesture, np.ndarray]]:
 @pytest.fixture(scope="module")
 def everything() -> list[tuple[Gesture, Shown, Shown]]:
     """A few clips of every family, each with its mirror image."""
-    return [(g, shown(f), shown(mirror(f))) for name in FAMILIES for g, f in drawn(name, 4)]
+    return [(g, shown(f), shown(mirror(f))) for name in FAMILIES for g, f in drawn(name, 3)]
 
 
 def asked_side(name: str, side: str) -> str:
