@@ -114,7 +114,10 @@ def test_a_gentle_motion_may_be_shifted_by_any_time(seed: int, shift: int) -> No
     assume(not early.report.interventions)
     n = len(motion.joints_m)
     end = n - 3  # in the last ones it comes to rest, in front of a joint's end wherever the block leaves room for it
-    seen, seen_late = r.kinematics.places(early.q_rad[24:end]), r.kinematics.places(late.q_rad[shift + 24 : shift + end])
+    seen, seen_late = (
+        r.kinematics.places(early.q_rad[24:end]),
+        r.kinematics.places(late.q_rad[shift + 24 : shift + end]),
+    )
     np.testing.assert_allclose(seen_late, seen, atol=5e-4)
     assert np.abs(np.diff(seen, axis=0)).max() > 5e-3  # one frame more or less would be seen
 
