@@ -235,14 +235,14 @@ class Front:
             error = WireError("too_fast", "read a request", "more than that for a while", allowed, do)
             self.ledger.reply(route, error_event(error))
 
-    def drain_cmd(self) -> None:
-        """Take the requests that wait in the socket; meanwhile the bus process is told that the front is there."""
+    async def drain_cmd(self) -> None:
+        """Take the requests that wait in the socket; the robot is followed between them."""
         for _ in range(DRAIN_LIMIT):
-            self.link.heartbeat()
             received = cast("asyncio.Future[list[bytes]]", self._cmd.recv_multipart(zmq.DONTWAIT))
             if received.exception() is not None:
                 return
             self._take_frames(received.result())
+            await asyncio.sleep(0)
 
     async def _tick_forever(self) -> None:
         while True:

@@ -83,9 +83,10 @@ class FrontControls:
         ended = threading.Event()
 
         async def end_commands() -> None:
-            front.drain_cmd()
+            await front.drain_cmd()
             await asyncio.sleep(0)  # a request that was already received is taken now
             performer.end_halted()
+            performer.halts.served()
             ended.set()
 
         try:

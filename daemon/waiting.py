@@ -66,21 +66,32 @@ class Halts:
         self._clock = clock_id() if clock is None else clock
         self._sent_s: OrderedDict[str, float] = OrderedDict()
         self._from = ""
+        self._n_given = self._n_served = 0
         self.at_s, self.by = float("-inf"), ""
 
     def note(self, by: str, request: Request | None = None) -> None:
         """A halt was given, by a request that may say when it was sent."""
         sent_s, clock = (None, None) if request is None else (request.t_mono, request.clock)
+        self._n_given += 1
         self.at_s, self.by, self._from = time.monotonic(), by, clock or ""
         if clock and clock != self._clock and sent_s is not None:
             self._sent_s[clock] = max(sent_s, self._sent_s.pop(clock, sent_s))
             if len(self._sent_s) > CLOCKS_KEPT:
                 self._sent_s.popitem(last=False)
 
+    def served(self) -> None:
+        """What had arrived before a halt has ended. Called by the event loop, once for each halt."""
+        self._n_served += 1
+
     def overtook(self, entry: Entry) -> bool:
-        """Whether a command that arrives now was sent before the halt; of one that cannot show it, that is assumed."""
+        """Whether a command that arrives now was sent before the halt; of one that cannot show it, that is assumed.
+
+        It is as long as the halt is being served, which takes a while behind many requests, and a moment longer.
+        """
         after = self._sent_after(entry.request)
-        return time.monotonic() - self.at_s < SHADOW_S if after is None else not after
+        if after is not None:
+            return not after
+        return self._n_served < self._n_given or time.monotonic() - self.at_s < SHADOW_S
 
     def spares(self, entry: Entry) -> bool:
         """Whether a command that came before the halt was served was surely sent after it."""

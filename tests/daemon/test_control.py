@@ -127,16 +127,20 @@ def test_a_stop_waits_for_a_stalled_event_loop_only_while_nobody_asks(somebody_a
 
     machine, halts, follower = StateMachine(), Halts(), SimpleNamespace(stopped=False)
     machine.state = RobotState.MOVING
+
+    async def drain_cmd() -> None:
+        asked.append("take what waits")
+
     stalled = asyncio.new_event_loop()  # it runs nothing until the stop is answered
     performer = SimpleNamespace(halts=halts, end_halted=lambda: asked.append("end what is played"))
     front = SimpleNamespace(
         machine=machine, performer=performer, follower=follower, loop=stalled,
-        link=SimpleNamespace(request=asked.append), drain_cmd=lambda: None,
+        link=SimpleNamespace(request=asked.append), drain_cmd=drain_cmd,
     )  # fmt: skip
     with contextlib.closing(stalled):
         assert FrontControls(front, next_request).stop(Stop()) == "moving"
         assert asked == [BusRequest.STOP] and follower.stopped and halts.by == "stop"
-        while len(asked) < 2:
+        while len(asked) < 3:
             stalled.run_until_complete(asyncio.sleep(0))
     assert looks and set(looks) == {1}, "the bus process is told first"
     assert (len(looks) == 1) == somebody_asks

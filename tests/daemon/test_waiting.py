@@ -23,6 +23,7 @@ def halted(clock: str | None, sent_s: float | None, *, ago_s: float = 0.0) -> Ha
     """Stopped by a request that was sent at `sent_s` of `clock` and came `ago_s` ago."""
     halts = Halts(HERE)
     halts.note("stop", Stop(clock=clock, t_mono=sent_s))
+    halts.served()
     halts.at_s -= ago_s
     return halts
 
@@ -58,11 +59,23 @@ def test_a_later_stop_from_elsewhere_counts_for_all():
     halts = halted(THERE, 500.0)
     halts.note("stop", Stop(clock=HERE, t_mono=time.monotonic()))
     assert halts.overtook(said(THERE, 499.0))
+    halts.served()
     assert halts.overtook(said(THERE, 500.1)) and not halts.spares(
         said(THERE, 500.1)
     )  # within the shadow of the second
     halts.at_s -= LONG_AGO_S
     assert not halts.overtook(said(THERE, 500.1))
+
+
+def test_what_comes_while_a_stop_is_being_served_came_before_it_unless_its_clock_shows_otherwise():
+    """Behind a flood of requests that takes longer than the moment after it."""
+    halts = halted(HERE, None, ago_s=LONG_AGO_S)
+    assert not halts.overtook(said(None, None))
+    halts.note("stop", Stop(clock=HERE, t_mono=time.monotonic()))
+    halts.at_s -= LONG_AGO_S
+    assert halts.overtook(said(None, None)) and not halts.overtook(said(HERE, halts.at_s + 1e-3))
+    halts.served()
+    assert not halts.overtook(said(None, None))
 
 
 def test_a_time_that_is_still_to_come_proves_nothing():
