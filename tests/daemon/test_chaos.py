@@ -17,6 +17,7 @@ import pytest
 
 from daemon import events as ev
 from daemon.client import CancelledByError, Client, NoAnswerError, RefusedError
+from daemon.realtime import BUS_PRIORITY, take_fifo
 from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.faults import Fault, FaultSchedule
@@ -32,14 +33,18 @@ FAULT_WITHIN_S = 6.0
 
 
 class Servos:
-    """The simulated robot behind a tty, served by a thread."""
+    """The simulated robot behind a tty, served by a thread that goes first, as servos do: late, they would be silent ones."""
 
     def __init__(self, folder) -> None:
         self._link = folder / "servos"
         self.server = PtyServer(SimBus(ROBOT), self._link)
         self.url = f"dxl://{folder}/servos?baud={ROBOT.bus.baud}"
-        self._thread = threading.Thread(target=self.server.serve, daemon=True)
+        self._thread = threading.Thread(target=self._serve, daemon=True)
         self._thread.start()
+
+    def _serve(self) -> None:
+        take_fifo(BUS_PRIORITY)
+        self.server.serve()
 
     def assert_kept(self) -> None:
         report = self.server.bus.audit.report()

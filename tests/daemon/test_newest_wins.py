@@ -152,7 +152,7 @@ COMMANDS = st.lists(
 )
 
 
-@settings(max_examples=6, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(COMMANDS)
 def test_each_ends_once_and_only_by_what_was_accepted_and_is_newer(talk, wanted):
     asked: dict[str, Command] = {}

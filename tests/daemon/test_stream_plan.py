@@ -96,7 +96,7 @@ actions = st.lists(
 )  # fmt: skip
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(name=st.sampled_from(["reference", "toddlerbot"]), actions=actions)
 def test_no_stream_breaks_a_limit_or_touches(name, actions):
     """Random, jumping, adversarial and interrupted streams, a front that stalls, stops in the middle, a slowed robot."""

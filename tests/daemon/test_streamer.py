@@ -403,7 +403,7 @@ actions = st.lists(
 )
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(actions, st.integers(0, 2**32 - 1))
 def test_no_order_of_requests_and_setpoints_breaks_a_limit(sequence, seed):
     random = np.random.default_rng(seed)

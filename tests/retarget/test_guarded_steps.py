@@ -40,7 +40,7 @@ def assert_kept(robot: RobotModel, guard: GuardedSteps, path: np.ndarray) -> Non
     assert BODIES[robot.name].clearance_m(between).min() > 0.0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(name=st.sampled_from(sorted(ROBOTS)), commands=jumps)
 def test_no_targets_break_a_limit_or_touch(name, commands):
     """Random poses, jumps beyond every limit, single joints, targets that alternate within few steps, sudden ends."""
