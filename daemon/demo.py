@@ -68,14 +68,31 @@ def free_endpoints() -> Endpoints:
 @contextmanager
 def child(arguments: list[str], log: Path) -> Generator[subprocess.Popen[bytes]]:
     """A subcommand of mmmd in its own process; ended at the latest when the block ends."""
+    command, process = [sys.executable, "-m", "daemon.cli", *arguments], None
     with log.open("wb") as f:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "daemon.cli", *arguments], stdout=f, stderr=subprocess.STDOUT, start_new_session=True
-        )
         try:
+            with _sigterm_waits():  # else a child that has just been started would be nobody's
+                process = subprocess.Popen(command, stdout=f, stderr=subprocess.STDOUT, start_new_session=True)
             yield process
         finally:
-            end(process)
+            if process is not None:
+                end(process)
+
+
+@contextmanager
+def _sigterm_waits() -> Generator[None]:
+    """A SIGTERM that comes in the block counts at its end. Blocking the signal instead would be passed on to children."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    before = signal.signal(signal.SIGTERM, lambda number, _frame: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+        if came:
+            signal.raise_signal(signal.SIGTERM)
 
 
 def end(process: subprocess.Popen[bytes]) -> int:

@@ -83,11 +83,13 @@ class FrontControls:
         ended = threading.Event()
 
         async def end_commands() -> None:
-            await front.drain_cmd()
-            await asyncio.sleep(0)  # a request that was already received is taken now
-            performer.end_halted()
-            performer.halts.served()
-            ended.set()
+            try:
+                await front.drain_cmd()
+                await asyncio.sleep(0)  # a request that was already received is taken now
+                performer.end_halted()
+            finally:  # what comes later is no longer taken for what came before
+                performer.halts.served()
+                ended.set()
 
         try:
             asyncio.run_coroutine_threadsafe(end_commands(), front.loop)
