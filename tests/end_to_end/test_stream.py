@@ -10,7 +10,9 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +64,24 @@ def wave(robot: Client, stream: Stream, seconds: float, rad: float = 0.3) -> Non
     while (t_s := time.monotonic() - began_s) < seconds:
         stream.send([q + rad * math.sin(3 * t_s) for q in rest])
         time.sleep(PERIOD_S)
+
+
+@contextlib.contextmanager
+def fed(stream: Stream, target_rad: Sequence[float]) -> Iterator[None]:
+    """A client that goes on sending, however long the body takes."""
+    over = threading.Event()
+
+    def feed() -> None:
+        while not over.wait(PERIOD_S):
+            stream.send(target_rad)
+
+    thread = threading.Thread(target=feed)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
 
 
 def stages(stream: Stream) -> list[str]:
@@ -332,7 +352,7 @@ def test_the_command_streams_lines_from_its_input(robot, running):
 
 def test_status_tells_where_the_socket_is_and_who_holds_it(robot, running):
     assert f"stream     {running.endpoints.stream}, no lease" in running.mmmd("status").stdout.replace("\n", "")
-    with robot.stream("teller"):
+    with robot.stream("teller") as stream, fed(stream, robot.status().goal_rad):
         assert "teller" in running.mmmd("status").stdout
     assert f"stream: {running.endpoints.stream}" in running.mmmd("capabilities").stdout
 
