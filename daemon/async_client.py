@@ -50,6 +50,7 @@ from daemon.requests import (
     Say,
     Status,
     Stop,
+    Torque,
     tag_of,
 )
 from daemon.wire import decode_event
@@ -205,7 +206,7 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         return ack
 
     async def estop(self, *, wait: bool = True) -> Ack:
-        """Cut torque at once, latched; with `wait`, return once the bus process has confirmed it."""
+        """Cut torque at once (or hold, as the daemon is set), latched; with `wait`, return once it is confirmed."""
         ack = await self._acknowledged(Estop(id=uuid.uuid4().hex), self.endpoints.ctl)
         if wait:
             await self.wait_for("estop", "fault", timeout_s=self._timeout_s)
@@ -223,6 +224,13 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         ack = await self._acknowledged(Arm(id=uuid.uuid4().hex), self.endpoints.ctl)
         if wait:
             await self.wait_for("idle", "moving", "holding", "fault", "estop", timeout_s=timeout_s)
+        return ack
+
+    async def torque_off(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
+        """Brake within the limits, then limp where the robot stands; it moves again only after `arm`."""
+        ack = await self._acknowledged(Torque(id=uuid.uuid4().hex, on=False), self.endpoints.ctl)
+        if wait:
+            await self.wait_for("limp", "fault", "estop", timeout_s=timeout_s)
         return ack
 
     async def park(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
@@ -256,7 +264,7 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
             await asyncio.sleep(0.05)
 
     async def watch(self, *topics: str, timeout_s: float = REPLY_TIMEOUT_S) -> AsyncGenerator[tuple[str, AnyEvent]]:
-        """Yield (topic, event) of `v1/state`, `v1/health` and `v1/event` (all when none is named), without end.
+        """Yield (topic, event) of `v1/state`, `v1/health`, `v1/event` and `v1/log` (all when none is named), without end.
 
         Raises:
             NoAnswerError: nothing was published for `timeout_s`.

@@ -13,9 +13,10 @@ from pathlib import Path
 
 from daemon.bus.multi import RobotBus, open_bus
 from daemon.clock import RealClock
+from daemon.log_feed import send_logs
 from daemon.logs import start_logging
 from daemon.realtime import BUS_PRIORITY, lock_memory, take_fifo
-from daemon.shared import BusLink, BusState
+from daemon.shared import BusLink
 from daemon.streamer import Streamer, start
 from retarget.robot import load_robot
 
@@ -23,7 +24,7 @@ log = logging.getLogger(__name__)
 
 ORPHAN_CHECK_S = 0.5
 ORPHAN_END_S = 30.0
-"""Longest life without a front: holding, parking and a fault in which torque was kept are over by then."""
+"""Longest life without a front: holding, parking and a fault or e-stop in which torque was kept are over by then."""
 SLOW_EVERY = 10
 """Cycles between two readings of the slow registers, of one servo each."""
 
@@ -36,6 +37,7 @@ def main() -> int:
     parser.add_argument("--after-loss", action="store_true")
     arguments = parser.parse_args()
     start_logging("bus")
+    send_logs("bus")
     robot = load_robot(arguments.robot)
     link = BusLink.attach(Path(arguments.link), robot.n_joints, robot.n_servos)
     clock = RealClock()
@@ -67,7 +69,7 @@ def _end_with_parent(streamer: Streamer, parent_pid: int) -> None:
     while os.getppid() == parent_pid:
         time.sleep(ORPHAN_CHECK_S)
     orphaned_s = time.monotonic()
-    while streamer.state not in (BusState.LIMP, BusState.ESTOP) and time.monotonic() - orphaned_s < ORPHAN_END_S:
+    while not streamer.made_limp and time.monotonic() - orphaned_s < ORPHAN_END_S:
         time.sleep(ORPHAN_CHECK_S)
     log.warning("the front is gone; ending with the robot in %s", streamer.state.name)
     streamer.stopping = True

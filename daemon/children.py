@@ -9,7 +9,7 @@ import os
 import sys
 import time
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 log = logging.getLogger(__name__)
 
@@ -27,11 +27,14 @@ class Child:
         name: for the log.
         module: what to run.
         arguments: its arguments.
+        environment: set for it, beside what this process has.
         follow: read its stderr. Not for a process that must go on when this one is frozen: it could block on the pipe.
     """
 
-    def __init__(self, name: str, module: str, arguments: Sequence[str], *, follow: bool = False) -> None:
-        self.name, self._follow = name, follow
+    def __init__(
+        self, name: str, module: str, arguments: Sequence[str], environment: Mapping[str, str], *, follow: bool = False
+    ) -> None:
+        self.name, self._follow, self._environment = name, follow, environment
         self._module, self._arguments = module, list(arguments)
         self._process: asyncio.subprocess.Process | None = None
         self._forward: asyncio.Task[None] | None = None
@@ -66,7 +69,7 @@ class Child:
 
     async def start(self) -> None:
         """Start it (again)."""
-        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
+        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", **self._environment}
         self.said.clear()
         self._started_s = time.monotonic()
         self._process = await asyncio.create_subprocess_exec(

@@ -44,6 +44,7 @@ from daemon.requests import (
     Say,
     Status,
     Stop,
+    Torque,
     tag_of,
 )
 from daemon.wire import decode_event, encode
@@ -262,7 +263,7 @@ class Client(CompositionCalls[Said]):
         return ack
 
     def estop(self, *, wait: bool = True) -> Ack:
-        """Cut torque at once, latched; with `wait`, return once the bus process has confirmed it.
+        """Cut torque at once (or hold, as the daemon is set), latched; with `wait`, return once the bus process has confirmed it.
 
         Raises:
             NoAnswerError: not in time.
@@ -294,6 +295,18 @@ class Client(CompositionCalls[Said]):
         ack = self._control(Arm(id=uuid.uuid4().hex))
         if wait:
             self.wait_for("idle", "moving", "holding", "fault", "estop", timeout_s=timeout_s)
+        return ack
+
+    def torque_off(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
+        """Brake within the limits, then limp where the robot stands; it moves again only after `arm`.
+
+        Raises:
+            RefusedError: the state does not allow it.
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Torque(id=uuid.uuid4().hex, on=False))
+        if wait:
+            self.wait_for("limp", "fault", "estop", timeout_s=timeout_s)
         return ack
 
     def park(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
@@ -337,7 +350,7 @@ class Client(CompositionCalls[Said]):
             time.sleep(0.05)
 
     def watch(self, *topics: str, timeout_s: float = REPLY_TIMEOUT_S) -> Iterator[tuple[str, AnyEvent]]:
-        """Yield (topic, event) of `v1/state`, `v1/health` and `v1/event` (all when none is named), without end.
+        """Yield (topic, event) of `v1/state`, `v1/health`, `v1/event` and `v1/log` (all when none is named), without end.
 
         Raises:
             NoAnswerError: nothing was published for `timeout_s`.

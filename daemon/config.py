@@ -11,6 +11,7 @@ from urllib.parse import urlsplit
 from daemon.errors import ConfigError
 from daemon.requests import IDLE_STYLES, LONGEST_SILENCE_S, SHORTEST_SILENCE_S
 
+ESTOPS = ("cut", "hold")
 CMD_PORT, CTL_PORT, PUB_PORT, STREAM_PORT = 5871, 5872, 5873, 5875
 
 
@@ -88,7 +89,7 @@ class Endpoints:
 
     Attributes:
         cmd: requests and their events.
-        ctl: stop, estop, reset, arm, park, status.
+        ctl: stop, estop, reset, arm, park, torque, status.
         pub: state and events for all.
         keys: folder of CURVE keys, for which see `daemon.keys`; None leaves only local endpoints.
         stream: joint targets from another program; empty takes a place beside `cmd`, see `stream_beside`.
@@ -124,12 +125,13 @@ class DaemonConfig:
         robot: name of a packaged robot, or path of a robot.toml.
         bus: URL of the servo bus.
         endpoints: sockets.
-        log: MCAP file to record into, None for none.
+        log: MCAP file to record into, None for none; `mmmd run` takes a folder too, see `supervisor.log_file`.
         log_size_mb: a log of this size is ended and the next one begun; 0 for never.
         log_total_mb: oldest logs of the run are removed beyond so much together; 0 for never.
         generator: endpoint of a generator that runs already; None starts one.
         model: checkpoint of the generator; None takes the shipped one.
         auto_arm: whether the first text may arm the robot.
+        estop: what an e-stop does: `cut` torque, or brake within the limits and `hold` (a second one then cuts).
         idle: style of the movements while there is nothing to play: off, calm or lively.
         gestures: folder of the user's own gestures; None takes the user's data folder.
         motions: folder in which `edit` looks for files; None takes the folder the daemon was started in.
@@ -154,6 +156,7 @@ class DaemonConfig:
     generator: str | None = None
     model: Path | None = None
     auto_arm: bool = True
+    estop: str = "cut"
     idle: str = "off"
     gestures: Path | None = None
     motions: Path | None = None
@@ -188,6 +191,8 @@ class DaemonConfig:
             raise config_error("lease_park_s", f"{self.lease_park_s:g}", allowed, "holding comes before parking")
         if self.idle not in ("off", *IDLE_STYLES):
             raise config_error("idle", repr(self.idle), ", ".join(("off", *IDLE_STYLES)), "choose one of these")
+        if self.estop not in ESTOPS:
+            raise config_error("estop", repr(self.estop), ", ".join(ESTOPS), "choose one of these")
         if self.metrics:
             metrics_address(self.metrics)
         if self.generator is not None:

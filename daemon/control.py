@@ -14,7 +14,7 @@ from daemon.events import Ack, Event, Rejected
 from daemon.ledger import Route, split_route
 from daemon.realtime import CONTROL_PRIORITY, take_fifo
 from daemon.replies import refusal
-from daemon.requests import Arm, CtlRequest, Estop, Park, Reset, Status, Stop, tag_of
+from daemon.requests import Arm, CtlRequest, Estop, Park, Reset, Status, Stop, Torque, tag_of
 from daemon.state import CommandRefusedError
 from daemon.wire import WireError, decode_ctl, encode, error_event
 
@@ -33,7 +33,7 @@ class Controls(Protocol):
         ...
 
     def estop(self, request: Estop) -> str:
-        """Cut torque; returns the state before."""
+        """Cut torque, or hold where the daemon is set so; returns the state before."""
         ...
 
     def reset(self) -> str:
@@ -46,6 +46,10 @@ class Controls(Protocol):
 
     def park(self, request: Park) -> str:
         """Park; returns the state before."""
+        ...
+
+    def torque_off(self, request: Torque) -> str:
+        """Brake within the limits, then torque off; returns the state before."""
         ...
 
     def status(self) -> Event:
@@ -125,7 +129,7 @@ class ControlThread:
         request = waiting.request
         if isinstance(request, WireError):
             return error_event(request)
-        if waiting.overtaken and isinstance(request, Reset | Arm | Park):
+        if waiting.overtaken and isinstance(request, Reset | Arm | Park | Torque):
             return _overtaken(request)
         try:
             return self._carry_out(request)
@@ -148,6 +152,8 @@ class ControlThread:
                 state = self._controls.reset()
             case Arm():
                 state = self._controls.arm()
+            case Torque():
+                state = self._controls.arm() if request.on else self._controls.torque_off(request)
         return Ack(id=request.id, verb=tag_of(request), state=state)
 
 

@@ -43,6 +43,7 @@ TOPICS = {
     "v1/state": "the robot and the daemon, several times a second; the last one at once on subscribing",
     "v1/health": "every servo's state and counters, once a second; the last one at once on subscribing",
     "v1/event": "every event of every command",
+    "v1/log": "the lines that the daemon's processes log",
 }
 
 

@@ -344,6 +344,22 @@ class HealthEvent(Event, tag="health"):
     silent_ms: float
 
 
+class LogEvent(Event, tag="log"):
+    """A line of the daemon's log, on `v1/log`; `t_mono` is when it was written.
+
+    Attributes:
+        level: info, warning or error.
+        process: front, bus, generator or recorder.
+        module: the logger's name.
+        text: the line.
+    """
+
+    level: str
+    process: str
+    module: str
+    text: str
+
+
 class StateEvent(Event, tag="state"):
     """The robot and the daemon, 20 times a second on `v1/state` and in answer to `status`.
 
@@ -392,9 +408,9 @@ class StateEvent(Event, tag="state"):
 
 AnyEvent = (
     Accepted | Progress | Done | Cancelled | Rejected | ErrorEvent | Failed | Ack | StateEvent | HealthEvent
-    | CapabilitiesEvent
+    | LogEvent | CapabilitiesEvent
 )  # fmt: skip
 EVENTS: tuple[type[Event], ...] = (
     Accepted, Progress, Done, Cancelled, Rejected, ErrorEvent, Failed, Ack, StateEvent, HealthEvent,
-    CapabilitiesEvent,
+    LogEvent, CapabilitiesEvent,
 )  # fmt: skip

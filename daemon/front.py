@@ -22,13 +22,14 @@ from daemon.bus_view import BusView
 from daemon.config import DaemonConfig
 from daemon.control import ControlThread
 from daemon.desk import Desk
-from daemon.events import Event, HealthEvent, Rejected, StateEvent
+from daemon.events import Event, HealthEvent, LogEvent, Rejected, StateEvent
 from daemon.follower import Follower
 from daemon.front_controls import FrontControls
 from daemon.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
 from daemon.keys import Doorkeeper, KeyFolder
 from daemon.ledger import Ledger, Route, split_route
+from daemon.log_feed import EVENT_LOGGER
 from daemon.performer import Performer
 from daemon.planner import Planner
 from daemon.rates import RATE_HZ, Rates
@@ -43,6 +44,7 @@ from daemon.wire import WireError, decode_cmd, encode, error_event
 from retarget.robot import RobotModel
 
 log = logging.getLogger(__name__)
+event_log = logging.getLogger(EVENT_LOGGER)
 
 DRAIN_LIMIT = 10_000
 PARK_AGAIN_S = 1.0
@@ -126,7 +128,7 @@ class Front:
                 socket.close(0)
             self._ctl_context.term()
             raise
-        self._control = ControlThread(ctl, FrontControls(self, ctl.poll))
+        self._control = ControlThread(ctl, FrontControls(self, ctl.poll, estop_holds=config.estop == "hold"))
 
     @property
     def loop(self) -> asyncio.AbstractEventLoop:
@@ -281,7 +283,14 @@ class Front:
 
     def _publish_event(self, event: Event) -> None:
         self._publish("v1/event", encode(event))
-        log.info("%s", _line(event))
+        event_log.info("%s", _line(event))
+
+    def publish_log(self, event: LogEvent) -> None:
+        """Publish a line of the log, with the time at which it was written."""
+        written_s = event.t_mono
+        self.ledger.stamp(event)
+        event.t_mono = written_s
+        self._publish("v1/log", encode(event))
 
     def _publish(self, topic: str, payload: bytes) -> None:
         self._last_values[topic.encode()] = payload

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from daemon.events import Event, StateEvent
-from daemon.requests import Estop, Park, Stop
+from daemon.requests import Estop, Park, Stop, Torque
 from daemon.shared import BusRequest
 from daemon.state import CommandRefusedError, Trigger
 
@@ -28,22 +28,29 @@ class FrontControls:
     Args:
         front: the front.
         next_request: waits so many milliseconds for another request on `ctl`; whether there is one.
+        estop_holds: whether an e-stop brakes and holds.
     """
 
-    def __init__(self, front: Front, next_request: Callable[[int], int]) -> None:
-        self._front, self._next_request = front, next_request
+    def __init__(self, front: Front, next_request: Callable[[int], int], *, estop_holds: bool = False) -> None:
+        self._front, self._next_request, self._estop_holds = front, next_request, estop_holds
 
     def stop(self, request: Stop) -> str:
         """Brake within the limits and hold; returns the state before."""
-        return self._halt(Trigger.STOP, request)
+        return self._halt(Trigger.STOP, request, BusRequest.STOP)
 
     def estop(self, request: Estop) -> str:
-        """Cut torque; returns the state before."""
-        return self._halt(Trigger.ESTOP, request)
+        """Cut torque, or hold where the daemon is set so; returns the state before."""
+        kind = BusRequest.ESTOP_HOLD if self._estop_holds else BusRequest.ESTOP
+        return self._halt(Trigger.ESTOP, request, kind)
 
     def park(self, request: Park) -> str:
         """Park, then torque off; returns the state before."""
-        return self._halt(Trigger.PARK, request)
+        return self._halt(Trigger.PARK, request, BusRequest.PARK)
+
+    def torque_off(self, request: Torque) -> str:
+        """Brake within the limits, then torque off until an explicit `arm`; returns the state before."""
+        self._front.machine.limp_by_person()  # first: no text may arm it meanwhile
+        return self._halt(Trigger.TORQUE_OFF, request, BusRequest.TORQUE_OFF)
 
     def reset(self) -> str:
         """Leave fault or e-stop; returns the state before."""
@@ -74,12 +81,12 @@ class FrontControls:
             self._front.publish_from_thread(event)
         return event
 
-    def _halt(self, command: Trigger, request: Stop | Estop | Park) -> str:
+    def _halt(self, command: Trigger, request: Stop | Estop | Park | Torque, kind: BusRequest) -> str:
         front, performer, state = self._front, self._front.performer, self._front.machine.state
         front.machine.check(command)
         performer.halts.note(command.value, request)
         front.follower.stopped = command is Trigger.STOP
-        front.link.request(BusRequest[command.name])
+        front.link.request(kind)
         ended = threading.Event()
 
         async def end_commands() -> None:
@@ -91,9 +98,11 @@ class FrontControls:
                 performer.halts.served()
                 ended.set()
 
+        ending = end_commands()
         try:
-            asyncio.run_coroutine_threadsafe(end_commands(), front.loop)
+            asyncio.run_coroutine_threadsafe(ending, front.loop)
         except RuntimeError:  # the loop is closed: there is nothing left to end
+            ending.close()
             return state.value
         end_s = time.monotonic() + DRAIN_TIMEOUT_S
         while not ended.is_set() and time.monotonic() < end_s and not self._next_request(LOOK_MS):

@@ -37,6 +37,7 @@ from daemon.generation_messages import (
     generated_message,
 )
 from daemon.keys import Doorkeeper, KeyFolder
+from daemon.log_feed import send_logs
 from daemon.logs import start_logging
 from daemon.sockets import bind as bind_socket
 
@@ -144,6 +145,7 @@ def main() -> int:
     parser.add_argument("--parent-pid", type=int)
     options = parser.parse_args()
     start_logging("generator")
+    send_logs("generator")
     from mmm_core.errors import MmmError
 
     try:

@@ -6,7 +6,7 @@ from typing import Any
 
 import msgspec
 
-from daemon.events import EVENTS, HealthEvent, StateEvent
+from daemon.events import EVENTS, HealthEvent, LogEvent, StateEvent
 from daemon.requests import CMD_TYPES, STREAM_TYPES
 
 DROPPED_TOPIC = "v1/dropped"
@@ -29,6 +29,7 @@ _KINDS: dict[str, tuple[type[msgspec.Struct], ...]] = {
     "v1/state": (StateEvent,),
     "v1/health": (HealthEvent,),
     "v1/event": EVENTS,
+    "v1/log": (LogEvent,),
     "cmd": (*CMD_TYPES, PlainText),
     "stream": STREAM_TYPES,
     DROPPED_TOPIC: (Dropped,),

@@ -50,7 +50,7 @@ TOOLS: list[dict[str, Any]] = [
         ("look", "Turn the head: degrees to the left and down. Without angles the head is free again.",
          {"yaw_deg": _ANGLE, "pitch_deg": _ANGLE}, []),
         ("stop", "Brake within the limits and hold. Always allowed.", {}, []),
-        ("estop", "Emergency: cut the torque at once. Only a person can undo it.", {}, []),
+        ("estop", "Emergency: cut the torque at once (or hold, as the daemon is set). Only a person can undo it.", {}, []),
         ("status", "What the robot is doing.", {}, []),
     )
 ]  # fmt: skip
@@ -171,7 +171,7 @@ class McpServer:
 
     async def _estop(self, _: dict[str, Any]) -> str:
         self._halts, self._halted_by = self._halts + 1, "estop"
-        return f"torque is cut; before, the robot was in {(await self._client.estop()).state}"
+        return f"e-stop is latched; before, the robot was in {(await self._client.estop()).state}"
 
     async def _gestures(self, _: dict[str, Any]) -> str:
         return "\n".join(f"{g.name}: {g.text}" for g in (await self._client.capabilities()).gestures)

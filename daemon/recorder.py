@@ -17,6 +17,7 @@ from pathlib import Path
 import msgspec
 import zmq
 
+from daemon.log_feed import send_logs
 from daemon.log_schemas import DROPPED_TOPIC, Dropped
 from daemon.logs import start_logging
 from daemon.rotation import RotatingLog
@@ -41,6 +42,7 @@ def main() -> int:
     parser.add_argument("--settings", default="", help="of the daemon, as JSON; kept in the log")
     arguments = parser.parse_args()
     start_logging("recorder")
+    send_logs("recorder")
     robot = load_robot(arguments.robot)
     link = BusLink.attach(Path(arguments.link), robot.n_joints, robot.n_servos)
     stopping: list[int] = []

@@ -195,7 +195,10 @@ class Stop(Request, tag="stop"):
 
 
 class Estop(Request, tag="estop"):
-    """Cut torque at once; latched until `reset`."""
+    """Cut torque at once, or brake and hold where the daemon is set so (`estop = "hold"`); latched until `reset`.
+
+    Where it holds already a second one cuts.
+    """
 
 
 class Reset(Request, tag="reset"):
@@ -210,14 +213,24 @@ class Park(Request, tag="park"):
     """Move to the park pose, then torque off."""
 
 
+class Torque(Request, tag="torque"):
+    """Torque on as by `arm`; or off: brake within the limits, then limp where it stands, until an explicit `arm`.
+
+    Attributes:
+        on: which.
+    """
+
+    on: bool
+
+
 CmdRequest = (
     Say | Story | Inbetween | Edit | Replay | Gesture | Lease | Release | Record | Look | Idle | Cancel | Status
     | Capabilities
 )  # fmt: skip
-CtlRequest = Stop | Estop | Reset | Arm | Park | Status
+CtlRequest = Stop | Estop | Reset | Arm | Park | Torque | Status
 CMD_TYPES: tuple[type[Request], ...] = (
     Say, Story, Inbetween, Edit, Replay, Gesture, Lease, Release, Record, Look, Idle, Cancel, Status, Capabilities,
 )  # fmt: skip
-CTL_TYPES: tuple[type[Request], ...] = (Stop, Estop, Reset, Arm, Park, Status)
+CTL_TYPES: tuple[type[Request], ...] = (Stop, Estop, Reset, Arm, Park, Torque, Status)
 STREAM_TYPES: tuple[type[Request], ...] = (Target,)
 REQUESTS: tuple[type[Request], ...] = (*CMD_TYPES, *CTL_TYPES[:-1], *STREAM_TYPES)

@@ -53,18 +53,26 @@ class BusRequest(IntEnum):
     ESTOP = 11
     RESET = 12
     SHUTDOWN = 13
+    TORQUE_OFF = 14
+    ESTOP_HOLD = 15
+
+
+ESTOPS = (BusRequest.ESTOP, BusRequest.ESTOP_HOLD)
+HALTS = (BusRequest.STOP, BusRequest.PARK, BusRequest.TORQUE_OFF, *ESTOPS)
+"""They end what is played: every setpoint pushed before is void."""
 
 
 def valid_requests(asked: list[BusRequest]) -> list[BusRequest]:
     """`asked`, in order, without what a later one made void.
 
     An e-stop voids everything before it, a stop what would move the robot: a reset or an arm that was given before an
-    e-stop must not undo it because both came in the same cycle.
+    e-stop must not undo it because both came in the same cycle. Only an e-stop that cuts is not voided by one that holds.
     """
     valid: list[BusRequest] = []
     for kind in asked:
-        if kind is BusRequest.ESTOP:
-            valid = [k for k in valid if k is BusRequest.SHUTDOWN]
+        if kind in ESTOPS:
+            lasting = (BusRequest.SHUTDOWN, BusRequest.ESTOP)
+            valid = [k for k in valid if k in lasting and k is not kind]
         elif kind is BusRequest.STOP:
             valid = [k for k in valid if k not in (BusRequest.ARM, BusRequest.PARK)]
         valid.append(kind)
@@ -225,7 +233,7 @@ class BusLink:
         with self._asking:  # the ctl thread and the event loop both ask
             if kind is BusRequest.PARK:
                 self._words[_Word.PARK_STAY_MS] = round(1000 * stay_s)
-            if kind in (BusRequest.STOP, BusRequest.ESTOP, BusRequest.PARK):
+            if kind in HALTS:
                 self._words[_Word.EPOCH] += np.uint64(1)
             self._words[kind] = 1 + max(int(self._words[k]) for k in BusRequest)
 

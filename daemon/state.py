@@ -21,7 +21,7 @@ class RobotState(Enum):
     HOLDING = "holding"  # stopped by a person: decelerating, or still with torque on
     PARKING = "parking"  # slow move to the park pose, then torque off
     FAULT = "fault"  # latched: servo, bus or process failed
-    ESTOP = "estop"  # latched: torque cut by a person
+    ESTOP = "estop"  # latched: torque cut by a person, or held where the daemon is set so
 
 
 class Trigger(Enum):
@@ -31,6 +31,7 @@ class Trigger(Enum):
     ARM = "arm"
     PARK = "park"
     STOP = "stop"
+    TORQUE_OFF = "torque off"
     ESTOP = "estop"
     RESET = "reset"
     BUS_LIMP = "bus limp"
@@ -46,7 +47,9 @@ class Trigger(Enum):
     BUS_LOST = "bus lost"  # the bus process died or is frozen
 
 
-COMMANDS = (Trigger.SAY, Trigger.ARM, Trigger.PARK, Trigger.STOP, Trigger.ESTOP, Trigger.RESET)
+COMMANDS = (
+    Trigger.SAY, Trigger.ARM, Trigger.PARK, Trigger.STOP, Trigger.TORQUE_OFF, Trigger.ESTOP, Trigger.RESET,
+)  # fmt: skip
 REPORTS = tuple(t for t in Trigger if t not in COMMANDS)
 
 _S, _T = RobotState, Trigger
@@ -61,28 +64,28 @@ _ALWAYS = {
 TRANSITIONS: dict[RobotState, dict[Trigger, RobotState]] = {
     # Arming may be over between two looks at the bus process; motion and parking from limp may not.
     _S.LIMP: {
-        **_ALWAYS, _T.SAY: _S.ARMING, _T.ARM: _S.ARMING, _T.PARK: _S.LIMP, _T.STOP: _S.LIMP, _T.RESET: _S.LIMP,
-        _T.BUS_LIMP: _S.LIMP, _T.BUS_ARMING: _S.ARMING, _T.BUS_HOLDING: _S.IDLE, _T.BUS_STOPPED: _S.IDLE,
+        **_ALWAYS, _T.SAY: _S.ARMING, _T.ARM: _S.ARMING, _T.PARK: _S.LIMP, _T.STOP: _S.LIMP, _T.TORQUE_OFF: _S.LIMP,
+        _T.RESET: _S.LIMP, _T.BUS_LIMP: _S.LIMP, _T.BUS_ARMING: _S.ARMING, _T.BUS_HOLDING: _S.IDLE, _T.BUS_STOPPED: _S.IDLE,
     },
     _S.ARMING: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.ARMING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
-        _T.RESET: _S.ARMING, _T.BUS_ARMING: _S.ARMING, _T.BUS_HOLDING: _S.IDLE,
+        _T.TORQUE_OFF: _S.LIMP, _T.RESET: _S.ARMING, _T.BUS_ARMING: _S.ARMING, _T.BUS_HOLDING: _S.IDLE,
     },
     _S.IDLE: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.IDLE, _T.PARK: _S.PARKING, _T.STOP: _S.IDLE,
-        _T.RESET: _S.IDLE, _T.BUS_HOLDING: _S.IDLE, _T.BUS_STOPPED: _S.IDLE,
+        _T.TORQUE_OFF: _S.LIMP, _T.RESET: _S.IDLE, _T.BUS_HOLDING: _S.IDLE, _T.BUS_STOPPED: _S.IDLE,
         _T.BUS_IDLING: _S.IDLE,
     },
     _S.MOVING: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.MOVING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
-        _T.RESET: _S.MOVING, _T.BUS_HOLDING: _S.IDLE, _T.BUS_IDLING: _S.IDLE,
+        _T.TORQUE_OFF: _S.LIMP, _T.RESET: _S.MOVING, _T.BUS_HOLDING: _S.IDLE, _T.BUS_IDLING: _S.IDLE,
     },
     _S.HOLDING: {
         **_ALWAYS, **_ARMED_REPORTS, _T.SAY: _S.MOVING, _T.ARM: _S.HOLDING, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
-        _T.RESET: _S.HOLDING, _T.BUS_HOLDING: _S.HOLDING, _T.BUS_IDLING: _S.HOLDING,
+        _T.TORQUE_OFF: _S.LIMP, _T.RESET: _S.HOLDING, _T.BUS_HOLDING: _S.HOLDING, _T.BUS_IDLING: _S.HOLDING,
     },
     _S.PARKING: {
-        **_ALWAYS, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING,
+        **_ALWAYS, _T.PARK: _S.PARKING, _T.STOP: _S.HOLDING, _T.TORQUE_OFF: _S.LIMP,
         _T.BUS_LIMP: _S.LIMP, _T.BUS_PARKING: _S.PARKING, _T.BUS_STOPPING: _S.HOLDING, _T.BUS_HOLDING: _S.HOLDING,
         _T.BUS_STOPPED: _S.HOLDING, _T.BUS_ARMING: _S.ARMING,
     },
@@ -99,7 +102,7 @@ _ADVICE = {
     _S.ESTOP: "`mmmd reset`, then `mmmd arm`",
     _S.PARKING: "wait until the robot is limp, or `mmmd stop`",
 }
-_NEEDS_ARM = "`mmmd arm`: after an e-stop or fault the robot moves only once a person has armed it"
+_NEEDS_ARM = "`mmmd arm`: after an e-stop, a fault or `torque off` the robot moves only once a person has armed it"
 
 
 class CommandRefusedError(DaemonError):
@@ -123,7 +126,7 @@ class StateMachine:
 
     Attributes:
         state: the state.
-        must_arm: whether an e-stop or fault happened since the last explicit `arm`; then `say` does not arm.
+        must_arm: whether an e-stop, a fault or `torque off` came since the last explicit `arm`; then `say` does not arm.
     """
 
     def __init__(self, *, auto_arm: bool = True) -> None:
@@ -145,6 +148,10 @@ class StateMachine:
     def armed_by_person(self) -> None:
         """An explicit `arm` was given."""
         self.must_arm = False
+
+    def limp_by_person(self) -> None:
+        """An explicit `torque off` was given: somebody may have the arms in his hands."""
+        self.must_arm = True
 
     def report(self, report: Trigger) -> bool:
         """Follow a report of the bus process; true when the state changed.

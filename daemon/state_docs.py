@@ -15,7 +15,7 @@ _MEANING = {
     RobotState.HOLDING: "a person stopped it: it brakes within its limits, or stands still with torque on",
     RobotState.PARKING: "a slow move to the park pose, then torque off",
     RobotState.FAULT: "latched: a servo, the bus or a process failed; what still has torque brakes and holds",
-    RobotState.ESTOP: "latched: a person cut the torque",
+    RobotState.ESTOP: "latched: a person cut the torque; where the daemon is set to `estop = hold` it brakes and holds",
 }
 
 
@@ -43,7 +43,7 @@ def page() -> str:
         *_table(COMMANDS, "refused"),
         "",
         "The entry is the state that the command leads to once the bus process has carried it out. `say` stands for `gesture` as",
-        "well. After an e-stop or a fault `say` is refused in `limp` until a person has given `arm`.",
+        "well. After an e-stop, a fault or `torque off` `say` is refused in `limp` until a person has given `arm`.",
         "",
         "## Reports of the bus process",
         "",

@@ -27,7 +27,7 @@ from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
 from daemon.judging import MAY_HAVE_TRIPPED_S, Judge
 from daemon.pace import Pace, SlowedSetpoints
-from daemon.shared import BusLink, BusRequest, BusState, Readiness, valid_requests
+from daemon.shared import ESTOPS, BusLink, BusRequest, BusState, Readiness, valid_requests
 from retarget.collision import SelfContact
 from retarget.free_way import WaySearch
 from retarget.robot import RobotModel
@@ -39,7 +39,7 @@ HEARTBEAT_LOST_S = 0.5
 PARK_AFTER_S = 5.0
 """A silent front: after the first time decelerate and hold, after the second park and go limp."""
 FAULT_LIMP_S = 10.0
-"""A fault in which torque was kept, and a front so long silent: nobody will come, the servos go limp."""
+"""A fault or e-stop in which torque was kept, and a front so long silent: nobody will come, the servos go limp."""
 NO_WAY_LIMP_S = 10.0
 """Where no way to rest or park was found that keeps off the robot itself it holds in a fault, and goes limp after so long."""
 SEARCH_PIECES_PER_S = 200
@@ -51,6 +51,10 @@ TORQUE_OFF_REPEATS = 5
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
 """Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
 _LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
+_COMES_TO = {
+    BusRequest.STOP: BusState.STOPPING, BusRequest.TORQUE_OFF: BusState.STOPPING, BusRequest.PARK: BusState.PARKING,
+}  # fmt: skip
+"""What brings an armed robot to rest, and by way of which state."""
 _ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
 
 
@@ -86,7 +90,7 @@ class Streamer:
         self._pwm: int | None = None
         self._front_lost_s: float | None = None
         self._torque_off_left = 0
-        self._made_limp = False
+        self._made_limp = self._limp_at_rest = False
         self._arming: Generator[None, None, Armed] | None = None
         self._judge = Judge(robot, bus)
         self._derating = Derating(robot.n_servos, robot.bus.period_s)
@@ -113,6 +117,11 @@ class Streamer:
     def close(self) -> None:
         """Release the port."""
         self._bus.close()
+
+    @property
+    def made_limp(self) -> bool:
+        """Whether torque was cut, and not by a fault that may be over."""
+        return self.state is BusState.LIMP or (self.state is BusState.ESTOP and not self._torque)
 
     def cycle(self) -> None:
         """One bus period."""
@@ -142,20 +151,16 @@ class Streamer:
 
     def _serve(self, request: BusRequest) -> None:
         log.info("request %s in %s", request.name, self.state.name)
-        if request is BusRequest.ESTOP:
-            self._link.drop_queued()
-            self._torque, self._goal_tick, self._arming = False, None, None
-            self._forget_approach()
-            self._made_limp = True
-            self._torque_off_left = TORQUE_OFF_REPEATS  # the first goes out in this cycle
-            self._enter(BusState.ESTOP)
-        elif request is BusRequest.STOP:
+        if request in ESTOPS:
+            self._estop(holds=request is BusRequest.ESTOP_HOLD)
+        elif request in _COMES_TO:
             self._link.drop_queued()
             if self._arming is not None:
-                self._break_off_arming()
+                self._go_limp()  # before torque is on there is nothing to bring to rest
             elif self.state in _ARMED:
                 self._forget_approach()
-                self._enter(BusState.STOPPING)
+                self._limp_at_rest = request is BusRequest.TORQUE_OFF
+                self._enter(_COMES_TO[request])
         elif request is BusRequest.RESET:
             if self.state in (BusState.ESTOP, BusState.FAULT):
                 self._bus.look_again()
@@ -163,13 +168,6 @@ class Streamer:
                 self._link.set_text("")
                 self._link.drop_queued()
                 self._enter(BusState.LIMP)
-        elif request is BusRequest.PARK:
-            self._link.drop_queued()
-            if self._arming is not None:
-                self._break_off_arming()
-            elif self.state in _ARMED:
-                self._forget_approach()
-                self._enter(BusState.PARKING)
         elif request is BusRequest.ARM:
             if self.state is BusState.LIMP:
                 self._link.drop_queued()
@@ -178,6 +176,16 @@ class Streamer:
                 self._enter(BusState.ARMING)
         else:
             self.stopping = True
+
+    def _estop(self, *, holds: bool) -> None:
+        """Cut torque; or brake and hold, where nothing is latched that holds already."""
+        self._link.drop_queued()
+        self._forget_approach()
+        if not holds or self._arming is not None or self.state not in _ARMED:
+            self._torque, self._goal_tick, self._arming = False, None, None
+            self._made_limp = True
+            self._torque_off_left = TORQUE_OFF_REPEATS  # the first goes out in this cycle
+        self._enter(BusState.ESTOP)
 
     def _go_on_arming(self) -> None:
         """A step towards torque; then a slow way to rest. Any doubt is a fault, torque off."""
@@ -199,8 +207,7 @@ class Streamer:
         self._gate.reset(self._ticks.tick_to_rad(armed.goal_tick))
         self._forget_approach()
 
-    def _break_off_arming(self) -> None:
-        """Before torque is on there is nothing to bring to rest."""
+    def _go_limp(self) -> None:
         self._cut_torque()
         self._enter(BusState.LIMP)
 
@@ -217,14 +224,16 @@ class Streamer:
             return self._follow_approach()
         if self.state is BusState.STOPPING:
             goal = self._gate.brake()
-            if self._gate.at_rest:
+            if self._gate.at_rest and self._limp_at_rest:
+                self._go_limp()
+            elif self._gate.at_rest:
                 self._enter(BusState.HOLDING)
             return goal
         if self.state in (BusState.HOLDING, BusState.PLAYING):
             goal = self._play()
             self._tell_held()
             return goal
-        return self._gate.brake()  # fault with torque still on: hold
+        return self._gate.brake()  # fault or e-stop with torque still on: hold
 
     def _frame_or_none(self) -> None:
         """Between plans a record belongs to no plan."""
@@ -275,8 +284,7 @@ class Streamer:
         if self._approach_s > self._approach.duration_s + stay_s and self._gate.at_rest:
             self._forget_approach()
             if self.state is BusState.PARKING:
-                self._cut_torque()
-                self._enter(BusState.LIMP)
+                self._go_limp()
             else:
                 self._enter(BusState.HOLDING)
         return goal
@@ -310,7 +318,7 @@ class Streamer:
         self._limp_at_s = self._clock.now_s() + NO_WAY_LIMP_S
 
     def _forget_approach(self) -> None:
-        self._approach, self._search, self._searches = None, None, 0
+        self._approach, self._search, self._searches, self._limp_at_rest = None, None, 0, False
 
     def _ramp_torque(self) -> None:
         if self._pwm is not None and self._cycle % 5 == 0:
@@ -326,9 +334,9 @@ class Streamer:
             self._front_lost_s = None
             return
         age_s = self._link.heartbeat_age_s
-        if self.state is BusState.FAULT:
+        if self.state in (BusState.FAULT, BusState.ESTOP):
             if age_s > FAULT_LIMP_S:
-                log.warning("in fault and the front silent for %.1f s: torque off", age_s)
+                log.warning("in %s and the front silent for %.1f s: torque off", self.state.name.lower(), age_s)
                 self._cut_torque()
             return
         if age_s < HEARTBEAT_LOST_S:

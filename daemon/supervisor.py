@@ -27,6 +27,7 @@ from daemon.front import Front
 from daemon.generation import GeneratorClient
 from daemon.generation_messages import GeneratorError
 from daemon.keys import KeyFolder
+from daemon.log_feed import SOCKET_VARIABLE, LogFeed
 from daemon.metrics import MetricsServer, exposition
 from daemon.notify import Notifier
 from daemon.recorder_feed import RecorderFeed
@@ -74,7 +75,9 @@ class Supervisor:
         self._notifier = Notifier()
         self._metrics: MetricsServer | None = None
         arguments = ["--robot", config.robot, "--bus", config.bus, "--link", str(self._link.path)]
-        self._bus = Child("bus process", "daemon.bus_process", arguments)
+        self._log_path = Path(self._folder.name) / "log"
+        self._environment = {SOCKET_VARIABLE: str(self._log_path)}
+        self._bus = Child("bus process", "daemon.bus_process", arguments, self._environment)
 
     async def run(self) -> int:
         """Serve until SIGTERM or SIGINT; 0 after a park, 3 when the robot was left in a latched fault or e-stop.
@@ -103,6 +106,7 @@ class Supervisor:
 
     async def _serve(self, front: Front, generator: GeneratorClient, endpoint: str) -> int:
         loop = asyncio.get_running_loop()
+        logs = LogFeed(self._log_path, front.publish_log)
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self._end_asked)
         try:
@@ -110,6 +114,7 @@ class Supervisor:
             self._children.append(bus)
             await self._start_bus(bus)
             front.start()
+            logs.start()
             self._watch(self._keep_bus(front, bus))
             if self._config.generator is None:
                 self._watch(self._keep_generator(generator, endpoint))
@@ -136,6 +141,7 @@ class Supervisor:
         finally:
             if self._metrics is not None:
                 await self._metrics.close()
+            logs.close()
             await front.close()
 
     async def _start_extras(self, front: Front) -> None:
@@ -222,7 +228,7 @@ class Supervisor:
         arguments = ["--bind", endpoint, "--parent-pid", str(os.getpid())]
         if self._config.model is not None:
             arguments += ["--model", str(self._config.model)]
-        child = Child("generator", "daemon.generator", arguments, follow=True)
+        child = Child("generator", "daemon.generator", arguments, self._environment, follow=True)
         self._children.append(child)
         back_off_s = FIRST_BACK_OFF_S
         while True:
@@ -288,7 +294,7 @@ class Supervisor:
         arguments += ["--events", feed.endpoint, "--out", str(self._config.log)]
         arguments += ["--size-mb", str(self._config.log_size_mb), "--total-mb", str(self._config.log_total_mb)]
         arguments += ["--settings", json.dumps(settings_of(self._config), default=str)]
-        child = Child("recorder", "daemon.recorder", arguments)
+        child = Child("recorder", "daemon.recorder", arguments, self._environment)
         self._children.append(child)
         await child.start()
         try:
@@ -325,10 +331,15 @@ def check_scheme(bus: str) -> None:
         raise config_error("bus", f"'{bus}', an unknown scheme", allowed, "for example dxl:///dev/ttyUSB0?baud=1000000")
 
 
+def log_file(path: Path) -> Path:
+    """The file to record into: in a folder one named by the time, so that each start of a service has its own."""
+    return path / time.strftime("mmmd-%Y%m%dT%H%M%S.mcap", time.gmtime()) if path.is_dir() else path
+
+
 def log_path_error(path: Path) -> str | None:
     """Why a log cannot be written there; None when it can."""
     if path.exists():
-        return f"--log {path}: the file exists; choose another name, logs are not overwritten"
+        return f"--log {path}: the file exists; choose another name, or a folder; logs are not overwritten"
     if not path.parent.is_dir():
         return f"--log {path}: no folder {path.parent}; make it, or choose another"
     return None

@@ -1,11 +1,11 @@
-"""`mmmd stop|estop|reset|arm|park`: the verbs of the `ctl` socket."""
+"""`mmmd stop|estop|reset|arm|park|torque`: the verbs of the `ctl` socket."""
 
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from tyro.conf import OmitArgPrefixes
+from tyro.conf import OmitArgPrefixes, Positional
 
 from daemon.commands.connection import Connection
 
@@ -28,7 +28,9 @@ def stop(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> 
 
 
 def estop(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
-    """Cut torque at once. Latched: `mmmd reset`, then `mmmd arm`, lead out of it.
+    """Cut torque at once; where the daemon runs with `--estop hold`: brake and hold, and cut at the second one.
+
+    Latched: `mmmd reset`, which makes the robot limp, then `mmmd arm`, lead out of it.
 
     Example: mmmd estop
 
@@ -77,6 +79,24 @@ def park(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> 
     """
     with at.client() as robot:
         return _tell(robot, robot.park(), json)
+
+
+def torque(
+    which: Positional[Literal["on", "off"]],
+    at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
+    json: bool = False,
+) -> int:
+    """Off: brake within the limits, then limp where the robot stands: hold its arms. On is `mmmd arm`, and alone leads on.
+
+    Example: mmmd torque off
+
+    Args:
+        which: "on" or "off".
+        at: where the daemon is.
+        json: print one JSON object.
+    """
+    with at.client() as robot:
+        return _tell(robot, robot.arm() if which == "on" else robot.torque_off(), json)
 
 
 def _tell(robot: Client, ack: Ack, json: bool) -> int:

@@ -21,6 +21,7 @@ def run(
     model: Path | None = None,
     model_hash: str | None = None,
     auto_arm: bool = True,
+    estop: Literal["cut", "hold"] | None = None,
     idle: Literal["off", "calm", "lively"] | None = None,
     gestures: Path | None = None,
     motions: Path | None = None,
@@ -49,18 +50,19 @@ def run(
         robot: name of a packaged robot, or path of a robot.toml; reference when nothing says otherwise.
         bus: where the servos are: sim:// or dxl://DEVICE?baud=N, several ports with commas between them.
         config: TOML file; else $MMMD_CONFIG, ~/.config/mmmd/mmmd.toml, /etc/mmmd/mmmd.toml.
-        log: MCAP file to record into.
+        log: MCAP file to record into, or a folder: then each start has a file of its own, named by the time.
         log_size_mb: a log of this size is ended and the next one begun (NAME.1.mcap, ...); 0 for never.
         log_total_mb: oldest logs of this run are removed beyond so much together; 0 for never.
         generator: endpoint of a generator that runs already (`mmmd generator`); one is started when it is not given.
         model: checkpoint of the generator; the shipped one when it is not given.
         model_hash: beginning of the checkpoint's hash; a generator with another one is not used.
         auto_arm: the first text arms the robot; --no-auto-arm waits for `mmmd arm`.
+        estop: what `mmmd estop` does: cut torque (when it is not given), or brake within the limits and hold; a second one cuts.
         idle: small movements while there is nothing to play.
         gestures: folder of your own gestures; your data folder when it is not given.
         motions: folder in which `edit` looks for files; the current one when it is not given.
         cmd: endpoint of requests.
-        ctl: endpoint of stop, estop, reset, arm, park, status.
+        ctl: endpoint of stop, estop, reset, arm, park, torque, status.
         pub: endpoint of state and events.
         stream: endpoint of joint targets under a lease; beside `cmd` (four ports on, or PATH.stream) when it is not given.
         keys: folder of CURVE keys (`mmmd keys`): tcp sockets then take allowed clients only, and may be on any address.
@@ -72,18 +74,23 @@ def run(
         quiet: log only warnings.
     """
     given = dict(locals())
+    from dataclasses import replace
+
     from daemon.logs import start_logging
     from daemon.settings import config_of, resolve
-    from daemon.supervisor import log_path_error
+    from daemon.supervisor import log_file, log_path_error
     from daemon.supervisor import run as run_daemon
 
     settings = resolve(_flags(given), config)
     as_json = bool(settings["log_json"].value)
     start_logging("front", level=logging.WARNING if quiet else logging.INFO, as_json=as_json, stamp=True)
     chosen = config_of(settings)
-    if chosen.log is not None and (problem := log_path_error(chosen.log)):
-        sys.stderr.write(f"mmmd: {problem}\n")
-        return 2
+    if chosen.log is not None:
+        path = log_file(chosen.log)
+        chosen = replace(chosen, log=path)
+        if problem := log_path_error(path):
+            sys.stderr.write(f"mmmd: {problem}\n")
+            return 2
     return run_daemon(chosen)
 
 

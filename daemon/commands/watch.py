@@ -14,7 +14,7 @@ def watch(
     json: bool = False,
     n: int | None = None,
 ) -> int:
-    """Follow events and changes of state and of servos' health until interrupted.
+    """Follow events, log lines and changes of state and of servos' health until interrupted.
 
     Example: mmmd watch --json
 
@@ -23,7 +23,7 @@ def watch(
         json: print every message as one JSON object a line, all states included.
         n: end after so many lines.
     """
-    from daemon.events import HealthEvent, StateEvent
+    from daemon.events import HealthEvent, LogEvent, StateEvent
     from daemon.wire import encode
 
     shown, last_state, last_health = 0, "", ""
@@ -42,6 +42,8 @@ def watch(
                     continue
                 last_health = health
                 line = f"{event.t_mono:.3f} health {health or 'every servo ok'}"
+            elif isinstance(event, LogEvent):
+                line = f"{event.t_mono:.3f} {event.process} {event.level} {event.text}"
             else:
                 from daemon.commands.playing import describe
 

@@ -13,7 +13,7 @@ from daemon import events as ev
 from daemon import wire
 from daemon.control import ControlThread
 from daemon.front_controls import FrontControls
-from daemon.requests import Stop
+from daemon.requests import Estop, Stop
 from daemon.shared import BusRequest
 from daemon.state import RobotState, StateMachine
 from daemon.waiting import Halts
@@ -45,6 +45,9 @@ class Robot:
 
     def arm(self) -> str:
         return self._tell("arm")
+
+    def torque_off(self, request) -> str:
+        return self._tell("torque off")
 
     def status(self) -> ev.Event:
         return ev.Ack(verb=self._tell("status"), state="idle")
@@ -144,3 +147,18 @@ def test_a_stop_waits_for_a_stalled_event_loop_only_while_nobody_asks(somebody_a
             stalled.run_until_complete(asyncio.sleep(0))
     assert looks and set(looks) == {1}, "the bus process is told first"
     assert (len(looks) == 1) == somebody_asks
+
+
+@pytest.mark.parametrize(("holds", "asked"), [(False, BusRequest.ESTOP), (True, BusRequest.ESTOP_HOLD)])
+def test_an_estop_cuts_or_holds_as_the_daemon_is_set(holds, asked):
+    told: list[BusRequest] = []
+    machine = StateMachine()
+    machine.state = RobotState.MOVING
+    closed = asyncio.new_event_loop()
+    closed.close()
+    front = SimpleNamespace(
+        machine=machine, performer=SimpleNamespace(halts=Halts(), end_halted=lambda: None),
+        follower=SimpleNamespace(stopped=False), loop=closed, link=SimpleNamespace(request=told.append), drain_cmd=None,
+    )  # fmt: skip
+    assert FrontControls(front, lambda _: 0, estop_holds=holds).estop(Estop()) == "moving"
+    assert told == [asked]

@@ -254,6 +254,19 @@ def test_estop_latches_until_reset_and_arm(robot, running):
     assert robot.say("wave").done
 
 
+def test_torque_off_goes_limp_and_waits_for_an_arm(robot, running):
+    thread, outcome = say_in_thread(robot, running, "wave", 4.0)
+    robot.torque_off()
+    thread.join(5)
+    assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "torque off"
+    status = robot.status()
+    assert status.state == "limp" and status.must_arm
+    with pytest.raises(RefusedError, match="mmmd arm"):
+        robot.say("wave")
+    robot.arm()
+    assert robot.say("wave").done
+
+
 def test_park_goes_limp_and_the_next_text_arms(robot, running):
     thread, outcome = say_in_thread(robot, running, "wave", 4.0)
     robot.park()
@@ -273,6 +286,14 @@ def test_late_subscribers_get_the_last_state_at_once_and_20_a_second(robot, runn
         for _ in range(20):
             next(states)
     assert 0.5 < time.monotonic() - began_s < 4
+
+
+def test_what_the_processes_log_is_published(robot, running):
+    with running.client() as client, contextlib.closing(client.watch("v1/log")) as told:
+        next(told)  # the last line, on subscribing
+        robot.stop()
+        line = next(e for _, e in told if isinstance(e, ev.LogEvent) and e.process == "bus" and "STOP" in e.text)
+    assert line.level == "info" and line.module == "daemon.streamer" and 0 <= time.monotonic() - line.t_mono < 10
 
 
 def test_events_are_published_to_all(robot, running):

@@ -30,15 +30,15 @@ def machine_in(state: RobotState) -> StateMachine:
 
 
 GRID_OF_COMMANDS = """
-           say     arm      park     stop     estop  reset
-limp       arming  arming   limp     limp     estop  limp
-arming     moving  arming   parking  holding  estop  arming
-idle       moving  idle     parking  idle     estop  idle
-moving     moving  moving   parking  holding  estop  moving
-holding    moving  holding  parking  holding  estop  holding
-parking    -       -        parking  holding  estop  -
-fault      -       -        -        fault    estop  limp
-estop      -       -        -        estop    estop  limp
+           say     arm      park     stop     torque_off  estop  reset
+limp       arming  arming   limp     limp     limp        estop  limp
+arming     moving  arming   parking  holding  limp        estop  arming
+idle       moving  idle     parking  idle     limp        estop  idle
+moving     moving  moving   parking  holding  limp        estop  moving
+holding    moving  holding  parking  holding  limp        estop  holding
+parking    -       -        parking  holding  limp        estop  -
+fault      -       -        -        fault    -           estop  limp
+estop      -       -        -        estop    -           estop  limp
 """
 GRID_OF_REPORTS = """
            LIMP  ARMING  HOLDING  STOPPED  PLAYING  IDLING   STOPPING  PARKING  FAULT  ESTOP  LOST
@@ -69,7 +69,7 @@ def rows(grid: str, trigger: Callable[[str], Trigger]) -> list[tuple[RobotState,
     ]
 
 
-COMMAND_ROWS = rows(GRID_OF_COMMANDS, Trigger)
+COMMAND_ROWS = rows(GRID_OF_COMMANDS, lambda name: Trigger[name.upper()])
 REPORT_ROWS = rows(GRID_OF_REPORTS, lambda name: Trigger[f"BUS_{name}"])
 
 
@@ -122,7 +122,7 @@ def test_latches_open_only_by_reset():
         leaving = {t for t in REPORTS if TRANSITIONS[state].get(t, state) not in (S.FAULT, S.ESTOP)}
         assert leaving == {T.BUS_LIMP}  # what the bus process reports after a reset
         assert machine_in(state).check(T.RESET) is S.LIMP
-        for command in (T.SAY, T.ARM, T.PARK):
+        for command in (T.SAY, T.ARM, T.PARK, T.TORQUE_OFF):
             with pytest.raises(CommandRefusedError, match="mmmd reset"):
                 machine_in(state).check(command)
 
@@ -140,6 +140,15 @@ def test_after_an_estop_a_text_does_not_arm():
     machine.check(T.SAY)
     machine.report(T.BUS_ESTOP)
     machine.report(T.BUS_LIMP)
+    with pytest.raises(CommandRefusedError, match="mmmd arm"):
+        machine.check(T.SAY)
+    machine.armed_by_person()
+    machine.check(T.SAY)
+
+
+def test_after_torque_off_a_text_does_not_arm():
+    machine = StateMachine()
+    machine.limp_by_person()
     with pytest.raises(CommandRefusedError, match="mmmd arm"):
         machine.check(T.SAY)
     machine.armed_by_person()

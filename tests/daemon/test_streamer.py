@@ -11,7 +11,7 @@ from daemon.bus.models import CONTROL_TABLES
 from daemon.bus.servo_bus import ServoBus
 from daemon.errors import PortMissingError
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
-from daemon.streamer import HEARTBEAT_LOST_S, PARK_AFTER_S, start
+from daemon.streamer import FAULT_LIMP_S, HEARTBEAT_LOST_S, PARK_AFTER_S, start
 from retarget.collision import SelfContact
 from retarget.robot import list_robots, load_robot
 from sim.bus import SimBus
@@ -155,6 +155,112 @@ def test_e_stop_cuts_torque_in_its_cycle_and_is_latched(state):
         assert r.state is BusState.LIMP and not any(r.torque), "reset arms nothing"
         r.arm()
         r.assert_limits_kept()
+
+
+@pytest.mark.parametrize("state", ["arming", "holding", "playing", "stopping", "parking"])
+def test_an_e_stop_that_holds_brakes_within_limits_and_the_second_cuts(state):
+    with rig() as r:
+        if state == "arming":
+            r.link.request(BusRequest.ARM)
+            r.until(BusState.ARMING)
+            while not any(r.torque):
+                r.cycle()
+            r.cycle(30)
+        else:
+            r.arm()
+        if state in ("playing", "stopping"):
+            r.push(swing(r.robot, 2.0))
+            r.cycle(60)
+        if state in ("stopping", "parking"):
+            r.link.request(BusRequest.STOP if state == "stopping" else BusRequest.PARK)
+            r.cycle(1 if state == "stopping" else 40)
+        assert r.state.name.lower() == state
+        r.link.request(BusRequest.ESTOP_HOLD)
+        began = len(r.records) - 1
+        for request in (BusRequest.ARM, BusRequest.PARK, BusRequest.STOP, BusRequest.TORQUE_OFF):
+            r.cycle(25)
+            assert r.state is BusState.ESTOP and all(r.torque)
+            r.link.request(request)
+            r.push(swing(r.robot, 0.2))
+        assert_brakes_within_limits(r.records[began:], r.robot)
+        assert np.array_equal(r.records[-1]["goal_rad"], r.records[-20]["goal_rad"])
+        r.link.request(BusRequest.ESTOP_HOLD)
+        r.cycle()
+        assert r.state is BusState.ESTOP and not any(r.torque)
+        r.link.request(BusRequest.RESET)
+        r.cycle(3)
+        r.arm()
+        r.assert_limits_kept()
+
+
+def test_a_reset_makes_limp_what_an_e_stop_holds_and_before_torque_is_on_there_is_nothing_to_hold():
+    with rig() as r:
+        r.link.request(BusRequest.ARM)
+        r.cycle(2)
+        r.link.request(BusRequest.ESTOP_HOLD)
+        r.cycle(50)
+        assert r.state is BusState.ESTOP and not any(r.torque)
+        r.link.request(BusRequest.RESET)
+        r.cycle(2)
+        r.arm()
+        r.link.request(BusRequest.ESTOP_HOLD)
+        r.cycle(10)
+        assert all(r.torque)
+        r.link.request(BusRequest.RESET)
+        r.cycle(2)
+        assert r.state is BusState.LIMP and not any(r.torque)
+        r.assert_limits_kept()
+
+
+def test_what_an_e_stop_holds_goes_limp_when_nobody_is_there(monkeypatch):
+    with rig(watch_front=True) as r:
+        age_s = 0.0
+        monkeypatch.setattr(type(r.link), "heartbeat_age_s", property(lambda _: age_s))
+        r.arm()
+        r.link.request(BusRequest.ESTOP_HOLD)
+        age_s = FAULT_LIMP_S - 0.5
+        r.cycle(30)
+        assert r.state is BusState.ESTOP and all(r.torque) and not r.streamer.made_limp
+        age_s = FAULT_LIMP_S + 0.5
+        r.cycle(2)
+        assert r.state is BusState.ESTOP and not any(r.torque) and r.streamer.made_limp
+
+
+@pytest.mark.parametrize("state", ["limp", "arming", "holding", "playing", "parking"])
+def test_torque_off_brakes_within_limits_and_goes_limp_where_it_stands(state):
+    with rig() as r:
+        if state == "arming":
+            r.link.request(BusRequest.ARM)
+            r.cycle(3)
+        elif state != "limp":
+            r.arm()
+        if state in ("playing", "parking"):
+            r.push(swing(r.robot, 2.0))
+            r.cycle(60)
+        if state == "parking":
+            r.link.request(BusRequest.PARK)
+            r.cycle(20)
+        r.link.request(BusRequest.TORQUE_OFF)
+        began = len(r.records) - 1
+        r.cycle(100)
+        assert r.state is BusState.LIMP and not any(r.torque)
+        if state == "playing":
+            assert_brakes_within_limits([x for x in r.records[began:] if x["torque"]], r.robot)
+            assert np.abs(r.records[-1]["goal_rad"] - r.robot.park_rad).max() > 0.1, "it was not led to park"
+        r.arm()
+        r.assert_limits_kept()
+
+
+def test_a_stop_that_follows_torque_off_before_it_stands_holds():
+    with rig() as r:
+        r.arm()
+        r.push(swing(r.robot, 2.0))
+        r.cycle(60)
+        r.link.request(BusRequest.TORQUE_OFF)
+        r.cycle(2)
+        r.link.request(BusRequest.STOP)
+        r.cycle(100)
+        assert r.state is BusState.HOLDING and all(r.torque)
 
 
 def test_an_e_stop_while_unplugged_is_carried_out_when_the_bus_is_back():
@@ -423,7 +529,7 @@ def test_no_order_of_requests_and_setpoints_breaks_a_limit(sequence, seed):
             r.cycle(n)
         assert r.sim.audit.report()["violations"] == 0, r.sim.audit.report()["details"]
         torque = any(r.torque)
-        assert not torque or r.state not in (BusState.LIMP, BusState.ESTOP)
+        assert not torque or not r.streamer.made_limp
         assert torque or r.state in (BusState.LIMP, BusState.ESTOP, BusState.FAULT, BusState.ARMING)
 
 

@@ -120,11 +120,19 @@ def test_an_error_carries_the_id_of_its_request():
     assert wire.error_event(caught.value).id == "mine"
 
 
-@pytest.mark.parametrize("kind", requests.CTL_TYPES)
+@pytest.mark.parametrize("kind", [k for k in requests.CTL_TYPES if k is not requests.Torque])
 def test_ctl_takes_json_and_bare_verbs(kind):
     verb = kind.__struct_config__.tag
     assert wire.decode_ctl(verb.encode()) == kind()
     assert wire.decode_ctl(json.dumps({"type": verb, "id": "i"}).encode()) == kind(id="i")
+
+
+def test_torque_has_to_say_which():
+    assert wire.decode_ctl(b'{"type": "torque", "on": false, "id": "i"}') == requests.Torque(id="i", on=False)
+    for frame in (b"torque", b'{"type": "torque"}', b'{"type": "torque", "on": 0}'):
+        with pytest.raises(wire.WireError, match="torque") as caught:
+            wire.decode_ctl(frame)
+        assert caught.value.code == "bad_value"
 
 
 @pytest.mark.parametrize("frame", [b"", b"wave", b'{"type": "say", "text": "wave"}', b'{"type": "stop", "now": true}'])

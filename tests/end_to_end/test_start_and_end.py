@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from daemon.supervisor import log_file, log_path_error
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 
 pytestmark = pytest.mark.timeout(180)
@@ -90,6 +91,9 @@ def test_a_log_that_exists_is_not_overwritten(tmp_path):
     path = tmp_path / "run.mcap"
     path.write_text("dear old log")
     assert "exists" in refused("--log", str(path))
+    named = log_file(tmp_path)
+    assert named.parent == tmp_path and named.suffix == ".mcap" and log_path_error(named) is None
+    assert log_file(path) == path
     assert path.read_text() == "dear old log"
     assert "no folder" in refused("--log", str(tmp_path / "none" / "run.mcap"))
 

@@ -1,0 +1,99 @@
+"""Log lines of all the daemon's processes on `v1/log`: from each by a Unix datagram, which never waits for a reader."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import os
+import socket
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+
+from daemon.events import LogEvent
+
+SOCKET_VARIABLE = "MMMD_LOG_SOCKET"
+"""Where the daemon's children send their lines to."""
+EVENT_LOGGER = "daemon.front.events"
+"""Lines that only repeat what `v1/event` says."""
+MOST_BYTES = 8192
+LINES_AT_ONCE = 100
+"""The event loop has other work as well."""
+
+
+class LogSender(logging.Handler):
+    """Sends each line of a process to the front; what finds no room, or nobody there, is lost to `v1/log` alone."""
+
+    def __init__(self, process: str, path: str) -> None:
+        super().__init__()
+        self._process = process
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self._socket.setblocking(False)
+        self._path = path
+        self.addFilter(lambda record: record.name != EVENT_LOGGER)
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Send one line."""
+        text = record.getMessage()
+        if record.exc_info and record.exc_info[1] is not None:
+            text += f" ({type(record.exc_info[1]).__name__}: {record.exc_info[1]})"
+        age_s = max(0.0, time.time() - record.created)
+        event = LogEvent(
+            level=record.levelname.lower(), process=self._process, module=record.name, text=text[: MOST_BYTES // 4],
+            t_mono=time.monotonic() - age_s,
+        )  # fmt: skip
+        with contextlib.suppress(OSError):
+            self._socket.sendto(msgspec.json.encode(event), self._path)
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._socket.close()
+        super().close()
+
+
+class LogFeed:
+    """Receives the lines of this process and its children, and hands them on in the event loop.
+
+    Args:
+        path: of the socket, in a folder that only this user can write to.
+        publish: called with each line.
+    """
+
+    def __init__(self, path: Path, publish: Callable[[LogEvent], None]) -> None:
+        self._publish = publish
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self._socket.setblocking(False)
+        self._socket.bind(str(path))
+        self._sender = LogSender("front", str(path))
+
+    def start(self) -> None:
+        """Begin, in the running event loop."""
+        asyncio.get_running_loop().add_reader(self._socket, self._read)
+        logging.getLogger().addHandler(self._sender)
+
+    def close(self) -> None:
+        """End it; lines are still written to stderr."""
+        logging.getLogger().removeHandler(self._sender)
+        with contextlib.suppress(RuntimeError):  # the loop has ended already
+            asyncio.get_running_loop().remove_reader(self._socket)
+        self._sender.close()
+        self._socket.close()
+
+    def _read(self) -> None:
+        for _ in range(LINES_AT_ONCE):
+            try:
+                line = self._socket.recv(MOST_BYTES)
+            except BlockingIOError:
+                return
+            with contextlib.suppress(msgspec.MsgspecError):  # of another program of this user
+                self._publish(msgspec.json.decode(line, type=LogEvent))
+
+
+def send_logs(process: str) -> None:
+    """Send this process's lines to the front that started it, if one did."""
+    path = os.environ.get(SOCKET_VARIABLE)
+    if path:
+        logging.getLogger().addHandler(LogSender(process, path))
