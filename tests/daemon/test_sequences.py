@@ -22,16 +22,17 @@ from tests.end_to_end.harness import RunningDaemon
 
 pytestmark = pytest.mark.timeout(150)
 PLAYS = ("say", "gesture", "story", "edit", "inbetween", "replay")
-OTHERS = ("lease", "arm", "park", "stop", "estop", "reset", "look", "idle", "cancel", "record")
+OTHERS = ("lease", "arm", "park", "stop", "torque_off", "estop", "reset", "look", "idle", "cancel", "record")
 AFTER = {
     "arm": {"limp": "idle", "idle": "idle", "moving": "moving", "holding": "holding"},
     "park": {"limp": "limp", "idle": "limp", "moving": "limp", "holding": "limp"},
     "stop": {"limp": "limp", "idle": "idle", "moving": "holding", "holding": "holding", "estop": "estop"},
+    "torque_off": {"limp": "limp", "idle": "limp", "moving": "limp", "holding": "limp"},
     "estop": {"limp": "estop", "idle": "estop", "moving": "estop", "holding": "estop", "estop": "estop"},
     "reset": {"limp": "limp", "idle": "idle", "moving": "moving", "holding": "holding", "estop": "limp"},
 }
 """Verb -> the state before -> the state it ends in when nobody interferes; where there is none it is refused."""
-ENDS_MOTION = ("park", "stop", "estop", "cancel")
+ENDS_MOTION = ("park", "stop", "torque_off", "estop", "cancel")
 WAY_OUT = {"limp": "arm", "estop": "reset"}
 STEPS = 25
 WITHIN_S = 12.0
@@ -150,7 +151,7 @@ class Sequence:
             self._settle()
             following = self._client.status().state
             assert following in ("idle", "holding"), self.told
-        self.must_arm = (self.must_arm or verb == "estop") and verb != "arm"
+        self.must_arm = (self.must_arm or verb in ("torque_off", "estop")) and verb != "arm"
         self._ended(verb)
         self.state = following
 
@@ -179,7 +180,7 @@ class Sequence:
     def _ended(self, verb: str) -> None:
         if verb in ENDS_MOTION and self.playing is not None:
             before, self.playing = self.playing, None
-            self._cancelled(before, verb)
+            self._cancelled(before, verb.replace("_", " "))
 
     def _cancelled(self, request: Play, by: str) -> None:
         """The same id again is the same command: its events up to the last are told once more."""
