@@ -66,6 +66,7 @@ class Audit:
         writes_in_fault: goals to a servo whose fault has taken its torque, after a grace of 0.1 s. They move nothing: a group
             is told to hold, and it is one of them. Goals that lead it on are violations.
         body_contacts: steps in which the body (MuJoCo) touched itself.
+        led_contacts: those of them while every servo had torque: it did not fall onto itself, it was led there.
         details: the first violations in words.
     """
 
@@ -76,6 +77,7 @@ class Audit:
     violations: Counter[str] = field(default_factory=Counter[str])
     writes_in_fault: int = 0
     body_contacts: int = 0
+    led_contacts: int = 0
     details: list[str] = field(default_factory=list[str])
 
     def __post_init__(self) -> None:
@@ -175,9 +177,15 @@ class Audit:
             "violations_by_kind": dict(self.violations),
             "writes_in_fault": self.writes_in_fault,
             "body_contacts": self.body_contacts,
+            "led_contacts": self.led_contacts,
             "details": self.details,
             **self.contacts.report(),
         }
+
+    def touched(self, steps: int, *, led: bool) -> None:
+        """The body touched itself in so many steps; `led`: while every servo had torque."""
+        self.body_contacts += steps
+        self.led_contacts += steps if led else 0
 
     def check_poses(self) -> None:
         """Look for self-contact in the poses collected so far, and forget them: for runs of hours."""

@@ -109,7 +109,9 @@ class World:
                 servo.restore_power()
             servo.watch(t_s)
             servo.judge()
-        self.audit.body_contacts = self.body.self_contacts
+        touched = self.body.self_contacts - self.audit.body_contacts
+        if touched:
+            self.audit.touched(touched, led=all(servo.torque for servo in self.all))
 
     def _keep_up(self, t_s: float) -> None:
         """Faults that last: the drives are told what holds now."""

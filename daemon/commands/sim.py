@@ -31,7 +31,8 @@ def sim(
     """Serve simulated servos on a tty until Ctrl-C, then print the audit of every goal they received.
 
     Anything that opens a serial port can talk to them: mmmd, dynamixel-sdk, rustypot, the DYNAMIXEL Wizard.
-    Exit status 1 when a goal broke a limit. What is modelled and what is not: docs/simulator.md.
+    Exit status 1 when a goal broke a limit, or led the robot into itself, as told or in the body.
+    What is modelled and what is not: docs/simulator.md.
 
     Example: mmmd sim --robot op3 --link ./servos --body mujoco
     and then: mmmd run --robot op3 --bus "dxl://./servos"
@@ -95,7 +96,7 @@ def sim(
     console.out(json_module.dumps(report))
     if audit is not None:
         audit.write_text(json_module.dumps(report, indent=1))
-    return 1 if report["violations"] or report["self_contacts"] else 0
+    return 1 if any(report[broken] for broken in ("violations", "self_contacts", "led_contacts")) else 0
 
 
 def _servers(

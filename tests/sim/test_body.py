@@ -94,8 +94,17 @@ def test_a_robot_that_strikes_itself_is_seen_and_does_not_pass_through() -> None
     pose[REFERENCE.joint_names.index("left_shoulder_yaw")] = np.radians(-90)
     world = world_of(REFERENCE, None, "mujoco")
     end = goals(world, pose, 3.0)
-    assert world.audit.report()["body_contacts"] > 0
+    assert world.audit.report()["led_contacts"] > 0
     assert np.abs(end - pose).max() > 0.1
+
+
+def test_a_limp_robot_that_rests_on_itself_was_not_led_there() -> None:
+    pose = REFERENCE.rest_rad.copy()
+    pose[LEFT_ROLL] = np.radians(-15)
+    world = world_of(REFERENCE, None, "mujoco", start_rad=pose.tolist())
+    world.advance(3.0)
+    report = world.audit.report()
+    assert report["body_contacts"] > 0 and report["led_contacts"] == 0
 
 
 def test_same_start_same_goals_same_end() -> None:
