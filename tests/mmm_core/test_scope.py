@@ -38,8 +38,8 @@ DEVELOPMENT = [*scope_development.IN_SCOPE, *out_of(scope_development.OUT_OF_SCO
 
 @pytest.fixture(scope="module")
 def index() -> ScopeIndex:
-    """The scope of today's corpus from an eighth of the sentences: what ships sees all of them."""
-    return build_scope(load_text_encoder(), ScopeRecipe(1700, 1700))
+    """The scope of today's corpus from a sixteenth of the sentences: what ships sees all of them."""
+    return build_scope(load_text_encoder(), ScopeRecipe(850, 850))
 
 
 @pytest.fixture(scope="module")

@@ -21,10 +21,10 @@ from mmm_core.corpus.grammar import known_commands
 from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, TrainingDataError
 from mmm_core.evaluation.extractors import load_evaluator
+from mmm_core.training import scope_training
 from mmm_core.training.recipe import known_recipes, read_recipe
 from mmm_core.training.run import Run, Schedule
 from mmm_core.training.run import train as run_stage
-from mmm_core.training.scope_training import INDEX_ROWS
 from tests.mmm_core.folders import make_folder
 
 SCHEDULE = "steps = {steps}\nlearning_rate = 1e-3\nwarmup_steps = 2\nsave_every = 3\n"
@@ -63,6 +63,15 @@ part_share = 0.5
 sentences = 100
 outside = 100
 """
+
+
+INDEX_ROWS = 1
+"""Known commands of a row in the index: reading all four that ship have takes longer than the training here."""
+
+
+@pytest.fixture(autouse=True)
+def short_index(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(scope_training, "INDEX_ROWS", INDEX_ROWS)
 
 
 def small(path: Path, layout: str = "parts", steps: int = 8, synthesised: int = 12) -> Path:

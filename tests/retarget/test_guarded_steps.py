@@ -136,6 +136,7 @@ def test_a_robot_that_stands_within_the_margin_may_leave_it_but_not_go_deeper():
     before = kept.room_m(near)
     assert (before < 0).any()
     guard.reset(near, np.zeros(robot.n_joints))
+    target = touching_target(robot)
     for _ in range(300):
-        guard.step(touching_target(robot))
+        guard.step(target)
         assert (kept.room_m(guard.position_rad) >= np.minimum(before, 0.0) - 1e-5).all()
