@@ -17,7 +17,8 @@ from daemon.log_feed import send_logs
 from daemon.logs import start_logging
 from daemon.realtime import BUS_PRIORITY, lock_memory, take_fifo
 from daemon.shared import BusLink
-from daemon.streamer import Streamer, start
+from daemon.starting import start
+from daemon.streamer import Streamer
 from retarget.robot import load_robot
 
 log = logging.getLogger(__name__)

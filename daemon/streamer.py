@@ -9,16 +9,13 @@ from __future__ import annotations
 
 import gc
 import logging
-from collections.abc import Callable, Generator
+from collections.abc import Generator, Sequence
 from contextlib import suppress
 
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.approach import Approach
 from daemon.arming import Armed, arm_in_steps
-from daemon.bus.adapter import latency_advice
-from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.bus.multi import RobotBus
 from daemon.bus.reading import BusReading
 from daemon.clock import Clock
@@ -27,9 +24,9 @@ from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.gate import Gate
 from daemon.judging import MAY_HAVE_TRIPPED_S, Judge
 from daemon.pace import Pace, SlowedSetpoints
-from daemon.shared import ESTOPS, BusLink, BusRequest, BusState, Readiness, valid_requests
+from daemon.shared import ESTOPS, BusLink, BusRequest, BusState, valid_requests
+from daemon.slow_move import SlowMove
 from retarget.collision import SelfContact
-from retarget.free_way import WaySearch
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
 
@@ -42,15 +39,10 @@ FAULT_LIMP_S = 10.0
 """A fault or e-stop in which torque was kept, and a front so long silent: nobody will come, the servos go limp."""
 NO_WAY_LIMP_S = 10.0
 """Where no way to rest or park was found that keeps off the robot itself it holds in a fault, and goes limp after so long."""
-SEARCH_PIECES_PER_S = 200
-"""So much of the search for a way is done in a second: a piece or a few in a cycle."""
-_HELD_S, _SEARCHES = 0.5, 3
-"""A slow move that the gate has held for so long is looked for anew from where it stands, so many times."""
 TORQUE_OFF_REPEATS = 5
 """Torque off is a packet that nobody answers: it is sent again, so that a spoilt one or a lost port costs nothing."""
 PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
 """Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
-_LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
 _COMES_TO = {
     BusRequest.STOP: BusState.STOPPING, BusRequest.TORQUE_OFF: BusState.STOPPING, BusRequest.PARK: BusState.PARKING,
 }  # fmt: skip
@@ -66,8 +58,9 @@ class Streamer:
     ) -> None:
         self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
         self._ticks = JointServoMap(robot)
-        self._contact = SelfContact(robot)
-        self._gate = Gate(robot, contact=self._contact)
+        contact = SelfContact(robot)
+        self._gate = Gate(robot, contact=contact)
+        self._slow = SlowMove(robot, contact, self._gate)
         self._period_s = robot.bus.period_s
         self._watch_front = watch_front
         self.state = BusState.LIMP
@@ -75,11 +68,6 @@ class Streamer:
         self.rest_rad = robot.rest_rad
         """Where arming leads to; replay sets a log's first goal."""
         self._torque = False
-        self._approach: Approach | None = None
-        self._search: WaySearch | None = None
-        self._search_pieces = max(1, round(SEARCH_PIECES_PER_S * robot.bus.period_s))
-        self._searches = 0
-        self._approach_s = self._held_s = 0.0
         self._limp_at_s: float | None = None
         self._held = False
         self._goal_tick: NDArray[np.int32] | None = None
@@ -158,7 +146,7 @@ class Streamer:
             if self._arming is not None:
                 self._go_limp()  # before torque is on there is nothing to bring to rest
             elif self.state in _ARMED:
-                self._forget_approach()
+                self._forget_way()
                 self._limp_at_rest = request is BusRequest.TORQUE_OFF
                 self._enter(_COMES_TO[request])
         elif request is BusRequest.RESET:
@@ -180,7 +168,7 @@ class Streamer:
     def _estop(self, *, holds: bool) -> None:
         """Cut torque; or brake and hold, where nothing is latched that holds already."""
         self._link.drop_queued()
-        self._forget_approach()
+        self._forget_way()
         if not holds or self._arming is not None or self.state not in _ARMED:
             self._torque, self._goal_tick, self._arming = False, None, None
             self._made_limp = True
@@ -205,7 +193,7 @@ class Streamer:
         self._fed_s = self._clock.now_s()
         self._judge.armed()
         self._gate.reset(self._ticks.tick_to_rad(armed.goal_tick))
-        self._forget_approach()
+        self._forget_way()
 
     def _go_limp(self) -> None:
         self._cut_torque()
@@ -221,7 +209,7 @@ class Streamer:
             return None
         self._ramp_torque()
         if self.state in (BusState.ARMING, BusState.PARKING):
-            return self._follow_approach()
+            return self._move_slowly()
         if self.state is BusState.STOPPING:
             goal = self._gate.brake()
             if self._gate.at_rest and self._limp_at_rest:
@@ -265,60 +253,34 @@ class Streamer:
             )
         self._held = self._gate.held
 
-    def _follow_approach(self) -> NDArray[np.float64]:
-        """The slow move of arming and parking: comes to rest, looks for a way that is free, and goes it."""
-        if self._approach is None:
-            goal = self._gate.brake()
-            if self._gate.at_rest:
-                self._look_for_a_way()
-            return goal
-        self._setpoint_rad = self._approach.at(self._approach_s + self._period_s)
-        goal = self._gate.step(self._setpoint_rad)
-        if self._gate.held:  # its time stands still with it
-            self._held_s += self._period_s
-            if self._held_s > _HELD_S:
-                self._approach = None
-            return goal
-        self._approach_s += self._period_s
-        stay_s = self._link.park_stay_s if self.state is BusState.PARKING else 0.0
-        if self._approach_s > self._approach.duration_s + stay_s and self._gate.at_rest:
-            self._forget_approach()
-            if self.state is BusState.PARKING:
-                self._go_limp()
-            else:
-                self._enter(BusState.HOLDING)
+    def _move_slowly(self) -> NDArray[np.float64]:
+        """To the rest pose, then it holds; to the park pose, then it is limp."""
+        parking = self.state is BusState.PARKING
+        to_rad = self.robot.park_rad if parking else self.rest_rad
+        goal = self._slow.step(to_rad, self._link.park_stay_s if parking else 0.0)
+        if self._slow.setpoint_rad is not None:
+            self._setpoint_rad = self._slow.setpoint_rad
+        if self._slow.blocked is not None:
+            self._no_way(self._slow.blocked.touching())
+        elif self._slow.arrived and parking:
+            self._go_limp()
+        elif self._slow.arrived:
+            self._enter(BusState.HOLDING)
         return goal
 
-    def _look_for_a_way(self) -> None:
-        """Some pieces of the search from where it stands; then the approach, or a fault when there is no way."""
-        goal_rad = self.robot.park_rad if self.state is BusState.PARKING else self.rest_rad
-        if self._search is None:
-            self._search = WaySearch(self.robot, self._contact, self._gate.position_rad, goal_rad)
-            self._searches += 1
-        for _ in range(self._search_pieces):
-            if self._search.work():
-                break
-        else:
-            return
-        search, self._search = self._search, None
-        if search.way is None or self._searches > _SEARCHES:
-            self._no_way(search)
-            return
-        log.info("way of %d lines to %s, %d pieces", len(search.way) - 1, self.state.name.lower(), search.pieces)
-        self._approach, self._approach_s, self._held_s = Approach(search.way, self._gate.limits), 0.0, 0.0
-
-    def _no_way(self, search: WaySearch) -> None:
+    def _no_way(self, touching: Sequence[tuple[str, str]]) -> None:
         """Hold and say so; limp after a while: the robot is never led through itself."""
         where = "park" if self.state is BusState.PARKING else "rest"
-        near = ", ".join(f"{a} and {b}" for a, b in search.touching()[:3])
+        near = ", ".join(f"{a} and {b}" for a, b in touching[:3])
         self._fault(
             f"no free way to the {where} pose: the robot is in its own way{f' ({near})' if near else ''}; it holds, and goes"
             f" limp in {NO_WAY_LIMP_S:g} s; lead its arms clear by hand, then reset and arm"
         )
         self._limp_at_s = self._clock.now_s() + NO_WAY_LIMP_S
 
-    def _forget_approach(self) -> None:
-        self._approach, self._search, self._searches, self._limp_at_rest = None, None, 0, False
+    def _forget_way(self) -> None:
+        self._slow.begin()
+        self._limp_at_rest = False
 
     def _ramp_torque(self) -> None:
         if self._pwm is not None and self._cycle % 5 == 0:
@@ -391,7 +353,7 @@ class Streamer:
             log.error("fault: %s", text)
             self._link.set_text(text)
         self._link.drop_queued()
-        self._forget_approach()
+        self._forget_way()
         self._arming = None
         self._enter(BusState.FAULT)
 
@@ -436,61 +398,3 @@ class Streamer:
         record["error"] = reading.error
         self._bus.show_health(self._link.health)
         self._link.publish()
-
-
-Opener = Callable[[], RobotBus]
-
-
-AFTER_LOSS = "the bus process was lost and is back; servos may still hold: `mmmd reset` makes them limp"
-_HELD_BEFORE = "servo {} had torque before it was armed: who drove it may have been cut off; `mmmd reset` makes it limp"
-
-
-def start(
-    robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock, *, after_loss: bool = False
-) -> Streamer | None:
-    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link.
-
-    `after_loss`, or a servo that has torque already, starts it in a latched fault: nothing may move by itself, and nothing
-    may be taken for limp that is not.
-    """
-    try:
-        bus = open_bus()
-    except DaemonError as error:
-        link.set_ready(Readiness.FAILED, str(error))
-        return None
-    try:
-        bus.verify()
-        findings = check_servos(bus, robot)
-        for f in findings:
-            log.log(
-                _LEVELS[f.severity],
-                "servo %d (%s): %s %s, should be %s; %s",
-                f.servo_id,
-                f.joint_name,
-                f.item,
-                f.found,
-                f.expected,
-                f.remedy,
-            )
-        require_needed(findings)
-        plan = bus.plan()
-        if not plan.require(robot.bus.rate_hz):
-            log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))
-        for port in bus.ports:
-            advice = latency_advice(getattr(port, "device", ""))
-            if advice:
-                log.warning("%s", advice)
-        bus.exchange(None)
-        holding = ", ".join(str(i) for i in bus.ids if bus.read_item(i, "torque_enable"))
-    except DaemonError as error:
-        bus.close()
-        link.set_ready(Readiness.FAILED, str(error))
-        return None
-    streamer = Streamer(robot, bus, link, clock)
-    link.drop_queued()
-    why = AFTER_LOSS if after_loss else _HELD_BEFORE.format(holding) if holding else ""
-    if why:
-        log.error("fault: %s", why)
-        streamer.state = BusState.FAULT
-    link.set_ready(Readiness.READY, why)
-    return streamer

@@ -6,7 +6,7 @@ import pytest
 from rig import rig, swing
 
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
-from daemon.streamer import start
+from daemon.starting import start
 from sim.faults import Fault
 
 A, P, S, E = BusRequest.ARM, BusRequest.PARK, BusRequest.STOP, BusRequest.ESTOP
