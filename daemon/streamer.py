@@ -108,8 +108,9 @@ class Streamer:
 
     @property
     def made_limp(self) -> bool:
-        """Whether torque was cut, and not by a fault that may be over."""
-        return self.state is BusState.LIMP or (self.state is BusState.ESTOP and not self._torque)
+        """Whether the robot is limp, or was made so in a fault or e-stop by torque-offs that all went out."""
+        was_cut = self._made_limp and not self._torque and not self._torque_off_left
+        return self.state is BusState.LIMP or (self.state in (BusState.ESTOP, BusState.FAULT) and was_cut)
 
     def cycle(self) -> None:
         """One bus period."""

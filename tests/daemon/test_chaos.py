@@ -13,6 +13,7 @@ import threading
 import time
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
 from daemon import events as ev
@@ -28,6 +29,11 @@ from tests.end_to_end.test_start_and_end import child_pid
 pytestmark = pytest.mark.timeout(180)
 ROBOT = load_robot("reference")
 STATES = ("limp", "arming", "idle", "moving", "holding", "parking", "estop")
+STAYS = {state: (state,) for state in (*STATES, "fault")} | {
+    "arming": ("arming", "idle"),
+    "parking": ("parking", "limp"),
+}
+"""What the robot may be in a moment later when nothing touches it."""
 FAULT_WITHIN_S = 6.0
 """From the signal to a robot in a latched fault that can be reset: 1 s of silence, 2.5 s to the kill, the restart."""
 
@@ -53,6 +59,11 @@ class Servos:
     @property
     def torque(self) -> bool:
         return any(s.torque for s in self.server.bus.servos.values())
+
+    @property
+    def moves(self) -> bool:
+        """Whether a shaft turns, by more than the creep of friction."""
+        return bool((np.abs(self.server.bus.world.drives.velocity_tick_s) > 20).any())
 
     def unplugged(self, on: bool) -> None:
         self.server.bus.faults = FaultSchedule((Fault("unplug"),) if on else ())
@@ -91,10 +102,10 @@ def bring_to(client: Client, state: str) -> None:
     status = client.wait_for("idle", "holding", "fault", timeout_s=10)
     assert status.state != "fault", status.reason
     if state == "idle":
-        client.say("wave", seconds=0.8)
+        client.gesture("nod")
         client.wait_for("idle", timeout_s=3)
         return
-    client.say("wave", seconds=6.0, loop=True, wait=False)  # ended by nothing but what is done to it
+    client.gesture("wave_right", loop=True, wait=False)  # needs no generator; ended by nothing but what is done to it
     client.wait_for("moving", timeout_s=5)
     time.sleep(0.3)
     if state == "holding":
@@ -111,6 +122,11 @@ def bring_to_fault(client: Client, servos: Servos) -> None:
     servos.unplugged(True)
     within(FAULT_WITHIN_S, "fault", lambda: client.status().state == "fault")
     servos.unplugged(False)
+
+
+def lead_to(client: Client, servos: Servos, state: str) -> None:
+    """To any state, the fault of a bus that was gone for a while too."""
+    bring_to_fault(client, servos) if state == "fault" else bring_to(client, state)
 
 
 def assert_works(client: Client) -> None:
@@ -133,12 +149,11 @@ def daemon_on(servos: Servos, *options: str, model: bool = False) -> RunningDaem
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 def test_the_bus_process_in_any_state_ends_in_a_fault_that_can_be_reset(servos, number):
-    states = (*STATES, "fault") if number is signal.SIGKILL else ("arming", "idle", "moving", "parking")
     daemon = daemon_on(servos)
     try:
         with daemon.client() as client:
-            for state in states:
-                bring_to_fault(client, servos) if state == "fault" else bring_to(client, state)
+            for state in (*STATES, "fault"):
+                lead_to(client, servos, state)
                 bus = child_pid(daemon, "daemon.bus_process")
                 os.kill(bus, number)
                 began_s = time.monotonic()
@@ -159,12 +174,16 @@ def test_the_bus_process_in_any_state_ends_in_a_fault_that_can_be_reset(servos, 
         daemon.close()
 
 
-@pytest.mark.parametrize("state", STATES)
-def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, state):
-    daemon = daemon_on(servos)
+@pytest.mark.parametrize("state", (*STATES, "fault"))
+def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, state, tmp_path):
+    """A recorder that is killed in that state before is said, and changes nothing."""
+    daemon = daemon_on(servos, "--log", str(tmp_path / "run.mcap"))
     try:
         with daemon.client() as client:
-            bring_to(client, state)
+            lead_to(client, servos, state)
+            os.kill(child_pid(daemon, "daemon.recorder"), signal.SIGKILL)
+            time.sleep(0.1)
+            assert client.status().state in STAYS[state]
             servos.unplugged(True)
             if state == "estop":
                 time.sleep(1.0)
@@ -176,6 +195,35 @@ def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, s
             client.reset()
             client.wait_for("limp", timeout_s=5)
             assert_works(client)
+            assert "stopped" in client.status().recording
+        assert daemon.terminate() == 0
+        servos.assert_kept()
+    finally:
+        daemon.close()
+
+
+def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands_and_goes_on_with_it(servos):
+    """After 0.5 s the bus process brings to rest what moves; what is being parked is parked."""
+    daemon = daemon_on(servos)
+    try:
+        with daemon.client() as client:
+            for state in (*STATES, "fault"):
+                lead_to(client, servos, state)
+                had_torque = servos.torque
+                daemon.process.send_signal(signal.SIGSTOP)
+                try:
+                    time.sleep(1.2)
+                    assert state in ("arming", "parking", "fault") or servos.torque == had_torque, state
+                    assert state == "parking" or not servos.moves, f"{state}: it moves and nobody leads it"
+                finally:
+                    daemon.process.send_signal(signal.SIGCONT)
+                after = ("idle", "moving", "holding") if state in ("idle", "moving", "holding") else STAYS[state]
+                after = ("limp", "holding", "idle") if state == "arming" else after
+                assert client.wait_for(*after, timeout_s=5).state in after
+                servos.assert_kept()
+            client.reset()
+            client.wait_for("limp", timeout_s=5)
+            assert_works(client)
         assert daemon.terminate() == 0
         servos.assert_kept()
     finally:
@@ -183,7 +231,9 @@ def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, s
 
 
 @pytest.mark.parametrize(
-    "states", [("idle", "moving", "holding", "parking"), ("limp", "arming", "estop")], ids=["moving on", "other"]
+    "states",
+    [("idle", "moving", "holding", "parking"), ("limp", "arming", "estop", "fault")],
+    ids=["moving on", "other"],
 )
 def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_path, states):
     """Several daemons at once: hold after 0.5 s, park after 5 s, then the port is given back."""
@@ -196,7 +246,7 @@ def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_p
             daemon = daemon_on(servos)
             rigs.append((servos, daemon, child_pid(daemon, "daemon.bus_process")))
             with daemon.client() as client:
-                bring_to(client, state)
+                lead_to(client, servos, state)
             daemon.process.kill()
         for servos, daemon, bus in rigs:
             within(25, "limp", lambda servos=servos: not servos.torque)
@@ -246,14 +296,23 @@ def test_the_generator_killed_and_frozen_in_each_state_is_started_again(servos):
     daemon = daemon_on(servos, model=True)
     try:
         with daemon.client() as client:
-            for state in ("limp", "idle", "moving", "holding"):
-                bring_to(client, state)
-                number = signal.SIGSTOP if state == "idle" else signal.SIGKILL
-                os.kill(child_pid(daemon, "daemon.generator"), number)
-                within(12, "noticed", lambda: not client.status().generator.startswith("ready"))
-                assert client.status().state == state
-                assert client.gesture("nod").done  # the library needs no generator
-                within(60, "back", lambda: client.status().generator.startswith("ready"))
+            bring_to(client, "idle")
+            os.kill(child_pid(daemon, "daemon.generator"), signal.SIGSTOP)
+            within(12, "noticed", lambda: not client.status().generator.startswith("ready"))
+            for state in (*STATES, "fault"):
+                within(60, "ready", lambda: client.status().generator.startswith("ready"))
+                lead_to(client, servos, state)
+                for number in (signal.SIGSTOP, signal.SIGCONT, signal.SIGKILL):
+                    os.kill(child_pid(daemon, "daemon.generator"), number)
+                    time.sleep(0.1)
+                    assert client.status().state in STAYS[state]
+                within(3, "noticed", lambda: not client.status().generator.startswith("ready"))
+                if state in ("limp", "idle", "moving", "holding"):
+                    assert client.gesture("nod").done  # the library needs no generator
+            client.reset()
+            client.wait_for("limp", timeout_s=5)
+            within(60, "back", lambda: client.status().generator.startswith("ready"))
+            client.arm()
             assert client.say("nod twice").done
         assert daemon.terminate() == 0
         servos.assert_kept()

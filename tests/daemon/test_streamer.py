@@ -12,7 +12,7 @@ from daemon.bus.servo_bus import ServoBus
 from daemon.errors import PortMissingError
 from daemon.shared import BusLink, BusRequest, BusState, Readiness
 from daemon.starting import start
-from daemon.streamer import FAULT_LIMP_S, HEARTBEAT_LOST_S, PARK_AFTER_S
+from daemon.streamer import FAULT_LIMP_S, HEARTBEAT_LOST_S, PARK_AFTER_S, TORQUE_OFF_REPEATS
 from retarget.collision import SelfContact
 from retarget.robot import list_robots, load_robot
 from sim.bus import SimBus
@@ -223,7 +223,7 @@ def test_what_an_e_stop_holds_goes_limp_when_nobody_is_there(monkeypatch):
         r.cycle(30)
         assert r.state is BusState.ESTOP and all(r.torque) and not r.streamer.made_limp
         age_s = FAULT_LIMP_S + 0.5
-        r.cycle(2)
+        r.cycle(TORQUE_OFF_REPEATS + 2)
         assert r.state is BusState.ESTOP and not any(r.torque) and r.streamer.made_limp
 
 
