@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bus.models import BusModel
 from daemon.bus.reading import UNKNOWN, BusReading
 from daemon.errors import CommandError
 
@@ -53,7 +54,7 @@ class ServoLimits:
     """Limits of S servos as their own registers say; infinite or zero where a servo has none.
 
     Attributes:
-        temperature_c: (S,) at which it trips.
+        temperature_c: (S,) of its reading, at which it trips.
         voltage_raw: (S,) below which it trips, 0.1 V.
         current_raw: (S,) unit of its reading.
     """
@@ -76,6 +77,11 @@ class Registers(Protocol):
         """Of its servos, in the order of the reading."""
         ...
 
+    @property
+    def models(self) -> Sequence[BusModel]:
+        """Of the same."""
+        ...
+
     def read_item(self, servo_id: int, name: str) -> int:
         """The value of a register."""
         ...
@@ -88,18 +94,20 @@ def read_limits(bus: Registers) -> ServoLimits:
         LinkError, ServoFaultError: a servo does not answer, or with an error.
     """
 
-    def values(name: str, without: float) -> Array:
-        found: list[float] = []
-        for servo_id in bus.ids:
-            try:
-                found.append(float(bus.read_item(servo_id, name)) or without)
-            except CommandError:
-                found.append(without)
-        return np.array(found)
+    def value(servo_id: int, name: str, without: float) -> float:
+        try:
+            return float(bus.read_item(servo_id, name)) or without
+        except CommandError:
+            return without
 
-    return ServoLimits(
-        values("temperature_limit", np.inf), values("min_voltage_limit", 0.0), values("current_limit", FULL_LOAD)
-    )
+    def values(name: str, without: float) -> Array:
+        return np.array([value(servo_id, name, without) for servo_id in bus.ids])
+
+    temperature_c = [
+        min(value(servo_id, t.limit, np.inf) - t.above_c for t in model.thermometers)
+        for servo_id, model in zip(bus.ids, bus.models, strict=True)
+    ]
+    return ServoLimits(np.array(temperature_c), values("min_voltage_limit", 0.0), values("current_limit", FULL_LOAD))
 
 
 class Derating:

@@ -22,6 +22,8 @@ _STILL_S, _STILL_TICK = 0.02, 2
 """Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
 _PIN_TICK = 8
 """So far may a joint be from its pinned goal when torque comes on: 0.7 degrees of a servo of 4096 ticks."""
+_TICKS_PER_TURN = 4096
+"""What those two are for; finer servos (Y, P) may go as many degrees, coarser ones as many ticks."""
 
 
 def reading_at_rest(bus: RobotBus, clock: Clock) -> Generator[None, None, BusReading]:
@@ -32,6 +34,7 @@ def reading_at_rest(bus: RobotBus, clock: Clock) -> Generator[None, None, BusRea
     Raises:
         ServoFaultError: one still moves after a second.
     """
+    still_tick = _ticks(bus, _STILL_TICK)
     reading, began_s = bus.exchange(None), clock.now_s()
     moved = np.zeros(len(bus.ids), np.int32)
     while clock.now_s() - began_s < SWING_OUT_S:
@@ -40,11 +43,11 @@ def reading_at_rest(bus: RobotBus, clock: Clock) -> Generator[None, None, BusRea
             yield
         reading = bus.exchange(None)
         moved = np.abs(reading.position_tick - before)
-        if reading.valid.all() and moved.max() <= _STILL_TICK:
+        if reading.valid.all() and (moved <= still_tick).all():
             return reading
     if not reading.valid.all():
         return reading
-    row = int(moved.argmax())
+    row = int((moved / still_tick).argmax())
     raise ServoFaultError(bus.ids[row], f"to stand still for {SWING_OUT_S:g} s", f"moves by {moved[row]} ticks")
 
 
@@ -66,7 +69,7 @@ def pin_where_they_stand(
     Raises:
         ServoFaultError: a goal is not taken, or a joint moves each time while goals are pinned.
     """
-    row = 0
+    row, pin_tick = 0, _ticks(bus, _PIN_TICK)
     for _ in range(PIN_ATTEMPTS):
         present = reading.position_tick.copy()
         for servo_id, tick in zip(bus.ids, present, strict=True):
@@ -77,13 +80,18 @@ def pin_where_they_stand(
         bus.set_effort(effort, confirmed=True)
         now = bus.exchange(None)
         moved = np.where(now.valid, np.abs(now.position_tick - present), np.iinfo(np.int32).max)
-        if moved.max() <= _PIN_TICK:
+        if (moved <= pin_tick).all():
             return present
-        row = int(moved.argmax())
+        row = int((moved / pin_tick).argmax())
         reading = yield from reading_at_rest(bus, clock)
         if not reading.valid.all():
             break
     raise ServoFaultError(bus.ids[row], "to stand still while its goal is pinned", "it moved, or was silent")
+
+
+def _ticks(bus: RobotBus, ticks: int) -> NDArray[np.float64]:
+    """(S,) so many of 4096 ticks in those of each servo; never fewer."""
+    return np.array([ticks * max(1.0, s.model.ticks_per_turn / _TICKS_PER_TURN) for s in bus.servos])
 
 
 def _pin(bus: RobotBus, servo_id: int, tick: int) -> None:

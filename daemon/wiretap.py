@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,19 +11,26 @@ from numpy.typing import NDArray
 from daemon.bus.packet import Instruction, PacketDecoder
 from daemon.bus.port import Port
 
-_GOAL_POSITION_ADDRESS, _GOAL_POSITION_BYTES = 116, 4
+_GOAL_OF_X = (116, 4)
 
 
 class Wiretap:
     """A `Port` around another one.
 
+    Args:
+        port: the other one.
+        servo_ids: of the servos.
+        goal_places: (address, size) of goal_position in their control tables.
+
     Attributes:
         goal_tick: (S,) the last goals sent to the servos, in the order of `servo_ids`.
-        writes: whole sets of goals sent so far.
+        writes: whole sets of goals sent so far, each in one write to the port.
     """
 
-    def __init__(self, port: Port, servo_ids: Sequence[int]) -> None:
-        self._port = port
+    def __init__(
+        self, port: Port, servo_ids: Sequence[int], goal_places: Collection[tuple[int, int]] = (_GOAL_OF_X,)
+    ) -> None:
+        self._port, self._places = port, frozenset(goal_places)
         self._row = {servo_id: i for i, servo_id in enumerate(servo_ids)}
         self._decoder = PacketDecoder()
         self.goal_tick: NDArray[np.int32] = np.zeros(len(servo_ids), np.int32)
@@ -41,9 +48,8 @@ class Wiretap:
 
     def write(self, data: bytes) -> None:
         """Send all of `data`, after looking for goals in it."""
-        for p in self._decoder.feed(data):
-            if p.instruction == Instruction.SYNC_WRITE:
-                self._look(p.parameters)
+        written = [p for p in self._decoder.feed(data) if p.instruction == Instruction.SYNC_WRITE]
+        self.writes += sum(self._look(p.parameters) for p in written) > 0
         self._port.write(data)
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
@@ -54,12 +60,11 @@ class Wiretap:
         """Close the port behind."""
         self._port.close()
 
-    def _look(self, parameters: bytes) -> None:
-        address, size = struct.unpack_from("<HH", parameters)
-        if (address, size) != (_GOAL_POSITION_ADDRESS, _GOAL_POSITION_BYTES):
-            return
-        rows = struct.iter_unpack("<Bi", parameters[4:])
-        for servo_id, tick in rows:
+    def _look(self, parameters: bytes) -> bool:
+        """Keep the goals of a sync write; whether there are any in it."""
+        if struct.unpack_from("<HH", parameters) not in self._places:
+            return False
+        for servo_id, tick in struct.iter_unpack("<Bi", parameters[4:]):
             if servo_id in self._row:
                 self.goal_tick[self._row[servo_id]] = tick
-        self.writes += 1
+        return True

@@ -131,11 +131,11 @@ class AuditRig:
 
     def _reboot_latched(self) -> None:
         for servo in self._bus.servos.values():
-            if "hardware_error_status" not in servo.items:  # AX and MX know no reboot: the power is switched
+            if not servo.model.error_item:  # AX and MX know no reboot: the power is switched
                 self._bus.world.drives.temperature_c[servo.index] = _COOL_C
                 servo.reboot()
                 self._cycles(_REBOOT_CYCLES)
-            elif servo.memory.get("hardware_error_status"):
+            elif servo.error:
                 self._bus.world.drives.temperature_c[servo.index] = _COOL_C  # it had time to cool
                 self._bus.receive(packet.reboot(servo.servo_id), self._clock.true_s + 0.001, self._port.baud)
                 self._cycles(_REBOOT_CYCLES)

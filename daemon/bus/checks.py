@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from daemon.bus.identity import identity_text
 from daemon.bus.multi import RobotBus
-from daemon.bus.rules import ADVISED, ITEMS, NEEDED, Finding, findings_of
+from daemon.bus.rules import ADVISED, NEEDED, Finding, findings_of, items_of
 from daemon.errors import BusMismatchError, CommandError, MismatchRow
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
@@ -21,7 +21,7 @@ def check_servos(bus: RobotBus, robot: RobotModel) -> list[Finding]:
         for s, low, high in zip(robot.servos, ticks.position_min_tick, ticks.position_max_tick, strict=True)
     }
     for servo, model, firmware in zip(bus.servos, bus.models, bus.firmware, strict=True):
-        values = bus.read_items(servo.servo_id, ITEMS)
+        values = bus.read_items(servo.servo_id, items_of(model))
         findings += findings_of(servo, ends[servo.servo_id], model, firmware, values)
     return findings
 

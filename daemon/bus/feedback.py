@@ -19,7 +19,7 @@ from daemon.bus.group import FastGroupReply, GroupReply
 from daemon.bus.models import BusModel
 from daemon.bus.packet import Instruction, Packet
 from daemon.bus.reading import BusReading
-from daemon.bus.registers import FEEDBACK_ADDRESS, FEEDBACK_LENGTH, Item
+from daemon.bus.registers import FEEDBACK_LENGTH, Item
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,13 @@ class Layout:
     effort: int
 
 
-DIRECT = Layout(FEEDBACK_ADDRESS, FEEDBACK_LENGTH, 6, 2, 0)
-"""Protocol 2.0: effort 126, velocity 128, position 132 stand side by side."""
+def direct(address: int) -> Layout:
+    """Protocol 2.0: effort, velocity, position stand side by side from `address` on."""
+    return Layout(address, FEEDBACK_LENGTH, 6, 2, 0)
+
+
+DIRECT = direct(126)
+"""Of X and MX: effort 126, velocity 128, position 132."""
 PROTOCOL_1_ADDRESS, PROTOCOL_1_LENGTH = 36, 6
 """Protocol 1.0: position 36, speed 38, load 40."""
 
@@ -239,12 +244,14 @@ def steps_for(
     of = dict(zip(rows, zip(servo_ids, models, fast, strict=True), strict=True))
     modern = [r for r in rows if of[r][1].protocol == 2.0]
     steps: list[Step] = []
-    for group, kind in (
-        ([r for r in modern if chained and of[r][2]], FastSyncStep),
-        ([r for r in modern if not (chained and of[r][2])], SyncStep),
-    ):
-        if group:
-            steps.append(kind(group, [of[r][0] for r in group]))
+    for address in dict.fromkeys(of[r][1].feedback_address for r in modern):  # one for X, one for Y, one for P
+        there = [r for r in modern if of[r][1].feedback_address == address]
+        for group, kind in (
+            ([r for r in there if chained and of[r][2]], FastSyncStep),
+            ([r for r in there if not (chained and of[r][2])], SyncStep),
+        ):
+            if group:
+                steps.append(kind(group, [of[r][0] for r in group], direct(address)))
     mx = [r for r in rows if of[r][1].family == "mx1"]
     single = [[r] for r in rows if of[r][1].family == "ax"] + ([] if chained else [[r] for r in mx])
     for group in ([mx] if mx and chained else []) + single:

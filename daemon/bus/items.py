@@ -12,7 +12,7 @@ from daemon.bus.events import BusEventKind
 from daemon.bus.group import GroupWrite, GroupWrite1
 from daemon.bus.models import BusModel
 from daemon.bus.port import Port
-from daemon.bus.registers import POSITION_MODE, WATCHDOG_TRIPPED, Item, hardware_error_text
+from daemon.bus.registers import POSITION_MODE, WATCHDOG_TRIPPED, Item
 from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
 from daemon.errors import CommandError
@@ -164,9 +164,10 @@ class Items(Asking):
     def hardware_error_text(self, servo_id: int) -> str:
         """What a servo with the alert bit set complains of."""
         row = self._row_of(servo_id)
-        if "hardware_error_status" in self.models[row].table:
-            self.reading.hardware_error[row] = self.read_item(servo_id, "hardware_error_status")
-        return hardware_error_text(int(self.reading.hardware_error[row]))
+        model = self.models[row]
+        if model.error_item:
+            self.reading.hardware_error[row] = self.read_item(servo_id, model.error_item)
+        return model.error_text(int(self.reading.hardware_error[row]))
 
     def reboot(self, servo_id: int) -> None:
         """Restart a servo: a latched error goes, and with it its torque and settings."""

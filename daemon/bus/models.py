@@ -1,12 +1,13 @@
 """What the bus must know of each servo model: its control table, indirect windows, bauds, and which firmware can what.
 
 Model numbers as answered to a ping. Initial values were transcribed from the pages of XM430-W350, XH430-W350,
-XL430-W250, XL330-M288, XC330-T288, MX-64(2.0), MX-64 and AX-12A; for the others the electrical ranges are their family's
-and the velocity limit is the no-load speed.
+XL430-W250, XL330-M288, XC330-T288, MX-64(2.0), MX-64, AX-12A, YM070-210-R099-RH, YM080-230-R099-RH and PH42-020-S300-R;
+for the others the electrical ranges are their family's and the velocity limit is the no-load speed.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from daemon.bus.registers import (
@@ -19,17 +20,37 @@ from daemon.bus.registers import (
     X_CURRENT,
     X_LOAD,
     Table,
+    hardware_error_text,
     with_values,
 )
+from daemon.bus.registers_yp import INVERTER_ABOVE_MOTOR_C, LOW_VOLTS_RAW, P, Y, error_code_text
 
 
 @dataclass(frozen=True)
 class IndirectWindow:
-    """`count` indirect data bytes from `data` on; byte i shows the address written at `address` + 2 i."""
+    """`count` indirect data bytes from `data` on; byte i shows the address written at `address` + 2 i.
+
+    `kept`: the addresses are kept without power, and written only while torque is off. `low` to `high` may be shown.
+    """
 
     address: int
     data: int
     count: int
+    kept: bool = False
+    low: int = 64
+    high: int = 661
+
+
+@dataclass(frozen=True)
+class Thermometer:
+    """One temperature that a servo measures, and the item with the limit at which it trips.
+
+    `above_c`: so much hotter it may be than what is told of the servo, from the factory.
+    """
+
+    present: str
+    limit: str
+    above_c: int = 0
 
 
 BAUD_CODES_X = {9600: 0, 57600: 1, 115200: 2, 1000000: 3, 2000000: 4, 3000000: 5, 4000000: 6, 4500000: 7}
@@ -37,6 +58,14 @@ _WINDOWS = (IndirectWindow(168, 224, 28), IndirectWindow(578, 634, 28))
 _WINDOWS_330 = (IndirectWindow(168, 208, 20),)
 _WINDOWS_330_BEFORE_52 = (IndirectWindow(168, 224, 28),)
 _FIRMWARE_330_MOVED_WINDOW = 52
+BAUD_CODES_YP = BAUD_CODES_X | {6000000: 8, 10500000: 9}
+_WINDOWS_Y = (IndirectWindow(256, 634, 128, kept=True, low=0, high=919),)
+_WINDOWS_P = (IndirectWindow(168, 634, 128, kept=True, low=512, high=1023),)
+_THERMOMETER = (Thermometer("present_temperature", "temperature_limit"),)
+_THERMOMETERS_Y = (
+    Thermometer("present_motor_temperature", "motor_temperature_limit"),
+    Thermometer("present_inverter_temperature", "inverter_temperature_limit", INVERTER_ABOVE_MOTOR_C),
+)
 
 
 @dataclass(frozen=True)
@@ -46,7 +75,7 @@ class BusModel:
     Attributes:
         name: the maker's name.
         model_number: what it answers to a ping.
-        family: x_current, x_load, x330, mx2_current, mx2_load, mx1 or ax.
+        family: x_current, x_load, x330, mx2_current, mx2_load, mx1, ax, y or p.
         protocol: 1.0 or 2.0.
         table: its control table.
         ticks_per_turn, zero_tick: position resolution (of 300 degrees for AX) and the middle.
@@ -58,6 +87,7 @@ class BusModel:
         watchdog_stops: whether the watchdog is known to stop the servo. Of the 330 size some firmware flags the trip
             but keeps moving (ROBOTIS forum 4814): it is armed there as well, but counts for nothing.
         axes: joints in one housing, each with an id of its own.
+        thermometers: what it measures the temperature of.
     """
 
     name: str
@@ -74,6 +104,7 @@ class BusModel:
     watchdog_firmware: int | None
     watchdog_stops: bool
     axes: int = 1
+    thermometers: tuple[Thermometer, ...] = _THERMOMETER
 
     @property
     def has_current(self) -> bool:
@@ -85,13 +116,36 @@ class BusModel:
         """The item beside velocity and position: current where there is one, else load."""
         return "present_current" if self.protocol == 2.0 and self.has_current else "present_load"
 
+    @property
+    def error_item(self) -> str:
+        """The item that says what is wrong with it; empty on protocol 1.0, where every answer does."""
+        return next((name for name in ("hardware_error_status", "error_code") if name in self.table), "")
+
+    def error_text(self, value: int) -> str:
+        """What a value of `error_item` says (protocol 1.0: the error bits of an answer), in words."""
+        return error_code_text(value) if self.error_item == "error_code" else hardware_error_text(value)
+
+    @property
+    def feedback_address(self) -> int:
+        """Where effort, velocity and position begin (protocol 2.0)."""
+        return self.table[self.effort_item].address
+
+    def decivolt(self, raw: int) -> int:
+        """present_input_voltage in the 0.1 V of the voltage limits; see `LOW_VOLTS_RAW` for Y."""
+        return round(raw / 10) if self.family == "y" and raw > LOW_VOLTS_RAW else raw
+
+    def temperature_c(self, values: Mapping[str, int]) -> int | None:
+        """Of the servo: of several temperatures the one nearest to its limit; None when none is in `values`."""
+        found = [values[t.present] - t.above_c for t in self.thermometers if t.present in values]
+        return max(found, default=None)
+
     def indirect_windows(self, firmware: int) -> tuple[IndirectWindow, ...]:
         """Where indirect data stand; they moved in the 330 size with firmware 52."""
         if self.protocol == 1.0:
             return ()
         if self.family == "x330":
             return _WINDOWS_330 if firmware >= _FIRMWARE_330_MOVED_WINDOW else _WINDOWS_330_BEFORE_52
-        return _WINDOWS
+        return {"y": _WINDOWS_Y, "p": _WINDOWS_P}.get(self.family, _WINDOWS)
 
     def has_fast_sync(self, firmware: int) -> bool:
         """Whether it can answer a fast sync read, as the manual says (it is tried all the same)."""
@@ -106,7 +160,7 @@ class BusModel:
         if baud > self.max_baud:
             return None
         if self.protocol == 2.0:
-            return BAUD_CODES_X.get(baud)
+            return self._baud_codes.get(baud)
         special = {2250000: 250, 2500000: 251, 3000000: 252}
         if baud in special:
             return special[baud]
@@ -116,8 +170,12 @@ class BusModel:
     def baud_of_code(self, code: int) -> int | None:
         """The baud a value of baud_rate stands for."""
         if self.protocol == 2.0:
-            return next((baud for baud, known in BAUD_CODES_X.items() if known == code), None)
+            return next((baud for baud, known in self._baud_codes.items() if known == code), None)
         return {250: 2250000, 251: 2500000, 252: 3000000}.get(code, 2_000_000 // (code + 1))
+
+    @property
+    def _baud_codes(self) -> dict[int, int]:
+        return BAUD_CODES_YP if self.family in ("y", "p") else BAUD_CODES_X
 
 
 def _current_unit(table: Table, scale_ma: float) -> Table:
@@ -186,6 +244,28 @@ def _p1(name: str, number: int, table: Table, voltage_v: tuple[float, float]) ->
     )  # fmt: skip
 
 
+def _y(name: str, number: int, velocity: int, acceleration: int) -> BusModel:
+    """`velocity`, `acceleration`: highest that its limits and its profile take.
+
+    The manual names no firmware without a bus watchdog, and says that it stops the servo; of fast sync reads it says nothing.
+    """
+    table = with_values(
+        Y,
+        velocity_limit=(0, velocity, 2020), profile_velocity=(0, velocity, 2020),
+        acceleration_limit=(0, acceleration, 161), profile_acceleration=(0, acceleration, 161),
+    )  # fmt: skip
+    return BusModel(
+        name, number, "y", 2.0, table, 524288, 0, (0, 1, 3), 10500000, (16.0, 32.0), None, 0, True,
+        thermometers=_THERMOMETERS_Y,
+    )  # fmt: skip
+
+
+def _p(name: str, number: int) -> BusModel:
+    """As said of Y."""
+    modes = (0, 1, 3, 4, 16)
+    return BusModel(name, number, "p", 2.0, P, 607500, 0, modes, 10500000, (15.0, 35.0), None, 0, True)
+
+
 _LOW_V, _HIGH_V = (31, 70, 53), (55, 140, 52)
 MODELS: dict[int, BusModel] = {
     m.model_number: m
@@ -205,6 +285,8 @@ MODELS: dict[int, BusModel] = {
         _mx2("MX-28-2", 30, 240, None), _mx2("MX-64-2", 311, 435, 1941), _mx2("MX-106-2", 321, 197, 2047),
         _p1("MX-28", 29, MX1, _V12), _p1("MX-64", 310, MX1_CURRENT, _V12), _p1("MX-106", 320, MX1_CURRENT, _V12),
         _p1("AX-12A", 12, AX, (9.0, 12.0)), _p1("AX-18A", 18, AX, (9.0, 12.0)),
+        _y("YM070-210-R099-RH", 4030, 6486, 389090), _y("YM080-230-R099-RH", 4150, 3591, 215515),
+        _p("PH42-020-S300-R", 2000),
     )
 }  # fmt: skip
 """All known models by model number."""

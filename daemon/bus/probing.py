@@ -114,4 +114,5 @@ class Probing(Items):
 
 def _own_values(model: BusModel) -> Span:
     """What no two servos measure alike: position, voltage, temperature."""
-    return Span.of(model.table, "present_position", "present_input_voltage", "present_temperature")
+    temperatures = (t.present for t in model.thermometers)
+    return Span.of(model.table, "present_position", "present_input_voltage", *temperatures)

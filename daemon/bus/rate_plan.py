@@ -155,9 +155,14 @@ def plan_for(
     ids = list(range(1, len(models) + 1))
     able = [fast and m.fast_sync_firmware is not None for m in models]
     steps = steps_for(list(range(len(models))), ids, models, able, chained=True)
-    modern = [i for i, m in zip(ids, models, strict=True) if m.protocol == 2.0]
-    old = [i for i, m in zip(ids, models, strict=True) if m.protocol == 1.0]
-    goal_bytes = (GroupWrite(modern, 116, 4).n_bytes if modern else 0) + (GroupWrite1(old, 30, 2).n_bytes if old else 0)
+    places: dict[tuple[float, int, int], list[int]] = {}
+    for servo_id, model in zip(ids, models, strict=True):
+        goal = model.table["goal_position"]
+        places.setdefault((model.protocol, goal.address, goal.size), []).append(servo_id)
+    goal_bytes = sum(
+        (GroupWrite if protocol == 2.0 else GroupWrite1)(group, address, size).n_bytes
+        for (protocol, address, size), group in places.items()
+    )
     return plan_of(
         steps, goal_bytes, len(models), baud, return_delay_s=return_delay_s, turnaround_s=turnaround_s
     )  # fmt: skip

@@ -2,7 +2,7 @@
 
 ROBOTIS e-manual, "Control Table" of XM430-W350, XH430-W350, XL430-W250, XL330-M288, XC330-T288, MX-64(2.0), MX-64 and
 AX-12A; addresses of the other models checked against ROBOTIS' table files (`servos/README.md` of the shared facts).
-EEPROM items are kept without power and can be written only while torque is off.
+EEPROM items are kept without power and can be written only while torque is off. DYNAMIXEL-Y and -P: `registers_yp.py`.
 """
 
 from __future__ import annotations
@@ -36,6 +36,17 @@ UNITS: dict[str, tuple[float, str]] = {
     "rpm_ax": (0.01162389282, "rad/s"),
     "acc_mx": (0.1498016097, "rad/s2"),
     "4.5mA": (4.5, "mA"),
+    "0.01rpm": (0.001047197551, "rad/s"),
+    "rpm2": (0.001745329252, "rad/s2"),
+    "10rpm2": (0.01745329252, "rad/s2"),
+    "pwm_p": (0.0498, "%"),
+    "1mA": (1.0, "mA"),
+    "10mA": (10.0, "mA"),
+    "0.01V": (0.01, "V"),
+    "0.2ms": (0.2, "ms"),
+    "0.1Hz": (0.1, "Hz"),
+    "5tick/ms": (5.0, "tick/ms"),
+    "tick/s": (1.0, "tick/s"),
 }
 """Scale and unit: value * scale is in that unit. Where a model differs (mA) its own table says so."""
 
@@ -54,6 +65,7 @@ class Item:
         initial: value from the factory; None where it depends.
         scale, unit: value * scale is in `unit`.
         sign_bit: protocol 1.0 speeds and loads carry their sign in this bit instead.
+        hybrid: of DYNAMIXEL-Y: kept without power, and written under torque all the same.
     """
 
     name: str
@@ -68,6 +80,7 @@ class Item:
     scale: float = 1.0
     unit: str = ""
     sign_bit: int | None = None
+    hybrid: bool = False
 
     @property
     def end(self) -> int:
@@ -100,15 +113,18 @@ class Item:
 
 
 Table = Mapping[str, Item]
-_Row = tuple[str, int, int, str, int | None, int | None, int | None, str]
+Row = tuple[str, int, int, str, int | None, int | None, int | None, str]
 
 
-def _table(ram_start: int, *rows: _Row) -> dict[str, Item]:
-    """Rows (name, address, size, flags, low, high, initial, unit): s signed, r read only, m sign in bit 10."""
+def table_of(ram_start: int, *rows: Row) -> dict[str, Item]:
+    """Rows (name, address, size, flags, low, high, initial, unit) as a table.
+
+    Flags: s signed, r read only, m sign in bit 10, v RAM below `ram_start`, h hybrid.
+    """
     return {
         name: Item(
-            name, address, size, "s" in flags, "r" not in flags, address < ram_start, low, high, initial, *UNITS[unit],
-            10 if "m" in flags else None,
+            name, address, size, "s" in flags, "r" not in flags, address < ram_start and not set(flags) & set("vh"),
+            low, high, initial, *UNITS[unit], 10 if "m" in flags else None, "h" in flags,
         )
         for name, address, size, flags, low, high, initial, unit in rows
     }  # fmt: skip
@@ -118,7 +134,7 @@ _GAIN = 16383
 _OFFSET = 1044479
 _PROFILE = 32767
 
-_X = _table(
+_X = table_of(
     64,
     ("model_number", 0, 2, "r", None, None, None, ""),
     ("model_information", 2, 4, "r", None, None, None, ""),
@@ -171,21 +187,21 @@ _X = _table(
     ("present_temperature", 146, 1, "r", None, None, None, "degC"),
     ("backup_ready", 147, 1, "r", 0, 1, 0, ""),
 )  # fmt: skip
-_CURRENT = _table(
+_CURRENT = table_of(
     64,
     ("current_limit", 38, 2, "", 0, 1193, 1193, "mA"),
     ("goal_current", 102, 2, "s", None, None, None, "mA"),
     ("present_current", 126, 2, "sr", None, None, None, "mA"),
 )  # fmt: skip
-_LOAD = _table(64, ("present_load", 126, 2, "sr", -1000, 1000, None, "%"))
-_PWM_SLOPE = _table(64, ("pwm_slope", 62, 1, "", 1, 255, 140, ""))
-_ACCELERATION_LIMIT = _table(64, ("acceleration_limit", 40, 4, "", 0, 32767, 32767, "acc"))
+_LOAD = table_of(64, ("present_load", 126, 2, "sr", -1000, 1000, None, "%"))
+_PWM_SLOPE = table_of(64, ("pwm_slope", 62, 1, "", 1, 255, 140, ""))
+_ACCELERATION_LIMIT = table_of(64, ("acceleration_limit", 40, 4, "", 0, 32767, 32767, "acc"))
 
 X_CURRENT, X_LOAD, X330 = _X | _CURRENT, _X | _LOAD, _X | _CURRENT | _PWM_SLOPE
 _MX2 = {k: v for k, v in _X.items() if k not in ("startup_configuration", "backup_ready")} | _ACCELERATION_LIMIT
 MX2_CURRENT, MX2_LOAD = _MX2 | _CURRENT, _MX2 | _LOAD
 
-_PROTOCOL_1 = _table(
+_PROTOCOL_1 = table_of(
     24,
     ("model_number", 0, 2, "r", None, None, None, ""),
     ("firmware_version", 2, 1, "r", None, None, None, ""),
@@ -216,7 +232,7 @@ _PROTOCOL_1 = _table(
     ("lock", 47, 1, "", 0, 1, 0, ""),
     ("punch", 48, 2, "", 0, 1023, 32, ""),
 )  # fmt: skip
-AX = _PROTOCOL_1 | _table(
+AX = _PROTOCOL_1 | table_of(
     24,
     ("cw_compliance_margin", 26, 1, "", 0, 255, 1, "tick"),
     ("ccw_compliance_margin", 27, 1, "", 0, 255, 1, "tick"),
@@ -225,7 +241,7 @@ AX = _PROTOCOL_1 | _table(
 )  # fmt: skip
 MX1 = (
     _PROTOCOL_1
-    | _table(
+    | table_of(
         24,
         ("baud_rate", 4, 1, "", 0, 254, 34, ""),
         ("min_position_limit", 6, 2, "", 0, 4095, 0, "tick"),
@@ -246,7 +262,7 @@ MX1 = (
         ("goal_acceleration", 73, 1, "", 0, 254, 0, "acc_mx"),
     )
 )  # fmt: skip
-MX1_CURRENT = MX1 | _table(
+MX1_CURRENT = MX1 | table_of(
     24,
     ("present_current", 68, 2, "r", 0, 4095, 2048, "4.5mA"),
     ("torque_control_mode", 70, 1, "", 0, 1, 0, ""),
@@ -261,8 +277,10 @@ def with_values(table: Table, **values: tuple[int | None, int | None, int | None
     }
 
 
-HARDWARE_ERRORS = {0: "input voltage", 2: "overheating", 3: "encoder", 4: "electrical shock", 5: "overload"}
-"""Bits of hardware_error_status and of shutdown (X, MX 2.0)."""
+HARDWARE_ERRORS = {
+    0: "input voltage", 1: "motor hall sensor", 2: "overheating", 3: "encoder", 4: "electrical shock", 5: "overload",
+}  # fmt: skip
+"""Bits of hardware_error_status and of shutdown (X, MX 2.0, P; the hall sensor's of P alone)."""
 
 
 def hardware_error_text(status: int) -> str:
@@ -270,5 +288,6 @@ def hardware_error_text(status: int) -> str:
     return ", ".join(text for bit, text in HARDWARE_ERRORS.items() if status >> bit & 1) or "none"
 
 
-FEEDBACK_ADDRESS, FEEDBACK_LENGTH = 126, 10
-"""Present current (or load) 126, velocity 128 and position 132 of X servos stand side by side: one read brings all."""
+FEEDBACK_LENGTH = 10
+"""Present current (or load), velocity and position stand side by side on every protocol 2.0 servo (X: 126, 128, 132; Y: 546;
+P: 574): one read brings all."""

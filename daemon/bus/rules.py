@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from daemon.bus.models import BusModel
-from daemon.bus.registers import EXTENDED_POSITION_MODE, POSITION_MODE, hardware_error_text
+from daemon.bus.registers import EXTENDED_POSITION_MODE, POSITION_MODE
 from retarget.robot import ServoSpec
 
 ITEMS = (
     "return_delay_time", "drive_mode", "operating_mode", "homing_offset", "temperature_limit", "max_position_limit",
     "min_position_limit", "startup_configuration", "shutdown", "status_return_level", "hardware_error_status",
     "pwm_limit", "max_torque", "present_input_voltage", "present_temperature",
+    "error_code", "electronic_gearratio_numerator", "electronic_gearratio_denominator", "motor_temperature_limit",
+    "inverter_temperature_limit", "present_motor_temperature", "present_inverter_temperature",
 )  # fmt: skip
-"""What the rules look at."""
+"""What the rules look at, in every servo that has it."""
 NEEDED, ADVISED = "needed", "advised"
 """Severity: without it the robot does not do what it is told, or only less well."""
 _MODES = {False: (POSITION_MODE, "position"), True: (EXTENDED_POSITION_MODE, "extended position")}
@@ -48,6 +50,20 @@ class Finding:
     fix: int | None = None
 
 
+def items_of(model: BusModel) -> tuple[str, ...]:
+    """What the rules look at in a servo of this model."""
+    return (*ITEMS, "profile_velocity") if _may_have_profile(model) else ITEMS
+
+
+def _may_have_profile(model: BusModel) -> bool:
+    """Whether it may have a profile of its own that nobody has set.
+
+    Of Y it is there from the factory, and slower than a path may be; of P the manual leaves open what it is after power-on.
+    X and MX begin without one.
+    """
+    return "profile_velocity" in model.table and model.table["profile_velocity"].initial != 0
+
+
 def findings_of(
     servo: ServoSpec, ends_tick: tuple[int, int], model: BusModel, firmware: int, values: dict[str, int]
 ) -> list[Finding]:
@@ -58,7 +74,7 @@ def findings_of(
         ends_tick: lowest and highest goal that its joint may get.
         model: of it.
         firmware: that it answered with.
-        values: of those of ITEMS that it has.
+        values: of those of `items_of` that it has.
     """
     rules = _Rules(servo, model, firmware, values)
     rules.answers()
@@ -102,14 +118,27 @@ class _Rules:
         if drive != right:
             expected = f"{right} (direction is the robot file's, profiles in velocity, no torque by goal)"
             self._set("drive_mode", str(drive), right, expected, NEEDED)
+        for item in ("electronic_gearratio_numerator", "electronic_gearratio_denominator"):
+            right = self.model.table[item].initial if item in v else None
+            if right is not None and v[item] != right:
+                self._set(item, str(v[item]), right, f"{right} (with another a tick is another angle)", NEEDED)
+        self._profile()
         if not extended:
             low, high = ends_tick
             self._limit("min_position_limit", low, refuses=v["min_position_limit"] > low)
             self._limit("max_position_limit", high, refuses=v["max_position_limit"] < high)
 
+    def _profile(self) -> None:
+        """A profile of its own, on top of the path; of P, which forgets it, only advised: nothing could be lasting."""
+        if _may_have_profile(self.model) and self.values["profile_velocity"]:
+            item, found = self.model.table["profile_velocity"], str(self.values["profile_velocity"])
+            expected = "0 (no profile: it would not follow its path)"
+            self._set(item.name, found, 0, expected, NEEDED if item.hybrid else ADVISED)
+
     def torque(self) -> None:
         """When it switches torque on and off by itself, and how much it may exert."""
-        startup, shutdown = self.values.get("startup_configuration", 0), self.values["shutdown"]
+        startup = self.values.get("startup_configuration", 0)
+        shutdown = self.values.get("shutdown", _SHUTDOWN_ON)  # Y has none: every such error cuts the torque
         if startup & _TORQUE_AT_POWER_ON:
             right = startup & ~_TORQUE_AT_POWER_ON
             self._set("startup_configuration", str(startup), right, f"{right} (no torque at power-on)", NEEDED)
@@ -125,16 +154,18 @@ class _Rules:
     def condition(self) -> None:
         """Errors, supply, temperature, firmware."""
         v = self.values
-        if v.get("hardware_error_status"):
-            text = hardware_error_text(v["hardware_error_status"])
-            self._note("hardware_error_status", text, "none", ADVISED, f"mmmd servo reboot {self.servo.servo_id}")
-        volts, (low, high) = v["present_input_voltage"] / 10, self.model.voltage_v
+        item = self.model.error_item
+        if v.get(item):
+            text = self.model.error_text(v[item])
+            self._note(item, text, "none", ADVISED, f"mmmd servo reboot {self.servo.servo_id}")
+        volts, (low, high) = self.model.decivolt(v["present_input_voltage"]) / 10, self.model.voltage_v
         if not low <= volts <= high:
             expected = f"{low:g} to {high:g} V"
             self._note("present_input_voltage", f"{volts:.1f} V", expected, ADVISED, "check supply and wiring")
-        if v["present_temperature"] > v["temperature_limit"] - _HOT_MARGIN_C:
-            found, expected = f"{v['present_temperature']} degC", f"well below {v['temperature_limit']} degC"
-            self._note("present_temperature", found, expected, ADVISED, "let it cool; look for a joint that binds")
+        for t in self.model.thermometers:
+            if v[t.present] > v[t.limit] - _HOT_MARGIN_C:
+                found, expected = f"{v[t.present]} degC", f"well below {v[t.limit]} degC"
+                self._note(t.present, found, expected, ADVISED, "let it cool; look for a joint that binds")
         since = self.model.watchdog_firmware
         if since is not None and self.firmware < since:
             expected = f"{since} or later (bus watchdog)"

@@ -17,7 +17,7 @@ from retarget.servos import servo_models
 
 MOVES = (
     "goal_position", "goal_velocity", "goal_pwm", "goal_current", "moving_speed", "goal_torque", "torque_enable",
-    "bus_watchdog",
+    "bus_watchdog", "pwm_offset", "current_offset", "velocity_offset",
 )  # fmt: skip
 """Items that can set a joint in motion: the daemon's alone, behind its gate. A bus watchdog that trips or is cleared can."""
 _HOLDS = ("torque_enable", "torque_limit")

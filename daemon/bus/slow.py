@@ -20,7 +20,13 @@ from daemon.bus.reading import BusReading
 from daemon.bus.registers import Table
 
 _WITNESS = "status_return_level"
-_WINDOW = ("torque_enable", _WITNESS, "hardware_error_status", "present_input_voltage", "present_temperature")
+
+
+def _slow_items(model: BusModel) -> list[str]:
+    """What changes slowly, as this model calls it."""
+    temperatures = (t.present for t in model.thermometers)
+    names = ("torque_enable", _WITNESS, model.error_item, "present_input_voltage", *temperatures)
+    return [name for name in names if name in model.table]
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,7 @@ class SlowReader:
         model = self._models[row]
         addresses: list[int] = []
         offsets: dict[str, tuple[int, int]] = {}
-        for item in (model.table[name] for name in _WINDOW if name in model.table):
+        for item in (model.table[name] for name in _slow_items(model)):
             offsets[item.name] = (len(addresses), item.size)
             addresses += range(item.address, item.end)
         window = next((w for w in model.indirect_windows(firmware) if w.count >= len(addresses)), None)
@@ -89,10 +95,13 @@ class SlowReader:
             self._tried[row] = True
             return False
         data = struct.pack(f"<{len(addresses)}H", *addresses)
-        write(window.address, data)
-        if read(window.address, len(data)) != data:
-            self._tried[row] = True
-            return False
+        if (
+            not window.kept or read(window.address, len(data)) != data
+        ):  # what is kept need not be worn by writing it again
+            write(window.address, data)
+            if read(window.address, len(data)) != data:
+                self._tried[row] = True
+                return False
         self._spans[row] = [Span(window.data, len(addresses), offsets, witness=True)]
         self._turn[row] = 0
         return True
@@ -122,18 +131,23 @@ class SlowReader:
             self._spans[row] = _direct(self._models[row])
             self._turn[row] = 0
             return False
-        for name, column in (
-            ("torque_enable", reading.torque),
-            ("hardware_error_status", reading.hardware_error),
-            ("present_input_voltage", reading.voltage_raw),
-            ("present_temperature", reading.temperature_c),
-        ):
+        model = self._models[row]
+        for name, column in (("torque_enable", reading.torque), (model.error_item, reading.hardware_error)):
             if name in values:
                 column[row] = values[name]
+        if "present_input_voltage" in values:
+            reading.voltage_raw[row] = model.decivolt(values["present_input_voltage"])
+        temperature_c = model.temperature_c(values)
+        if temperature_c is not None:
+            reading.temperature_c[row] = temperature_c
         return True
 
 
 def _direct(model: BusModel) -> list[Span]:
     """Spans of neighbouring items, asked in turn, where nothing is mapped."""
-    near = ("torque_enable", "hardware_error_status") if model.protocol == 2.0 else ("torque_enable",)
-    return [Span.of(model.table, *near), Span.of(model.table, "present_input_voltage", "present_temperature")]
+    temperatures = (t.present for t in model.thermometers)
+    spans = [Span.of(model.table, "present_input_voltage", *temperatures)]
+    if model.error_item == "error_code":  # of Y it stands by itself
+        return [Span.of(model.table, "torque_enable"), Span.of(model.table, "error_code"), *spans]
+    near = ("torque_enable", "hardware_error_status") if model.error_item else ("torque_enable",)
+    return [Span.of(model.table, *near), *spans]

@@ -36,8 +36,8 @@ def test_check_finds_nothing_missing_in_what_ships(name: str, capsys: pytest.Cap
     assert "nothing is missing" in out
     for joint in load_robot(name).joint_names:
         assert joint in out
-    assert ("bus has no control table" in out) == (name == "ffw_bg2")
-    assert ("ms a cycle" in out) == (name != "ffw_bg2")
+    assert "bus has no control table" not in out
+    assert "ms a cycle" in out
 
 
 def test_check_refuses_a_rate_that_the_wire_cannot_carry(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

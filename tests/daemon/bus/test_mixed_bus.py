@@ -405,4 +405,6 @@ def test_models_of_the_table_and_of_this_test_agree() -> None:
         "mx2_current",
         "mx1",
         "ax",
+        "y",
+        "p",
     }

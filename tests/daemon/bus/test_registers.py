@@ -21,8 +21,6 @@ ALL = [pytest.param(model, id=model.name) for model in MODELS.values()]
 def test_every_model_of_the_facts_is_known_with_the_same_addresses() -> None:
     facts = tomllib.loads(FACTS.read_text("utf-8"))
     for name, servo in facts["servo"].items():
-        if servo["family"] in ("y", "p42"):
-            continue
         model, family = MODELS[MODEL_NUMBERS[name]], facts["family"][servo["family"]]
         assert (model.model_number, model.protocol) == (servo["model_number"], family["protocol"])
         assert model.ticks_per_turn == servo["resolution"]
