@@ -18,8 +18,9 @@ from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
 from sim.contact_audit import ContactAudit
 
-PIN_TOLERANCE_TICK = 12
-"""About one degree: torque may come on over a goal no further from where the servo stands."""
+PIN_TOLERANCE_TICK, _TICKS_PER_TURN = 12, 4096
+"""About one degree of such a servo: torque may come on over a goal no further from where the servo stands. Finer servos
+(Y, P) may be as many degrees away, coarser ones as many ticks."""
 HURRY_GOALS, HURRY_RATE = 4, 1.1
 """So many goals may come at once (a cycle that was held up, those that start late behind it), in the long run a tenth too many."""
 TTY_GOALS = 30
@@ -40,6 +41,7 @@ class _Track:
     step: float
     bend: float
     rest_s: float
+    pin_tick: float
     last: int | None = None
     before: int | None = None
     at_s: float = 0.0
@@ -90,9 +92,11 @@ class Audit:
             ticks.position_min_tick.tolist(), ticks.position_max_tick.tolist(), ticks.velocity_limit_tick_s.tolist(),
             ticks.acceleration_limit_tick_s2.tolist(), strict=True,
         )  # fmt: skip
-        for servo_id, (low, high, velocity, acceleration) in zip(self.robot.servo_ids, bounds, strict=True):
+        for servo, (low, high, velocity, acceleration) in zip(self.robot.servos, bounds, strict=True):
+            pin_tick = PIN_TOLERANCE_TICK * max(1.0, servo.model.ticks_per_turn / _TICKS_PER_TURN)
             step, bend = velocity * period + 1.0, acceleration * period**2 + 2.0
-            self._tracks[servo_id] = _Track(low, high, step, bend, velocity / acceleration + FAULT_GRACE_S)
+            rest_s = velocity / acceleration + FAULT_GRACE_S
+            self._tracks[servo.servo_id] = _Track(low, high, step, bend, rest_s, pin_tick)
 
     def torque(self, t_s: float, servo_id: int, on: bool, goal_tick: int, present_tick: int) -> None:
         """Torque was switched."""
@@ -103,7 +107,7 @@ class Audit:
         track.well()
         if on:
             self.contacts.begin(servo_id, goal_tick)
-        if on and abs(goal_tick - present_tick) > PIN_TOLERANCE_TICK:
+        if on and abs(goal_tick - present_tick) > track.pin_tick:
             self._violate(t_s, servo_id, "unpinned_torque", f"goal {goal_tick}, standing at {present_tick}")
 
     def torque_in_fault(self, t_s: float, servo_id: int) -> None:

@@ -7,6 +7,7 @@ the byte whose address stands in its indirect address item (ROBOTIS e-manual, "I
 from __future__ import annotations
 
 import struct
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from daemon.bus.models import BusModel, IndirectWindow
@@ -32,9 +33,12 @@ class Memory:
     Args:
         model, firmware: whose control table.
         measured: addresses whose bytes are written by `measure`.
+        assumed: what items begin with of which the manual does not say it.
     """
 
-    def __init__(self, model: BusModel, firmware: int, measured: range = range(0)) -> None:
+    def __init__(
+        self, model: BusModel, firmware: int, measured: range = range(0), assumed: Mapping[str, int] | None = None
+    ) -> None:
         self.model = model
         self._windows = model.indirect_windows(firmware)
         self.items: dict[str, Item] = dict(model.table) | _indirect_items(self._windows)
@@ -42,7 +46,7 @@ class Memory:
         self.size = max(ends)
         self.bytes = bytearray(self.size)
         self._by_address = {item.address: item for item in self.items.values()}
-        self._measured = measured
+        self._measured, self._assumed = measured, dict(assumed or {})
         self._values: dict[str, int] = {}  # of items that only `set` changes
         self._spans: dict[tuple[int, int], Span] = {}
         self._data_first = min((w.data for w in self._windows), default=self.size)
@@ -50,8 +54,8 @@ class Memory:
             self.reset(item)
 
     def reset(self, item: Item) -> None:
-        """Back to the value from the factory, zero where there is none."""
-        self.set(item.name, item.initial if item.initial is not None else 0)
+        """Back to the value from the factory; where there is none to what is assumed, or zero."""
+        self.set(item.name, item.initial if item.initial is not None else self._assumed.get(item.name, 0))
 
     def get(self, name: str) -> int:
         """Value of an item."""
@@ -133,5 +137,6 @@ def _indirect_items(windows: tuple[IndirectWindow, ...]) -> dict[str, Item]:
     for window in windows:
         for i in range(window.count):
             name = f"{INDIRECT}{len(found) + 1}"
-            found[name] = Item(name, window.address + 2 * i, 2, low=64, high=661, initial=window.data + i)
+            at, initial = window.address + 2 * i, window.data + i
+            found[name] = Item(name, at, 2, eeprom=window.kept, low=window.low, high=window.high, initial=initial)
     return found

@@ -2,7 +2,9 @@
 
 Rated voltage, no-load speed, stall torque and stall current: ROBOTIS e-manual (`_data/dxl_x_info.yml`,
 `_data/dxl_mx_info.yml`, pages XM540 and AX); the stall currents of XM540 and AX are not in the shared facts and should
-be checked on a servo. Everything else is our estimate and says so.
+be checked on a servo. DYNAMIXEL-Y and -P (`_data/dxl_y_info.yml`, `_data/dxl_p_info.yml`, at 24 V): the manual gives no stall;
+of Y its maximum torque and current stand for it (99:1), of P (303.75:1) its continuous torque per ampere at the highest
+current its limit takes. Everything else is our estimate and says so.
 """
 
 from __future__ import annotations
@@ -22,6 +24,8 @@ MECHANICAL_TIME_CONSTANT_S = 0.015
 _THERMAL_TIME_CONSTANT_S = 600.0
 _STALL_RISE_K = 300.0
 """Heating if stalled for ever: an XM430 passes 80 degrees after about two minutes, 40 % of stall settles near 70."""
+_STALL_RISE_Y_K = 100.0
+"""The same of a Y, whose motor trips at 60 degrees: its continuous current (half of its maximum) settles below that."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +38,7 @@ class Motor:
         torque_nm_per_a, emf_v_s_per_rad: so that stall torque and no-load speed come out with friction taken off.
         friction_nm, damping_nm_s_per_rad: Coulomb and viscous friction.
         inertia_kg_m2: of the rotor, times the gear ratio squared.
+        stall_rise_k: heating if stalled for ever.
         heating_k_per_j: temperature rise of the case per joule.
         cooling_per_s: share of the difference to the room given off per second.
     """
@@ -42,6 +47,7 @@ class Motor:
     no_load_rad_s: float
     stall_torque_nm: float
     stall_current_a: float
+    stall_rise_k: float = _STALL_RISE_K
 
     @property
     def resistance_ohm(self) -> float:
@@ -79,7 +85,7 @@ class Motor:
     @property
     def heating_k_per_j(self) -> float:
         """Temperature rise of the case per joule of loss."""
-        return _STALL_RISE_K / (_THERMAL_TIME_CONSTANT_S * self.rated_v * self.stall_current_a)
+        return self.stall_rise_k / (_THERMAL_TIME_CONSTANT_S * self.rated_v * self.stall_current_a)
 
     @property
     def cooling_per_s(self) -> float:
@@ -87,8 +93,10 @@ class Motor:
         return 1.0 / _THERMAL_TIME_CONSTANT_S
 
 
-def _motor(rated_v: float, no_load_rpm: float, stall_torque_nm: float, stall_current_a: float) -> Motor:
-    return Motor(rated_v, no_load_rpm * 2 * math.pi / 60, stall_torque_nm, stall_current_a)
+def _motor(
+    rated_v: float, no_load_rpm: float, stall_torque_nm: float, stall_current_a: float, rise_k: float = _STALL_RISE_K
+) -> Motor:
+    return Motor(rated_v, no_load_rpm * 2 * math.pi / 60, stall_torque_nm, stall_current_a, rise_k)
 
 
 MOTORS: dict[int, Motor] = {
@@ -117,6 +125,9 @@ MOTORS: dict[int, Motor] = {
     320: _motor(12.0, 45, 8.4, 5.2),  # MX-106
     12: _motor(12.0, 59, 1.5, 1.5),  # AX-12A
     18: _motor(12.0, 97, 1.8, 2.2),  # AX-18A
+    4030: _motor(24.0, 57.3, 31.7, 20.8, _STALL_RISE_Y_K),  # YM070-210-R099-RH; continuous 14.6 N m at 11.0 A
+    4150: _motor(24.0, 32.2, 61.4, 22.4, _STALL_RISE_Y_K),  # YM080-230-R099-RH; continuous 26.0 N m at 10.7 A
+    2000: _motor(24.0, 32.7, 15.3, 4.5),  # PH42-020-S300-R; continuous 5.1 N m at 1.5 A
 }
 """By model number."""
 

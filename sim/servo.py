@@ -1,4 +1,6 @@
-"""One simulated servo of Protocol 2.0 (X and MX): what may be written to each register, and the error each mistake earns.
+"""One simulated servo of Protocol 2.0: what may be written to each register, and the error each mistake earns.
+
+X and MX; what Y and P do otherwise stands in `servo_yp.py`.
 
 ROBOTIS e-manual, "Control Table" of XM430-W350, XL430-W250 and XL330-M288. Time is handed in, never read. Where the
 manual is silent we chose, and say so in docs/simulator.md: a write with one bad item writes nothing; an address without
@@ -8,7 +10,9 @@ an item reads as zero.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 from daemon.bus.packet import ALERT_BIT, ErrorCode
 from daemon.bus.registers import Item
@@ -17,7 +21,7 @@ from sim.drive import Drives, Mode
 from sim.memory import INDIRECT
 from sim.servo_power import GOALS, ServoPower
 
-_POSITION_RANGE: dict[int, int] = {Mode.EXTENDED_POSITION: 1048575, Mode.CURRENT_POSITION: 1048575}
+_POSITION_RANGE: dict[int, float] = {Mode.EXTENDED_POSITION: 1048575, Mode.CURRENT_POSITION: 1048575}
 _LIMIT_OF = {"goal_velocity": "velocity_limit", "goal_current": "current_limit", "goal_pwm": "pwm_limit"}
 _SINGLE_TURN = (Mode.POSITION,)
 
@@ -40,6 +44,8 @@ class SimServo(ServoPower):
 
     errors = Errors(ErrorCode.INSTRUCTION, ErrorCode.DATA_LENGTH, ErrorCode.ACCESS)
     has_encoder_error = True
+    _position_range: ClassVar[Mapping[int, float]] = _POSITION_RANGE
+    _limit_of: ClassVar[Mapping[str, str]] = _LIMIT_OF
 
     def __init__(self, spec: ServoSpec, drives: Drives, index: int, firmware: int | None = None) -> None:
         super().__init__(spec, drives, index, firmware)
@@ -47,7 +53,7 @@ class SimServo(ServoPower):
 
     def alert(self) -> int:
         """The alert bit for a status packet."""
-        return ALERT_BIT if self.memory.get("hardware_error_status") else 0
+        return ALERT_BIT if self.error else 0
 
     def read(self, address: int, length: int) -> tuple[int, bytes]:
         """Error code and `length` bytes at `address`."""
@@ -111,9 +117,9 @@ class SimServo(ServoPower):
             mode = self.memory.get("operating_mode")
             if mode == Mode.POSITION:
                 return self.memory.get("min_position_limit"), self.memory.get("max_position_limit")
-            far = _POSITION_RANGE.get(mode, math.inf)
+            far = self._position_range.get(mode, math.inf)
             return -far, far
-        limit = _LIMIT_OF.get(name)
+        limit = self._limit_of.get(name)
         most = math.inf if limit is None else self.memory.get(limit)
         return -most, most
 
@@ -142,8 +148,8 @@ class SimServo(ServoPower):
         """A new operating mode starts with its own defaults (e-manual, "Operating Mode", note)."""
         for name in ("position_p_gain", "position_i_gain", "position_d_gain", "velocity_p_gain", "velocity_i_gain",
                      "feedforward_1st_gain", "feedforward_2nd_gain", "profile_velocity", "profile_acceleration"):  # fmt: skip
-            self.memory.reset(self.items[name])
+            if name in self.items and not self.items[name].hybrid:
+                self.memory.reset(self.items[name])
         if self.memory.get("operating_mode") in _SINGLE_TURN:
-            raw = float(self.drives.position_tick[self.index])
-            self._turn_tick = math.floor(raw / self.model.ticks_per_turn) * self.model.ticks_per_turn
+            self._turn_tick = self._whole_turns()
         self._reset_goals()

@@ -123,6 +123,14 @@ class SimServo1(SimServo):
     def _speed_unit_rad_s(self) -> float:
         return self.items["present_speed"].scale
 
+    def _full_duty(self) -> int:
+        return _FULL
+
+    @property
+    def error(self) -> int:
+        """The alarm's bits."""
+        return self._alarm
+
     def _to_register(self, shaft_tick: float) -> float:
         return shaft_tick
 

@@ -7,19 +7,21 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Mapping
+from typing import ClassVar
 
 from daemon.bus.models import MODELS
-from daemon.bus.registers import VELOCITY_UNIT_RAD_S, WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, Item
+from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, Item
 from retarget.robot import ServoSpec
 from sim.drive import STEP_S, Drives, Mode
 from sim.errors import SimSettingError
 from sim.memory import Memory
 
 _FIRMWARE = {"x330": 52, "mx1": 41, "ax": 24}
-_FIRMWARE_X = 45
-_PWM_FULL = 885
+_FIRMWARE_OTHER = 45
+"""Of X and MX; of Y and P any would do."""
 _LIVE_AT = range(120, 147)
-_LIVE = struct.Struct("<HBBhhiiiiHB")  # realtime tick 120 ... temperature 146, side by side
+_LIVE = struct.Struct("<HBBhhiiiiHB")  # realtime tick 120 ... temperature 146, side by side; P: 568 ... 594
 _MS_PER_S, _TICK_WRAP_MS = 1000, 32768
 
 
@@ -35,6 +37,8 @@ class ServoMotor:
     """
 
     _measured_at = _LIVE_AT
+    _assumed: ClassVar[Mapping[str, int]] = {}
+    """What items begin with of which the manual does not say it."""
 
     def __init__(self, spec: ServoSpec, drives: Drives, index: int, firmware: int | None = None) -> None:
         number = spec.model.model_number
@@ -42,10 +46,11 @@ class ServoMotor:
             raise SimSettingError(f"servo {spec.servo_id}: model number", str(number), ", ".join(map(str, MODELS)))
         self.spec, self.model, self.index = spec, MODELS[number], index
         self.drives = drives
-        self.firmware = firmware if firmware is not None else _FIRMWARE.get(self.model.family, _FIRMWARE_X)
-        self.memory = Memory(self.model, self.firmware, self._measured_at)
+        self.firmware = firmware if firmware is not None else _FIRMWARE.get(self.model.family, _FIRMWARE_OTHER)
+        self.memory = Memory(self.model, self.firmware, self._measured_at, self._assumed)
         self.rad_per_tick = float(drives.rad_per_tick[index])
         self._tick_s_per_unit = self._speed_unit_rad_s() / self.rad_per_tick
+        self._pwm_full = self._full_duty()
         self.baud = 0
         self._torque = False
         self._fed_s = 0.0
@@ -59,7 +64,11 @@ class ServoMotor:
         self._set("id", spec.servo_id)
 
     def _speed_unit_rad_s(self) -> float:
-        return VELOCITY_UNIT_RAD_S
+        return self.items["present_velocity"].scale
+
+    def _full_duty(self) -> int:
+        """What goal_pwm and present_pwm count to."""
+        return self.items["pwm_limit"].high or 0
 
     @property
     def servo_id(self) -> int:
@@ -119,7 +128,7 @@ class ServoMotor:
         self._sign = -1 if get("drive_mode") & 1 else 1
         self._homing_tick = get("homing_offset")
         self._threshold_tick_s = get("moving_threshold") * self._tick_s_per_unit
-        units = 1.0 / _PWM_FULL
+        units = 1.0 / self._pwm_full
         mode = get("operating_mode")
         d.mode[i] = mode
         pwm = get("goal_pwm")
@@ -131,13 +140,7 @@ class ServoMotor:
             most = min(abs(goal), get("current_limit")) if mode == Mode.CURRENT_POSITION else get("current_limit")
             d.goal_a[i], d.limit_a[i] = self._sign * goal * ampere, most * ampere
         d.goal_tick_s[i] = self._sign * get("goal_velocity") * self._tick_s_per_unit
-        d.p_gain[i] = get("position_p_gain") / 128 * units
-        d.i_gain[i] = get("position_i_gain") / 65536 * units * _MS_PER_S
-        d.d_gain[i] = get("position_d_gain") / 16 * units / _MS_PER_S
-        d.velocity_p_gain[i] = get("velocity_p_gain") / 128 * units / self._tick_s_per_unit
-        d.velocity_i_gain[i] = get("velocity_i_gain") / 65536 * units * _MS_PER_S / self._tick_s_per_unit
-        d.feedforward_1[i] = get("feedforward_1st_gain") / 4 * units / self._tick_s_per_unit
-        d.feedforward_2[i] = get("feedforward_2nd_gain") / 4 * units / self._tick_s2_per_unit
+        self._set_gains()
         d.profile_tick_s[i], d.profile_tick_s2[i] = self._profile()
         self.baud = self.model.baud_of_code(get("baud_rate")) or 0
         watchdog = get("bus_watchdog")
@@ -145,6 +148,17 @@ class ServoMotor:
         self._watchdog_s = watchdog * WATCHDOG_UNIT_S if has else math.inf
         self.watchdog_tripped = watchdog == WATCHDOG_TRIPPED
         d.touch()
+
+    def _set_gains(self) -> None:
+        """Loops as in the block diagrams of the manual, in PWM units."""
+        get, i, d, units = self.memory.get, self.index, self.drives, 1.0 / self._pwm_full
+        d.p_gain[i] = get("position_p_gain") / 128 * units
+        d.i_gain[i] = get("position_i_gain") / 65536 * units * _MS_PER_S
+        d.d_gain[i] = get("position_d_gain") / 16 * units / _MS_PER_S
+        d.velocity_p_gain[i] = get("velocity_p_gain") / 128 * units / self._tick_s_per_unit
+        d.velocity_i_gain[i] = get("velocity_i_gain") / 65536 * units * _MS_PER_S / self._tick_s_per_unit
+        d.feedforward_1[i] = get("feedforward_1st_gain") / 4 * units / self._tick_s_per_unit
+        d.feedforward_2[i] = get("feedforward_2nd_gain") / 4 * units / self._tick_s2_per_unit
 
     def _profile(self) -> tuple[float, float]:
         """Top speed and acceleration of the profile in ticks; inf for none."""
@@ -189,7 +203,7 @@ class ServoMotor:
             effort = sign * duty * 1000
         self.memory.measure(
             _LIVE, int(self._now_s * _MS_PER_S) % _TICK_WRAP_MS, int(moving), int(arrived) | int(path_speed != 0) << 1,
-            round(sign * duty * _PWM_FULL), round(effort), round(sign * velocity / per_unit), round(here),
+            round(sign * duty * self._pwm_full), round(effort), round(sign * velocity / per_unit), round(here),
             round(sign * path_speed / per_unit), round(self._to_register(path)),
             max(0, round(voltage * 10)), max(0, min(255, round(temperature))),
         )  # fmt: skip

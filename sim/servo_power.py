@@ -67,7 +67,7 @@ class ServoPower(ServoMotor):
     def reboot(self) -> None:
         """Restart: RAM items return to their defaults, torque is off, latched errors and whole turns are gone."""
         for item in self.items.values():
-            if not item.eeprom:
+            if not item.eeprom and not item.hybrid:
                 self.memory.reset(item)
         self.silent_until_s = self._now_s + BOOT_S
         self._power_on()
@@ -79,9 +79,7 @@ class ServoPower(ServoMotor):
         startup = self.memory.get("startup_configuration") if "startup_configuration" in self.items else 0
         if startup & 2:
             self._restore(ram_only=True)
-        raw = float(self.drives.position_tick[self.index])
-        turn = self.model.ticks_per_turn
-        self._turn_tick = 0.0 if was_on else math.floor(raw / turn) * turn
+        self._turn_tick = 0.0 if was_on else self._whole_turns()
         self._configure()
         self._reset_goals()
         self._configure()
@@ -137,12 +135,21 @@ class ServoPower(ServoMotor):
         """Forget whole turns (instruction "Clear"); False while it moves."""
         if abs(float(self.drives.velocity_tick_s[self.index])) > 1.0:
             return False
-        raw = float(self.drives.position_tick[self.index])
-        self._turn_tick = math.floor(raw / self.model.ticks_per_turn) * self.model.ticks_per_turn
+        self._turn_tick = self._whole_turns()
         self._goal_here()
         return True
 
+    def _whole_turns(self) -> float:
+        """Ticks of the whole turns that the shaft has made, which are forgotten without power."""
+        raw = float(self.drives.position_tick[self.index])
+        return math.floor(raw / self.model.ticks_per_turn) * self.model.ticks_per_turn
+
     # Protection.
+
+    @property
+    def error(self) -> int:
+        """What it complains of: bits, or the code of a Y; 0 when all is well."""
+        return self.memory.get(self.model.error_item)
 
     @property
     def is_faulted(self) -> bool:
@@ -165,7 +172,7 @@ class ServoPower(ServoMotor):
             return  # too low even to notice: the world takes its power away
         if not self.memory.get("min_voltage_limit") <= decivolt <= self.memory.get("max_voltage_limit"):
             self._latch(VOLTAGE_BIT)
-        if live[5] > self.memory.get("temperature_limit"):
+        if live[5] > self.memory.get(self.model.thermometers[0].limit):
             self._latch(HEAT_BIT)
         if self.torque and self.drives.load[self.index] > OVERLOAD_SHARE:
             self._latch(OVERLOAD_BIT)
@@ -189,7 +196,8 @@ class ServoPower(ServoMotor):
         if not self.watchdog_stops:
             return  # flags the trip but keeps moving: seen on servos of the 330 size
         for name in ("profile_velocity", "profile_acceleration"):
-            self._set(name, 0)
+            if not self.items[name].hybrid:
+                self._set(name, 0)
         self._configure()
         if self.memory.get("operating_mode") == Mode.EXTENDED_POSITION and self.memory.get("homing_offset"):
             # DynamixelSDK#584: with a homing offset the stop itself moves the joint by it

@@ -21,11 +21,14 @@ from sim.motors import motor_of
 from sim.servo import SimServo
 from sim.servo1 import SimServo1
 from sim.servo_power import ENCODER_BIT, OVERLOAD_BIT, RESET_SHARE
+from sim.servo_yp import SimServoP, SimServoY
 
 log = logging.getLogger(__name__)
 
-BACKLASH_RAD = {"x_current": 0.0044, "mx1": 0.0058, "mx2_current": 0.0058, "mx2_load": 0.0058}
-"""15 and 20 arc minutes (e-manual, "Backlash"); where it says nothing, what our estimate below says."""
+BACKLASH_RAD = {
+    "x_current": 0.0044, "mx1": 0.0058, "mx2_current": 0.0058, "mx2_load": 0.0058, "y": 0.00087, "p": 0.00175,
+}  # fmt: skip
+"""15, 20, 3 and 6 arc minutes (e-manual, "Backlash"); where it says nothing, what our estimate below says."""
 _BACKLASH_OTHER_RAD = 0.0044
 _EPSILON_S = 1e-9
 
@@ -174,6 +177,7 @@ class World:
 
 
 def make_servo(spec: ServoSpec, drives: Drives, index: int, firmware: int | None = None) -> SimServo:
-    """The servo of a model, for its protocol."""
-    kind = SimServo1 if MODELS[spec.model.model_number].protocol == 1.0 else SimServo
-    return kind(spec, drives, index, firmware)
+    """The servo of a model, for its protocol and family."""
+    model = MODELS[spec.model.model_number]
+    other = {"y": SimServoY, "p": SimServoP}.get(model.family, SimServo)
+    return (SimServo1 if model.protocol == 1.0 else other)(spec, drives, index, firmware)

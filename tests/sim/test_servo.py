@@ -23,11 +23,14 @@ def test_every_model_answers_with_its_number_and_goes_where_it_is_sent(name: str
     assert int.from_bytes(answer[:2], "little") == b.servo.model.model_number
     assert answer[2] == b.servo.firmware
     assert b.write("torque_enable", 1) == 0
-    assert b.write("goal_position", 2548) == 0
+    model, tick = b.servo.model, b.servo.model.ticks_per_turn / 4096
+    goal = model.zero_tick + round(500 * tick)
+    assert b.write("goal_position", goal) == 0
     b.wait(3.0)
-    assert abs(b.read("present_position") - 2548) <= 6, "within half a degree: there is friction and no integral gain"
+    error = abs(b.read("present_position") - goal)
+    assert error <= 6 * tick, "within half a degree: there is friction and no integral gain"
     assert b.read("present_velocity") == 0
-    assert b.read("moving") == 0
+    assert (b.read("moving_status") & 4 if model.family == "y" else b.read("moving")) == 0
 
 
 @pytest.mark.parametrize(
