@@ -32,6 +32,7 @@ def test_one_exchange_brings_goals_and_feedback_of_all_three_families() -> None:
     rig = ffw()
     rig.bus.write_all("torque_enable", 1)
     goals = rig.bus.exchange(None).position_tick + np.array([s.model.ticks_per_turn // 500 for s in rig.robot.servos])
+    reading = rig.bus.exchange(None)
     for _ in range(100):
         reading = rig.bus.exchange(goals.astype(np.int32))
         assert reading.valid.all()
@@ -65,6 +66,7 @@ def test_slow_registers_come_through_windows_also_of_y_and_p() -> None:
     assert rig.bus._slow.n_windows == 16
     rig.servos.world.drives.temperature_c[:] = 41.0
     rig.servos.world.drives.touch()
+    reading = rig.bus.exchange(None)
     for _ in range(20):
         reading = rig.bus.exchange(None)
     assert not reading.torque.any() and not reading.hardware_error.any()
