@@ -6,6 +6,8 @@ answers as ever and refuses every goal, so it is asked as soon as it is back.
 
 from __future__ import annotations
 
+import logging
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +17,8 @@ from daemon.bus.reading import BusReading
 from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.pinning import refuse_hardware_errors
 from retarget.robot import RobotModel
+
+log = logging.getLogger(__name__)
 
 MISSING_CYCLES = 20
 """Half of the servos silent for so many cycles is a fault (loose plug, power)."""
@@ -58,6 +62,15 @@ class Judge:
             )
         refuse_hardware_errors(self._bus, reading)
         return self._tripped(reading) or self._lost_torque(reading)
+
+    def withhold_tripped(self, reading: BusReading) -> None:
+        """In a fault the others hold; what has stopped by its watchdog meanwhile refuses goals, and gets none.
+
+        Raises:
+            LinkError: a question that had to be asked was not answered.
+        """
+        if why := self._tripped(reading):
+            log.warning("%s", why)
 
     def _tripped(self, reading: BusReading) -> str:
         """A servo that is back after a silence in which it may have stopped by its watchdog."""

@@ -127,8 +127,9 @@ class Streamer:
             if goal_rad is not None and self._goal_tick is not None:
                 self._goal_tick = np.rint(self._ticks.to_ticks(goal_rad)).astype(np.int32)
             reading = self._bus.exchange(self._goal_tick if self._torque else None)
-            judged = self._torque and self.state not in (BusState.FAULT, BusState.ESTOP)
-            if judged and (why := self._judge.fault(reading)):
+            if self._torque and self.state in (BusState.FAULT, BusState.ESTOP):
+                self._judge.withhold_tripped(reading)
+            elif self._torque and (why := self._judge.fault(reading)):
                 self._fault(why)
             self._derate(reading)
         except (LinkError, ServoFaultError) as error:

@@ -110,3 +110,29 @@ def test_one_servo_that_stops_by_its_watchdog_is_a_named_fault(servo_id):
         r.cycle(10)
         r.arm()
         assert r.bus.tripped_watchdogs() == []
+
+
+@pytest.mark.parametrize(("robot", "servo_id", "before"), [
+    ("reference", None, None), ("ffw_bg2", None, None), ("reference", 13, BusRequest.ESTOP_HOLD), ("op3", 1, BusRequest.STOP),
+])  # fmt: skip
+def test_what_stops_by_its_watchdog_in_a_fault_or_a_held_e_stop_gets_no_goals_either(robot, servo_id, before):
+    """All of them silent is a fault before the watchdogs run out: found by a soak, after 2.7 hours."""
+    with rig(robot, Fault("deaf", 6.0, 6.97, servo_id=servo_id)) as r:
+        r.arm()
+        while r.clock.now_s() < 5.5:
+            r.cycle()
+        if before is not None:
+            r.link.request(before)
+        r.cycle(350)
+        state = BusState.ESTOP if before is BusRequest.ESTOP_HOLD else BusState.FAULT
+        assert r.state is state and r.records[-1]["torque"]
+        r.assert_limits_kept()
+        goals = r.sim.audit.goals
+        r.cycle(10)
+        told = (r.sim.audit.goals - goals) // 10
+        assert told == (0 if servo_id is None else len(r.robot.servos) - 1), "the others hold"
+        r.link.request(BusRequest.RESET)
+        r.cycle(10)
+        r.arm()
+        r.assert_limits_kept()
+        assert r.bus.tripped_watchdogs() == []
