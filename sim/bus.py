@@ -239,7 +239,7 @@ class SimBus:
                 break
             turns.append(able)
             parts.append([_part(servo, access) for servo in able])
-            if len({self._pause_s(servo) for servo in turns[0]}) > 1:
+            if len(turns) == 1 and len({self._pause_s(servo) for servo in able}) > 1:
                 break  # two begin at different times: nobody can make out a packet to go on with
         if not turns:
             return

@@ -24,13 +24,19 @@ def shares_of(turns: Sequence[Sequence[Part]], length: int) -> list[list[bytes]]
     for parts in turns:
         start = b"" if shares else head
         said = [start + bytes([part.error, part.servo_id]) + part.data for part in parts]
-        said = [own + struct.pack("<H", crc16(own, crc)) for own in said]
-        heard = int.from_bytes(said[0])
-        for own in said[1:]:
-            heard &= int.from_bytes(own)
-        crc = crc16(heard.to_bytes(len(said[0])), crc)
-        shares.append(said)
+        sums = [crc16(own, crc) for own in said]
+        ends = [struct.pack("<H", own) for own in sums]
+        shares.append([own + end for own, end in zip(said, ends, strict=True)])
+        crc = crc16(ends[0], sums[0]) if len(parts) == 1 else crc16(_heard(shares[-1]), crc)
     return shares
+
+
+def _heard(said: Sequence[bytes]) -> bytes:
+    """What is heard of several who talk at once."""
+    heard = int.from_bytes(said[0])
+    for own in said[1:]:
+        heard &= int.from_bytes(own)
+    return heard.to_bytes(len(said[0]))
 
 
 def share_as(before: Sequence[Sequence[Part]], part: Part, length: int) -> Callable[[int], bytes]:

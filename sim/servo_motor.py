@@ -51,6 +51,8 @@ class ServoMotor:
         self.rad_per_tick = float(drives.rad_per_tick[index])
         self._tick_s_per_unit = self._speed_unit_rad_s() / self.rad_per_tick
         self._pwm_full = self._full_duty()
+        has_current = self.model.has_current
+        self._raw_per_ampere = 1e3 / self.items["present_current"].scale if has_current else 0.0
         self.baud = 0
         self._torque = False
         self._fed_s = 0.0
@@ -197,8 +199,8 @@ class ServoMotor:
         moving = abs(velocity) > self._threshold_tick_s
         here = self._to_register(position)
         arrived = abs(self.memory.get("goal_position") - here) < 10
-        if self.model.has_current:
-            effort = sign * current / (self.items["present_current"].scale * 1e-3)
+        if self._raw_per_ampere:
+            effort = sign * current * self._raw_per_ampere
         else:
             effort = sign * duty * 1000
         self.memory.measure(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from daemon.bus.registers import (
     AX,
@@ -106,7 +107,7 @@ class BusModel:
     axes: int = 1
     thermometers: tuple[Thermometer, ...] = _THERMOMETER
 
-    @property
+    @cached_property
     def has_current(self) -> bool:
         """Whether it measures current, and not only a load."""
         return "present_current" in self.table
@@ -116,7 +117,7 @@ class BusModel:
         """The item beside velocity and position: current where there is one, else load."""
         return "present_current" if self.protocol == 2.0 and self.has_current else "present_load"
 
-    @property
+    @cached_property
     def error_item(self) -> str:
         """The item that says what is wrong with it; empty on protocol 1.0, where every answer does."""
         return next((name for name in ("hardware_error_status", "error_code") if name in self.table), "")
