@@ -275,12 +275,16 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
             for topic in topics or ("v1/",):
                 socket.setsockopt(zmq.SUBSCRIBE, topic.encode())
             socket.connect(self.endpoints.pub)
+            last: dict[bytes, bytes] = {}
             while True:
                 try:
                     topic, payload = await asyncio.wait_for(socket.recv_multipart(), timeout_s)
                 except TimeoutError:
                     asked = f"watch {' '.join(topics) or 'v1/'}"
                     raise NoAnswerError(self.endpoints.pub, asked, timeout_s) from None
+                if last.get(topic) == payload:  # sent again, for somebody who has just subscribed
+                    continue
+                last[topic] = payload
                 yield topic.decode(), decode_event(payload)
         finally:
             socket.close(0)

@@ -361,10 +361,14 @@ class Client(CompositionCalls[Said]):
                 socket.setsockopt(zmq.SUBSCRIBE, topic.encode())
             self._secure(socket, self.endpoints.pub)
             socket.connect(self.endpoints.pub)
+            last: dict[bytes, bytes] = {}
             while True:
                 if not socket.poll(int(1000 * timeout_s)):
                     raise NoAnswerError(self.endpoints.pub, f"watch {' '.join(topics) or 'v1/'}", timeout_s)
                 topic, payload = socket.recv_multipart()
+                if last.get(topic) == payload:  # sent again, for somebody who has just subscribed
+                    continue
+                last[topic] = payload
                 yield topic.decode(), decode_event(payload)
         finally:
             socket.close(0)

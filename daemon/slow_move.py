@@ -67,7 +67,8 @@ class SlowMove:
                 self._approach = None
             return goal
         self._gone_s += self._period_s
-        self.arrived = self._gone_s > self._approach.duration_s + stay_s and self._gate.at_rest
+        if self._gone_s > self._approach.duration_s + stay_s and self._gate.at_rest:
+            self.arrived, self._approach = True, None
         return goal
 
     def _look_for_a_way(self, to_rad: Array) -> None:

@@ -104,6 +104,7 @@ class Streamer:
 
     def close(self) -> None:
         """Release the port."""
+        self._slow.begin()
         self._bus.close()
 
     @property

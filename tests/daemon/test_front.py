@@ -301,6 +301,8 @@ def test_events_are_published_to_all(robot, running):
     with running.client() as watcher, contextlib.closing(watcher.watch("v1/event")) as events:
         next(events)  # the last one of before: the subscription stands
         robot.say("wave", command_id="public")
+        with contextlib.closing(robot.watch("v1/event")) as others:
+            assert next(others)[1].id == "public"  # sent again, to all who have the topic
         robot.stop()
         while not heard or kinds(heard)[-1] != "ack":
             heard.append(next(events)[1])
