@@ -2,7 +2,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -18,6 +17,7 @@ from daemon.shared import BusLink, BusRequest, BusState, Readiness
 from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.pty import PtyServer
+from tests.end_to_end.harness import served
 
 ROBOT = load_robot("reference")
 
@@ -65,14 +65,9 @@ def started():
 
 @pytest.fixture
 def servos(tmp_path):
-    """The simulated robot behind a real tty, served by a thread."""
-    server = PtyServer(SimBus(ROBOT), tmp_path / "servos")
-    thread = threading.Thread(target=server.serve, daemon=True)
-    thread.start()
-    yield server
-    server.stop()
-    thread.join(5)
-    server.close()
+    """The simulated robot behind a real tty."""
+    with served(PtyServer(SimBus(ROBOT), tmp_path / "servos")) as server:
+        yield server
 
 
 def test_it_says_when_it_has_the_robot_and_what_rights_it_got(started):

@@ -9,7 +9,6 @@ import contextlib
 import json
 import os
 import signal
-import threading
 import time
 from collections.abc import Callable
 
@@ -18,12 +17,11 @@ import pytest
 
 from daemon import events as ev
 from daemon.client import CancelledByError, Client, NoAnswerError, RefusedError
-from daemon.realtime import BUS_PRIORITY, take_fifo
 from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.faults import Fault, FaultSchedule
 from sim.pty import PtyServer
-from tests.end_to_end.harness import RunningDaemon, mmmd
+from tests.end_to_end.harness import RunningDaemon, mmmd, served
 from tests.end_to_end.test_start_and_end import child_pid
 
 pytestmark = pytest.mark.timeout(180)
@@ -39,18 +37,14 @@ FAULT_WITHIN_S = 6.0
 
 
 class Servos:
-    """The simulated robot behind a tty, served by a thread that goes first, as servos do: late, they would be silent ones."""
+    """The simulated robot behind a tty, served by a thread."""
 
     def __init__(self, folder) -> None:
         self._link = folder / "servos"
         self.server = PtyServer(SimBus(ROBOT), self._link)
         self.url = f"dxl://{folder}/servos?baud={ROBOT.bus.baud}"
-        self._thread = threading.Thread(target=self._serve, daemon=True)
-        self._thread.start()
-
-    def _serve(self) -> None:
-        take_fifo(BUS_PRIORITY)
-        self.server.serve()
+        self._served = contextlib.ExitStack()
+        self._served.enter_context(served(self.server))
 
     def assert_kept(self) -> None:
         report = self.server.bus.audit.report()
@@ -70,9 +64,7 @@ class Servos:
         within(2.0, "the tty gone or back", lambda: self._link.exists() != on)
 
     def close(self) -> None:
-        self.server.stop()
-        self._thread.join(5)
-        self.server.close()
+        self._served.close()
 
 
 def within(seconds: float, what: str, condition: Callable[[], bool]) -> None:

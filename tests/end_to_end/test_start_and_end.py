@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from daemon.supervisor import log_file, log_path_error
-from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
+from tests.end_to_end.harness import MMMD, RunningDaemon, go_first, mmmd
 
 pytestmark = pytest.mark.timeout(180)
 
@@ -26,6 +26,7 @@ class SimulatedTty:
             [*MMMD, "sim", "--robot", robot, "--link", str(self.link), "--audit", str(self.audit), "--baud", str(baud_of(robot))],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
+        go_first(self.process.pid)
         end_s = time.monotonic() + 20
         while not self.link.exists():
             assert time.monotonic() < end_s and self.process.poll() is None, "mmmd sim did not start"
