@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 from daemon.errors import ConfigError
 from daemon.requests import IDLE_STYLES, LONGEST_SILENCE_S, SHORTEST_SILENCE_S
 
-ESTOPS = ("cut", "hold")
+ESTOP_WAYS = ("cut", "hold")
 CMD_PORT, CTL_PORT, PUB_PORT, STREAM_PORT = 5871, 5872, 5873, 5875
 
 
@@ -191,8 +191,8 @@ class DaemonConfig:
             raise config_error("lease_park_s", f"{self.lease_park_s:g}", allowed, "holding comes before parking")
         if self.idle not in ("off", *IDLE_STYLES):
             raise config_error("idle", repr(self.idle), ", ".join(("off", *IDLE_STYLES)), "choose one of these")
-        if self.estop not in ESTOPS:
-            raise config_error("estop", repr(self.estop), ", ".join(ESTOPS), "choose one of these")
+        if self.estop not in ESTOP_WAYS:
+            raise config_error("estop", repr(self.estop), ", ".join(ESTOP_WAYS), "choose one of these")
         if self.metrics:
             metrics_address(self.metrics)
         if self.generator is not None:

@@ -36,17 +36,24 @@ class LogSender(logging.Handler):
         self.addFilter(lambda record: record.name != EVENT_LOGGER)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Send one line."""
+        """Send one line; one that cannot be written is told on stderr, as logging does, and ends nobody's work."""
+        try:
+            line = msgspec.json.encode(self._event(record))
+        except Exception:  # whatever an argument's own text raises
+            self.handleError(record)
+            return
+        with contextlib.suppress(OSError):
+            self._socket.sendto(line, self._path)
+
+    def _event(self, record: logging.LogRecord) -> LogEvent:
         text = record.getMessage()
         if record.exc_info and record.exc_info[1] is not None:
             text += f" ({type(record.exc_info[1]).__name__}: {record.exc_info[1]})"
         age_s = max(0.0, time.time() - record.created)
-        event = LogEvent(
+        return LogEvent(
             level=record.levelname.lower(), process=self._process, module=record.name, text=text[: MOST_BYTES // 4],
             t_mono=time.monotonic() - age_s,
         )  # fmt: skip
-        with contextlib.suppress(OSError):
-            self._socket.sendto(msgspec.json.encode(event), self._path)
 
     def close(self) -> None:
         """Close the socket."""

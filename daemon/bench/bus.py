@@ -51,18 +51,15 @@ def bench_bus(seconds: float = 3.0, seed: int = 0) -> dict[str, Any]:
     figures: dict[str, Any] = {"wire": {}}
     codec: list[tuple[float, float]] = []
     for baud in BAUDS:
-        codec.append((_codec_us(fast=False), _codec_us(fast=True)))
+        codec.append(_codecs_us())
         row = _wire(baud, fast=False, seconds=seconds) | {"fast": _wire(baud, fast=True, seconds=seconds)}
         figures["wire"][str(baud)] = row
         console.print(f"{baud} baud: {row}")
-    codec.append((_codec_us(fast=False), _codec_us(fast=True)))
+    codec.append(_codecs_us())
     figures["no_wire"] = {name: _no_wire(fast=name == "fast", seconds=seconds) for name in ("sync", "fast")}
     console.print(f"no wire: {figures['no_wire']}")
-    codec.append((_codec_us(fast=False), _codec_us(fast=True)))
-    figures |= {
-        name: float(np.median(us))
-        for name, us in zip(("codec_us", "codec_fast_us"), zip(*codec, strict=True), strict=True)
-    }
+    codec.append(_codecs_us())
+    figures["codec_us"], figures["codec_fast_us"] = np.median(codec, 0).round(2).tolist()
     console.print(f"codec {figures['codec_us']} us, fast {figures['codec_fast_us']} us; of {codec}")
     figures |= _losses(seconds)
     console.print(
@@ -80,6 +77,11 @@ def _take_fifo() -> bool:
     except OSError:
         return False
     return True
+
+
+def _codecs_us() -> tuple[float, float]:
+    """By sync read, by fast sync read."""
+    return _codec_us(fast=False), _codec_us(fast=True)
 
 
 def _codec_us(*, fast: bool) -> float:

@@ -95,9 +95,10 @@ class SlowReader:
             self._tried[row] = True
             return False
         data = struct.pack(f"<{len(addresses)}H", *addresses)
-        if (
-            not window.kept or read(window.address, len(data)) != data
-        ):  # what is kept need not be worn by writing it again
+        is_there = (
+            window.kept and read(window.address, len(data)) == data
+        )  # what is kept is not worn by writing it again
+        if not is_there:
             write(window.address, data)
             if read(window.address, len(data)) != data:
                 self._tried[row] = True

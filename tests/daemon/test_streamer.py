@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rig import rig, swing
+from rig import Rig, rig, swing
 
 from daemon import shared
 from daemon.bus.models import CONTROL_TABLES
@@ -36,6 +36,17 @@ def assert_brakes_within_limits(records, robot) -> None:
     assert (np.abs(velocity[1:]) <= np.abs(velocity[:-1]) + 1e-9).all()
     longest_s = (robot.velocity_limit_rad_s / robot.acceleration_limit_rad_s2).max()
     assert not velocity[int(longest_s * robot.bus.rate_hz) + 2 :].any()
+
+
+def lead_to(r: Rig, state: str, parking_cycles: int = 1) -> None:
+    """From limp to holding, playing, stopping or parking; the last two out of a motion."""
+    r.arm()
+    if state != "holding":
+        r.push(swing(r.robot, 2.0))
+        r.cycle(60)
+    if state in ("stopping", "parking"):
+        r.link.request(BusRequest.STOP if state == "stopping" else BusRequest.PARK)
+        r.cycle(1 if state == "stopping" else parking_cycles)
 
 
 def test_nothing_moves_because_a_process_started():
@@ -131,13 +142,7 @@ def test_e_stop_cuts_torque_in_its_cycle_and_is_latched(state):
             r.link.request(BusRequest.ARM)
             r.cycle(5)
         else:
-            r.arm()
-        if state in ("playing", "stopping"):
-            r.push(swing(r.robot, 2.0))
-            r.cycle(60)
-        if state in ("stopping", "parking"):
-            r.link.request(BusRequest.STOP if state == "stopping" else BusRequest.PARK)
-            r.cycle(1)
+            lead_to(r, state)
         assert r.state.name.lower() == state
         r.link.request(BusRequest.ARM)
         r.link.request(BusRequest.ESTOP)
@@ -168,13 +173,7 @@ def test_an_e_stop_that_holds_brakes_within_limits_and_the_second_cuts(state):
                 r.cycle()
             r.cycle(30)
         else:
-            r.arm()
-        if state in ("playing", "stopping"):
-            r.push(swing(r.robot, 2.0))
-            r.cycle(60)
-        if state in ("stopping", "parking"):
-            r.link.request(BusRequest.STOP if state == "stopping" else BusRequest.PARK)
-            r.cycle(1 if state == "stopping" else 40)
+            lead_to(r, state, parking_cycles=40)
         assert r.state.name.lower() == state
         r.link.request(BusRequest.ESTOP_HOLD)
         began = len(r.records) - 1
@@ -234,13 +233,7 @@ def test_torque_off_brakes_within_limits_and_goes_limp_where_it_stands(state):
             r.link.request(BusRequest.ARM)
             r.cycle(3)
         elif state != "limp":
-            r.arm()
-        if state in ("playing", "parking"):
-            r.push(swing(r.robot, 2.0))
-            r.cycle(60)
-        if state == "parking":
-            r.link.request(BusRequest.PARK)
-            r.cycle(20)
+            lead_to(r, state, parking_cycles=20)
         r.link.request(BusRequest.TORQUE_OFF)
         began = len(r.records) - 1
         r.cycle(100)
