@@ -28,7 +28,10 @@ _APPLY = getattr(torch.ops.mkldnn, "_linear_pointwise", None)
 
 
 class PackedLinear(nn.Module):
-    """A linear layer for inference; `gelu` adds the activation that follows it."""
+    """A linear layer for inference; `gelu` adds the activation that follows it.
+
+    What comes out of a bf16 layer stays bf16: the sum it is added to, or the next layer, takes it as it is.
+    """
 
     def __init__(self, linear: nn.Linear, precision: Packing, *, gelu: bool = False) -> None:
         super().__init__()
@@ -40,10 +43,9 @@ class PackedLinear(nn.Module):
         self._bias = None if linear.bias is None else linear.bias.detach().to(self._dtype)
 
     def forward(self, x: Tensor) -> Tensor:
-        """(..., in) -> (..., out), float32."""
+        """(..., in) -> (..., out) in the layer's precision; what comes in is brought to it."""
         assert _APPLY is not None, "see can_pack"
-        y = _APPLY(x.to(self._dtype), self._packed, self._bias, self._activation, [], "none")
-        return y.float()
+        return _APPLY(x.to(self._dtype), self._packed, self._bias, self._activation, [], "none")
 
 
 def can_pack() -> bool:

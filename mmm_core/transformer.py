@@ -94,7 +94,7 @@ class Attention(nn.Module):
         k, v = keys_values
         q = self.query(x).reshape(B, L, self.n_heads, -1).transpose(1, 2)
         scores = q @ k.transpose(-2, -1) * q.shape[-1] ** -0.5 + bias
-        attended = self.dropout(scores.softmax(-1)) @ v
+        attended = self.dropout(scores.softmax(-1)).to(v.dtype) @ v
         return self.dropout(self.out(attended.transpose(1, 2).reshape(B, L, W)))
 
 
@@ -174,10 +174,10 @@ class MotionTransformer(nn.Module):
 
     def read_text(self, text: TextStates) -> TextContext:
         """Everything of a text that does not change between decoding steps."""
-        words = self.word_in(text.words)
+        words = self.word_in(text.words).float()
         bias = torch.zeros_like(text.word_mask, dtype=words.dtype).masked_fill(~text.word_mask, MASKED_KEY)
         keys_values = [b.attention.keys_values(b.norm_words(words)) for b in self.cross]  # type: ignore[union-attr]
-        return TextContext(self.sentence_in(text.sentence), keys_values, bias[:, None, None, :])
+        return TextContext(self.sentence_in(text.sentence).float(), keys_values, bias[:, None, None, :])
 
     def no_text(self, batch: int) -> TextStates:
         """The states that stand for "no text" (text dropout, guidance)."""
@@ -205,12 +205,12 @@ class MotionTransformer(nn.Module):
             x = block(x, bias)
         if wanted is None:
             x = last(x, bias)[:, 1:]
-            return self.head(self.norm_out(x)).reshape(B, L, self.config.n_out, -1)
+            return self.head(self.norm_out(x)).float().reshape(B, L, self.config.n_out, -1)
         if B == 1:
             x = last(x, bias, F.pad(wanted[0], (1, 0)))[0]
         else:
             x = last(x, bias)[:, 1:][wanted]
-        return self.head(self.norm_out(x)).reshape(len(x), self.config.n_out, -1)
+        return self.head(self.norm_out(x)).float().reshape(len(x), self.config.n_out, -1)
 
     def with_words(self, ids: Tensor, positions: Tensor, context: TextContext) -> Tensor:
         """(B, L, W): what stands at each position and what the words say to it; positions do not see each other yet."""
