@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from daemon.errors import ConfigError
-from daemon.requests import IDLE_STYLES, LONGEST_SILENCE_S, SHORTEST_SILENCE_S
+from daemon.wire.requests import IDLE_STYLES, LONGEST_SILENCE_S, SHORTEST_SILENCE_S
 
 ESTOP_WAYS = ("cut", "hold")
 CMD_PORT, CTL_PORT, PUB_PORT, STREAM_PORT = 5871, 5872, 5873, 5875

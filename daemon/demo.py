@@ -20,9 +20,9 @@ import numpy as np
 from daemon.client import Client
 from daemon.config import Endpoints
 from daemon.errors import DaemonError
-from daemon.events import Accepted, AnyEvent, Cancelled, Done, Progress, Refusal
-from daemon.mcap_log import Log, read_log
-from daemon.requests import Say
+from daemon.recording.mcap_log import Log, read_log
+from daemon.wire.events import Accepted, AnyEvent, Cancelled, Done, Progress, Refusal
+from daemon.wire.requests import Say
 from retarget.robot import RobotModel
 from sim.audit import Audit
 

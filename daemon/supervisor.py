@@ -22,18 +22,18 @@ import zmq.asyncio
 
 from daemon.children import Child
 from daemon.config import DaemonConfig, config_error
+from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
 from daemon.errors import DaemonError
-from daemon.front import Front
-from daemon.generation import GeneratorClient
-from daemon.generation_messages import GeneratorError
+from daemon.front.front import Front
+from daemon.front.metrics import MetricsServer, exposition
+from daemon.generator.generation import GeneratorClient
+from daemon.generator.messages import GeneratorError
 from daemon.keys import KeyFolder
 from daemon.log_feed import SOCKET_VARIABLE, LogFeed
-from daemon.metrics import MetricsServer, exposition
 from daemon.notify import Notifier
-from daemon.recorder_feed import RecorderFeed
+from daemon.recording.feed import RecorderFeed
 from daemon.settings import settings_of
-from daemon.shared import BusLink, BusRequest, BusState, Readiness
-from daemon.state import RobotState
+from daemon.state.machine import RobotState
 from retarget.robot import RobotModel, load_robot
 
 log = logging.getLogger(__name__)
@@ -77,7 +77,7 @@ class Supervisor:
         arguments = ["--robot", config.robot, "--bus", config.bus, "--link", str(self._link.path)]
         self._log_path = Path(self._folder.name) / "log"
         self._environment = {SOCKET_VARIABLE: str(self._log_path)}
-        self._bus = Child("bus process", "daemon.bus_process", arguments, self._environment)
+        self._bus = Child("bus process", "daemon.driving.process", arguments, self._environment)
 
     async def run(self) -> int:
         """Serve until SIGTERM or SIGINT; 0 after a park, 3 when the robot was left in a latched fault or e-stop.
@@ -228,7 +228,7 @@ class Supervisor:
         arguments = ["--bind", endpoint, "--parent-pid", str(os.getpid())]
         if self._config.model is not None:
             arguments += ["--model", str(self._config.model)]
-        child = Child("generator", "daemon.generator", arguments, self._environment, follow=True)
+        child = Child("generator", "daemon.generator.process", arguments, self._environment, follow=True)
         self._children.append(child)
         back_off_s = FIRST_BACK_OFF_S
         while True:
@@ -294,7 +294,7 @@ class Supervisor:
         arguments += ["--events", feed.endpoint, "--out", str(self._config.log)]
         arguments += ["--size-mb", str(self._config.log_size_mb), "--total-mb", str(self._config.log_total_mb)]
         arguments += ["--settings", json.dumps(settings_of(self._config), default=str)]
-        child = Child("recorder", "daemon.recorder", arguments, self._environment)
+        child = Child("recorder", "daemon.recording.recorder", arguments, self._environment)
         self._children.append(child)
         await child.start()
         try:

@@ -2,7 +2,7 @@
 
 In-betweening of MMM (arXiv 2312.03596, sec. 3.3) with poses instead of motions: each pose becomes the id of a person who
 stands still in it, put where it is due; all other ids are [MASK]. Ids are coarse, so a pose is met to a few degrees:
-whoever needs it exactly leads the motion through it afterwards (`daemon.keyposes`).
+whoever needs it exactly leads the motion through it afterwards (`daemon.playing.keyposes`).
 """
 
 from __future__ import annotations

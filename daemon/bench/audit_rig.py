@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from daemon.bus import packet
 from daemon.bus.servo_bus import ServoBus
-from daemon.shared import BusLink, BusRequest, BusState
-from daemon.streamer import Streamer
+from daemon.driving.shared import BusLink, BusRequest, BusState
+from daemon.driving.streamer import Streamer
 from retarget.paths import JointState
 from retarget.robot import RobotModel
 from sim.bus import SimBus

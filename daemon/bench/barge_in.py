@@ -16,11 +16,11 @@ from daemon.bench.daemon_rig import percentile, running_daemon
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
-from daemon.client_errors import stamp
-from daemon.events import AnyEvent, Progress
-from daemon.mcap_log import LoggedCycle, read_log
-from daemon.requests import Say
-from daemon.wire import decode_event, encode
+from daemon.client.errors import stamp
+from daemon.recording.mcap_log import LoggedCycle, read_log
+from daemon.wire.codec import decode_event, encode
+from daemon.wire.events import AnyEvent, Progress
+from daemon.wire.requests import Say
 from retarget.robot import load_robot
 
 SHORTEST_GAP_S, LONGEST_GAP_S = 0.03, 0.6

@@ -13,8 +13,8 @@ import numpy as np
 from daemon.bench.daemon_rig import busy_cores, percentile, running_daemon
 from daemon.bench.report import context
 from daemon.client import Client
-from daemon.mcap_log import read_log
-from daemon.realtime import give_back_fifo, take_fifo
+from daemon.driving.realtime import give_back_fifo, take_fifo
+from daemon.recording.mcap_log import read_log
 from retarget.robot import load_robot
 
 CLIENT_PRIORITY = 20

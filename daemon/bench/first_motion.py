@@ -16,9 +16,9 @@ from daemon.bench.report import context, percentiles_ms
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
 from daemon.demo import free_endpoints
-from daemon.events import Cancelled, Done, Failed, Progress, Rejected
 from daemon.keys import KeyFolder
-from daemon.requests import Say
+from daemon.wire.events import Cancelled, Done, Failed, Progress, Rejected
+from daemon.wire.requests import Say
 
 N_WARM = 5
 REST_S = 0.3

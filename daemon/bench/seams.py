@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from daemon.bench.daemon_rig import percentile
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
-from daemon.cycles import closed, find_loop
-from daemon.idle import IdleScore
-from daemon.planner import FADE_FRAMES
-from daemon.posture import Posture, distance_deg, faded_in, joined, posture_of, standing
+from daemon.playing.cycles import closed, find_loop
+from daemon.playing.idle import IdleScore
+from daemon.playing.planner import FADE_FRAMES
+from daemon.playing.posture import Posture, distance_deg, faded_in, joined, posture_of, standing
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.features import recover
 from mmm_core.motion import FPS

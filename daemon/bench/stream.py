@@ -8,7 +8,7 @@ from typing import Any
 from daemon.bench.daemon_rig import running_daemon
 from daemon.bench.report import context, percentiles_ms
 from daemon.client import Client
-from daemon.events import Progress
+from daemon.wire.events import Progress
 
 REST_S, STEP_RAD, SHOWN_S = 0.15, 0.02, 0.4
 _METHOD = (

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from daemon.config import Endpoints
 
 if TYPE_CHECKING:
-    from daemon.async_client import AsyncClient
-    from daemon.client import Client
+    from daemon.client import AsyncClient, Client
 
 _DEFAULT = Endpoints()
 
@@ -51,7 +50,7 @@ class Connection:
         Raises:
             ConfigError: an endpoint is not a local one and there are no keys.
         """
-        from daemon.async_client import AsyncClient
+        from daemon.client import AsyncClient
 
         return AsyncClient(self.endpoints, self.timeout_s)
 

@@ -11,7 +11,7 @@ from daemon.commands.connection import Connection
 
 if TYPE_CHECKING:
     from daemon.client import Client
-    from daemon.events import Ack
+    from daemon.wire.events import Ack
 
 
 def stop(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -> int:  # noqa: B008
@@ -103,7 +103,7 @@ def _tell(robot: Client, ack: Ack, json: bool) -> int:
     """Print what the verb led to; 3 when the robot is in fault."""
     after = robot.status()
     if json:
-        from daemon.wire import encode
+        from daemon.wire.codec import encode
 
         sys.stdout.write(encode(after).decode() + "\n")
     else:

@@ -111,7 +111,7 @@ def _request(
     Raises:
         CommandError: a value is not allowed.
     """
-    from daemon.requests import Edit
+    from daemon.wire.requests import Edit
 
     kind, _, name = motion.partition(":")
     source: dict[str, Any] = {"file": motion}

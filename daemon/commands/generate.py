@@ -12,7 +12,7 @@ import msgspec
 import tyro
 
 from daemon.errors import CommandError
-from daemon.requests import LONGEST_S, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S
+from daemon.wire.requests import LONGEST_S, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S
 
 if TYPE_CHECKING:
     from mmm_core.engine import Engine, Generation

@@ -21,7 +21,7 @@ def generator(
         threads: CPU threads.
         keys: folder of CURVE keys (`mmmd keys`): only allowed daemons are served.
     """
-    from daemon.generator import run
+    from daemon.generator.process import run
 
     logging.basicConfig(level=logging.INFO, format="generator: %(message)s")
     try:

@@ -55,7 +55,7 @@ def gesture(
             ack = robot.record(name, command)
         sys.stdout.write(f"recorded {ack.note}\n")
         return 0
-    from daemon.requests import Gesture
+    from daemon.wire.requests import Gesture
 
     return play(built(Gesture, how, name=name), at, wait=wait, json=json)
 
@@ -84,7 +84,7 @@ def _list(folder: Path | None, json: bool) -> int:
 
 def _add(name: str, file: Path | None, folder: Path | None) -> int:
     from daemon.gestures.library import GestureLibrary
-    from daemon.posture import posture_of
+    from daemon.playing.posture import posture_of
     from mmm_core.motion import load_npz
 
     if file is None:

@@ -79,7 +79,7 @@ def capabilities(
         at: where the daemon is.
         json: print one JSON object.
     """
-    from daemon.wire import encode
+    from daemon.wire.codec import encode
 
     with at.client() as robot:
         found = robot.capabilities()

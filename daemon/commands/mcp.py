@@ -18,7 +18,7 @@ def mcp(at: OmitArgPrefixes[Connection] = Connection()) -> int:  # noqa: B008
     Args:
         at: where the daemon is.
     """
-    from daemon.mcp import McpServer
+    from daemon.client.mcp import McpServer
 
     async def serve() -> None:
         async with at.async_client() as robot:

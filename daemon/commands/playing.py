@@ -11,7 +11,7 @@ from daemon.commands.connection import Connection
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:
-    from daemon.requests import Play, PlayOptions
+    from daemon.wire.requests import Play, PlayOptions
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
     Raises:
         CommandError: the flags contradict each other, or the seed is none.
     """
-    from daemon.requests import MAX_SEED
+    from daemon.wire.requests import MAX_SEED
 
     seed = fields.get("seed", 0)
     if not 0 <= seed <= MAX_SEED:
@@ -72,9 +72,9 @@ def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
 
 def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
     """Send a request and print its events; the exit status."""
-    from daemon.client_compositions import FIRST_REPLY_TIMEOUT_S, patience_s
-    from daemon.events import Accepted, Cancelled, Failed, Refusal
-    from daemon.wire import WireError, check_request, encode
+    from daemon.client.compositions import FIRST_REPLY_TIMEOUT_S, patience_s
+    from daemon.wire.codec import WireError, check_request, encode
+    from daemon.wire.events import Accepted, Cancelled, Failed, Refusal
 
     try:
         check_request(request)
@@ -103,7 +103,7 @@ def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
 
 def describe(event: object) -> str:
     """One line about an event, for people."""
-    from daemon.events import Accepted, Ack, Cancelled, Done, Progress, Refusal
+    from daemon.wire.events import Accepted, Ack, Cancelled, Done, Progress, Refusal
 
     if isinstance(event, Accepted):
         reason = f" ({event.reason})" if event.reason else ""

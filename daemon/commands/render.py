@@ -22,7 +22,7 @@ def render(file: Annotated[Path, tyro.conf.Positional], out: Path, robot: str | 
     import numpy as np
     from rich.console import Console
 
-    from daemon.mcap_log import read_log
+    from daemon.recording.mcap_log import read_log
     from daemon.render import Shown, contact_sheet, joint_plot
     from mmm_core.motion import load_npz
     from retarget.pipeline import Retargeter

@@ -12,7 +12,7 @@ import tyro
 if TYPE_CHECKING:
     from daemon.bus.port import Port
     from daemon.clock import Clock
-    from daemon.mcap_log import Log
+    from daemon.recording.mcap_log import Log
     from retarget.robot import RobotModel
 
 
@@ -39,10 +39,10 @@ def replay(
     from rich.progress import Progress
 
     from daemon.bus.servo_bus import ServoBus
-    from daemon.mcap_log import read_log
-    from daemon.replay import check_robot, robot_changed
-    from daemon.replay import replay as play
-    from daemon.shared import BusLink
+    from daemon.driving.shared import BusLink
+    from daemon.recording.mcap_log import read_log
+    from daemon.recording.replay import check_robot, robot_changed
+    from daemon.recording.replay import replay as play
     from retarget.robot import load_robot
 
     notes = Console(stderr=True)

@@ -35,6 +35,6 @@ def say(
         json: print each event as one JSON object a line.
         at: where the daemon is.
     """
-    from daemon.requests import Say
+    from daemon.wire.requests import Say
 
     return play(built(Say, how, text=text, seed=seed, seconds=seconds), at, wait=wait, json=json)

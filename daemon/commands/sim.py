@@ -136,8 +136,8 @@ def _compare(path: Path, robot: str | None, body: str, *, as_json: bool) -> int:
 
     import numpy as np
 
-    from daemon.mcap_log import read_log
-    from daemon.replay import check_robot, stretches
+    from daemon.recording.mcap_log import read_log
+    from daemon.recording.replay import check_robot, stretches
     from retarget.robot import load_robot
     from sim.replay import Stretch, compare
 

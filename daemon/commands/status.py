@@ -10,7 +10,7 @@ from tyro.conf import OmitArgPrefixes
 from daemon.commands.connection import Connection
 
 if TYPE_CHECKING:
-    from daemon.events import ServoHealth, StateEvent
+    from daemon.wire.events import ServoHealth, StateEvent
 
 _COUNTED = {"timeouts": "time-outs", "crc": "spoilt", "late": "late", "retries": "asked again", "alerts": "alerts"}
 
@@ -24,7 +24,7 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
         at: where the daemon is.
         json: print one JSON object.
     """
-    from daemon.wire import encode
+    from daemon.wire.codec import encode
 
     with at.client() as robot:
         now = robot.status()

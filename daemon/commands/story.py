@@ -13,7 +13,7 @@ from daemon.commands.playing import PlayFlags, built, play
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:
-    from daemon.requests import KeyPoseOf, SceneOf
+    from daemon.wire.requests import KeyPoseOf, SceneOf
 
 
 def story(
@@ -42,7 +42,7 @@ def story(
         json: print each event as one JSON object a line.
         at: where the daemon is.
     """
-    from daemon.requests import SceneOf, Story
+    from daemon.wire.requests import SceneOf, Story
 
     if bool(texts) == (scenes is not None):
         raise CommandError('story: give texts or --scenes; example: mmmd story "wave" "bow"')
@@ -74,7 +74,7 @@ def inbetween(
         json: print each event as one JSON object a line.
         at: where the daemon is.
     """
-    from daemon.requests import Inbetween
+    from daemon.wire.requests import Inbetween
 
     request = built(Inbetween, how, poses=[_pose(asked) for asked in poses], text=text, seed=seed)
     return play(request, at, wait=wait, json=json)
@@ -86,7 +86,7 @@ def _pose(asked: str) -> KeyPoseOf:
     Raises:
         CommandError: it is none.
     """
-    from daemon.requests import KeyPoseOf
+    from daemon.wire.requests import KeyPoseOf
 
     name, _, seconds = asked.rpartition("@")
     try:
@@ -111,7 +111,7 @@ def _scenes(path: Path) -> list[SceneOf]:
     """
     import msgspec
 
-    from daemon.requests import SceneOf
+    from daemon.wire.requests import SceneOf
 
     try:
         lines = path.read_text("utf-8").splitlines()

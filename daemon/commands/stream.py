@@ -13,7 +13,7 @@ from daemon.commands.connection import Connection
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:
-    from daemon.client_streams import Angles
+    from daemon.client.streams import Angles
 
 
 def stream(
@@ -40,7 +40,7 @@ def stream(
         at: where the daemon is.
     """
     from daemon.commands.playing import describe
-    from daemon.wire import encode
+    from daemon.wire.codec import encode
 
     with at.client() as robot, robot.stream(holder, silence_s=silence_s) as lease:
         due_s = time.monotonic()

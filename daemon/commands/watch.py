@@ -23,8 +23,8 @@ def watch(
         json: print every message as one JSON object a line, all states included.
         n: end after so many lines.
     """
-    from daemon.events import HealthEvent, LogEvent, StateEvent
-    from daemon.wire import encode
+    from daemon.wire.codec import encode
+    from daemon.wire.events import HealthEvent, LogEvent, StateEvent
 
     shown, last_state, last_health = 0, "", ""
     with at.client() as robot:

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.errors import ClipError
-from daemon.posture import Posture, standing
-from daemon.score import Marks
+from daemon.playing.posture import Posture, standing
+from daemon.playing.score import Marks
 from mmm_core.motion import FPS
 from mmm_core.skeleton import BONE_LENGTHS_M, normalise
 

@@ -9,10 +9,10 @@ import re
 from pathlib import Path
 
 from daemon.errors import ClipError, UnknownGestureError
-from daemon.events import GestureInfo
 from daemon.gestures.clips import Clip, load_clips, save_clips
-from daemon.posture import Posture, at_tempo
-from daemon.score import marks_of
+from daemon.playing.posture import Posture, at_tempo
+from daemon.playing.score import marks_of
+from daemon.wire.events import GestureInfo
 from mmm_core.motion import FPS
 
 log = logging.getLogger(__name__)

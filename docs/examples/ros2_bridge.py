@@ -26,8 +26,8 @@ from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
 from daemon.client import Client
-from daemon.events import Done, Progress, Refusal
-from daemon.requests import Say as SayRequest
+from daemon.wire.events import Done, Progress, Refusal
+from daemon.wire.requests import Say as SayRequest
 
 
 class Bridge(Node):

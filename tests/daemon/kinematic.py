@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import zmq
 
-from daemon.generation_messages import (
+from daemon.generator.messages import (
     BetweenMessage,
     EditMessage,
     Generated,
@@ -22,7 +22,7 @@ from daemon.generation_messages import (
     UnfitRequestError,
     motion_from,
 )
-from daemon.generator import serve
+from daemon.generator.process import serve
 from mmm_core.motion import Motion
 from mmm_core.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
 

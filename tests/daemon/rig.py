@@ -8,8 +8,8 @@ from contextlib import contextmanager
 import numpy as np
 
 from daemon.bus.servo_bus import ServoBus
-from daemon.shared import BusLink, BusRequest, BusState
-from daemon.streamer import Streamer
+from daemon.driving.shared import BusLink, BusRequest, BusState
+from daemon.driving.streamer import Streamer
 from retarget.robot import RobotModel, load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock

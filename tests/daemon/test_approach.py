@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.approach import ACCELERATION_RAD_S2, SPEED_RAD_S, Approach
-from daemon.gate import Gate
+from daemon.driving.approach import ACCELERATION_RAD_S2, SPEED_RAD_S, Approach
+from daemon.driving.gate import Gate
 from retarget.limits import JointLimits
 from retarget.robot import list_robots, load_robot
 

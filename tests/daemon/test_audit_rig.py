@@ -7,7 +7,7 @@ import pytest
 from rig import swing
 
 from daemon.bench.audit_rig import AuditRig
-from daemon.shared import BusRequest, BusState
+from daemon.driving.shared import BusRequest, BusState
 from retarget.robot import load_robot
 from sim.faults import Fault
 
@@ -73,7 +73,7 @@ def test_what_cannot_be_repaired_is_said():
 
 def test_contacts_that_are_commanded_are_reported(monkeypatch):
     """With the gate's knowledge of the body taken away a plan into the body shows in the report."""
-    from daemon.gate import Gate
+    from daemon.driving.gate import Gate
     from retarget.collision import SelfContact
     from retarget.limits import JointLimits
 
@@ -81,7 +81,7 @@ def test_contacts_that_are_commanded_are_reported(monkeypatch):
     draw = np.random.default_rng(0)
     poses = draw.uniform(limits.position_min_rad, limits.position_max_rad, (2000, ROBOT.n_joints))
     inside = np.repeat(poses[body.clearance_m(poses).argmin()][None], 300, 0)
-    monkeypatch.setattr("daemon.streamer.Gate", lambda robot, contact: Gate(robot))
+    monkeypatch.setattr("daemon.driving.streamer.Gate", lambda robot, contact: Gate(robot))
     rig = AuditRig(ROBOT)
     rig.make_ready()
     rig.play(inside)

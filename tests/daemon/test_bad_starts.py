@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from rig import rig, swing
 
-from daemon.approach import SPEED_RAD_S
-from daemon.shared import BusRequest, BusState
+from daemon.driving.approach import SPEED_RAD_S
+from daemon.driving.shared import BusRequest, BusState
 from retarget.robot import load_robot
 from sim.faults import Fault
 

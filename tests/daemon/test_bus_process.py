@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from daemon.arming import WATCHDOG_UNITS
 from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.bus.serial_port import SerialPort
 from daemon.bus.servo_bus import ServoBus
 from daemon.clock import RealClock
-from daemon.shared import BusLink, BusRequest, BusState, Readiness
+from daemon.driving.arming import WATCHDOG_UNITS
+from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
 from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.pty import PtyServer
@@ -27,7 +27,7 @@ class BusProcess:
 
     def __init__(self, bus_url: str) -> None:
         self.link = BusLink.create(ROBOT.n_joints)
-        command = [sys.executable, "-m", "daemon.bus_process", "--robot", "reference"]
+        command = [sys.executable, "-m", "daemon.driving.process", "--robot", "reference"]
         command += ["--bus", bus_url, "--link", str(self.link.path)]
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 

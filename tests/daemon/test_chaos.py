@@ -15,8 +15,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from daemon import events as ev
 from daemon.client import CancelledByError, Client, NoAnswerError, RefusedError
+from daemon.wire import events as ev
 from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.faults import Fault, FaultSchedule
@@ -146,7 +146,7 @@ def test_the_bus_process_in_any_state_ends_in_a_fault_that_can_be_reset(servos, 
         with daemon.client() as client:
             for state in (*STATES, "fault"):
                 lead_to(client, servos, state)
-                bus = child_pid(daemon, "daemon.bus_process")
+                bus = child_pid(daemon, "daemon.driving.process")
                 os.kill(bus, number)
                 began_s = time.monotonic()
                 within(FAULT_WITHIN_S, f"{state}: fault", lambda: client.status().state == "fault")
@@ -173,7 +173,7 @@ def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, s
     try:
         with daemon.client() as client:
             lead_to(client, servos, state)
-            os.kill(child_pid(daemon, "daemon.recorder"), signal.SIGKILL)
+            os.kill(child_pid(daemon, "daemon.recording.recorder"), signal.SIGKILL)
             time.sleep(0.1)
             assert client.status().state in STAYS[state]
             servos.unplugged(True)
@@ -236,7 +236,7 @@ def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_p
             folder.mkdir()
             servos = Servos(folder)
             daemon = daemon_on(servos)
-            rigs.append((servos, daemon, child_pid(daemon, "daemon.bus_process")))
+            rigs.append((servos, daemon, child_pid(daemon, "daemon.driving.process")))
             with daemon.client() as client:
                 lead_to(client, servos, state)
             daemon.process.kill()
@@ -259,7 +259,7 @@ def test_a_second_daemon_names_the_process_that_has_the_port_and_ends_with_a_sta
         ends = [f"--{name}=ipc://{tmp_path}/{name}" for name in ("cmd", "ctl", "pub")]
         second = mmmd("run", "--bus", servos.url, *ends)
         assert second.returncode == 1
-        assert f"in use by process {child_pid(daemon, 'daemon.bus_process')}" in second.stderr
+        assert f"in use by process {child_pid(daemon, 'daemon.driving.process')}" in second.stderr
         assert daemon.terminate() == 0
     finally:
         daemon.close()
@@ -269,7 +269,7 @@ def test_the_recorder_killed_and_frozen_changes_nothing_for_the_robot(tmp_path):
     daemon = RunningDaemon("--log", str(tmp_path / "run.mcap")).until_ready()
     try:
         with daemon.client() as client:
-            recorder = child_pid(daemon, "daemon.recorder")
+            recorder = child_pid(daemon, "daemon.recording.recorder")
             os.kill(recorder, signal.SIGSTOP)
             for state in STATES:
                 bring_to(client, state)
@@ -290,18 +290,18 @@ def test_the_generator_killed_and_frozen_in_each_state_is_started_again():
     try:
         with daemon.client() as client:
             bring_to(client, "idle")
-            os.kill(child_pid(daemon, "daemon.generator"), signal.SIGSTOP)
+            os.kill(child_pid(daemon, "daemon.generator.process"), signal.SIGSTOP)
             within(12, "noticed", lambda: not client.status().generator.startswith("ready"))
             for state in (*STATES, "fault"):
                 within(60, "ready", lambda: client.status().generator.startswith("ready"))
                 if state == "fault":
                     bring_to(client, "idle")
-                    os.kill(child_pid(daemon, "daemon.bus_process"), signal.SIGKILL)
+                    os.kill(child_pid(daemon, "daemon.driving.process"), signal.SIGKILL)
                     within(FAULT_WITHIN_S, "named", lambda: "reset" in client.status().reason)
                 else:
                     bring_to(client, state)
                 for number in (signal.SIGSTOP, signal.SIGCONT, signal.SIGKILL):
-                    os.kill(child_pid(daemon, "daemon.generator"), number)
+                    os.kill(child_pid(daemon, "daemon.generator.process"), number)
                     time.sleep(0.1)
                     assert client.status().state in STAYS[state]
                 within(3, "noticed", lambda: not client.status().generator.startswith("ready"))
@@ -327,7 +327,7 @@ def test_a_command_under_way_when_the_bus_process_dies_ends_once(servos):
             client.arm()
             client.say("wave", seconds=5.0, wait=False, command_id="dying")
             client.wait_for("moving", timeout_s=5)
-            os.kill(child_pid(daemon, "daemon.bus_process"), signal.SIGKILL)
+            os.kill(child_pid(daemon, "daemon.driving.process"), signal.SIGKILL)
             heard = []
             with contextlib.suppress(NoAnswerError, CancelledByError):
                 end_s = time.monotonic() + 4

@@ -9,11 +9,12 @@ import time
 import pytest
 import zmq
 
-from daemon import events, wire
 from daemon.client import Client, NoAnswerError, RefusedError
 from daemon.config import Endpoints
 from daemon.errors import ConfigError
 from daemon.settings import config_of, resolve
+from daemon.wire import codec as wire
+from daemon.wire import events
 
 
 class Peer:

@@ -15,10 +15,9 @@ from pathlib import Path
 
 import pytest
 
-from daemon.async_client import AsyncClient
-from daemon.client import CancelledByError, Client, NoAnswerError, RefusedError
+from daemon.client import AsyncClient, CancelledByError, Client, NoAnswerError, RefusedError
+from daemon.client.mcp import TOOLS, McpServer
 from daemon.config import Endpoints
-from daemon.mcp import TOOLS, McpServer
 from tests.end_to_end.harness import MMMD, RunningDaemon
 
 pytestmark = pytest.mark.timeout(90)

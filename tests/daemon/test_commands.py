@@ -9,11 +9,11 @@ import time
 import pytest
 import zmq
 
-from daemon import events as ev
-from daemon import wire
 from daemon.client import RefusedError
-from daemon.client_errors import stamp
-from daemon.requests import Gesture, Say, tag_of
+from daemon.client.errors import stamp
+from daemon.wire import codec as wire
+from daemon.wire import events as ev
+from daemon.wire.requests import Gesture, Say, tag_of
 from tests.end_to_end.harness import RunningDaemon
 
 pytestmark = pytest.mark.timeout(120)

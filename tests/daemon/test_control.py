@@ -9,14 +9,14 @@ from types import SimpleNamespace
 import pytest
 import zmq
 
-from daemon import events as ev
-from daemon import wire
-from daemon.control import ControlThread
-from daemon.front_controls import FrontControls
-from daemon.requests import Estop, Stop
-from daemon.shared import BusRequest
-from daemon.state import RobotState, StateMachine
-from daemon.waiting import Halts
+from daemon.driving.shared import BusRequest
+from daemon.front.control import ControlThread
+from daemon.front.controls import FrontControls
+from daemon.playing.waiting import Halts
+from daemon.state.machine import RobotState, StateMachine
+from daemon.wire import codec as wire
+from daemon.wire import events as ev
+from daemon.wire.requests import Estop, Stop
 
 pytestmark = pytest.mark.timeout(30)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from daemon.demo import audited_plans
-from daemon.mcap_log import Log, LoggedCycle
+from daemon.recording.mcap_log import Log, LoggedCycle
 from retarget.robot import load_robot
 from retarget.ticks import JointServoMap
 from tests.daemon.rig import swing

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from daemon.bus.reading import BusReading
-from daemon.derating import LEAST_SHARE, DeratedBy, Derating, ServoLimits
-from daemon.shared import BusState
+from daemon.driving.derating import LEAST_SHARE, DeratedBy, Derating, ServoLimits
+from daemon.driving.shared import BusState
 from sim.faults import Fault
 from tests.daemon.rig import rig, swing
 

@@ -10,7 +10,7 @@ import pytest
 import zmq
 
 from daemon.client import CancelledByError
-from daemon.requests import Gesture
+from daemon.wire.requests import Gesture
 from tests.end_to_end.harness import RunningDaemon
 
 pytestmark = pytest.mark.timeout(120)

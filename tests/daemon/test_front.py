@@ -10,10 +10,11 @@ import time
 import pytest
 import zmq
 
-from daemon import events as ev
-from daemon import requests, wire
 from daemon.client import CancelledByError, Client, RefusedError
-from daemon.client_errors import stamp
+from daemon.client.errors import stamp
+from daemon.wire import codec as wire
+from daemon.wire import events as ev
+from daemon.wire import requests
 from tests.end_to_end.harness import RunningDaemon
 
 OPEN: list[zmq.Socket] = []
@@ -293,7 +294,9 @@ def test_what_the_processes_log_is_published(robot, running):
         next(told)  # the last line, on subscribing
         robot.stop()
         line = next(e for _, e in told if isinstance(e, ev.LogEvent) and e.process == "bus" and "STOP" in e.text)
-    assert line.level == "info" and line.module == "daemon.streamer" and 0 <= time.monotonic() - line.t_mono < 10
+    assert (
+        line.level == "info" and line.module == "daemon.driving.streamer" and 0 <= time.monotonic() - line.t_mono < 10
+    )
 
 
 def test_events_are_published_to_all(robot, running):

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.gate import Gate
+from daemon.driving.gate import Gate
 from retarget.robot import load_robot
 
 ROBOT = load_robot("reference")

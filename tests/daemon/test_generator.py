@@ -17,10 +17,10 @@ import zmq.asyncio
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon import generation_messages as generation
-from daemon.generation import GeneratorClient
-from daemon.generation_messages import Generated, GeneratorError
-from daemon.generator import answer
+from daemon.generator import messages as generation
+from daemon.generator.generation import GeneratorClient
+from daemon.generator.messages import Generated, GeneratorError
+from daemon.generator.process import answer
 from mmm_core.checkpoint import MODEL_FILE
 from tests.daemon.kinematic import KinematicGenerator, KinematicMaker, raised_arm
 
@@ -156,7 +156,7 @@ def test_the_process_refuses_a_checkpoint_that_is_none(endpoint, tmp_path):
     broken = tmp_path / "model.safetensors"
     broken.write_bytes(b"no weights")
     result = subprocess.run(
-        [sys.executable, "-m", "daemon.generator", "--bind", endpoint, "--model", str(broken)],
+        [sys.executable, "-m", "daemon.generator.process", "--bind", endpoint, "--model", str(broken)],
         capture_output=True, text=True, timeout=60, check=False,
     )  # fmt: skip
     assert result.returncode == 1
@@ -164,7 +164,7 @@ def test_the_process_refuses_a_checkpoint_that_is_none(endpoint, tmp_path):
 
 
 def test_the_front_holds_no_torch():
-    code = "import sys, daemon.supervisor, daemon.client, daemon.cli; print('torch' in sys.modules)"
+    code = "import sys, daemon.supervisor, daemon.client.client, daemon.cli; print('torch' in sys.modules)"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     assert result.stdout.strip() == "False"
 
@@ -172,7 +172,7 @@ def test_the_front_holds_no_torch():
 @needs_model
 def test_the_process_serves_the_shipped_model_and_ends_with_its_parent(endpoint):
     process = subprocess.Popen(
-        [sys.executable, "-m", "daemon.generator", "--bind", endpoint, "--parent-pid", str(os.getpid())],
+        [sys.executable, "-m", "daemon.generator.process", "--bind", endpoint, "--parent-pid", str(os.getpid())],
         stderr=subprocess.DEVNULL,
     )
     try:

@@ -9,8 +9,8 @@ from daemon.errors import ClipError, UnknownGestureError
 from daemon.gestures.clips import Clip, load_clips, save_clips
 from daemon.gestures.library import SHIPPED, GestureLibrary
 from daemon.gestures.make import WANTED, mirror_name
-from daemon.posture import distance_deg, posture_of, standing
-from daemon.score import marks_of
+from daemon.playing.posture import distance_deg, posture_of, standing
+from daemon.playing.score import marks_of
 from mmm_core.evaluation.checks import look_at
 from mmm_core.evaluation.probes import judge
 from retarget.pipeline import Retargeter
@@ -115,7 +115,7 @@ def test_damaged_files_are_named_and_do_not_hide_the_others(tmp_path):
 
 
 def test_marks_outside_the_frames_are_damage(tmp_path):
-    from daemon.score import Marks
+    from daemon.playing.score import Marks
 
     save_clips(tmp_path / "x.npz", {"x": Clip("x", "", P, Marks((5, 999), 3))})
     with pytest.raises(ClipError, match="do not fit"):

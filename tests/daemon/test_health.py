@@ -11,12 +11,12 @@ from rig import rig
 
 from daemon.bus.health import COUNTERS, HEALTH, Health
 from daemon.bus.multi import bus_on
-from daemon.bus_view import BusView
 from daemon.commands.status import _servo
 from daemon.demo import free_endpoints
-from daemon.events import ServoHealth, StateEvent
-from daemon.metrics import exposition
-from daemon.shared import BusLink
+from daemon.driving.shared import BusLink
+from daemon.front.metrics import exposition
+from daemon.state.bus_view import BusView
+from daemon.wire.events import ServoHealth, StateEvent
 from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock

@@ -17,9 +17,9 @@ from daemon.client import Client, NoAnswerError, RefusedError
 from daemon.config import Endpoints
 from daemon.demo import free_endpoints
 from daemon.errors import ConfigError
-from daemon.generation_messages import Generated
+from daemon.front.rates import BURST, RATE_HZ, Rates
+from daemon.generator.messages import Generated
 from daemon.keys import ZAP, Doorkeeper, KeyFolder, checked_key
-from daemon.rates import BURST, RATE_HZ, Rates
 from tests.daemon.kinematic import generate
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.lease import TRANSITIONS, LeaseClock, LeaseEvent, LeaseState
+from daemon.state.lease import TRANSITIONS, LeaseClock, LeaseEvent, LeaseState
 
 S, E = LeaseState, LeaseEvent
 LIVE = (S.WAITING, S.STREAMING, S.SILENT)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.events import Accepted, Cancelled, Done, Progress
-from daemon.ledger import KEPT, KEPT_SCENES, Ledger, Route, split_route
-from daemon.requests import Say, SceneOf, Story
-from daemon.wire import WireError
+from daemon.state.ledger import KEPT, KEPT_SCENES, Ledger, Route, split_route
+from daemon.wire.codec import WireError
+from daemon.wire.events import Accepted, Cancelled, Done, Progress
+from daemon.wire.requests import Say, SceneOf, Story
 
 DEALER, REQ = Route((b"d",), once=False), Route((b"r", b""), once=True)
 

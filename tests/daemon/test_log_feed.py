@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-from daemon.events import LogEvent
 from daemon.log_feed import EVENT_LOGGER, MOST_BYTES, SOCKET_VARIABLE, LogFeed, LogSender, send_logs
+from daemon.wire.events import LogEvent
 
 
 @contextlib.contextmanager
@@ -40,7 +40,7 @@ def test_lines_of_this_process_and_others_come_in_order_with_level_time_and_caus
     found: list[LogEvent] = []
 
     def act() -> None:
-        logging.getLogger("daemon.front").warning("mine %d", 1)
+        logging.getLogger("daemon.front.front").warning("mine %d", 1)
         logging.getLogger(EVENT_LOGGER).warning("said on v1/event already")
         log.info("one")
         try:
@@ -53,7 +53,7 @@ def test_lines_of_this_process_and_others_come_in_order_with_level_time_and_caus
     assert [(e.process, e.level, e.text) for e in found] == [
         ("front", "warning", "mine 1"), ("bus", "info", "one"), ("bus", "error", "two (OSError: no cable)"),
     ]  # fmt: skip
-    assert all(abs(e.t_mono - time.monotonic()) < 5 for e in found) and found[0].module == "daemon.front"
+    assert all(abs(e.t_mono - time.monotonic()) < 5 for e in found) and found[0].module == "daemon.front.front"
 
 
 @pytest.mark.timeout(60)

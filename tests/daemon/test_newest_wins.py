@@ -11,10 +11,10 @@ import zmq
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from daemon import events as ev
-from daemon import wire
-from daemon.client_errors import stamp
-from daemon.requests import Command, Gesture, Say, tag_of
+from daemon.client.errors import stamp
+from daemon.wire import codec as wire
+from daemon.wire import events as ev
+from daemon.wire.requests import Command, Gesture, Say, tag_of
 from tests.end_to_end.harness import RunningDaemon
 
 pytestmark = pytest.mark.timeout(180)

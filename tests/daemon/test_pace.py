@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.derating import LEAST_SHARE
-from daemon.pace import WAIT_S, Pace, SlowedSetpoints
-from daemon.shared import Setpoint
+from daemon.driving.derating import LEAST_SHARE
+from daemon.driving.pace import WAIT_S, Pace, SlowedSetpoints
+from daemon.driving.shared import Setpoint
 
 PERIOD_S = 0.01
 

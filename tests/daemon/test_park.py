@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig import Rig, rig
 
-from daemon.pace import WAIT_S
-from daemon.shared import BusRequest, BusState
-from daemon.streamer import NO_WAY_LIMP_S
+from daemon.driving.pace import WAIT_S
+from daemon.driving.shared import BusRequest, BusState
+from daemon.driving.streamer import NO_WAY_LIMP_S
 from retarget import free_way
 from retarget.collision import SelfContact
 from retarget.limits import JointLimits

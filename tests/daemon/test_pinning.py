@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rig import Rig, rig, swing
 
-from daemon.shared import BusRequest, BusState
+from daemon.driving.shared import BusRequest, BusState
 from sim.faults import Fault
 
 ID = 13

@@ -8,11 +8,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from daemon.bus.servo_bus import ServoBus
-from daemon.bus_view import BusView
-from daemon.planner import RETARGET_MARGIN, SPARE_FRAMES, Planner
-from daemon.posture import posture_of
-from daemon.shared import BusLink, BusRequest, BusState
-from daemon.streamer import Streamer
+from daemon.driving.shared import BusLink, BusRequest, BusState
+from daemon.driving.streamer import Streamer
+from daemon.playing.planner import RETARGET_MARGIN, SPARE_FRAMES, Planner
+from daemon.playing.posture import posture_of
+from daemon.state.bus_view import BusView
 from retarget.limits import JointLimits
 from retarget.robot import load_robot
 from sim.bus import SimBus

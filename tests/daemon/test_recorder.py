@@ -16,12 +16,12 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 from rig import rig, swing
 
+from daemon.driving.shared import BusLink, BusState
 from daemon.errors import LogError
-from daemon.log_schemas import DROPPED_TOPIC
-from daemon.mcap_log import CYCLE_TOPIC, LogWriter, read_log
-from daemon.recorder_feed import RecorderFeed
+from daemon.recording.feed import RecorderFeed
+from daemon.recording.mcap_log import CYCLE_TOPIC, LogWriter, read_log
+from daemon.recording.schemas import DROPPED_TOPIC
 from daemon.settings import DEFAULTS
-from daemon.shared import BusLink, BusState
 from retarget.robot import RobotModel, load_robot
 from tests.end_to_end.harness import RunningDaemon
 
@@ -274,7 +274,7 @@ class Recording:
         self.events = self._context.socket(zmq.PUSH)
         self.events.connect(self.endpoint)
         arguments = ["--robot", "reference", "--link", str(self.link.path), "--out", str(self.out)]
-        command = [sys.executable, "-m", "daemon.recorder", *arguments, "--events", self.endpoint]
+        command = [sys.executable, "-m", "daemon.recording.recorder", *arguments, "--events", self.endpoint]
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE)
 
     def publish(self, records: list[np.void]) -> None:
@@ -358,7 +358,14 @@ def test_a_file_that_cannot_be_written_ends_recording_alone(tmp_path):
     link = BusLink.create(load_robot("reference").n_joints)
     try:
         arguments = ["--robot", "reference", "--link", str(link.path), "--out", str(tmp_path / "no" / "run.mcap")]
-        command = [sys.executable, "-m", "daemon.recorder", *arguments, "--events", f"ipc://{tmp_path}/events"]
+        command = [
+            sys.executable,
+            "-m",
+            "daemon.recording.recorder",
+            *arguments,
+            "--events",
+            f"ipc://{tmp_path}/events",
+        ]
         ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     finally:
         link.close()
@@ -372,7 +379,7 @@ def test_a_full_disk_ends_recording_alone():
     link = BusLink.create(load_robot("reference").n_joints)
     try:
         arguments = ["--robot", "reference", "--link", str(link.path), "--out", "/dev/full"]
-        command = [sys.executable, "-m", "daemon.recorder", *arguments, "--events", "ipc://@mmmd-test-full"]
+        command = [sys.executable, "-m", "daemon.recording.recorder", *arguments, "--events", "ipc://@mmmd-test-full"]
         ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     finally:
         link.close()

@@ -7,10 +7,10 @@ from rig import rig, swing
 
 from daemon.bus.servo_bus import ServoBus
 from daemon.cli import main
+from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.errors import LogError
-from daemon.mcap_log import Log, LogWriter, read_log
-from daemon.replay import ReplayFaultError, replay, stretches
-from daemon.shared import BusLink, BusRequest, BusState
+from daemon.recording.mcap_log import Log, LogWriter, read_log
+from daemon.recording.replay import ReplayFaultError, replay, stretches
 from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.cycles import after_loop, closed, find_hold, find_loop
-from daemon.idle import STYLES, IdleScore, looking
-from daemon.posture import Posture, distance_deg, joined, posture_of, standing
-from daemon.requests import Say
-from daemon.score import ClipScore, Marks, marks_of
+from daemon.playing.cycles import after_loop, closed, find_hold, find_loop
+from daemon.playing.idle import STYLES, IdleScore, looking
+from daemon.playing.posture import Posture, distance_deg, joined, posture_of, standing
+from daemon.playing.score import ClipScore, Marks, marks_of
+from daemon.wire.requests import Say
 from mmm_core.motion import FPS
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.shared import N_CYCLES, N_SETPOINTS, BusLink, BusRequest, BusState, Readiness
+from daemon.driving.shared import N_CYCLES, N_SETPOINTS, BusLink, BusRequest, BusState, Readiness
 
 J = 5
 

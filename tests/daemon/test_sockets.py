@@ -9,7 +9,7 @@ import pytest
 import zmq
 import zmq.asyncio
 
-from daemon.recorder_feed import RecorderFeed
+from daemon.recording.feed import RecorderFeed
 from daemon.sockets import publish_now, send_now
 
 pytestmark = pytest.mark.timeout(30)

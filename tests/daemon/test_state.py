@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from daemon.shared import BusState
-from daemon.state import (
+from daemon.driving.shared import BusState
+from daemon.state.docs import page
+from daemon.state.machine import (
     COMMANDS,
     REPORTS,
     TRANSITIONS,
@@ -18,7 +19,6 @@ from daemon.state import (
     StateMachine,
     Trigger,
 )
-from daemon.state_docs import page
 
 S, T = RobotState, Trigger
 
@@ -162,7 +162,7 @@ def test_without_auto_arm_the_first_text_waits_for_arm():
 
 
 def test_the_page_of_the_docs_is_that_of_the_table():
-    """`python -m daemon.state_docs docs/states.md` writes it."""
+    """`python -m daemon.state.docs docs/states.md` writes it."""
     assert (Path(__file__).parents[2] / "docs" / "states.md").read_text("utf-8") == page()
 
 

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon import story_score
-from daemon.generation_messages import Generated, GeneratorError
-from daemon.keyposes import KeyPose, led_through
-from daemon.posture import at_tempo, distance_deg, joined, posture_of, standing
-from daemon.replies import NotPlayableError
-from daemon.requests import SceneOf, Story
-from daemon.story_score import PIECES_AHEAD, StoryScore
+from daemon.generator.messages import Generated, GeneratorError
+from daemon.playing import story_score
+from daemon.playing.keyposes import KeyPose, led_through
+from daemon.playing.posture import at_tempo, distance_deg, joined, posture_of, standing
+from daemon.playing.story_score import PIECES_AHEAD, StoryScore
+from daemon.state.replies import NotPlayableError
+from daemon.wire.requests import SceneOf, Story
 from tests.daemon.kinematic import motion_of, raised_arm
 
 MOTION = raised_arm("right", 1.0, 1.0)

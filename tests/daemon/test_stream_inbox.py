@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.stream_inbox import NAMED_EVERY_S, StreamInbox
-from daemon.wire import WireError
+from daemon.front.stream_inbox import NAMED_EVERY_S, StreamInbox
+from daemon.wire.codec import WireError
 from retarget.robot import load_robot
 
 ROBOT = load_robot("reference")

@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.bus_view import BusView
-from daemon.lease import LeaseClock, LeaseState
-from daemon.planner import Planner
-from daemon.shared import BusRequest, BusState
-from daemon.stream_plan import StreamPlan
-from daemon.stream_score import StreamScore
+from daemon.driving.shared import BusRequest, BusState
+from daemon.playing.planner import Planner
+from daemon.playing.stream_plan import StreamPlan
+from daemon.playing.stream_score import StreamScore
+from daemon.state.bus_view import BusView
+from daemon.state.lease import LeaseClock, LeaseState
 from retarget.collision import SelfContact
 from retarget.guarded_steps import GuardedSteps
 from retarget.robot import load_robot

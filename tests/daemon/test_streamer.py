@@ -6,13 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig import Rig, rig, swing
 
-from daemon import shared
 from daemon.bus.models import CONTROL_TABLES
 from daemon.bus.servo_bus import ServoBus
+from daemon.driving import shared
+from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
+from daemon.driving.starting import start
+from daemon.driving.streamer import FAULT_LIMP_S, HEARTBEAT_LOST_S, PARK_AFTER_S, TORQUE_OFF_REPEATS
 from daemon.errors import PortMissingError
-from daemon.shared import BusLink, BusRequest, BusState, Readiness
-from daemon.starting import start
-from daemon.streamer import FAULT_LIMP_S, HEARTBEAT_LOST_S, PARK_AFTER_S, TORQUE_OFF_REPEATS
 from retarget.collision import SelfContact
 from retarget.robot import list_robots, load_robot
 from sim.bus import SimBus
@@ -528,13 +528,13 @@ def test_no_order_of_requests_and_setpoints_breaks_a_limit(sequence, seed):
 
 
 def test_the_start_says_how_to_set_a_slow_adapters_timer(monkeypatch, caplog):
-    monkeypatch.setattr("daemon.starting.latency_advice", lambda device: f"run: set {device}" if device else "")
+    monkeypatch.setattr("daemon.driving.starting.latency_advice", lambda device: f"run: set {device}" if device else "")
     robot, clock = load_robot("reference"), VirtualClock()
     link = BusLink.create(robot.n_joints)
     port = SimPort(SimBus(robot), clock)
     port.device = "/dev/ttyUSB7"
     try:
-        with caplog.at_level("WARNING", "daemon.starting"):
+        with caplog.at_level("WARNING", "daemon.driving.starting"):
             assert start(robot, lambda: ServoBus(port, robot.servos, clock), link, clock) is not None
         assert "run: set /dev/ttyUSB7" in caplog.text and link.readiness is Readiness.READY
     finally:

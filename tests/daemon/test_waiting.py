@@ -7,9 +7,9 @@ import time
 import pytest
 
 from daemon.clock import clock_id
-from daemon.ledger import Entry
-from daemon.requests import Say, Stop
-from daemon.waiting import CLOCKS_KEPT, SHADOW_S, Halts
+from daemon.playing.waiting import CLOCKS_KEPT, SHADOW_S, Halts
+from daemon.state.ledger import Entry
+from daemon.wire.requests import Say, Stop
 
 HERE, THERE, ELSEWHERE = "clock of this machine", "clock of another", "clock of a third"
 LONG_AGO_S = 10 * SHADOW_S

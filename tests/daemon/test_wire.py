@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon import events, requests, wire
-from daemon.wire_schemas import schemas, text_of
+from daemon.wire import codec as wire
+from daemon.wire import events, requests
+from daemon.wire.schemas import schemas, text_of
 
 DOCS = Path(__file__).parents[2] / "docs" / "wire"
 
@@ -170,7 +171,7 @@ def test_an_event_of_a_later_minor_version_is_still_read():
 
 
 def test_published_schemas_are_those_of_the_code():
-    """`python -m daemon.wire_schemas docs/wire` writes them."""
+    """`python -m daemon.wire.schemas docs/wire` writes them."""
     expected = {name: text_of(schema) for name, schema in schemas().items()}
     found = {path.name: path.read_text("utf-8") for path in DOCS.glob("*.schema.json")}
     assert found == expected

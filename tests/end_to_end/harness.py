@@ -15,8 +15,8 @@ from pathlib import Path
 
 from daemon.client import Client, NoAnswerError
 from daemon.config import Endpoints
-from daemon.generation_messages import Generated
-from daemon.realtime import BUS_PRIORITY, give_back_fifo
+from daemon.driving.realtime import BUS_PRIORITY, give_back_fifo
+from daemon.generator.messages import Generated
 from sim.pty import PtyServer
 from tests.daemon.kinematic import KinematicGenerator, generate
 

@@ -9,9 +9,9 @@ import time
 
 import pytest
 
-from daemon import events as ev
 from daemon.client import CancelledByError, RefusedError
-from daemon.requests import KeyPoseOf, SceneOf, Story
+from daemon.wire import events as ev
+from daemon.wire.requests import KeyPoseOf, SceneOf, Story
 from mmm_core.checkpoint import MODEL_FILE
 from tests.end_to_end.harness import RunningDaemon, mmmd
 from tests.end_to_end.test_start_and_end import child_pid
@@ -78,7 +78,7 @@ def test_a_story_outlives_its_generator(run):
         events = robot.events_of(Story(id="long", scenes=[SceneOf(text="clap your hands", seconds=2.0)] * 8), 100)
         while getattr(next(events), "stage", "") != "moving":
             pass
-        os.kill(child_pid(run, "daemon.generator"), signal.SIGKILL)
+        os.kill(child_pid(run, "daemon.generator.process"), signal.SIGKILL)
         heard = list(events)
         assert isinstance(heard[-1], ev.Done), heard[-1]
         assert [e.scene for e in heard if isinstance(e, ev.Progress) and e.scene is not None][-1] == 8
@@ -154,7 +154,7 @@ def test_the_commands_of_the_shell(run, tmp_path):
 def test_a_story_that_is_replaced_from_asyncio(run):
     import asyncio
 
-    from daemon.async_client import AsyncClient
+    from daemon.client import AsyncClient
 
     async def main() -> None:
         async with AsyncClient(run.endpoints) as robot:

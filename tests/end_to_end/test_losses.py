@@ -48,7 +48,7 @@ def test_a_killed_front_leaves_a_parked_robot_and_no_process(tmp_path):
         assert daemon.mmmd("say", "wave", "--no-wait").returncode == 0
         with daemon.client() as client:
             client.wait_for("moving", timeout_s=10)
-        bus = child_pid(daemon, "daemon.bus_process")
+        bus = child_pid(daemon, "daemon.driving.process")
         daemon.process.kill()
         daemon.process.wait(5)
         within(20, "the bus process has ended", lambda: gone(bus))
@@ -171,7 +171,7 @@ def test_a_frozen_recorder_slows_nobody_and_a_killed_one_is_reported(tmp_path):
     daemon = RunningDaemon("--log", str(tmp_path / "run.mcap"))
     try:
         daemon.until_ready()
-        pid = child_pid(daemon, "daemon.recorder")
+        pid = child_pid(daemon, "daemon.recording.recorder")
         os.kill(pid, signal.SIGSTOP)
         with daemon.client() as client:
             assert client.say("wave").done.first_motion_ms < 3000

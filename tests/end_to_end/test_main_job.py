@@ -12,8 +12,8 @@ import time
 
 import pytest
 
-from daemon.events import Accepted, Cancelled, Done, Progress
-from daemon.requests import Say
+from daemon.wire.events import Accepted, Cancelled, Done, Progress
+from daemon.wire.requests import Say
 from mmm_core.checkpoint import MODEL_FILE
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 from tests.end_to_end.test_start_and_end import child_pid
@@ -60,7 +60,7 @@ def test_out_of_scope_is_rejected_with_a_reason_and_a_score(run):
 def test_a_killed_generator_is_started_again_while_the_robot_holds(run):
     with run.client() as robot:
         robot.arm()
-        os.kill(child_pid(run, "daemon.generator"), signal.SIGKILL)
+        os.kill(child_pid(run, "daemon.generator.process"), signal.SIGKILL)
         end_s = time.monotonic() + 5
         while robot.status().generator.startswith("ready"):
             assert time.monotonic() < end_s

@@ -19,12 +19,11 @@ import numpy as np
 import pytest
 import zmq
 
-from daemon import events as ev
-from daemon.async_client import AsyncClient
-from daemon.client import CancelledByError, Client, RefusedError
-from daemon.client_streams import Stream
-from daemon.requests import Release, Say
-from daemon.wire import decode_event, encode
+from daemon.client import AsyncClient, CancelledByError, Client, RefusedError
+from daemon.client.streams import Stream
+from daemon.wire import events as ev
+from daemon.wire.codec import decode_event, encode
+from daemon.wire.requests import Release, Say
 from tests.end_to_end.harness import MMMD, RunningDaemon
 
 PARK_S, LIMP_S = 1.2, 0.4

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from daemon.gate import GATE_SHARE, Gate
+from daemon.driving.gate import GATE_SHARE, Gate
 from retarget.collision import KEPT, SelfContact
 from retarget.limits import JointLimits
 from retarget.paths import JointState

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from daemon.bus.registers import WATCHDOG_TRIPPED
-from daemon.shared import BusState
+from daemon.driving.shared import BusState
 from sim.faults import PACKET_KINDS, Fault
 from tests.daemon.rig import Rig
 

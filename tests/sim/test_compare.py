@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from daemon.cli import main
-from daemon.mcap_log import LogWriter
+from daemon.recording.mcap_log import LogWriter
 from sim.replay import Stretch, compare
 from tests.daemon.rig import rig, swing
 

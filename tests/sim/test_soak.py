@@ -20,8 +20,8 @@ import numpy as np
 import pytest
 
 from daemon.bus import packet
-from daemon.bus_process import SLOW_EVERY
-from daemon.shared import BusLink, BusRequest, BusState
+from daemon.driving.process import SLOW_EVERY
+from daemon.driving.shared import BusLink, BusRequest, BusState
 from retarget.robot import RobotModel, load_robot
 from sim.faults import INSTANT_KINDS, PACKET_KINDS, Fault
 from tests.daemon.rig import Rig, rig, swing

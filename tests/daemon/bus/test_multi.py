@@ -10,9 +10,9 @@ from daemon.bus.checks import check_servos
 from daemon.bus.models import MODELS
 from daemon.bus.multi import MultiBus, RobotBus, bus_on, open_bus
 from daemon.bus.servo_bus import ServoBus
+from daemon.driving.shared import BusLink, BusRequest, BusState
+from daemon.driving.streamer import Streamer
 from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTimeoutError
-from daemon.shared import BusLink, BusRequest, BusState
-from daemon.streamer import Streamer
 from retarget.robot import load_robot
 from retarget.ticks import JointServoMap
 from sim.clock import VirtualClock

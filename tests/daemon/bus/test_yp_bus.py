@@ -12,10 +12,10 @@ from daemon.bus.packet import Instruction, PacketDecoder
 from daemon.bus.rate_plan import plan_for
 from daemon.bus.rules import ADVISED, NEEDED
 from daemon.bus.servo_bus import ServoBus
-from daemon.derating import FULL_LOAD, read_limits
+from daemon.driving.derating import FULL_LOAD, read_limits
+from daemon.driving.pinning import pin_where_they_stand, reading_at_rest
 from daemon.errors import BusMismatchError, ServoFaultError
-from daemon.pinning import pin_where_they_stand, reading_at_rest
-from daemon.wiretap import Wiretap
+from daemon.recording.wiretap import Wiretap
 
 X_ID, Y_ID, P_ID = 61, 31, 37
 

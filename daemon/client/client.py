@@ -1,0 +1,233 @@
+"""A small client: `with Client() as robot: robot.say("wave with your right hand")`. Every call has a time-out."""
+
+from __future__ import annotations
+
+import time
+import uuid
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager
+from typing import Literal, Unpack
+
+import zmq
+
+from daemon.client.compositions import (
+    FIRST_REPLY_TIMEOUT_S,
+    MOTION_TIMEOUT_S,
+    REPLY_TIMEOUT_S,
+    CompositionCalls,
+    patience_s,
+)
+from daemon.client.controls import ControlCalls
+from daemon.client.errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
+from daemon.client.streams import LeaseNews, Stream, begun
+from daemon.wire.codec import decode_event
+from daemon.wire.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal
+from daemon.wire.requests import (
+    Cancel,
+    Capabilities,
+    Gesture,
+    Idle,
+    Lease,
+    Look,
+    Play,
+    PlayOptions,
+    Record,
+    Release,
+    Say,
+    tag_of,
+)
+
+
+class Client(ControlCalls, CompositionCalls[Said]):
+    """Talks to one daemon. Not for several threads at once."""
+
+    def say(
+        self,
+        text: str,
+        *,
+        seed: int = 0,
+        seconds: float | None = None,
+        wait: bool = True,
+        timeout_s: float | None = None,
+        command_id: str = "",
+        **options: Unpack[PlayOptions],
+    ) -> Said:
+        """Move as the text says.
+
+        Args:
+            text: what to do, in English.
+            seed: the same text, seed and seconds give the same motion.
+            seconds: length of the motion; None lets the model choose.
+            wait: return when the motion has ended; else once it is accepted.
+            timeout_s: longest wait for the end; None takes one that fits the request.
+            command_id: the same id twice is one command; empty chooses one.
+            options: tempo, amplitude, mirror, repeat, loop, hold, when, at_s, deadline_s; see `daemon.wire.requests.Play`.
+
+        Raises:
+            RefusedError: rejected, failed, or no valid request.
+            CancelledByError: ended by another command, with `wait`.
+            NoAnswerError: not in time.
+        """
+        request = Say(id=command_id or uuid.uuid4().hex, text=text, seed=seed, seconds=seconds, **options)
+        return self.play(request, wait=wait, timeout_s=timeout_s)
+
+    def gesture(
+        self,
+        name: str,
+        *,
+        wait: bool = True,
+        timeout_s: float | None = None,
+        command_id: str = "",
+        **options: Unpack[PlayOptions],
+    ) -> Said:
+        """Play a clip of the library; options as for `say`.
+
+        Raises:
+            RefusedError, CancelledByError, NoAnswerError: as for `say`.
+        """
+        request = Gesture(id=command_id or uuid.uuid4().hex, name=name, **options)
+        return self.play(request, wait=wait, timeout_s=timeout_s)
+
+    def play(self, request: Play, *, wait: bool = True, timeout_s: float | None = None) -> Said:
+        """Send a request that plays something; return when it has ended, or without `wait` once it is accepted.
+
+        Raises:
+            RefusedError, CancelledByError, NoAnswerError: as for `say`.
+        """
+        heard: list[AnyEvent] = []
+        for event in self.events_of(request, timeout_s):
+            heard.append(event)
+            if isinstance(event, Refusal):
+                raise RefusedError(event)
+            if not wait:
+                break
+        last = heard[-1]
+        if wait and not isinstance(last, Done):
+            raise CancelledByError(str(getattr(last, "by", "the daemon")))
+        return Said(request.id, tuple(heard))
+
+    def events_of(self, request: Play, timeout_s: float | None = None) -> Iterator[AnyEvent]:
+        """Send a text and yield its events as they come, the last one terminal.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        socket = self._cmd_socket()
+        self._send(socket, request, self.endpoints.cmd)
+        began_s, asked = time.monotonic(), f"{tag_of(request)} {request.words[:60]!r}"
+        timeout_s = patience_s(request) if timeout_s is None else timeout_s
+        limit_s = min(timeout_s, FIRST_REPLY_TIMEOUT_S)
+        while True:
+            event = self._receive(socket, began_s, limit_s, self.endpoints.cmd, asked)
+            if event.id not in (request.id, ""):
+                continue
+            limit_s = timeout_s
+            yield event
+            if event.terminal:
+                return
+
+    def cancel(self, command_id: str = "") -> Ack:
+        """End a command, any when the id is empty; the robot brakes and holds.
+
+        Raises:
+            RefusedError: no such command runs.
+            NoAnswerError: not in time.
+        """
+        return self._command(Cancel(id=uuid.uuid4().hex, command=command_id))
+
+    def look(self, yaw_deg: float | None = None, pitch_deg: float | None = None) -> Ack:
+        """Turn the head left and down, whatever the body does; without angles it is let go again.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        return self._command(Look(id=uuid.uuid4().hex, yaw_deg=yaw_deg, pitch_deg=pitch_deg))
+
+    def idle(self, on: bool = True, style: Literal["calm", "lively"] = "calm") -> Ack:
+        """Small movements while there is nothing to play, or none.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        return self._command(Idle(id=uuid.uuid4().hex, on=on, style=style))
+
+    @contextmanager
+    def stream(
+        self, holder: str = "", *, silence_s: float | None = None, timeout_s: float = MOTION_TIMEOUT_S
+    ) -> Generator[Stream]:
+        """A lease on the robot's joints, once it has begun: `with robot.stream() as s: s.send(q_rad)`, again and again.
+
+        Args:
+            holder: who asks, in a word or two; a second asker is told.
+            silence_s: without a target for so long the robot brakes and holds; None takes the daemon's time.
+            timeout_s: longest wait for the lease to begin (the robot may have to be armed) and to end.
+
+        Raises:
+            RefusedError: somebody else holds it, the robot's state forbids it, or the lease has failed.
+            CancelledByError: a stop or another command ended it.
+            NoAnswerError: not in time.
+        """
+        request = Lease(id=uuid.uuid4().hex, holder=holder, silence_s=silence_s)
+        news, cmd = LeaseNews(request.id), self._connect(self.endpoints.cmd)
+        socket = self._context.socket(zmq.PUB)
+        try:
+            self._secure(socket, self.endpoints.stream)
+            socket.connect(self.endpoints.stream)
+            self._send(cmd, request, self.endpoints.cmd)
+            stream = Stream(news, socket, cmd)
+            stream.until(begun, timeout_s, self.endpoints.cmd)
+            try:
+                yield stream
+            except BaseException:
+                self._send(cmd, Cancel(id=uuid.uuid4().hex, command=request.id), self.endpoints.cmd)
+                raise
+            if news.end is None:
+                self._send(cmd, Release(id=uuid.uuid4().hex, lease=request.id), self.endpoints.cmd)
+            stream.until(lambda event: event.terminal, timeout_s, self.endpoints.cmd)
+        finally:
+            socket.close(0)
+            cmd.close(200)
+
+    def record(self, name: str, command_id: str = "") -> Ack:
+        """Keep the motion of a command, the newest when no id is given, as a gesture.
+
+        Raises:
+            RefusedError: there is none, or it cannot be kept.
+            NoAnswerError: not in time.
+        """
+        return self._command(Record(id=uuid.uuid4().hex, name=name, command=command_id))
+
+    def capabilities(self) -> CapabilitiesEvent:
+        """What this robot and this daemon can do.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        event = self._ask(Capabilities(id=uuid.uuid4().hex), self._cmd_socket(), self.endpoints.cmd)
+        if not isinstance(event, CapabilitiesEvent):
+            raise unexpected(event, "capabilities")
+        return event
+
+    def watch(self, *topics: str, timeout_s: float = REPLY_TIMEOUT_S) -> Iterator[tuple[str, AnyEvent]]:
+        """Yield (topic, event) of `v1/state`, `v1/health`, `v1/event` and `v1/log` (all when none is named), without end.
+
+        Raises:
+            NoAnswerError: nothing was published for `timeout_s`.
+        """
+        socket = self._context.socket(zmq.SUB)
+        try:
+            for topic in topics or ("v1/",):
+                socket.setsockopt(zmq.SUBSCRIBE, topic.encode())
+            self._secure(socket, self.endpoints.pub)
+            socket.connect(self.endpoints.pub)
+            last: dict[bytes, bytes] = {}
+            while True:
+                if not socket.poll(int(1000 * timeout_s)):
+                    raise NoAnswerError(self.endpoints.pub, f"watch {' '.join(topics) or 'v1/'}", timeout_s)
+                topic, payload = socket.recv_multipart()
+                if last.get(topic) == payload:  # sent again, for somebody who has just subscribed
+                    continue
+                last[topic] = payload
+                yield topic.decode(), decode_event(payload)
+        finally:
+            socket.close(0)

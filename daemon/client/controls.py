@@ -1,0 +1,114 @@
+"""Calls of the client that go through `ctl`: what stops, arms and parks the robot, and what it is doing."""
+
+from __future__ import annotations
+
+import time
+import uuid
+
+from daemon.client.compositions import NOT_MOVING
+from daemon.client.connection import Connection
+from daemon.client.errors import NoAnswerError, unexpected
+from daemon.wire.events import Ack, StateEvent
+from daemon.wire.requests import Arm, Estop, Park, Reset, Status, Stop, Torque
+
+
+class ControlCalls(Connection):
+    """They are answered whatever the rest of the daemon does."""
+
+    def stop(self, *, wait: bool = True) -> Ack:
+        """Brake within the limits and hold; with `wait`, return once nothing is played any more.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Stop(id=uuid.uuid4().hex))
+        if wait:
+            self.wait_for(*NOT_MOVING, timeout_s=self._timeout_s)
+        return ack
+
+    def estop(self, *, wait: bool = True) -> Ack:
+        """Cut torque at once (or hold, as the daemon is set), latched; with `wait`, return once the bus process has confirmed it.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Estop(id=uuid.uuid4().hex))
+        if wait:
+            self.wait_for("estop", "fault", timeout_s=self._timeout_s)
+        return ack
+
+    def reset(self, *, wait: bool = True) -> Ack:
+        """Leave e-stop or fault; the robot is limp and must be armed.
+
+        Raises:
+            RefusedError: the state does not allow it, or (with `wait`) the robot did not get limp.
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Reset(id=uuid.uuid4().hex))
+        if wait and ack.state in ("fault", "estop"):
+            self.wait_for("limp", "fault", timeout_s=self._timeout_s)
+        return ack
+
+    def arm(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
+        """Torque on over a pinned goal, slow move to the rest pose.
+
+        Raises:
+            RefusedError: the state does not allow it.
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Arm(id=uuid.uuid4().hex))
+        if wait:
+            self.wait_for("idle", "moving", "holding", "fault", "estop", timeout_s=timeout_s)
+        return ack
+
+    def torque_off(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
+        """Brake within the limits, then limp where the robot stands; it moves again only after `arm`.
+
+        Raises:
+            RefusedError: the state does not allow it.
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Torque(id=uuid.uuid4().hex, on=False))
+        if wait:
+            self.wait_for("limp", "fault", "estop", timeout_s=timeout_s)
+        return ack
+
+    def park(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
+        """Slow move to the park pose, then torque off.
+
+        Raises:
+            RefusedError: the state does not allow it.
+            NoAnswerError: not in time.
+        """
+        ack = self._control(Park(id=uuid.uuid4().hex))
+        if wait:
+            self.wait_for("limp", "fault", "estop", timeout_s=timeout_s)
+        return ack
+
+    def status(self) -> StateEvent:
+        """The robot and the daemon now, by way of `ctl`.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        request = Status(id=uuid.uuid4().hex)
+        event = self._ask(request, self._ctl_socket(), self.endpoints.ctl)
+        if not isinstance(event, StateEvent):
+            raise unexpected(event, "status")
+        return event
+
+    def wait_for(self, *states: str, timeout_s: float) -> StateEvent:
+        """Poll until the robot is in one of `states`.
+
+        Raises:
+            NoAnswerError: not in time.
+        """
+        end_s = time.monotonic() + timeout_s
+        while True:
+            status = self.status()
+            if status.state in states:
+                return status
+            if time.monotonic() > end_s:
+                asked = f"wait for {' or '.join(states)} (the robot is in {status.state})"
+                raise NoAnswerError(self.endpoints.ctl, asked, timeout_s)
+            time.sleep(0.05)

@@ -1,0 +1,69 @@
+"""What a client may run into, what it hears of a command, and how it says when it was sent."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+from daemon.clock import clock_id
+from daemon.errors import DaemonError
+from daemon.wire.events import AnyEvent, Done, Event, Refusal
+from daemon.wire.requests import Request, tag_of
+
+
+class NoAnswerError(DaemonError, TimeoutError):
+    """The daemon did not answer."""
+
+    def __init__(self, endpoint: str, asked: str, timeout_s: float) -> None:
+        self.endpoint, self.asked, self.timeout_s = endpoint, asked, timeout_s
+        do = "is `mmmd run` running there? Start it, or name its port with --cmd, --ctl, --pub"
+        super().__init__(f"{asked}: no answer from {endpoint} in {timeout_s:g} s; {do}")
+
+
+class RefusedError(DaemonError):
+    """The daemon rejected a request, or could not carry it out; `event` tells why."""
+
+    def __init__(self, event: Refusal) -> None:
+        self.event = event
+        self.code = event.code
+        self.exit_status = 3 if event.code == "fault" else 1
+        super().__init__(event.message)
+
+
+class CancelledByError(DaemonError):
+    """The command ended before its motion did."""
+
+    def __init__(self, by: str) -> None:
+        self.by = by
+        super().__init__(f"the command was cancelled by {by}")
+
+
+@dataclass(frozen=True)
+class Said:
+    """A command and what has been heard of it.
+
+    Attributes:
+        id: id of the command.
+        events: its events so far; the last is terminal once it has ended.
+    """
+
+    id: str
+    events: tuple[AnyEvent, ...]
+
+    @property
+    def done(self) -> Done | None:
+        """The figures of the motion, when it was played to its end."""
+        last = self.events[-1] if self.events else None
+        return last if isinstance(last, Done) else None
+
+
+def stamp(request: Request) -> None:
+    """Write into a request when it is sent, and on which clock."""
+    request.t_mono, request.clock = time.monotonic(), clock_id() or None
+
+
+def unexpected(event: Event, asked: str) -> DaemonError:
+    """The error of an answer that is none to what was asked."""
+    if isinstance(event, Refusal):
+        return RefusedError(event)
+    return DaemonError(f"{asked}: the daemon answered '{tag_of(event)}'; is it of another version?")

@@ -1,0 +1,76 @@
+"""One socket of the asyncio client, over which several requests are under way at once."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncGenerator
+
+import zmq.asyncio
+
+from daemon.client.errors import NoAnswerError, stamp
+from daemon.wire.codec import decode_event, encode
+from daemon.wire.events import AnyEvent, Refusal
+from daemon.wire.requests import Request, tag_of
+
+LONGEST_WAIT_S = 1e9
+
+
+class Line:
+    """One DEALER socket whose events are handed to whoever waits for their id."""
+
+    def __init__(self, socket: zmq.asyncio.Socket, endpoint: str) -> None:
+        self._socket, self.endpoint = socket, endpoint
+        self._waiting: dict[str, asyncio.Queue[AnyEvent]] = {}
+        self._reader: asyncio.Task[None] | None = None
+
+    @contextlib.asynccontextmanager
+    async def asked(self, request: Request, timeout_s: float) -> AsyncGenerator[asyncio.Queue[AnyEvent]]:
+        """Send a request; its events come through the queue.
+
+        Raises:
+            NoAnswerError: nobody was there in time to send it to; it is not sent later.
+        """
+        if self._reader is None:
+            self._reader = asyncio.create_task(self._read())
+        heard: asyncio.Queue[AnyEvent] = asyncio.Queue()
+        self._waiting[request.id] = heard
+        stamp(request)
+        try:
+            try:
+                async with asyncio.timeout(timeout_s if timeout_s < LONGEST_WAIT_S else None):
+                    await self._socket.send(encode(request))
+            except TimeoutError:
+                raise NoAnswerError(self.endpoint, tag_of(request), timeout_s) from None
+            yield heard
+        finally:
+            self._waiting.pop(request.id, None)
+
+    async def close(self) -> None:
+        """Hear nothing more."""
+        if self._reader is not None:
+            self._reader.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._reader
+        self._socket.close(200)
+
+    async def _read(self) -> None:
+        while True:
+            event = decode_event(await self._socket.recv())
+            if event.id in self._waiting:
+                self._waiting[event.id].put_nowait(event)
+            elif isinstance(event, Refusal) and not event.id:  # a frame that had no id to be named by
+                for heard in self._waiting.values():
+                    heard.put_nowait(event)
+
+
+async def within(heard: asyncio.Queue[AnyEvent], timeout_s: float, endpoint: str, asked: str) -> AnyEvent:
+    """The next event.
+
+    Raises:
+        NoAnswerError: not in time.
+    """
+    try:
+        return await asyncio.wait_for(heard.get(), timeout_s if timeout_s < LONGEST_WAIT_S else None)
+    except TimeoutError:
+        raise NoAnswerError(endpoint, asked, timeout_s) from None

@@ -1,0 +1,207 @@
+"""A Model Context Protocol server over stdio: a language model says, stops and looks, with the daemon's own limits.
+
+JSON-RPC 2.0, one message a line (MCP revision 2025-06-18, tools only). Every line is taken as it comes and answered when
+it is done, so that `stop`, `estop` and `status` do not wait for a motion; motions that are waited for are played one after
+the other, and a stop ends those that have not begun. Nothing here can go round the daemon: a tool is a
+request like any other, refused with the same words. Arming after a fault or e-stop stays with people: there is no tool.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import importlib.metadata
+import json
+import logging
+import threading
+from collections.abc import Awaitable, Callable
+from typing import IO, Any, cast
+
+from daemon.client.async_client import AsyncClient
+from daemon.client.errors import CancelledByError, Said
+from daemon.errors import DaemonError
+from daemon.wire.requests import LEAST_AMPLITUDE, LEAST_TEMPO, LONGEST_S, MOST_AMPLITUDE, MOST_TEMPO, SHORTEST_S
+
+log = logging.getLogger(__name__)
+
+PROTOCOL_REVISIONS = ("2025-06-18", "2025-03-26", "2024-11-05")
+_PARSE_ERROR, _BAD_REQUEST, _NO_METHOD, _BAD_PARAMETERS = -32700, -32600, -32601, -32602
+_OPTIONS: dict[str, Any] = {
+    "tempo": {"type": "number", "minimum": LEAST_TEMPO, "maximum": MOST_TEMPO},
+    "amplitude": {"type": "number", "minimum": LEAST_AMPLITUDE, "maximum": MOST_AMPLITUDE},
+    "repeat": {"type": "integer", "minimum": 1, "maximum": 20},
+    "wait": {"type": "boolean", "description": "answer when the motion has ended (default), else once it is accepted"},
+}
+_SECONDS = {"type": "number", "minimum": SHORTEST_S, "maximum": LONGEST_S}
+_ANGLE = {"type": "number", "minimum": -120, "maximum": 120}
+TOOLS: list[dict[str, Any]] = [
+    {
+        "name": name,
+        "description": description,
+        "inputSchema": {
+            "type": "object", "properties": properties, "required": required, "additionalProperties": False
+        },
+    }
+    for name, description, properties, required in (
+        ("say", "Move the robot's head, arms and torso as a short English text says, e.g. 'wave with your right hand'.",
+         {"text": {"type": "string"}, "seconds": _SECONDS, **_OPTIONS}, ["text"]),
+        ("gesture", "Play a named gesture; `gestures` lists them.", {"name": {"type": "string"}, **_OPTIONS}, ["name"]),
+        ("gestures", "List the named gestures.", {}, []),
+        ("look", "Turn the head: degrees to the left and down. Without angles the head is free again.",
+         {"yaw_deg": _ANGLE, "pitch_deg": _ANGLE}, []),
+        ("stop", "Brake within the limits and hold. Always allowed.", {}, []),
+        ("estop", "Emergency: cut the torque at once (or hold, as the daemon is set). Only a person can undo it.", {}, []),
+        ("status", "What the robot is doing.", {}, []),
+    )
+]  # fmt: skip
+
+
+class McpServer:
+    """Answers one client over a pair of streams."""
+
+    def __init__(self, client: AsyncClient) -> None:
+        self._client = client
+        self._turn = asyncio.Lock()
+        self._halts = 0
+        self._halted_by = ""
+        self._tools: dict[str, Callable[[dict[str, Any]], Awaitable[str]]] = {
+            "say": self._say,
+            "gesture": self._gesture,
+            "gestures": self._gestures,
+            "look": self._look,
+            "stop": self._stop,
+            "estop": self._estop,
+            "status": self._status,
+        }
+
+    async def serve(self, source: IO[str], out: IO[str]) -> None:
+        """Answer each line of the source, which is read in a thread, until it ends and all are answered."""
+        loop = asyncio.get_running_loop()
+        lines: asyncio.Queue[str] = asyncio.Queue()
+
+        def read() -> None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended: nobody listens any more
+                for line in source:
+                    loop.call_soon_threadsafe(lines.put_nowait, line)
+                loop.call_soon_threadsafe(lines.put_nowait, "")
+
+        async def reply(line: str) -> None:
+            answer = await self.answer(line)
+            if answer is not None:
+                out.write(json.dumps(answer) + "\n")
+                out.flush()
+
+        threading.Thread(target=read, name="mcp", daemon=True).start()
+        async with asyncio.TaskGroup() as replies:
+            while line := await lines.get():
+                if line.strip():
+                    replies.create_task(reply(line))
+
+    async def answer(self, line: str) -> dict[str, Any] | None:
+        """The reply to one message; None for a notification."""
+        try:
+            message = json.loads(line)
+        except (json.JSONDecodeError, RecursionError) as error:
+            return _error(None, _PARSE_ERROR, f"no JSON: {error}")
+        if not isinstance(message, dict):
+            return _error(None, _BAD_REQUEST, "one JSON object a line")
+        asked = cast("dict[str, Any]", message)
+        request_id, method, parameters = asked.get("id"), asked.get("method"), asked.get("params", {})
+        if not isinstance(method, str) or not isinstance(parameters, dict):
+            return _error(request_id, _BAD_REQUEST, "`method` is a string and `params` an object")
+        if request_id is None:
+            return None
+        if method == "initialize":
+            return _result(request_id, self._initialize(cast("dict[str, Any]", parameters)))
+        if method == "ping":
+            return _result(request_id, {})
+        if method == "tools/list":
+            return _result(request_id, {"tools": TOOLS})
+        if method == "tools/call":
+            return await self._call(request_id, cast("dict[str, Any]", parameters))
+        return _error(request_id, _NO_METHOD, f"method {method!r}; known: initialize, ping, tools/list, tools/call")
+
+    def _initialize(self, parameters: dict[str, Any]) -> dict[str, Any]:
+        asked = parameters.get("protocolVersion")
+        return {
+            "protocolVersion": asked if asked in PROTOCOL_REVISIONS else PROTOCOL_REVISIONS[0],
+            "capabilities": {"tools": {}},
+            "serverInfo": {"name": "mmmd", "version": importlib.metadata.version("mmmd")},
+            "instructions": "A humanoid upper body. Short commands, one motion each; a new one takes over from the old.",
+        }
+
+    async def _call(self, request_id: Any, parameters: dict[str, Any]) -> dict[str, Any]:
+        name, arguments = parameters.get("name"), parameters.get("arguments", {})
+        tool = self._tools.get(name) if isinstance(name, str) else None
+        if tool is None or not isinstance(arguments, dict):
+            return _error(request_id, _BAD_PARAMETERS, f"tool {name!r}; known: {', '.join(self._tools)}")
+        given = cast("dict[str, Any]", arguments)
+        schema = next(t["inputSchema"] for t in TOOLS if t["name"] == name)
+        unknown = given.keys() - schema["properties"].keys()
+        missing = set(schema["required"]) - given.keys()
+        if unknown or missing:
+            text = f"unknown: {', '.join(sorted(unknown)) or 'none'}; missing: {', '.join(sorted(missing)) or 'none'}"
+            return _error(request_id, _BAD_PARAMETERS, f"{name}: {text}; allowed: {', '.join(schema['properties'])}")
+        try:
+            return _result(request_id, _text(await tool(given)))
+        except CancelledByError as error:
+            return _result(request_id, _text(str(error)))
+        except (DaemonError, ValueError, TypeError) as error:
+            return _result(request_id, _text(str(error), failed=True))
+
+    async def _say(self, arguments: dict[str, Any]) -> str:
+        text, wait = str(arguments.pop("text")), bool(arguments.pop("wait", True))
+        return await self._play(lambda: self._client.say(text, wait=wait, **arguments))
+
+    async def _gesture(self, arguments: dict[str, Any]) -> str:
+        name, wait = str(arguments.pop("name")), bool(arguments.pop("wait", True))
+        return await self._play(lambda: self._client.gesture(name, wait=wait, **arguments))
+
+    async def _play(self, ask: Callable[[], Awaitable[Said]]) -> str:
+        """Ask for a motion when those before are done with; one that a stop finds waiting is not asked for any more."""
+        halts = self._halts
+        async with self._turn:
+            if halts != self._halts:
+                raise CancelledByError(self._halted_by)
+            return _told((await ask()).events)
+
+    async def _stop(self, _: dict[str, Any]) -> str:
+        self._halts, self._halted_by = self._halts + 1, "stop"
+        return f"stopped; before, the robot was in {(await self._client.stop()).state}"
+
+    async def _estop(self, _: dict[str, Any]) -> str:
+        self._halts, self._halted_by = self._halts + 1, "estop"
+        return f"e-stop is latched; before, the robot was in {(await self._client.estop()).state}"
+
+    async def _gestures(self, _: dict[str, Any]) -> str:
+        return "\n".join(f"{g.name}: {g.text}" for g in (await self._client.capabilities()).gestures)
+
+    async def _look(self, arguments: dict[str, Any]) -> str:
+        note = (await self._client.look(arguments.get("yaw_deg"), arguments.get("pitch_deg"))).note
+        return "looking there" + (f" as far as it goes: {note}" if note else "")
+
+    async def _status(self, _: dict[str, Any]) -> str:
+        s = await self._client.status()
+        doing = f"playing {s.command.text!r}" if s.command else "playing nothing"
+        needs = "; a person has to arm it first" if s.must_arm else ""
+        return (
+            f"{s.robot} is in {s.state}{': ' + s.reason if s.reason else ''}, {doing}{needs}; generator {s.generator}"
+        )
+
+
+def _told(events: tuple[Any, ...]) -> str:
+    from daemon.commands.playing import describe
+
+    return "\n".join(describe(e) for e in events)
+
+
+def _text(text: str, *, failed: bool = False) -> dict[str, Any]:
+    return {"content": [{"type": "text", "text": text}], "isError": failed}
+
+
+def _result(request_id: Any, result: dict[str, Any]) -> dict[str, Any]:
+    return {"jsonrpc": "2.0", "id": request_id, "result": result}
+
+
+def _error(request_id: Any, code: int, message: str) -> dict[str, Any]:
+    return {"jsonrpc": "2.0", "id": request_id, "error": {"code": code, "message": message}}

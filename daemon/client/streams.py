@@ -1,0 +1,146 @@
+"""Sending joint targets: `with robot.stream() as stream: stream.send(q_rad)`, for the client and its asyncio sister.
+
+The targets go out through a PUB socket of their own; the lease and its events through `cmd`. A context that ends well
+releases the lease; one that ends in an exception cancels it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Mapping, Sequence
+
+import zmq
+import zmq.asyncio
+
+from daemon.client.errors import CancelledByError, NoAnswerError, RefusedError
+from daemon.wire.codec import decode_event, encode
+from daemon.wire.events import AnyEvent, Cancelled, Progress, Refusal
+from daemon.wire.requests import Target
+
+Angles = Sequence[float] | Mapping[str, float]
+"""For every joint in the robot's order, or for some joints by name; radians."""
+
+
+class LeaseNews:
+    """What a holder has heard of its lease.
+
+    Attributes:
+        id: of the lease, for those who send targets by other means.
+        events: all of them so far.
+        held_by: self-collision, silence, or nothing; what keeps the robot from its target, as last heard.
+    """
+
+    def __init__(self, lease_id: str) -> None:
+        self.id = lease_id
+        self.events: list[AnyEvent] = []
+        self.held_by = ""
+        self._sent = 0
+
+    @property
+    def end(self) -> AnyEvent | None:
+        """The event that ended the lease, None while it lives."""
+        return self.events[-1] if self.events and self.events[-1].terminal else None
+
+    def take(self, event: AnyEvent) -> None:
+        """An event of the lease."""
+        self.events.append(event)
+        if isinstance(event, Progress):
+            self.held_by = {"held": "self-collision", "silent": "silence", "streaming": ""}.get(
+                event.stage, self.held_by
+            )
+
+    def check(self) -> None:
+        """Tell by an exception that the lease has ended.
+
+        Raises:
+            RefusedError: it was rejected, or has failed.
+            CancelledByError: something else ended it.
+        """
+        if isinstance(self.end, Refusal):
+            raise RefusedError(self.end)
+        if isinstance(self.end, Cancelled):
+            raise CancelledByError(self.end.by)
+
+    def frame(self, q_rad: Angles) -> bytes:
+        """A target as it goes over the wire."""
+        self._sent += 1
+        angles = {k: float(v) for k, v in q_rad.items()} if isinstance(q_rad, Mapping) else [float(v) for v in q_rad]
+        return encode(Target(id=self.id, q_rad=angles, seq=self._sent, t_mono=time.monotonic()))
+
+
+def begun(event: AnyEvent) -> bool:
+    """Whether targets move the robot from this event on."""
+    return isinstance(event, Progress) and event.stage == "leased"
+
+
+class Stream:
+    """A lease that has begun; `Client.stream` makes it. Not for several threads at once.
+
+    Attributes:
+        news: what was heard of it.
+    """
+
+    def __init__(self, news: LeaseNews, targets: zmq.Socket[bytes], cmd: zmq.Socket[bytes]) -> None:
+        self.news, self._targets, self._cmd = news, targets, cmd
+
+    def send(self, q_rad: Angles) -> None:
+        """Lead the joints there: all in the robot's order, or some by name. Never waits.
+
+        Raises:
+            RefusedError: the lease has failed.
+            CancelledByError: a stop or another command has ended it.
+        """
+        while self._cmd.poll(0):
+            self._hear()
+        self.news.check()
+        self._targets.send(self.news.frame(q_rad), zmq.DONTWAIT)
+
+    def until(self, wanted: Callable[[AnyEvent], bool], timeout_s: float, endpoint: str) -> None:
+        """Wait for an event of the lease, or its end.
+
+        Raises:
+            RefusedError, CancelledByError: it has ended otherwise than by `release`.
+            NoAnswerError: not in time.
+        """
+        end_s = time.monotonic() + timeout_s
+        while self.news.end is None and not any(map(wanted, self.news.events)):
+            if not self._cmd.poll(int(1000 * max(0.0, end_s - time.monotonic()))):
+                raise NoAnswerError(endpoint, "lease", timeout_s)
+            self._hear()
+        self.news.check()
+
+    def _hear(self) -> None:
+        event = decode_event(self._cmd.recv())
+        if event.id == self.news.id:
+            self.news.take(event)
+        elif isinstance(event, Refusal) and not event.id:
+            raise RefusedError(event)
+
+
+class AsyncStream:
+    """The same for asyncio; `AsyncClient.stream` makes it.
+
+    Attributes:
+        news: what was heard of it.
+    """
+
+    def __init__(self, news: LeaseNews, targets: zmq.asyncio.Socket, heard: asyncio.Queue[AnyEvent]) -> None:
+        self.news, self._targets, self._heard = news, targets, heard
+
+    async def send(self, q_rad: Angles) -> None:
+        """Lead the joints there; as `Stream.send`."""
+        while not self._heard.empty():
+            self.news.take(self._heard.get_nowait())
+        self.news.check()
+        await self._targets.send(self.news.frame(q_rad))
+
+    async def until(self, wanted: Callable[[AnyEvent], bool], timeout_s: float, endpoint: str) -> None:
+        """Wait for an event of the lease, or its end; as `Stream.until`."""
+        try:
+            async with asyncio.timeout(timeout_s):
+                while self.news.end is None and not any(map(wanted, self.news.events)):
+                    self.news.take(await self._heard.get())
+        except TimeoutError:
+            raise NoAnswerError(endpoint, "lease", timeout_s) from None
+        self.news.check()

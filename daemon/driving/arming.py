@@ -1,0 +1,75 @@
+"""From limp to torque: everything is verified anew, joints stand still, goals are pinned to where they stand, torque on.
+
+A generator that gives the bus cycle back between its steps: records go on, and an e-stop, a stop or a front that has died
+counts at once, however long a bad wire or a swinging arm makes it. Torque comes on in the last step alone.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Generator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.checks import check_servos, require_needed
+from daemon.bus.multi import RobotBus
+from daemon.clock import Clock
+from daemon.driving.derating import ServoLimits, read_limits
+from daemon.driving.pinning import pin_where_they_stand, reading_at_rest, refuse_hardware_errors
+from daemon.errors import LinkTimeoutError
+from retarget.robot import RobotModel
+
+log = logging.getLogger(__name__)
+
+WATCHDOG_UNITS = 10
+"""Servo bus watchdog, 20 ms each: 200 ms without any packet on the bus and the servos stop by themselves."""
+
+
+@dataclass(frozen=True)
+class Armed:
+    """What a robot is like that has just got torque.
+
+    Attributes:
+        goal_tick: (S,) goals that the servos hold.
+        limits: what their registers say.
+    """
+
+    goal_tick: NDArray[np.int32]
+    limits: ServoLimits
+
+
+def arm_in_steps(robot: RobotModel, bus: RobotBus, clock: Clock, effort: float) -> Generator[None, None, Armed]:
+    """Arm a limp robot. Whoever breaks off, or catches an error, has to cut torque.
+
+    Args:
+        robot: the robot.
+        bus: its servos.
+        clock: time of the cycles.
+        effort: share of full torque that it begins with.
+
+    Raises:
+        BusMismatchError: servos or their settings are not what the robot file needs; they may have been changed since.
+        ServoFaultError: one reports an error, moves, or does not take its goal.
+        LinkError: no answer, or the port is gone.
+    """
+    bus.verify()
+    yield
+    bus.clear_watchdog()
+    yield
+    require_needed(check_servos(bus, robot))
+    yield
+    limits = read_limits(bus)
+    yield
+    reading = yield from reading_at_rest(bus, clock)
+    if not reading.valid.all():
+        silent = ", ".join(str(i) for i, ok in zip(bus.ids, reading.valid, strict=True) if not ok)
+        raise LinkTimeoutError(f"no fresh position of servo {silent}; check cable and power")
+    refuse_hardware_errors(bus, reading)
+    present = yield from pin_where_they_stand(bus, clock, reading, effort)
+    bus.write_all("torque_enable", 1)
+    without = bus.arm_watchdog(WATCHDOG_UNITS)
+    if without:
+        log.warning("no bus watchdog to rely on: servo %s", ", ".join(map(str, without)))
+    return Armed(present, limits)

@@ -1,0 +1,109 @@
+"""What a reading says of the servos while they have torque: what must end in a fault. Part of the bus process.
+
+A servo that was silent for as long as its bus watchdog takes may have stopped by it while the others went on: it then
+answers as ever and refuses every goal, so it is asked as soon as it is back.
+"""
+
+from __future__ import annotations
+
+import logging
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.multi import RobotBus
+from daemon.bus.reading import BusReading
+from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
+from daemon.driving.arming import WATCHDOG_UNITS
+from daemon.driving.pinning import refuse_hardware_errors
+from retarget.robot import RobotModel
+
+log = logging.getLogger(__name__)
+
+MISSING_CYCLES = 20
+"""Half of the servos silent for so many cycles is a fault (loose plug, power)."""
+TORQUE_CHECK_CYCLES = 5
+MAY_HAVE_TRIPPED_S = 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S
+"""After so long without a packet a servo's watchdog may have run out."""
+
+
+class Judge:
+    """Judges each reading of a robot with torque; names what is a fault."""
+
+    def __init__(self, robot: RobotModel, bus: RobotBus) -> None:
+        self._robot, self._bus = robot, bus
+        self._period_s = robot.bus.period_s
+        self._missing_cycles = self._cycle = 0
+        self._silent_s = np.zeros(len(bus.ids))
+
+    def armed(self) -> None:
+        """Torque has just come on: what was before is over."""
+        self._missing_cycles = 0
+        self._silent_s[:] = 0.0
+
+    def fault(self, reading: BusReading) -> str:
+        """Why the reading of a cycle with torque is a fault; empty when it is none.
+
+        Raises:
+            ServoFaultError: a servo reports a hardware error.
+            LinkError: a question that had to be asked was not answered.
+        """
+        self._cycle += 1
+        silent = int((~reading.valid).sum())
+        self._missing_cycles = self._missing_cycles + 1 if silent * 2 >= len(reading.valid) else 0
+        if self._missing_cycles >= MISSING_CYCLES:
+            return f"{silent} of {len(reading.valid)} servos are silent; check cable and power"
+        withheld: list[int] = np.flatnonzero(self._bus.withheld).tolist()
+        if withheld:
+            names = ", ".join(self._name(row) for row in withheld[:3])
+            return (
+                f"servo {names} silent: it may have lost power, and the next goal would switch its torque on wherever it"
+                " hangs, so it gets none; check cable and power, then reset and arm"
+            )
+        refuse_hardware_errors(self._bus, reading)
+        return self._tripped(reading) or self._lost_torque(reading)
+
+    def withhold_tripped(self, reading: BusReading) -> None:
+        """In a fault the others hold; what has stopped by its watchdog meanwhile refuses goals, and gets none.
+
+        Raises:
+            LinkError: a question that had to be asked was not answered.
+        """
+        if why := self._tripped(reading):
+            log.warning("%s", why)
+
+    def _tripped(self, reading: BusReading) -> str:
+        """A servo that is back after a silence in which it may have stopped by its watchdog."""
+        was_silent_s = self._silent_s.copy()
+        self._silent_s += self._period_s
+        self._silent_s[reading.valid] = 0.0
+        back = np.flatnonzero(reading.valid & (was_silent_s >= MAY_HAVE_TRIPPED_S))
+        tripped = [int(row) for row in back if self._has_tripped(int(row), was_silent_s)]
+        if not tripped:
+            return ""
+        self._bus.withhold([self._bus.ids[row] for row in tripped])
+        row = tripped[0]
+        return (
+            f"servo {self._name(row)} was silent for {was_silent_s[row]:.2f} s and has stopped by its watchdog; check its"
+            " cable, then reset and arm"
+        )
+
+    def _has_tripped(self, row: int, was_silent_s: NDArray[np.float64]) -> bool:
+        if "bus_watchdog" not in self._bus.models[row].table:
+            return False
+        found = self._bus.poll_item(self._bus.ids[row], "bus_watchdog")
+        if found is None:
+            self._silent_s[row] = was_silent_s[row]  # asked again
+        return found == WATCHDOG_TRIPPED
+
+    def _lost_torque(self, reading: BusReading) -> str:
+        """One servo after another is asked whether it still has its torque."""
+        if self._cycle % TORQUE_CHECK_CYCLES:
+            return ""
+        row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)
+        if reading.valid[row] and self._bus.poll_item(self._bus.ids[row], "torque_enable") == 0:
+            return f"servo {self._name(row)} lost its torque; it may have rebooted"
+        return ""
+
+    def _name(self, row: int) -> str:
+        return f"{self._bus.ids[row]} ({self._robot.servos[row].joint_name})"

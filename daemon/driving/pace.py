@@ -1,0 +1,86 @@
+"""How fast setpoints are played: as they come, slower along their own path, or not at all while the gate holds. No I/O.
+
+Where the gate holds the robot off itself the motion waits for it and is then played slowly on. A path that touches nothing
+needs that only where hard braking from it at full speed would touch; so the robot does not lose its path there, and is
+not cut off from the rest of it by its own arms.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from daemon.driving.shared import Setpoint
+
+WAIT_S = 1.0
+"""So long a motion waits in all before it goes on without the robot: setpoints that do lead into it end as well."""
+REJOIN_PER_S = 2.0
+"""How fast the share of full speed comes back."""
+_REJOINED = 0.5
+
+
+class Pace:
+    """The share of full speed at which setpoints are taken, brought up to date once a cycle."""
+
+    def __init__(self, period_s: float) -> None:
+        self._period_s = period_s
+        self._share, self._waited_s = 1.0, 0.0
+
+    def update(self, *, held: bool) -> float:
+        """0 while the gate holds, then rising to 1."""
+        if held and self._waited_s < WAIT_S:
+            self._share, self._waited_s = 0.0, self._waited_s + self._period_s
+        else:
+            self._share = min(1.0, self._share + REJOIN_PER_S * self._period_s)
+            if self._share > _REJOINED and not held:
+                self._waited_s = 0.0
+        return self._share
+
+
+class Source(Protocol):
+    """Where setpoints come from."""
+
+    def take_setpoint(self) -> Setpoint | None:
+        """The next one; None when there is none."""
+        ...
+
+
+class SlowedSetpoints:
+    """Setpoints at a share of their rate, between two of them where a cycle falls between.
+
+    At full speed they pass as they are, so that a replay is the same bit for bit.
+    """
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self._given: Setpoint | None = None
+        self._following: Setpoint | None = None
+        self._phase = 0.0
+
+    def reset(self) -> None:
+        """A new motion begins."""
+        self._given = self._following = None
+        self._phase = 0.0
+
+    def take(self, share: float) -> Setpoint | None:
+        """The setpoint of this cycle, the same again at a share of 0; None when it has not come yet."""
+        if self._given is None or (share >= 1.0 and self._following is None):
+            self._given = self._source.take_setpoint()
+            return self._given
+        phase = self._phase + share
+        while phase >= 1.0 or (phase > 0.0 and self._following is None):
+            if self._following is not None:
+                self._given, self._following, phase = self._following, None, phase - 1.0
+            elif (following := self._source.take_setpoint()) is not None:
+                self._following = following
+            else:  # the end, or the front is late: from here it goes on as from anywhere
+                arrived, self._phase = self._given if phase < share else None, 0.0
+                return arrived
+        self._phase = phase
+        a, b = self._given, self._following
+        if b is None or phase == 0.0:
+            return a
+        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is the gate's to refuse
+            q_rad = a.q_rad + phase * (b.q_rad - a.q_rad)
+        return Setpoint(a.plan_id, a.frame, False, q_rad)

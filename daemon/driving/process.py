@@ -1,0 +1,91 @@
+"""Entry of the bus process: rights, port, loop. `python -m daemon.driving.process --robot R --bus URL --link NAME`."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import os
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+
+from daemon.bus.multi import RobotBus, open_bus
+from daemon.clock import RealClock
+from daemon.driving.realtime import BUS_PRIORITY, lock_memory, take_fifo
+from daemon.driving.shared import BusLink
+from daemon.driving.starting import start
+from daemon.driving.streamer import Streamer
+from daemon.log_feed import send_logs
+from daemon.logs import start_logging
+from retarget.robot import load_robot
+
+log = logging.getLogger(__name__)
+
+ORPHAN_CHECK_S = 0.5
+ORPHAN_END_S = 30.0
+"""Longest life without a front: holding, parking and a fault or e-stop in which torque was kept are over by then."""
+SLOW_EVERY = 10
+"""Cycles between two readings of the slow registers, of one servo each."""
+
+
+def main() -> int:
+    """Run until asked to shut down; 0 after that, 1 when the bus could not be opened."""
+    parser = argparse.ArgumentParser(description="the bus process of mmmd; started by `mmmd run`")
+    for name in ("--robot", "--bus", "--link"):
+        parser.add_argument(name, required=True)
+    parser.add_argument("--after-loss", action="store_true")
+    arguments = parser.parse_args()
+    start_logging("bus")
+    send_logs("bus")
+    robot = load_robot(arguments.robot)
+    link = BusLink.attach(Path(arguments.link), robot.n_joints, robot.n_servos)
+    clock = RealClock()
+
+    def opened() -> RobotBus:
+        return open_bus(arguments.bus, robot, clock, slow_every=SLOW_EVERY)
+
+    streamer = start(robot, opened, link, clock, after_loss=arguments.after_loss)
+    if streamer is None:
+        return 1
+    link.set_realtime(*_take_rights())
+
+    def stop(_number: int, _frame: object) -> None:
+        streamer.stopping = True
+
+    # The front parks the robot and then asks for shutdown; Ctrl-C reaches the whole group and is the front's to handle.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, stop)
+    threading.Thread(target=_end_with_parent, args=(streamer, os.getppid()), daemon=True).start()
+    try:
+        streamer.run()
+    finally:
+        streamer.close()
+    return 0
+
+
+def _end_with_parent(streamer: Streamer, parent_pid: int) -> None:
+    """Give the port back once the front is gone for good: when the robot is parked, or nobody came in a while."""
+    while os.getppid() == parent_pid:
+        time.sleep(ORPHAN_CHECK_S)
+    orphaned_s = time.monotonic()
+    while not streamer.made_limp and time.monotonic() - orphaned_s < ORPHAN_END_S:
+        time.sleep(ORPHAN_CHECK_S)
+    log.warning("the front is gone; ending with the robot in %s", streamer.state.name)
+    streamer.stopping = True
+
+
+def _take_rights() -> tuple[bool, bool]:
+    """FIFO priority and locked memory, as far as this user may; what was granted."""
+    fifo, locked = take_fifo(BUS_PRIORITY), lock_memory()
+    log.info(
+        "FIFO priority %s, locked memory %s",
+        "granted" if fifo else "not granted",
+        "granted" if locked else "not granted",
+    )
+    return fifo, locked
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,89 @@
+"""The slow move of arming and parking: from wherever the robot stands, by a way that keeps off its own body."""
+
+from __future__ import annotations
+
+import logging
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.driving.approach import Approach
+from daemon.driving.gate import Gate
+from retarget.collision import SelfContact
+from retarget.free_way import WaySearch
+from retarget.robot import RobotModel
+
+log = logging.getLogger(__name__)
+
+Array = NDArray[np.float64]
+SEARCH_PIECES_PER_S = 200
+"""So much of the search for a way is done in a second: a piece or a few in a cycle."""
+HELD_S, SEARCHES = 0.5, 3
+"""A move that the gate has held for so long is looked for anew from where it stands, so many times."""
+
+
+class SlowMove:
+    """Comes to rest, looks for a way that is free, and goes it; a step in each bus cycle.
+
+    Args:
+        robot: whose.
+        contact: its body.
+        gate: every goal passes it.
+
+    Attributes:
+        setpoint_rad: (J,) where it should be now; None before there is a way.
+        arrived: whether it is there, and has stayed as long as it should.
+        blocked: the search that found no way, or the last of too many; None while there is hope.
+    """
+
+    def __init__(self, robot: RobotModel, contact: SelfContact, gate: Gate) -> None:
+        self._robot, self._contact, self._gate = robot, contact, gate
+        self._period_s = robot.bus.period_s
+        self._pieces = max(1, round(SEARCH_PIECES_PER_S * robot.bus.period_s))
+        self.begin()
+
+    def begin(self) -> None:
+        """Forget the way: the next step begins anew from where the robot stands then."""
+        self._approach: Approach | None = None
+        self._search: WaySearch | None = None
+        self._searches = 0
+        self._gone_s = self._held_s = 0.0
+        self.setpoint_rad: Array | None = None
+        self.arrived = False
+        self.blocked: WaySearch | None = None
+
+    def step(self, to_rad: Array, stay_s: float) -> Array:
+        """(J,) the next goal on the way to a pose (J,) in which it stays for a while."""
+        if self._approach is None:
+            goal = self._gate.brake()
+            if self._gate.at_rest:
+                self._look_for_a_way(to_rad)
+            return goal
+        self.setpoint_rad = self._approach.at(self._gone_s + self._period_s)
+        goal = self._gate.step(self.setpoint_rad)
+        if self._gate.held:  # its time stands still with it
+            self._held_s += self._period_s
+            if self._held_s > HELD_S:
+                self._approach = None
+            return goal
+        self._gone_s += self._period_s
+        if self._gone_s > self._approach.duration_s + stay_s and self._gate.at_rest:
+            self.arrived, self._approach = True, None
+        return goal
+
+    def _look_for_a_way(self, to_rad: Array) -> None:
+        """Some pieces of the search from where it stands; then the way, or the end of hope."""
+        if self._search is None:
+            self._search = WaySearch(self._robot, self._contact, self._gate.position_rad, to_rad)
+            self._searches += 1
+        for _ in range(self._pieces):
+            if self._search.work():
+                break
+        else:
+            return
+        search, self._search = self._search, None
+        if search.way is None or self._searches > SEARCHES:
+            self.blocked = search
+            return
+        log.info("way of %d lines, %d pieces", len(search.way) - 1, search.pieces)
+        self._approach, self._gone_s, self._held_s = Approach(search.way, self._gate.limits), 0.0, 0.0

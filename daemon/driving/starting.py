@@ -1,0 +1,75 @@
+"""How the bus process starts: opens and verifies the bus, and names what keeps the robot from being driven."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from daemon.bus.adapter import latency_advice
+from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
+from daemon.bus.multi import RobotBus
+from daemon.clock import Clock
+from daemon.driving.shared import BusLink, BusState, Readiness
+from daemon.driving.streamer import Streamer
+from daemon.errors import DaemonError
+from retarget.robot import RobotModel
+
+log = logging.getLogger(__name__)
+
+_LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
+Opener = Callable[[], RobotBus]
+
+
+AFTER_LOSS = "the bus process was lost and is back; servos may still hold: `mmmd reset` makes them limp"
+_HELD_BEFORE = "servo {} had torque before it was armed: who drove it may have been cut off; `mmmd reset` makes it limp"
+
+
+def start(
+    robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock, *, after_loss: bool = False
+) -> Streamer | None:
+    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link.
+
+    `after_loss`, or a servo that has torque already, starts it in a latched fault: nothing may move by itself, and nothing
+    may be taken for limp that is not.
+    """
+    try:
+        bus = open_bus()
+    except DaemonError as error:
+        link.set_ready(Readiness.FAILED, str(error))
+        return None
+    try:
+        bus.verify()
+        findings = check_servos(bus, robot)
+        for f in findings:
+            log.log(
+                _LEVELS[f.severity],
+                "servo %d (%s): %s %s, should be %s; %s",
+                f.servo_id,
+                f.joint_name,
+                f.item,
+                f.found,
+                f.expected,
+                f.remedy,
+            )
+        require_needed(findings)
+        plan = bus.plan()
+        if not plan.require(robot.bus.rate_hz):
+            log.warning("the cycle does not fit its period:\n%s", "\n".join(plan.lines(robot.bus.rate_hz)))
+        for port in bus.ports:
+            advice = latency_advice(getattr(port, "device", ""))
+            if advice:
+                log.warning("%s", advice)
+        bus.exchange(None)
+        holding = ", ".join(str(i) for i in bus.ids if bus.read_item(i, "torque_enable"))
+    except DaemonError as error:
+        bus.close()
+        link.set_ready(Readiness.FAILED, str(error))
+        return None
+    streamer = Streamer(robot, bus, link, clock)
+    link.drop_queued()
+    why = AFTER_LOSS if after_loss else _HELD_BEFORE.format(holding) if holding else ""
+    if why:
+        log.error("fault: %s", why)
+        streamer.state = BusState.FAULT
+    link.set_ready(Readiness.READY, why)
+    return streamer

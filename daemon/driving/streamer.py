@@ -1,0 +1,403 @@
+"""The bus process (hot path): setpoints -> gate -> bytes, at the robot's rate; the only owner of port and torque.
+
+One `cycle()` is one bus period: take requests, find the next goal, pass it through the gate, exchange it for a
+measurement, judge what came back, publish a record. `run()` calls it at absolute deadlines; a late cycle skips, never
+bursts. Tests and replay call `cycle()` themselves in virtual time.
+"""
+
+from __future__ import annotations
+
+import gc
+import logging
+from collections.abc import Generator, Sequence
+from contextlib import suppress
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.multi import RobotBus
+from daemon.bus.reading import BusReading
+from daemon.clock import Clock
+from daemon.driving.arming import Armed, arm_in_steps
+from daemon.driving.derating import Derating
+from daemon.driving.gate import Gate
+from daemon.driving.judging import MAY_HAVE_TRIPPED_S, Judge
+from daemon.driving.pace import Pace, SlowedSetpoints
+from daemon.driving.shared import ESTOPS, BusLink, BusRequest, BusState, valid_requests
+from daemon.driving.slow_move import SlowMove
+from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
+from retarget.collision import SelfContact
+from retarget.robot import RobotModel
+from retarget.ticks import JointServoMap
+
+log = logging.getLogger(__name__)
+
+HEARTBEAT_LOST_S = 0.5
+PARK_AFTER_S = 5.0
+"""A silent front: after the first time decelerate and hold, after the second park and go limp."""
+FAULT_LIMP_S = 10.0
+"""A fault or e-stop in which torque was kept, and a front so long silent: nobody will come, the servos go limp."""
+NO_WAY_LIMP_S = 10.0
+"""Where no way to rest or park was found that keeps off the robot itself it holds in a fault, and goes limp after so long."""
+TORQUE_OFF_REPEATS = 5
+"""Torque off is a packet that nobody answers: it is sent again, so that a spoilt one or a lost port costs nothing."""
+PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
+"""Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
+_COMES_TO = {
+    BusRequest.STOP: BusState.STOPPING, BusRequest.TORQUE_OFF: BusState.STOPPING, BusRequest.PARK: BusState.PARKING,
+}  # fmt: skip
+"""What brings an armed robot to rest, and by way of which state."""
+_ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
+
+
+class Streamer:
+    """State and loop of the bus process."""
+
+    def __init__(
+        self, robot: RobotModel, bus: RobotBus, link: BusLink, clock: Clock, *, watch_front: bool = True
+    ) -> None:
+        self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
+        self._ticks = JointServoMap(robot)
+        contact = SelfContact(robot)
+        self._gate = Gate(robot, contact=contact)
+        self._slow = SlowMove(robot, contact, self._gate)
+        self._period_s = robot.bus.period_s
+        self._watch_front = watch_front
+        self.state = BusState.LIMP
+        self.stopping = False
+        self.rest_rad = robot.rest_rad
+        """Where arming leads to; replay sets a log's first goal."""
+        self._torque = False
+        self._limp_at_s: float | None = None
+        self._held = False
+        self._goal_tick: NDArray[np.int32] | None = None
+        self._setpoint_rad = robot.park_rad.copy()
+        self._plan_id, self._frame, self._last = 0, 0, True
+        self._underrun = False
+        self._cycle, self._late_cycles = 0, 0
+        self._pwm: int | None = None
+        self._front_lost_s: float | None = None
+        self._torque_off_left = 0
+        self._made_limp = self._limp_at_rest = False
+        self._arming: Generator[None, None, Armed] | None = None
+        self._judge = Judge(robot, bus)
+        self._derating = Derating(robot.n_servos, robot.bus.period_s)
+        self._setpoints, self._pace = SlowedSetpoints(link), Pace(robot.bus.period_s)
+        self._asked: list[BusRequest] = []
+        self._fed_s = clock.now_s()
+
+    def run(self) -> None:
+        """Cycle at the robot's rate until a shutdown request or `stopping`, torque off at the end."""
+        gc.collect()
+        gc.freeze()
+        due_s = self._clock.now_s()
+        while not self.stopping:
+            self.cycle()
+            due_s += self._period_s
+            now_s = self._clock.now_s()
+            if now_s > due_s + self._period_s:  # skip what was missed; never burst
+                missed = int((now_s - due_s) / self._period_s)
+                self._late_cycles += missed
+                due_s += missed * self._period_s
+            self._clock.sleep_until(due_s)
+        self._cut_torque()
+
+    def close(self) -> None:
+        """Release the port."""
+        self._slow.begin()
+        self._bus.close()
+
+    @property
+    def made_limp(self) -> bool:
+        """Whether the robot is limp, or was made so in a fault or e-stop by torque-offs that all went out."""
+        was_cut = self._made_limp and not self._torque and not self._torque_off_left
+        return self.state is BusState.LIMP or (self.state in (BusState.ESTOP, BusState.FAULT) and was_cut)
+
+    def cycle(self) -> None:
+        """One bus period."""
+        try:
+            self._asked = valid_requests([*self._asked, *self._link.take_requests()])
+            if self._asked:  # one a cycle, so that the front sees each state; an e-stop is always the first
+                self._serve(self._asked.pop(0))
+            self._repeat_torque_off()
+            self._watch_heartbeat()
+            self._limp_when_due()
+            self._go_on_arming()
+            self._check_stall()
+            goal_rad = self._next_goal()
+            if goal_rad is not None and self._goal_tick is not None:
+                self._goal_tick = np.rint(self._ticks.to_ticks(goal_rad)).astype(np.int32)
+            reading = self._bus.exchange(self._goal_tick if self._torque else None)
+            if self._torque and self.state in (BusState.FAULT, BusState.ESTOP):
+                self._judge.withhold_tripped(reading)
+            elif self._torque and (why := self._judge.fault(reading)):
+                self._fault(why)
+            self._derate(reading)
+        except (LinkError, ServoFaultError) as error:
+            self._fault(str(error))
+        self._publish(self._bus.reading)
+        self._cycle += 1
+
+    # Requests.
+
+    def _serve(self, request: BusRequest) -> None:
+        log.info("request %s in %s", request.name, self.state.name)
+        if request in ESTOPS:
+            self._estop(holds=request is BusRequest.ESTOP_HOLD)
+        elif request in _COMES_TO:
+            self._link.drop_queued()
+            if self._arming is not None:
+                self._go_limp()  # before torque is on there is nothing to bring to rest
+            elif self.state in _ARMED:
+                self._forget_way()
+                self._limp_at_rest = request is BusRequest.TORQUE_OFF
+                self._enter(_COMES_TO[request])
+        elif request is BusRequest.RESET:
+            if self.state in (BusState.ESTOP, BusState.FAULT):
+                self._bus.look_again()
+                self._cut_torque()
+                self._link.set_text("")
+                self._link.drop_queued()
+                self._enter(BusState.LIMP)
+        elif request is BusRequest.ARM:
+            if self.state is BusState.LIMP:
+                self._link.drop_queued()
+                self._link.set_text("")
+                self._arming = arm_in_steps(self.robot, self._bus, self._clock, PWM_START / PWM_FULL)
+                self._enter(BusState.ARMING)
+        else:
+            self.stopping = True
+
+    def _estop(self, *, holds: bool) -> None:
+        """Cut torque; or brake and hold, where nothing is latched that holds already."""
+        self._link.drop_queued()
+        self._forget_way()
+        if not holds or self._arming is not None or self.state not in _ARMED:
+            self._torque, self._goal_tick, self._arming = False, None, None
+            self._made_limp = True
+            self._torque_off_left = TORQUE_OFF_REPEATS  # the first goes out in this cycle
+        self._enter(BusState.ESTOP)
+
+    def _go_on_arming(self) -> None:
+        """A step towards torque; then a slow way to rest. Any doubt is a fault, torque off."""
+        if self._arming is None:
+            return
+        try:
+            next(self._arming)
+        except StopIteration as done:
+            self._armed(done.value)
+        except DaemonError as error:
+            self._cut_torque()
+            self._fault(f"cannot arm: {error}")
+
+    def _armed(self, armed: Armed) -> None:
+        self._arming, self._torque, self._pwm, self._made_limp = None, True, PWM_START, False
+        self._goal_tick, self._derating.limits = armed.goal_tick, armed.limits
+        self._fed_s = self._clock.now_s()
+        self._judge.armed()
+        self._gate.reset(self._ticks.tick_to_rad(armed.goal_tick))
+        self._forget_way()
+
+    def _go_limp(self) -> None:
+        self._cut_torque()
+        self._enter(BusState.LIMP)
+
+    # Goals.
+
+    def _next_goal(self) -> NDArray[np.float64] | None:
+        """(J,) goal of this cycle through the gate; None while torque is off."""
+        self._underrun = False
+        self._frame_or_none()
+        if not self._torque:
+            return None
+        self._ramp_torque()
+        if self.state in (BusState.ARMING, BusState.PARKING):
+            return self._move_slowly()
+        if self.state is BusState.STOPPING:
+            goal = self._gate.brake()
+            if self._gate.at_rest and self._limp_at_rest:
+                self._go_limp()
+            elif self._gate.at_rest:
+                self._enter(BusState.HOLDING)
+            return goal
+        if self.state in (BusState.HOLDING, BusState.PLAYING):
+            goal = self._play()
+            self._tell_held()
+            return goal
+        return self._gate.brake()  # fault or e-stop with torque still on: hold
+
+    def _frame_or_none(self) -> None:
+        """Between plans a record belongs to no plan."""
+        if self.state is not BusState.PLAYING:
+            self._plan_id, self._frame, self._last = 0, 0, True
+            self._setpoints.reset()
+
+    def _play(self) -> NDArray[np.float64]:
+        setpoint = self._setpoints.take(min(self._derating.share, self._pace.update(held=self._gate.held)))
+        if setpoint is not None:
+            self._plan_id, self._frame, self._last = setpoint.plan_id, setpoint.frame, setpoint.last
+            self._setpoint_rad = setpoint.q_rad
+            self._enter(BusState.PLAYING)
+            return self._gate.step(setpoint.q_rad)
+        if self.state is BusState.PLAYING and not self._last:
+            self._underrun = True  # the front is late: slow down, go on when it is back
+            return self._gate.brake()
+        goal = self._gate.brake()
+        if self._gate.at_rest:
+            self._enter(BusState.HOLDING)
+        return goal
+
+    def _tell_held(self) -> None:
+        """Log once when what is played begins to be held off the robot itself."""
+        if self._gate.held and not self._held:
+            pairs = ", ".join(f"{a} and {b}" for a, b in self._gate.touching(self._setpoint_rad)[:3])
+            log.warning(
+                "held: plan %d would lead the robot into itself%s", self._plan_id, f" ({pairs})" if pairs else ""
+            )
+        self._held = self._gate.held
+
+    def _move_slowly(self) -> NDArray[np.float64]:
+        """To the rest pose, then it holds; to the park pose, then it is limp."""
+        parking = self.state is BusState.PARKING
+        to_rad = self.robot.park_rad if parking else self.rest_rad
+        goal = self._slow.step(to_rad, self._link.park_stay_s if parking else 0.0)
+        if self._slow.setpoint_rad is not None:
+            self._setpoint_rad = self._slow.setpoint_rad
+        if self._slow.blocked is not None:
+            self._no_way(self._slow.blocked.touching())
+        elif self._slow.arrived and parking:
+            self._go_limp()
+        elif self._slow.arrived:
+            self._enter(BusState.HOLDING)
+        return goal
+
+    def _no_way(self, touching: Sequence[tuple[str, str]]) -> None:
+        """Hold and say so; limp after a while: the robot is never led through itself."""
+        where = "park" if self.state is BusState.PARKING else "rest"
+        near = ", ".join(f"{a} and {b}" for a, b in touching[:3])
+        self._fault(
+            f"no free way to the {where} pose: the robot is in its own way{f' ({near})' if near else ''}; it holds, and goes"
+            f" limp in {NO_WAY_LIMP_S:g} s; lead its arms clear by hand, then reset and arm"
+        )
+        self._limp_at_s = self._clock.now_s() + NO_WAY_LIMP_S
+
+    def _forget_way(self) -> None:
+        self._slow.begin()
+        self._limp_at_rest = False
+
+    def _ramp_torque(self) -> None:
+        if self._pwm is not None and self._cycle % 5 == 0:
+            self._pwm = min(PWM_FULL, self._pwm + round((PWM_FULL - PWM_START) * 5 * self._period_s / PWM_RAMP_S))
+            self._bus.set_effort(self._pwm / PWM_FULL)
+            if self._pwm == PWM_FULL:
+                self._pwm = None
+
+    # Judgement.
+
+    def _watch_heartbeat(self) -> None:
+        if not self._watch_front or not (self._torque or self._arming) or self.state is BusState.PARKING:
+            self._front_lost_s = None
+            return
+        age_s = self._link.heartbeat_age_s
+        if self.state in (BusState.FAULT, BusState.ESTOP):
+            if age_s > FAULT_LIMP_S:
+                log.warning("in %s and the front silent for %.1f s: torque off", self.state.name.lower(), age_s)
+                self._cut_torque()
+            return
+        if age_s < HEARTBEAT_LOST_S:
+            self._front_lost_s = None
+        elif age_s > PARK_AFTER_S:
+            log.warning("front silent for %.1f s: parking", age_s)
+            self._serve(BusRequest.PARK)
+        elif self._front_lost_s is None:
+            self._front_lost_s = age_s
+            log.warning("front silent for %.1f s: holding", age_s)
+            self._serve(BusRequest.STOP)
+
+    def _limp_when_due(self) -> None:
+        """Where there was no free way, after the time that was said."""
+        if self._limp_at_s is None:
+            return
+        if not self._torque or self.state is not BusState.FAULT:
+            self._limp_at_s = None
+        elif self._clock.now_s() >= self._limp_at_s:
+            log.warning("no free way was found %g s ago: torque off", NO_WAY_LIMP_S)
+            self._cut_torque()
+
+    def _check_stall(self) -> None:
+        """After a pause in which the servos' watchdog may have run out: they then stand still and refuse goals."""
+        pause_s, self._fed_s = self._clock.now_s() - self._fed_s, self._clock.now_s()
+        if not self._torque or self._goal_tick is None or pause_s < MAY_HAVE_TRIPPED_S:
+            return
+        tripped = self._bus.tripped_watchdogs()
+        if tripped:
+            self._goal_tick = None
+            self._fault(f"the bus process was held up for {pause_s:.2f} s: servo {tripped[0]} stopped by its watchdog")
+
+    def _derate(self, reading: BusReading) -> None:
+        """Slow down what is played before a servo trips."""
+        d = self._derating
+        if d.update(reading):
+            servo = self.robot.servos[d.row]
+            cause = (
+                "full speed again"
+                if not d.by
+                else f"slower: {d.by.name.lower()} of servo {servo.servo_id} ({servo.joint_name})"
+            )
+            log.warning("%s", cause)
+        self._link.set_derating(d.share, d.by, self._bus.ids[d.row])
+
+    def _fault(self, text: str) -> None:
+        """Latch a fault: what still has torque comes to rest and holds; nothing re-arms by itself. An e-stop stays one."""
+        if self.state is BusState.ESTOP:
+            self._link.set_text(text)
+            return
+        if self.state is not BusState.FAULT:
+            log.error("fault: %s", text)
+            self._link.set_text(text)
+        self._link.drop_queued()
+        self._forget_way()
+        self._arming = None
+        self._enter(BusState.FAULT)
+
+    def _cut_torque(self) -> None:
+        try:
+            self._bus.send_torque_off()
+        except LinkError as error:
+            log.error("torque off not sent: %s", error)
+        self._torque, self._goal_tick, self._made_limp, self._arming = False, None, True, None
+        self._torque_off_left = TORQUE_OFF_REPEATS
+
+    def _repeat_torque_off(self) -> None:
+        if self._torque:
+            return
+        if self._torque_off_left:
+            with suppress(LinkLostError):  # the exchange tells of it, and reads the ports that are left
+                self._bus.send_torque_off()
+                self._torque_off_left -= 1
+            return
+        holding = np.flatnonzero(self._bus.reading.torque == 1) if self._made_limp else ()
+        if len(holding):  # read since: it heard none of them, a cable may have been loose
+            ids = ", ".join(str(self._bus.ids[row]) for row in holding)
+            log.warning("servo %s still has torque: torque off is sent again", ids)
+            self._bus.send_torque_off()
+
+    def _enter(self, state: BusState) -> None:
+        if state is not self.state:
+            log.info("%s -> %s", self.state.name, state.name)
+            self.state = state
+
+    def _publish(self, reading: BusReading) -> None:
+        record = self._link.next_record()
+        record["cycle"], record["t_mono_ns"] = self._cycle, int(self._clock.now_s() * 1e9)
+        record["plan_id"], record["frame"], record["last"] = self._plan_id, self._frame, self._last
+        record["state"], record["underrun"], record["torque"] = self.state, self._underrun, self._torque
+        record["late_cycles"] = self._late_cycles
+        record["setpoint_rad"], record["goal_rad"] = self._setpoint_rad, self._gate.position_rad
+        record["velocity_rad_s"], record["clipped"] = self._gate.velocity_rad_s, self._gate.clipped
+        record["goal_tick"] = reading.position_tick if self._goal_tick is None else self._goal_tick
+        record["present_tick"], record["valid"] = reading.position_tick, reading.valid
+        record["present_velocity_raw"], record["present_current_raw"] = reading.velocity_raw, reading.current_raw
+        record["error"] = reading.error
+        self._bus.show_health(self._link.health)
+        self._link.publish()

@@ -1,0 +1,188 @@
+"""Takes the requests of `cmd` one by one: each becomes a command for the performer, or is answered at once."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from collections.abc import Callable
+
+from daemon.config import DaemonConfig
+from daemon.errors import ClipError
+from daemon.generator.generation import GeneratorClient
+from daemon.gestures.library import GestureLibrary
+from daemon.playing.layers import gaze_note
+from daemon.playing.performer import Performer
+from daemon.playing.sources import Sources
+from daemon.state.ledger import Ledger, Route
+from daemon.wire.events import Ack, CapabilitiesEvent, Event, JointInfo, Rejected, StateEvent
+from daemon.wire.requests import (
+    CMD_TYPES,
+    CTL_TYPES,
+    IDLE_STYLES,
+    LEAST_AMPLITUDE,
+    LEAST_TEMPO,
+    LONGEST_S,
+    MOST_AMPLITUDE,
+    MOST_REPEATS,
+    MOST_TEMPO,
+    SHORTEST_S,
+    STREAM_TYPES,
+    Cancel,
+    Capabilities,
+    Command,
+    Idle,
+    Look,
+    Record,
+    Release,
+    Request,
+    Status,
+    tag_of,
+)
+from retarget.robot import RobotModel
+
+TOPICS = {
+    "v1/state": "the robot and the daemon, several times a second; the last one at once on subscribing",
+    "v1/health": "every servo's state and counters, once a second; the last one at once on subscribing",
+    "v1/event": "every event of every command",
+    "v1/log": "the lines that the daemon's processes log",
+}
+
+
+class Desk:
+    """Answers requests.
+
+    Args:
+        state: makes the state event.
+    """
+
+    def __init__(
+        self,
+        config: DaemonConfig,
+        robot: RobotModel,
+        performer: Performer,
+        sources: Sources,
+        ledger: Ledger,
+        generator: GeneratorClient,
+        state: Callable[[], StateEvent],
+    ) -> None:
+        self._config, self._robot = config, robot
+        self._performer, self._sources = performer, sources
+        self._ledger, self._generator, self._state = ledger, generator, state
+
+    @property
+    def library(self) -> GestureLibrary:
+        """The gestures."""
+        return self._sources.library
+
+    def take(self, request: Request, route: Route, t_received_ns: int) -> None:
+        """Carry out a request and answer it.
+
+        Raises:
+            WireError: its id stands for something else.
+        """
+        if isinstance(request, Command):
+            entry = self._ledger.open(request, route, t_received_ns)
+            if entry is not None:
+                self._performer.play(entry)
+            return
+        event = self._answer(request)
+        event.id = request.id
+        self._ledger.reply(route, event)
+
+    def _answer(self, request: Request) -> Event:
+        if isinstance(request, Status):
+            return self._state()
+        if isinstance(request, Cancel):
+            return self._cancel(request)
+        if isinstance(request, Release):
+            return self._release(request)
+        if isinstance(request, Look):
+            return self._look(request)
+        if isinstance(request, Idle):
+            self._performer.layers.idle_style = request.style if request.on else ""
+            return self._ack(request)
+        if isinstance(request, Record):
+            return self._record(request)
+        if isinstance(request, Capabilities):
+            return self._capabilities()
+        raise TypeError(f"no answer to {type(request).__name__}")
+
+    def _ack(self, request: Request, note: str = "") -> Ack:
+        return Ack(verb=tag_of(request), state=self._performer.machine.state.value, note=note)
+
+    def _cancel(self, request: Cancel) -> Event:
+        running = self._performer.running_ids()
+        if not running or request.command not in ("", *running):
+            found = f"running: {', '.join(running)}" if running else "nothing is running"
+            asked, allowed = f"cancel {request.command!r}", "the id of a running command, or an empty one"
+            return Rejected(code="not_running", asked=asked, found=found, allowed=allowed, do="see `mmmd status`")
+        ack = self._ack(request)
+        self._performer.cancel(request.command)
+        return ack
+
+    def _release(self, request: Release) -> Event:
+        lease = self._performer.lease
+        if lease is None or request.lease not in ("", lease.id):
+            found = "nobody holds a lease" if lease is None else f"the lease that is held is {lease.id!r}"
+            return Rejected(
+                code="no_lease", asked=f"release {request.lease!r}", found=found, allowed="the lease that is held",
+                do="see `mmmd status`",
+            )  # fmt: skip
+        ack = self._ack(request)
+        self._performer.release()
+        return ack
+
+    def _look(self, request: Look) -> Event:
+        note = ""
+        if request.yaw_deg is None and request.pitch_deg is None:
+            self._performer.layers.gaze_deg = None
+        else:
+            gaze = (request.yaw_deg or 0.0, request.pitch_deg or 0.0)
+            self._performer.layers.gaze_deg = gaze
+            note = gaze_note(self._robot, *gaze)
+        if self._performer.machine.state.value == "limp":
+            note = "; ".join(filter(None, [note, "the robot is limp: it looks there once it moves"]))
+        self._performer.look_again()
+        return self._ack(request, note)
+
+    def _record(self, request: Record) -> Event:
+        try:
+            text = self._sources.keep(request.name, request.command)
+        except ClipError as error:
+            return Rejected(
+                code="bad_gesture", asked=f"record {request.name!r}", found=str(error), allowed="a motion that was played",
+                do="`mmmd say` it, then record",
+            )  # fmt: skip
+        return self._ack(request, f"{request.name}: {text}")
+
+    def _capabilities(self) -> CapabilitiesEvent:
+        robot, config = self._robot, self._config
+        joints = [
+            JointInfo(
+                j.name, j.role, j.position_min_rad, j.position_max_rad, j.velocity_limit_rad_s, j.acceleration_limit_rad_s2
+            )
+            for j in robot.joints
+        ]  # fmt: skip
+        return CapabilitiesEvent(
+            version=importlib.metadata.version("mmmd"),
+            robot=robot.name,
+            rate_hz=robot.bus.rate_hz,
+            joints=joints,
+            generator=self._generator.state,
+            checkpoint_hash=self._generator.checkpoint_hash,
+            requests={
+                "cmd": [tag_of(t) for t in CMD_TYPES],
+                "ctl": [tag_of(t) for t in CTL_TYPES],
+                "stream": [tag_of(t) for t in STREAM_TYPES],
+            },
+            topics=TOPICS,
+            options={
+                "tempo": [LEAST_TEMPO, MOST_TEMPO],
+                "amplitude": [LEAST_AMPLITUDE, MOST_AMPLITUDE],
+                "repeat": [1, MOST_REPEATS],
+                "seconds": [SHORTEST_S, LONGEST_S],
+            },
+            gestures=self.library.infos(),
+            idle_styles=list(IDLE_STYLES),
+            stream=config.endpoints.stream,
+            lease={"silence_s": config.lease_s, "park_s": config.lease_park_s, "limp_s": config.lease_limp_s},
+        )

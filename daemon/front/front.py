@@ -1,0 +1,335 @@
+"""The front: an asyncio shell around wire, ledger and performer. Holds no torch.
+
+`cmd` (ROUTER) takes texts and returns their events; `pub` (XPUB) carries state and events to all; `ctl` has its own
+thread (`daemon.front.control`), which reaches the bus process without this loop.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import sys
+import time
+from collections.abc import Callable
+from typing import Any, cast
+
+import msgspec
+import zmq
+import zmq.asyncio
+
+from daemon.config import DaemonConfig
+from daemon.driving.realtime import CONTROL_PRIORITY, may_fifo
+from daemon.driving.shared import BusLink, BusRequest
+from daemon.front.control import ControlThread
+from daemon.front.controls import FrontControls
+from daemon.front.desk import Desk
+from daemon.front.rates import RATE_HZ, Rates
+from daemon.front.stream_desk import TargetDesk
+from daemon.generator.generation import GeneratorClient
+from daemon.gestures.library import GestureLibrary
+from daemon.keys import Doorkeeper, KeyFolder
+from daemon.log_feed import EVENT_LOGGER
+from daemon.playing.follower import Follower
+from daemon.playing.performer import Performer
+from daemon.playing.planner import Planner
+from daemon.playing.sources import Sources
+from daemon.playing.until_armed import TICK_S
+from daemon.sockets import bind, publish_now, send_now
+from daemon.state.bus_view import BusView
+from daemon.state.ledger import Ledger, Route, split_route
+from daemon.state.machine import RobotState, StateMachine
+from daemon.wire.codec import WireError, decode_cmd, encode, error_event
+from daemon.wire.events import Event, HealthEvent, LogEvent, Rejected, StateEvent
+from retarget.robot import RobotModel
+
+log = logging.getLogger(__name__)
+event_log = logging.getLogger(EVENT_LOGGER)
+
+DRAIN_LIMIT = 10_000
+PARK_AGAIN_S = 1.0
+HEALTH_EVERY_S = 1.0
+STREAM_PAUSE_S = 0.001
+"""Between two targets that are read; of those that come meanwhile the newest counts."""
+SWITCH_S = 0.001
+"""Longest that the event loop keeps the interpreter from the ctl thread."""
+SCHED_FIFO = 1
+"""As in sched.h; ZeroMQ takes the number."""
+Record = Callable[[str, bytes], None]
+
+
+class Front:
+    """Takes commands, hands them on, tells what happens.
+
+    Args:
+        config: endpoints, rates and time-outs.
+        robot: the robot.
+        link: shared memory with the bus process.
+        context: of the asyncio sockets.
+        generator: asks the generator.
+        record: called with (channel, payload) for every request and event, for the log.
+
+    Raises:
+        ConfigError: an endpoint cannot be bound.
+    """
+
+    def __init__(
+        self,
+        config: DaemonConfig,
+        robot: RobotModel,
+        link: BusLink,
+        context: zmq.asyncio.Context,
+        generator: GeneratorClient,
+        record: Record | None = None,
+    ) -> None:
+        self._config, self._robot, self.link = config, robot, link
+        self._generator, self._record = generator, record
+        self.machine = StateMachine(auto_arm=config.auto_arm)
+        self.view = BusView(link, robot)
+        planner = Planner(robot, link, self.view, config.queue_s, config.stream_queue_s)
+        self.follower = Follower(link, self.view, planner, self.machine)
+        self.ledger = Ledger(self._send, self._publish_event)
+        sources = Sources(config, robot, generator, GestureLibrary(config.gestures))
+        self.performer = Performer(config, link, planner, self.follower, self.ledger, sources)
+        self._desk = Desk(config, robot, self.performer, sources, self.ledger, generator, self.state_event)
+        self._started_s = time.monotonic()
+        self.recording = str(config.log) if config.log else ""
+        self._rates = Rates()
+        self._last_values: dict[bytes, bytes] = {}
+        self._tasks: list[asyncio.Task[None]] = []
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._events_dropped = self._overruns = 0
+        self._cmd = context.socket(zmq.ROUTER)
+        self._cmd.setsockopt(zmq.ROUTER_MANDATORY, 1)  # a peer that does not read is noticed
+        self._pub = context.socket(zmq.XPUB)
+        self._pub.setsockopt(zmq.XPUB_VERBOSE, 1)
+        self._pub.setsockopt(zmq.XPUB_NODROP, 1)
+        self._stream = context.socket(zmq.SUB)
+        self._stream.setsockopt(zmq.CONFLATE, 1)  # only the newest target is of use
+        self._stream.subscribe(b"")
+        self._targets = TargetDesk(robot, self.performer, self.ledger, self._publish_event)
+        self._ctl_context = zmq.Context()  # its own I/O thread: a flood on the other sockets delays no stop
+        if may_fifo(CONTROL_PRIORITY):  # libzmq aborts where it is not permitted
+            self._ctl_context.set(zmq.THREAD_SCHED_POLICY, SCHED_FIFO)
+            self._ctl_context.set(zmq.THREAD_PRIORITY, CONTROL_PRIORITY)
+        sys.setswitchinterval(SWITCH_S)
+        ctl = self._ctl_context.socket(zmq.ROUTER)
+        keys = KeyFolder(config.endpoints.keys) if config.endpoints.keys is not None else None
+        contexts = (context, self._ctl_context) if keys is not None else ()
+        self._doorkeepers = [Doorkeeper(c, keys) for c in contexts if keys is not None]
+        sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "ctl": ctl, "pub": self._pub, "stream": self._stream}
+        try:
+            for key, socket in sockets.items():
+                bind(socket, key, getattr(config.endpoints, key), keys)
+        except BaseException:
+            for doorkeeper in self._doorkeepers:
+                doorkeeper.close()
+            for socket in sockets.values():
+                socket.close(0)
+            self._ctl_context.term()
+            raise
+        self._control = ControlThread(ctl, FrontControls(self, ctl.poll, estop_holds=config.estop == "hold"))
+
+    @property
+    def loop(self) -> asyncio.AbstractEventLoop:
+        """The event loop the front runs in."""
+        assert self._loop is not None, "Front.start was not called"
+        return self._loop
+
+    def start(self) -> None:
+        """Begin to serve, in the running event loop."""
+        self._loop = asyncio.get_running_loop()
+        self.view.begin()
+        serve = (
+            self._serve_cmd, self._serve_subscriptions, self._serve_stream, self._tick_forever, self._publish_state_forever,
+            self._publish_health_forever,
+        )  # fmt: skip
+        self._tasks = [asyncio.create_task(s(), name=s.__name__) for s in serve]
+        self._control.start()
+
+    async def failure(self) -> None:
+        """Wait for a task of the front to end, which none should.
+
+        Raises:
+            Exception: what ended it.
+        """
+        done, _ = await asyncio.wait(self._tasks, return_when=asyncio.FIRST_COMPLETED)
+        for task in done:
+            task.result()
+
+    async def park(self) -> RobotState:
+        """End all commands and park, as far as the robot's state allows; the state it is left in."""
+        self.performer.end_all("shutdown")
+        state = self.machine.state
+        if state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP) or not self.follower.bus_alive:
+            return state
+        end_s = time.monotonic() + self._config.park_timeout_s
+        asked_s = float("-inf")
+        ticking = next((t for t in self._tasks if t.get_name() == self._tick_forever.__name__), None)
+        while time.monotonic() < end_s:
+            if ticking is None or ticking.done():  # it failed, which is why the robot is to be parked
+                self.performer.tick()
+            if self.machine.state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP):
+                return self.machine.state
+            parking = self.machine.state is RobotState.PARKING and asked_s > 0  # one that began before may stay a while
+            if not parking and time.monotonic() - asked_s > PARK_AGAIN_S:
+                self.link.request(BusRequest.PARK)
+                asked_s = time.monotonic()
+            await asyncio.sleep(TICK_S)
+        log.error("the robot did not park in %g s; it is in %s", self._config.park_timeout_s, self.machine.state.value)
+        return self.machine.state
+
+    async def close(self) -> None:
+        """Stop to serve and close the sockets."""
+        self.performer.end_all("shutdown")
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await asyncio.to_thread(self._control.close)
+        for doorkeeper in self._doorkeepers:
+            await asyncio.to_thread(doorkeeper.close)
+        self._ctl_context.destroy(linger=200)
+        await self._generator.close()
+        self._cmd.close(200)  # the last events still go out
+        self._pub.close(200)
+        self._stream.close(0)
+
+    async def _serve_cmd(self) -> None:
+        while True:
+            self._take_frames(await self._cmd.recv_multipart())
+            await asyncio.sleep(0)  # receiving what is there already never yields: a flood would hold up the robot
+
+    async def _serve_stream(self) -> None:
+        while True:
+            frame = await self._stream.recv()
+            if self._record is not None:
+                self._record("stream", frame)
+            self._targets.take(frame)
+            await asyncio.sleep(STREAM_PAUSE_S)
+
+    def _take_frames(self, frames: list[bytes]) -> None:
+        t_received_ns = time.monotonic_ns()
+        route, parts = split_route(frames)
+        if not self._rates.allows(route.frames[0], t_received_ns * 1e-9):
+            self._refuse_rate(route)
+            return
+        try:
+            if len(parts) != 1:
+                found = f"{len(parts)} frames"
+                raise WireError("frames", "read a request", found, "1 frame", "send the request as one frame")
+            request = decode_cmd(parts[0])
+            if self._record is not None:
+                self._record("cmd", parts[0])
+            self._desk.take(request, route, t_received_ns)
+        except WireError as error:
+            event = error_event(error)
+            self.ledger.reply(route, event)
+            self._publish_event(event)
+        except Exception as error:  # one request must not end the daemon
+            log.exception("a request failed")
+            event = Rejected(code="internal", asked="cmd", found=str(error), allowed="", do="see the daemon's log")
+            self.ledger.reply(route, event)
+
+    def _refuse_rate(self, route: Route) -> None:
+        """Tell a client that asks too much, but not as often as it asks."""
+        if self._rates.refused % 1000 == 1:
+            do, allowed = "ask less often; texts that were dropped were not accepted", f"{RATE_HZ:g} requests a second"
+            error = WireError("too_fast", "read a request", "more than that for a while", allowed, do)
+            self.ledger.reply(route, error_event(error))
+
+    async def drain_cmd(self) -> None:
+        """Take the requests that wait in the socket; the robot is followed between them."""
+        for _ in range(DRAIN_LIMIT):
+            received = cast("asyncio.Future[list[bytes]]", self._cmd.recv_multipart(zmq.DONTWAIT))
+            if received.exception() is not None:
+                return
+            self._take_frames(received.result())
+            await asyncio.sleep(0)
+
+    async def _tick_forever(self) -> None:
+        while True:
+            self.performer.tick()
+            await asyncio.sleep(TICK_S)
+
+    async def _publish_state_forever(self) -> None:
+        while True:
+            self._publish("v1/state", encode(self.ledger.stamp(self.state_event())))
+            await asyncio.sleep(1 / self._config.state_rate_hz)
+
+    async def _publish_health_forever(self) -> None:
+        while True:
+            silent_ms = round(1e3 * self.view.silent_s, 1)
+            event = HealthEvent(robot=self._robot.name, servos=self.view.health(), silent_ms=silent_ms)
+            self._publish("v1/health", encode(self.ledger.stamp(event)))
+            await asyncio.sleep(HEALTH_EVERY_S)
+
+    async def _serve_subscriptions(self) -> None:
+        """Send the last value of each topic to whoever subscribes to it."""
+        while True:
+            frames = await self._pub.recv_multipart()
+            if frames and frames[0][:1] == b"\x01":
+                for topic, payload in list(self._last_values.items()):
+                    if topic.startswith(frames[0][1:]):
+                        self._overruns += not publish_now(self._pub, [topic, payload])
+            await asyncio.sleep(0)
+
+    def _send(self, route: Route, event: Event) -> None:
+        self._events_dropped += not send_now(self._cmd, [*route.frames, encode(event)])
+
+    def publish_from_thread(self, event: Event) -> None:
+        """Publish an event from another thread; dropped once the loop has ended."""
+        with contextlib.suppress(RuntimeError):
+            self.loop.call_soon_threadsafe(self._publish_event, event)
+
+    def _publish_event(self, event: Event) -> None:
+        self._publish("v1/event", encode(event))
+        event_log.info("%s", _line(event))
+
+    def publish_log(self, event: LogEvent) -> None:
+        """Publish a line of the log, with the time at which it was written."""
+        written_s = event.t_mono
+        self.ledger.stamp(event)
+        event.t_mono = written_s
+        self._publish("v1/log", encode(event))
+
+    def _publish(self, topic: str, payload: bytes) -> None:
+        self._last_values[topic.encode()] = payload
+        if self._record is not None:
+            self._record(topic, payload)
+        self._overruns += not publish_now(self._pub, [topic.encode(), payload])
+
+    def state_event(self) -> StateEvent:
+        """The robot and the daemon now; may be called from any thread."""
+        return StateEvent(
+            robot=self._robot.name,
+            bus=self._config.bus,
+            state=self.machine.state.value,
+            must_arm=self.machine.must_arm,
+            reason=self.follower.fault_reason,
+            command=self.performer.current_command(),
+            generator=self._generator.state,
+            joint_names=list(self._robot.joint_names),
+            goal_rad=[round(float(q), 5) for q in self.view.goal_rad],
+            present_rad=[round(float(q), 5) for q in self.view.present_rad],
+            queued_ms=round(1e3 * self.link.queued_frames / self._robot.bus.rate_hz, 1),
+            bus_info=self.view.counters()
+            | {
+                "requests_dropped": self._rates.refused,
+                "events_dropped": self._events_dropped,
+                "subscribers_overrun": self._overruns,
+            },
+            recording=self.recording,
+            uptime_s=round(time.monotonic() - self._started_s, 2),
+            waiting=self.performer.waiting_ids(),
+            idle=self.performer.layers.idle_style or "off",
+            gaze_deg=self.performer.layers.gaze_deg,
+            stream=self._targets.info(self._config.endpoints.stream),
+            servos_not_ok=[s for s in self.view.health() if s.state != "ok"],
+        )
+
+
+def _line(event: Event) -> str:
+    """An event as one line of the log, without what every event has."""
+    skip = ("v", "seq", "t_mono", "id")
+    text = " ".join(f"{k}={v!r}" for k, v in msgspec.structs.asdict(event).items() if k not in skip)
+    return f"{event.__struct_config__.tag} {event.id[:8]} {text}"

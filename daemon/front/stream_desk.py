@@ -1,0 +1,73 @@
+"""Takes the frames of the `stream` socket one by one: a target for the lease that is held, or one more bad message."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+
+from daemon.front.stream_inbox import StreamInbox
+from daemon.playing.performer import Performer
+from daemon.state.ledger import Ledger
+from daemon.wire.codec import WireError, error_event
+from daemon.wire.events import Event, LeaseInfo, Progress, StreamInfo
+from daemon.wire.requests import Lease
+from retarget.robot import RobotModel
+
+log = logging.getLogger(__name__)
+
+
+class TargetDesk:
+    """Hands targets to the performer.
+
+    Args:
+        robot: whose joints they are.
+        performer: plays them.
+        ledger: tells the holder of its bad messages.
+        publish: tells all of those that belong to no lease.
+    """
+
+    def __init__(
+        self, robot: RobotModel, performer: Performer, ledger: Ledger, publish: Callable[[Event], None]
+    ) -> None:
+        self._performer, self._ledger, self._publish = performer, ledger, publish
+        self._inbox = StreamInbox(robot)
+
+    def take(self, frame: bytes) -> None:
+        """Read a frame; what is wrong with it moves nothing and does not count as a sign of life."""
+        lease = self._performer.lease
+        lease_id, holder = (lease.id, lease.request.words) if lease is not None else ("", "")
+        try:
+            q_rad = self._inbox.read(frame, lease_id, holder)
+        except WireError as error:
+            self._tell(error)
+            return
+        self._performer.target(q_rad)
+
+    def info(self, endpoint: str) -> StreamInfo:
+        """What `status` tells."""
+        return StreamInfo(endpoint, self._lease_info(), dict(self._inbox.bad))
+
+    def _lease_info(self) -> LeaseInfo | None:
+        lease, score = self._performer.lease, self._performer.stream
+        if lease is None or not isinstance(lease.request, Lease):
+            return None
+        if score is None or not score.begun:
+            return LeaseInfo(lease.id, lease.request.holder, "accepted")
+        return LeaseInfo(
+            lease.id, lease.request.holder, score.clock.state.value, score.held_by, score.clock.silence_s,
+            round(max(0.0, time.monotonic() - score.clock.last_s), 3), score.targets, score.clipped,
+        )  # fmt: skip
+
+    def _tell(self, error: WireError) -> None:
+        n = self._inbox.due(error.code, time.monotonic())
+        if not n:
+            return
+        log.warning("stream: %d bad, %s: %s", n, error.code, error)
+        lease = self._performer.lease
+        if lease is not None and error.request_id == lease.id:
+            self._ledger.emit(
+                lease, Progress(plan_id=0, stage="bad_target", status=error.code, reason=f"{n}: {error}"[:500])
+            )
+            return
+        self._publish(self._ledger.stamp(error_event(error)))

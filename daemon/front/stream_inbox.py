@@ -1,0 +1,91 @@
+"""Frames of the `stream` socket to checked targets; what is wrong is counted, named now and then, and moves nothing."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.wire.codec import WireError, decode_target
+from daemon.wire.requests import Target
+from retarget.robot import RobotModel
+
+Array = NDArray[np.float64]
+NAMED_EVERY_S = 1.0
+"""Of each kind of bad message one is told in so long a time, with how many there were."""
+FARTHEST_RAD = 1000.0
+"""No joint of any robot goes so far: a number of another unit, or none."""
+
+
+class StreamInbox:
+    """Reads targets for one robot.
+
+    Attributes:
+        bad: bad messages so far, by code.
+    """
+
+    def __init__(self, robot: RobotModel) -> None:
+        self._names = robot.joint_names
+        self._index = {name: j for j, name in enumerate(robot.joint_names)}
+        self.bad: Counter[str] = Counter()
+        self._told: dict[str, tuple[float, int]] = {}
+
+    def read(self, frame: bytes, lease_id: str, holder: str) -> Array:
+        """(J,) radians, NaN for joints that are not named.
+
+        Args:
+            frame: what came.
+            lease_id: of the lease that is held, empty for none.
+            holder: whose it is, in words.
+
+        Raises:
+            WireError: it is no target of this lease.
+        """
+        try:
+            target = decode_target(frame)
+            self._check_lease(target, lease_id, holder)
+            return self._angles(target)
+        except WireError as error:
+            self.bad[error.code] += 1
+            raise
+
+    def due(self, code: str, now_s: float) -> int:
+        """How many messages of a kind are to be told of now; 0 when one was a moment ago."""
+        told_s, told = self._told.get(code, (float("-inf"), 0))
+        if now_s - told_s < NAMED_EVERY_S:
+            return 0
+        self._told[code] = (now_s, self.bad[code])
+        return self.bad[code] - told
+
+    def _check_lease(self, target: Target, lease_id: str, holder: str) -> None:
+        if target.id == lease_id:
+            return
+        found = f"id {target.id[:40]!r}; " + (
+            f"{holder} holds lease {lease_id!r}" if lease_id else "nobody holds a lease"
+        )
+        raise WireError(
+            "no_lease", "target", found, "the id of the lease that is held", "ask `cmd` for a `lease` first"
+        )
+
+    def _angles(self, target: Target) -> Array:
+        n = len(self._names)
+        if isinstance(target.q_rad, dict):
+            unknown = [name for name in target.q_rad if name not in self._index]
+            if unknown or not target.q_rad:
+                found = f"joint {', '.join(name[:40] for name in unknown[:3])}" if unknown else "no joint"
+                raise self._error("unknown_joint", target, found, f"some of {', '.join(self._names)}")
+            q_rad = np.full(n, np.nan)
+            values = np.array(list(target.q_rad.values()))
+            q_rad[[self._index[name] for name in target.q_rad]] = values
+        else:
+            if len(target.q_rad) != n:
+                raise self._error("wrong_number", target, f"{len(target.q_rad)} angles", f"{n}, or angles by name")
+            q_rad = values = np.array(target.q_rad)
+        if not np.isfinite(values).all() or (np.abs(values) > FARTHEST_RAD).any():
+            bad = values[~(np.abs(values) <= FARTHEST_RAD)][0]
+            raise self._error("not_finite", target, f"{bad}", f"finite radians within {FARTHEST_RAD:g}")
+        return q_rad
+
+    def _error(self, code: str, target: Target, found: str, allowed: str) -> WireError:
+        return WireError(code, "target", found, allowed, "see `capabilities` for the robot's joints", target.id)

@@ -1,0 +1,231 @@
+"""The front's side of the generator: asks without blocking the event loop. Holds no torch.
+
+The generator is a ROUTER, its clients are DEALERs; the messages are in `daemon.generator.messages`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+import logging
+import time
+from collections.abc import Sequence
+
+import msgspec
+import zmq
+import zmq.asyncio
+
+from daemon.generator.messages import (
+    MIN_FRAMES,
+    BetweenMessage,
+    EditMessage,
+    FailureMessage,
+    FromGenerator,
+    Generated,
+    GeneratedMessage,
+    GenerateMessage,
+    GeneratorError,
+    PingMessage,
+    PongMessage,
+    SceneMessage,
+    ToGenerator,
+    arrays_of,
+    bad_motion,
+    decode_reply,
+    encode,
+    generated_from,
+)
+from daemon.keys import KeyFolder, connect_curve
+from mmm_core.motion import Motion
+
+log = logging.getLogger(__name__)
+
+START_TIMEOUT_S = 10.0
+"""Longest wait of a text for a generator that is being started."""
+
+
+class GeneratorClient:
+    """Asks the generator without blocking the event loop; several requests may be open.
+
+    Attributes:
+        state: what people are told about the generator; `mark_ready` and `mark_down` set it.
+        checkpoint_hash: of the weights it said it uses last, empty before.
+        timeouts: requests that were not answered in time by the generator they were sent to.
+    """
+
+    def __init__(
+        self, context: zmq.asyncio.Context, endpoint: str, keys: KeyFolder | None = None, model_hash: str = ""
+    ) -> None:
+        self._model_hash = model_hash
+        self._socket = context.socket(zmq.DEALER)
+        if keys is not None and endpoint.startswith("tcp://"):
+            connect_curve(self._socket, keys, "generator")
+        self._socket.setsockopt(zmq.LINGER, 0)
+        self._socket.setsockopt(zmq.RECONNECT_IVL, 20)
+        self._socket.setsockopt(zmq.RECONNECT_IVL_MAX, 200)
+        self._socket.connect(endpoint)
+        self._ids = itertools.count(1)
+        self._open: dict[int, asyncio.Future[FromGenerator]] = {}
+        self._reader: asyncio.Task[None] | None = None
+        self._ready = asyncio.Event()
+        self._down_reason = ""
+        self.state = "starting"
+        self.checkpoint_hash = ""
+        self.timeouts = 0
+        self._lives = 0
+
+    def mark_ready(self, checkpoint_hash: str) -> None:
+        """The generator answers."""
+        self.state, self._down_reason = f"ready (checkpoint {checkpoint_hash[:12]})", ""
+        self.checkpoint_hash = checkpoint_hash
+        self._ready.set()
+
+    def mark_starting(self) -> None:
+        """The generator is being started; requests wait for it."""
+        self.state, self._down_reason = "starting", ""
+        self._ready.clear()
+        self._lives += 1
+
+    def mark_down(self, reason: str) -> None:
+        """The generator is gone; requests fail at once."""
+        self.state, self._down_reason = f"down: {reason}", reason
+        self._ready.clear()
+
+    @property
+    def busy(self) -> bool:
+        """Whether an answer is outstanding."""
+        return bool(self._open)
+
+    async def generate(self, text: str, seed: int, seconds: float | None, timeout_s: float) -> Generated:
+        """The motion for `text`.
+
+        Raises:
+            GeneratorError: it failed, gave no usable motion, or not in time (`code` tells which).
+        """
+        asked = f"a motion for {text!r}"
+        await self._until_ready(asked)
+        return await self._motion(
+            GenerateMessage(id=next(self._ids), text=text, seed=seed, seconds=seconds), timeout_s, asked
+        )
+
+    async def scene(
+        self, text: str | None, seed: int, seconds: float | None, told: bytes, timeout_s: float, *, last: bool
+    ) -> Generated:
+        """The next piece of a story, which may have no frames; `told` is what the one before gave.
+
+        Raises:
+            GeneratorError: as `generate`.
+        """
+        asked = "the end of a story" if text is None else f"a scene for {text!r}"
+        await self._until_ready(asked)
+        request = SceneMessage(id=next(self._ids), text=text, seconds=seconds, seed=seed, told=told, last=last)
+        return await self._motion(request, timeout_s, asked, min_frames=0)
+
+    async def edit(
+        self, motion: Motion, text: str, seed: int, parts: Sequence[str], start_s: float, end_s: float | None,
+        timeout_s: float,
+    ) -> Generated:  # fmt: skip
+        """`motion` with a stretch or some parts made again for `text`.
+
+        Raises:
+            GeneratorError: as `generate`; `bad_edit` when it does not fit the motion or the model.
+        """
+        asked = f"an edit for {text!r}"
+        await self._until_ready(asked)
+        request = EditMessage(
+            id=next(self._ids), motion=arrays_of(motion), text=text, seed=seed, parts=list(parts), start_s=start_s,
+            end_s=end_s,
+        )  # fmt: skip
+        return await self._motion(request, timeout_s, asked)
+
+    async def between(self, poses: Motion, at_s: Sequence[float], text: str, seed: int, timeout_s: float) -> Generated:
+        """A motion that shows each frame of `poses` at its time.
+
+        Raises:
+            GeneratorError: as `generate`; `bad_keyframes` when the times do not fit.
+        """
+        asked = f"a motion through {len(at_s)} poses"
+        await self._until_ready(asked)
+        request = BetweenMessage(id=next(self._ids), poses=arrays_of(poses), at_s=list(at_s), text=text, seed=seed)
+        return await self._motion(request, timeout_s, asked)
+
+    async def _motion(
+        self, request: ToGenerator, timeout_s: float, asked: str, min_frames: int = MIN_FRAMES
+    ) -> Generated:
+        reply = await self._ask(request, timeout_s, asked)
+        if isinstance(reply, FailureMessage):
+            do = "see the daemon's output; say it in other words or with another seed"
+            if reply.code in ("bad_edit", "bad_keyframes"):
+                do = "correct it"
+            raise GeneratorError(reply.code, asked, reply.found, reply.allowed, do)
+        if not isinstance(reply, GeneratedMessage):
+            raise bad_motion(asked, f"the answer '{type(reply).__name__}'")
+        return generated_from(reply, min_frames)
+
+    async def ping(self, timeout_s: float) -> str:
+        """The hash of the generator's checkpoint.
+
+        Raises:
+            GeneratorError: no answer in time, another version of the protocol, another checkpoint than agreed.
+        """
+        reply = await self._ask(PingMessage(id=next(self._ids)), timeout_s, "a sign of life")
+        if isinstance(reply, FailureMessage):
+            do = "install the same version of mmmd on both machines"
+            raise GeneratorError(reply.code, "a sign of life", reply.found, reply.allowed, do)
+        found = reply.checkpoint_hash if isinstance(reply, PongMessage) else ""
+        if not found.startswith(self._model_hash):
+            allowed, do = f"checkpoint {self._model_hash}", "start the generator with the model that was agreed on"
+            raise GeneratorError("checkpoint", "a sign of life", f"checkpoint {found[:12]}", allowed, do)
+        return found
+
+    async def _until_ready(self, asked: str) -> None:
+        began_s = time.monotonic()
+        while not self._ready.is_set():
+            if self._down_reason or time.monotonic() - began_s > START_TIMEOUT_S:
+                found = f"the generator is {self.state}"
+                raise GeneratorError("generator_down", asked, found, "a generator that runs", "see the daemon's output")
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._ready.wait(), 0.1)
+
+    async def _ask(self, request: ToGenerator, timeout_s: float, asked: str) -> FromGenerator:
+        if self._reader is None:
+            self._reader = asyncio.create_task(self._read())
+        answer: asyncio.Future[FromGenerator] = asyncio.get_running_loop().create_future()
+        self._open[request.id] = answer
+        life = self._lives
+        try:
+            async with asyncio.timeout(timeout_s):
+                await self._socket.send(encode(request))
+                return await answer
+        except TimeoutError:
+            self.timeouts += life == self._lives  # one that was started since is not to blame
+            raise no_answer(asked, timeout_s) from None
+        finally:
+            self._open.pop(request.id, None)
+
+    async def _read(self) -> None:
+        while True:
+            frame = await self._socket.recv()
+            try:
+                reply = decode_reply(frame)
+            except msgspec.MsgspecError as error:
+                log.warning("the generator sent what is no message: %s", error)
+                continue
+            waiting = self._open.get(reply.id)
+            if waiting is not None and not waiting.done():
+                waiting.set_result(reply)
+
+    async def close(self) -> None:
+        """Drop what is open and close the socket."""
+        if self._reader is not None:
+            self._reader.cancel()
+            with contextlib.suppress(asyncio.CancelledError):
+                await self._reader
+        self._socket.close(0)
+
+
+def no_answer(asked: str, timeout_s: float) -> GeneratorError:
+    """The error of a generator that was silent."""
+    found, do = f"no answer from the generator in {timeout_s:g} s", "it is started again; say it once more"
+    return GeneratorError("generator_timeout", asked, found, "an answer in that time", do)

@@ -1,0 +1,128 @@
+"""The model behind the generator's messages: generate, a story's next scene, edit, a motion through poses. Loads torch."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import msgspec
+
+from daemon.generator.messages import (
+    BetweenMessage,
+    EditMessage,
+    Generated,
+    GenerateMessage,
+    SceneMessage,
+    UnfitRequestError,
+    motion_from,
+)
+from mmm_core.editing import Edit, edit, part_names
+from mmm_core.engine import Engine, no_motion
+from mmm_core.errors import GenerationError
+from mmm_core.keyframes import Keyframe, between, features_of
+from mmm_core.motion import Motion
+from mmm_core.scope import ScopeVerdict
+from mmm_core.story import Scene, Told, tell_on
+
+HALVES = {"upper": ("left_arm", "right_arm"), "lower": ("rest",)}
+"""The halves of the body in a model without an upper and a lower codebook: both arms, and all the rest of it."""
+
+
+class EngineMaker:
+    """Answers requests with one engine."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self.checkpoint_hash = engine.checkpoint_hash
+
+    @classmethod
+    def load(cls, model: Path | None, threads: int) -> EngineMaker:
+        """With the checkpoint at `model` (the shipped one when None), warmed up.
+
+        Raises:
+            CheckpointError: a file is missing or does not fit.
+        """
+        maker = cls(Engine.load(model, threads=threads))
+        for seconds in (None, 9.8):  # the first calls allocate
+            maker.generate(GenerateMessage(id=0, text="wave with your right hand", seconds=seconds))
+        return maker
+
+    def generate(self, request: GenerateMessage) -> Generated:
+        """A motion."""
+        made = self._engine.generate(request.text, seed=request.seed, seconds=request.seconds)
+        return Generated(made.motion, made.understood, made.reason, made.timings_ms, self.checkpoint_hash)
+
+    def scene(self, request: SceneMessage) -> Generated:
+        """The next piece of a story.
+
+        Raises:
+            GenerationError: seconds out of range, or `told` of another model.
+            msgspec.MsgspecError: `told` is nothing that a scene before gave.
+        """
+        began_s = time.perf_counter()
+        told = msgspec.msgpack.decode(request.told, type=Told) if request.told else Told()
+        scene = None if request.text is None else Scene(request.text, request.seconds)
+        piece, told, verdict = tell_on(self._engine, scene, told, seed=request.seed, last=request.last)
+        piece = replace(piece, status=verdict.status, scope_score=verdict.score)
+        return self._generated(piece, verdict, began_s, msgspec.msgpack.encode(told))
+
+    def edit(self, request: EditMessage) -> Generated:
+        """A motion of which a stretch or some parts are new."""
+        parts = self._parts(request.parts)
+        what = Edit(request.start_s, request.end_s, parts or None)
+
+        def made() -> Motion:
+            motion = motion_from(request.motion)
+            if not motion.features.any() and not len(motion.tokens):
+                motion = replace(motion, features=features_of(motion).numpy())
+            return edit(self._engine, motion, what, request.text, seed=request.seed)
+
+        return self._unless_rejected(request.text, request.seed, made, "bad_edit")
+
+    def between(self, request: BetweenMessage) -> Generated:
+        """A motion through poses."""
+
+        def made() -> Motion:
+            poses = motion_from(request.poses)
+            if len(poses.joints_m) != len(request.at_s):
+                raise GenerationError(f"{len(request.at_s)} times for {len(poses.joints_m)} poses", "one for each")
+            keys = [Keyframe(at_s, _frame(poses, i)) for i, at_s in enumerate(request.at_s)]
+            return between(self._engine, keys, request.text, seed=request.seed)
+
+        return self._unless_rejected(request.text, request.seed, made, "bad_keyframes")
+
+    def _unless_rejected(self, text: str, seed: int, make: Callable[[], Motion], code: str) -> Generated:
+        """What `make` makes, unless the text is out of scope; no text at all is in scope."""
+        began_s = time.perf_counter()
+        verdict = self._engine.understand(text)[1] if text.strip() else ScopeVerdict("accepted", 1.0, "", "")
+        if verdict.status == "rejected":
+            return self._generated(no_motion(text, seed, verdict), verdict, began_s)
+        try:
+            return self._generated(make(), verdict, began_s)
+        except GenerationError as error:
+            raise UnfitRequestError(code, error.asked, error.allowed) from error
+
+    def _generated(self, motion: Motion, verdict: ScopeVerdict, began_s: float, told: bytes = b"") -> Generated:
+        understood = f"{verdict.nearest} ({verdict.score:.2f})" if verdict.nearest else ""
+        timings_ms = {"made": 1e3 * (time.perf_counter() - began_s)}
+        return Generated(motion, understood, verdict.reason, timings_ms, self.checkpoint_hash, told)
+
+    def _parts(self, asked: list[str]) -> tuple[str, ...]:
+        """Names of this model's parts; `upper` and `lower` stand for several where it has no such codebook."""
+        names = part_names(self._engine)
+        found: list[str] = []
+        for part in asked:
+            halves = HALVES.get(part, ())
+            found += halves if halves and part not in names and set(halves) <= set(names) else (part,)
+        return tuple(dict.fromkeys(found))
+
+
+def _frame(motion: Motion, i: int) -> Motion:
+    """One frame of a motion, without ids."""
+    return replace(
+        motion, joints_m=motion.joints_m[i : i + 1], head_quat_wxyz=motion.head_quat_wxyz[i : i + 1],
+        forearm_twist_rad=motion.forearm_twist_rad[i : i + 1], features=motion.features[i : i + 1],
+        tokens=motion.tokens[:0],
+    )  # fmt: skip

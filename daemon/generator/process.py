@@ -1,0 +1,162 @@
+"""The process that holds torch: `python -m daemon.generator.process --bind ENDPOINT`.
+
+One thread, lower priority. It ends when the process that started it does, so nothing stays behind.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.metadata
+import logging
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+
+import msgspec
+import zmq
+
+from daemon.config import check_endpoint
+from daemon.errors import ConfigError
+from daemon.generator.messages import (
+    GENERATION_VERSION,
+    BetweenMessage,
+    EditMessage,
+    FailureMessage,
+    FromGenerator,
+    Generated,
+    GenerateMessage,
+    PingMessage,
+    PongMessage,
+    SceneMessage,
+    ToGenerator,
+    UnfitRequestError,
+    decode_request,
+    encode,
+    generated_message,
+)
+from daemon.keys import Doorkeeper, KeyFolder
+from daemon.log_feed import send_logs
+from daemon.logs import start_logging
+from daemon.sockets import bind as bind_socket
+
+log = logging.getLogger(__name__)
+
+NICENESS = 5
+POLL_MS = 200
+
+
+class Maker(Protocol):
+    """What makes motions: `daemon.generator.maker` with the model, others in tests."""
+
+    def generate(self, request: GenerateMessage) -> Generated:
+        """A motion."""
+        ...
+
+    def scene(self, request: SceneMessage) -> Generated:
+        """The next piece of a story."""
+        ...
+
+    def edit(self, request: EditMessage) -> Generated:
+        """A motion of which a part is new."""
+        ...
+
+    def between(self, request: BetweenMessage) -> Generated:
+        """A motion through poses."""
+        ...
+
+
+def answer(request: ToGenerator, maker: Maker, checkpoint_hash: str) -> FromGenerator:
+    """The reply to one request; an error of the model becomes a `failure`, never the end of the process."""
+    if request.v != GENERATION_VERSION:
+        found, allowed = f"version {request.v} of the generator's protocol", f"version {GENERATION_VERSION}"
+        return FailureMessage(id=request.id, code="version", found=found, allowed=allowed)
+    if isinstance(request, PingMessage):
+        return PongMessage(id=request.id, checkpoint_hash=checkpoint_hash, version=importlib.metadata.version("mmmd"))
+    try:
+        return generated_message(request.id, _made(request, maker))
+    except UnfitRequestError as error:
+        return FailureMessage(id=request.id, code=error.code, found=error.found, allowed=error.allowed)
+    except Exception as error:  # whatever the model raises, the next text must still be answered
+        log.exception("generating %r failed", request.text)
+        return FailureMessage(id=request.id, code="generator_error", found=str(error), allowed="a motion")
+
+
+def _made(request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage, maker: Maker) -> Generated:
+    if isinstance(request, SceneMessage):
+        return maker.scene(request)
+    if isinstance(request, EditMessage):
+        return maker.edit(request)
+    if isinstance(request, BetweenMessage):
+        return maker.between(request)
+    return maker.generate(request)
+
+
+def serve(socket: zmq.Socket[bytes], maker: Maker, checkpoint_hash: str, alive: Callable[[], bool]) -> None:
+    """Answer requests on a ROUTER socket, one after the other, while `alive()`."""
+    while alive():
+        if not socket.poll(POLL_MS):
+            continue
+        *route, frame = socket.recv_multipart()
+        try:
+            request = decode_request(frame)
+        except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+            log.warning("dropped a frame that is no request: %s", error)
+            continue
+        socket.send_multipart([*route, encode(answer(request, maker, checkpoint_hash))])
+
+
+def run(
+    bind: str, model: Path | None = None, threads: int = 1, parent_pid: int | None = None, keys: Path | None = None
+) -> None:
+    """Load the model, bind and answer until the parent process is gone.
+
+    Raises:
+        ConfigError: the endpoint could be reached from other machines, or cannot be bound.
+    """
+    check_endpoint("bind", bind, keys=keys is not None)
+    os.nice(NICENESS)
+    from daemon.generator.maker import EngineMaker
+
+    maker = EngineMaker.load(model, threads)
+    checkpoint_hash = maker.checkpoint_hash
+    context = zmq.Context()
+    socket = context.socket(zmq.ROUTER)
+    folder = KeyFolder(keys) if keys is not None else None
+    doorkeeper = Doorkeeper(context, folder) if folder is not None else None
+    try:
+        bind_socket(socket, "bind", bind, folder)
+        log.info("generator ready on %s with checkpoint %s", bind, checkpoint_hash[:12])
+        serve(socket, maker, checkpoint_hash, lambda: parent_pid is None or os.getppid() == parent_pid)
+    finally:
+        if doorkeeper is not None:
+            doorkeeper.close()
+        socket.close(0)
+        context.term()
+
+
+def main() -> int:
+    """Entry point of the process."""
+    parser = argparse.ArgumentParser(description="The process that turns text into motion.")
+    parser.add_argument("--bind", required=True)
+    parser.add_argument("--model", type=Path)
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--parent-pid", type=int)
+    options = parser.parse_args()
+    start_logging("generator")
+    send_logs("generator")
+    from mmm_core.errors import MmmError
+
+    try:
+        run(options.bind, options.model, options.threads, options.parent_pid)
+    except (ConfigError, MmmError) as error:
+        sys.stderr.write(f"generator: {error}\n")
+        return 1
+    except KeyboardInterrupt:
+        pass
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

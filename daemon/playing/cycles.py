@@ -1,0 +1,75 @@
+"""Which part of a motion can go round without a seam, and at which frame it can be held."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.playing.posture import Posture, distance_deg, mixed, smooth_step, standing
+
+Array = NDArray[np.float64]
+
+SHORTEST_LOOP_S = 0.8
+LOOP_ALIKE_DEG = 15.0
+"""Poses (and, over a tenth of a second, movements) that are this alike can be made one without being seen."""
+CLOSING_S = 0.4
+"""Over this time before its end a loop is led to where it began."""
+_STILL_DEG_S = 20.0
+
+
+def find_loop(p: Posture) -> tuple[int, int] | None:
+    """First frame and end of the part that best goes round; None when there is none.
+
+    It ends as it begins, is lively, and stays away from standing where it can: a wave goes on above the shoulder. A part
+    from rest to rest counts: it is the whole gesture, done again.
+    """
+    shortest = round(SHORTEST_LOOP_S * p.fps)
+    T = len(p)
+    if T <= shortest + 2:
+        return None
+    speed = np.concatenate([[0.0], distance_deg(p[1:], p[:-1])]) * p.fps
+    away = distance_deg(_stand(p), p)
+    travelled = np.concatenate([[0.0], np.cumsum(speed)])
+    best: tuple[float, int, int] | None = None
+    for span in range(shortest, T - 1):
+        a = np.arange(1, T - span)
+        pose = distance_deg(p.at(a), p.at(a + span))
+        step = 0.5 * (distance_deg(p.at(a + 1), p.at(a + span + 1)) + distance_deg(p.at(a - 1), p.at(a + span - 1)))
+        unlike = np.maximum(pose, step)
+        lively = (travelled[a + span] - travelled[a]) / span
+        stays = np.lib.stride_tricks.sliding_window_view(away, span + 1).min(1)[a]
+        worth = np.where(unlike < LOOP_ALIKE_DEG, lively + stays - 2 * unlike, -np.inf)
+        k = int(worth.argmax())
+        if np.isfinite(worth[k]) and lively[k] > _STILL_DEG_S and (best is None or worth[k] > best[0]):
+            best = (float(worth[k]), int(a[k]), int(a[k]) + span)
+    return None if best is None else best[1:]
+
+
+def closed(p: Posture, loop: tuple[int, int]) -> Posture:
+    """The frames of a loop, the last of which are led to those before its first: going round makes no step."""
+    a, b = loop
+    n = min(round(CLOSING_S * p.fps), (b - a) // 2)
+    weight = np.zeros(b - a)
+    weight[-n:] = smooth_step(n)
+    return mixed(p[a:b], p.at(np.arange(2 * a - b, a)), weight)
+
+
+def after_loop(p: Posture, loop: tuple[int, int]) -> Posture:
+    """What follows the last round: it grows out of the loop's beginning into the end of the motion."""
+    a, b = loop
+    tail = p[b:]
+    n = min(round(CLOSING_S * p.fps), len(tail))
+    weight = np.ones(len(tail))
+    weight[:n] = smooth_step(n)
+    return mixed(p.at(np.arange(a, a + len(tail))), tail, weight)
+
+
+def find_hold(p: Posture) -> int:
+    """The frame in which the motion says most while it moves least: where it is held."""
+    away = distance_deg(_stand(p), p)
+    speed = np.concatenate([[0.0], distance_deg(p[1:], p[:-1])]) * p.fps
+    return int((away - 0.3 * speed).argmax())
+
+
+def _stand(p: Posture) -> Posture:
+    return standing().at(np.zeros(len(p), np.intp))

@@ -1,0 +1,102 @@
+"""Follows the bus process: its reports move the robot's state. What is not in the table asks for an e-stop."""
+
+from __future__ import annotations
+
+import logging
+
+from daemon.driving.shared import BusLink, BusRequest, BusState
+from daemon.playing.planner import Planner
+from daemon.state.bus_view import BusView
+from daemon.state.machine import ImpossibleTransitionError, RobotState, StateMachine, Trigger
+
+log = logging.getLogger(__name__)
+
+BUS_SILENT_S = 1.0
+"""A bus process that publishes no cycle for so long is frozen."""
+SETTLING_CYCLES = 3
+"""So many cycles after a stop the bus process has surely taken it."""
+REPORTS = {state: Trigger[f"BUS_{state.name}"] for state in BusState}
+
+
+class Follower:
+    """The robot's state, brought up to date once a tick.
+
+    Attributes:
+        bus_alive: whether the bus process runs.
+        fault_reason: why the robot is in fault, else empty.
+        stopped: whether a person stopped the robot since it was armed and the last motion began.
+        idling: whether what is played are idle movements.
+    """
+
+    def __init__(self, link: BusLink, view: BusView, planner: Planner, machine: StateMachine) -> None:
+        self._link, self._view, self._planner, self.machine = link, view, planner, machine
+        self.bus_alive = True
+        self.fault_reason = ""
+        self.stopped = False
+        self.idling = False
+        self._epoch: int = planner.epoch
+        self._settled_at = 0
+
+    def update(self) -> list[RobotState]:
+        """Heartbeat, setpoints, records, state; the states that the robot went through since the last call."""
+        self._link.heartbeat()
+        self._planner.pump()
+        if self._planner.epoch != self._epoch:
+            self._epoch, self._settled_at = self._planner.epoch, self._view.index + SETTLING_CYCLES
+        self._planner.read_cycles()
+        if self.machine.state is RobotState.FAULT and self.bus_alive and self._view.message:
+            self.fault_reason = self._view.message  # the bus process is back and knows better
+        entered = [self._follow(self._report(state)) for state in self._view.passed or [self._view.state]]
+        return [state for state in entered if state is not None]
+
+    @property
+    def can_take_over(self) -> bool:
+        """Whether setpoints pushed now would be played from where the joints are."""
+        return self._view.state in (BusState.HOLDING, BusState.PLAYING) and self._view.index >= self._settled_at
+
+    @property
+    def holds(self) -> bool:
+        """Whether the bus process holds and has nothing left to play."""
+        return self._view.state is BusState.HOLDING and self._link.queued_frames == 0
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether no goal moves."""
+        return self._view.at_rest
+
+    def _report(self, state: BusState) -> Trigger:
+        if not self.bus_alive or self._view.silent_s > BUS_SILENT_S:
+            return Trigger.BUS_LOST
+        report = REPORTS[state]
+        if report is Trigger.BUS_HOLDING and self.stopped:
+            return Trigger.BUS_STOPPED
+        if report is Trigger.BUS_PLAYING and self.idling:
+            return Trigger.BUS_IDLING
+        return report
+
+    def _follow(self, report: Trigger) -> RobotState | None:
+        before = self.machine.state
+        try:
+            changed = self.machine.report(report)
+        except ImpossibleTransitionError as error:
+            log.error("%s; e-stop is asked for", error)
+            self._link.request(BusRequest.ESTOP)
+            return None
+        if not changed:
+            return None
+        state = self.machine.state
+        log.info("state %s -> %s", before.value, state.value)
+        self.fault_reason = ""
+        if state is RobotState.FAULT:
+            self.fault_reason = self._reason(report)
+            log.error("fault: %s", self.fault_reason)
+        elif state in (RobotState.LIMP, RobotState.ARMING):
+            self._planner.stand()
+            self.stopped = False  # a stop of the limp robot is over once it is armed
+        return state
+
+    def _reason(self, report: Trigger) -> str:
+        if report is not Trigger.BUS_LOST:
+            return self._view.message or "the bus process reported a fault"
+        how = "silent" if self.bus_alive else "gone"
+        return f"the bus process is {how}; its last word: {self._view.message or 'none'}"

@@ -1,0 +1,62 @@
+"""Motions of the newest commands, which may still be kept as gestures, edited, or give a pose."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+
+from daemon.playing.posture import Posture
+from mmm_core.motion import Motion
+
+KEPT = 32
+
+
+@dataclass(frozen=True)
+class KeptMotion:
+    """What a command played.
+
+    Attributes:
+        words: what it was, in a word or a sentence.
+        posture: as it was played, with tempo, size and mirror.
+        motion: as it was made.
+        plan_id: number of its plan; 0 before it has one.
+    """
+
+    words: str
+    posture: Posture
+    motion: Motion
+    plan_id: int = 0
+
+
+class KeptMotions:
+    """By command, the oldest are forgotten. A story is not kept: it has any length."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[str, KeptMotion] = OrderedDict()
+
+    def add(self, command_id: str, kept: KeptMotion) -> None:
+        """A command's motion was made."""
+        self._kept[command_id] = kept
+        while len(self._kept) > KEPT:
+            self._kept.popitem(last=False)
+
+    def number(self, command_id: str, plan_id: int) -> None:
+        """Its plan got a number."""
+        if command_id in self._kept:
+            self._kept[command_id] = replace(self._kept[command_id], plan_id=plan_id)
+
+    def newest(self) -> str | None:
+        """Id of the newest command."""
+        return next(reversed(self._kept), None)
+
+    def of_command(self, command_id: str) -> KeptMotion | None:
+        """What a command played; None when it is not known, or no longer."""
+        return self._kept.get(command_id)
+
+    def of_plan(self, plan_id: int) -> KeptMotion | None:
+        """The same by the number of its plan."""
+        return next((kept for kept in self._kept.values() if kept.plan_id == plan_id), None)
+
+    def some(self) -> str:
+        """Ids of the newest, for messages."""
+        return ", ".join(list(self._kept)[-3:]) or "none yet"

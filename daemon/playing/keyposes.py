@@ -1,0 +1,41 @@
+"""A motion led through poses: what the model met to a few degrees is met exactly, and nothing jumps on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from daemon.playing.posture import Posture, mixed
+
+REACH_S = 1.0
+"""So long before a pose is due the motion begins to be led to it, and so long after it is free again."""
+
+
+@dataclass(frozen=True)
+class KeyPose:
+    """One frame of posture, due at a time from the motion's start."""
+
+    at_s: float
+    pose: Posture
+
+
+def led_through(p: Posture, keys: Sequence[KeyPose]) -> Posture:
+    """`p` that shows each pose in the frame in which it is due.
+
+    The weight of a pose rises and falls on a minimum-jerk curve over `REACH_S`, or over the time to the next pose where
+    that is shorter, so that poses do not disturb each other.
+    """
+    order = sorted(keys, key=lambda key: key.at_s)
+    frames = [min(len(p) - 1, round(key.at_s * p.fps)) for key in order]
+    for k, (key, frame) in enumerate(zip(order, frames, strict=True)):
+        before = frame - frames[k - 1] if k else len(p)
+        after = frames[k + 1] - frame if k + 1 < len(frames) else len(p)
+        t = np.arange(len(p)) - frame
+        reach = np.where(t < 0, min(before, REACH_S * p.fps), min(after, REACH_S * p.fps))
+        u = np.clip(1 - np.abs(t) / np.maximum(reach, 1), 0, 1)
+        w = u**3 * (10 - 15 * u + 6 * u**2)
+        still = key.pose.at(np.zeros(len(p), np.intp))
+        p = mixed(p, Posture(still.bones, p.lengths_m, still.head_wxyz, still.twist_rad, p.fps), w)
+    return p

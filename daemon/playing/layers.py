@@ -1,0 +1,44 @@
+"""What is laid over motions and silence: where the head looks, and idle movements."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from daemon.playing.idle import looking
+from daemon.playing.posture import Posture
+from retarget.robot import RobotModel
+
+
+class Layers:
+    """Gaze and idling, as people set them.
+
+    Attributes:
+        idle_style: style of the idle movements; empty for none.
+        gaze_deg: where the head is told to look, left and down; None leaves it to the motion.
+    """
+
+    def __init__(self, idle_style: str) -> None:
+        self.idle_style = "" if idle_style == "off" else idle_style
+        self.gaze_deg: tuple[float, float] | None = None
+
+    def over(self, p: Posture) -> Posture:
+        """`p` as it is to be played."""
+        if self.gaze_deg is None:
+            return p
+        yaw, pitch = np.deg2rad(self.gaze_deg)
+        return looking(p, float(yaw), float(pitch), np.ones(len(p)))
+
+
+def gaze_note(robot: RobotModel, yaw_deg: float, pitch_deg: float) -> str:
+    """How much of a gaze the robot's head cannot follow; empty when it can follow all."""
+    notes: list[str] = []
+    for role, wanted_deg in (("head_yaw", yaw_deg), ("head_pitch", pitch_deg)):
+        j = robot.joint_with_role(role)
+        if j is None:
+            if wanted_deg:
+                notes.append(f"this robot has no {role}")
+            continue
+        reach_deg = np.rad2deg(max(abs(robot.position_min_rad[j]), abs(robot.position_max_rad[j])))
+        if abs(wanted_deg) > reach_deg:
+            notes.append(f"{role} reaches {reach_deg:.0f} deg")
+    return "; ".join(notes)

@@ -1,0 +1,303 @@
+"""Carries commands out: make the motion, wait for its turn, arm where allowed, take over, watch it to its end.
+
+At most one motion is played; the newest `now` that is accepted wins (`daemon.playing.waiting` has the rule). Runs in the front's
+event loop.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.config import DaemonConfig
+from daemon.driving.shared import BusLink, BusRequest
+from daemon.playing.follower import Follower
+from daemon.playing.layers import Layers
+from daemon.playing.planner import Planner
+from daemon.playing.player import Player
+from daemon.playing.sources import Prepared, Sources
+from daemon.playing.stream_score import StreamScore
+from daemon.playing.until_armed import TICK_S, until_armed
+from daemon.playing.waiting import MOST_WAITING, Halts, Pending, WaitingRoom
+from daemon.state.lease import LeaseState
+from daemon.state.ledger import Entry, Ledger
+from daemon.state.machine import CommandRefusedError, RobotState, StateMachine, Trigger
+from daemon.state.replies import (
+    NotPlayableError,
+    ending,
+    failed,
+    lease_held,
+    lease_silent,
+    refusal,
+    refused_later,
+    too_late,
+)
+from daemon.wire.events import Cancelled, CurrentCommand, Failed, Progress, Rejected
+from daemon.wire.requests import Lease, tag_of
+from retarget.errors import RetargetError
+
+log = logging.getLogger(__name__)
+
+YIELD_S = 0.25
+"""A motion that is ready waits so long at most for a newer one that is being made: most are made in a tenth of that."""
+ARMING_S = 1.5
+"""A limp robot cannot begin a motion sooner: what has a shorter deadline is rejected at once."""
+
+
+class Performer:
+    """Plays commands on the robot.
+
+    Attributes:
+        follower: the robot's state.
+        halts: when a person last stopped it.
+        layers: gaze and idle movements.
+    """
+
+    def __init__(
+        self,
+        config: DaemonConfig,
+        link: BusLink,
+        planner: Planner,
+        follower: Follower,
+        ledger: Ledger,
+        sources: Sources,
+    ) -> None:
+        self._config, self._link, self._ledger, self._sources = config, link, ledger, sources
+        self.planner, self.follower = planner, follower
+        self.layers = Layers(config.idle)
+        self.halts = Halts()
+        self._waiting = WaitingRoom()
+        self._player = Player(planner, follower, ledger, self.layers)
+
+    @property
+    def machine(self) -> StateMachine:
+        """The robot's state machine."""
+        return self.follower.machine
+
+    def play(self, entry: Entry) -> None:
+        """Begin a command; those that it overtakes end in `cancelled` once it is accepted."""
+        try:
+            self.machine.check(Trigger.SAY)
+        except CommandRefusedError as error:
+            self._ledger.emit(entry, refusal(entry.id, error))
+            return
+        if self.halts.overtook(entry):  # the stop came later but arrived first
+            self._ledger.emit(entry, Cancelled(plan_id=0, by=self.halts.by))
+            return
+        if isinstance(entry.request, Lease) and (lease := self.lease) is not None:
+            self._ledger.emit(entry, lease_held(lease))
+            return
+        pending = Pending(entry, self.planner.epoch)
+        if self._waiting.full and entry.request.when == "now":  # which is let in always: one still being made gives way
+            if (oldest := self._waiting.oldest_undecided) is not None:
+                self._drop(oldest, _named(entry))
+        elif self._waiting.full:
+            asked, allowed = f"{tag_of(entry.request)} {entry.request.when}", f"at most {MOST_WAITING} commands waiting"
+            do = "wait until some have been played, or cancel some"
+            event = Rejected(code="queue_full", asked=asked, found=f"{len(self._waiting)}", allowed=allowed, do=do)
+            self._ledger.emit(entry, event)
+            return
+        self._waiting.add(pending)
+        pending.task = asyncio.create_task(self._perform(pending))
+
+    def running_ids(self) -> list[str]:
+        """Ids of the commands that have not ended."""
+        playing = self._player.entry
+        return [*self.waiting_ids(), *([playing.id] if playing is not None else [])]
+
+    @property
+    def lease(self) -> Entry | None:
+        """The lease that is held, from its request to its end."""
+        playing = self._player.entry
+        entries = [p.entry for p in self._waiting] + ([playing] if playing is not None else [])
+        return next((entry for entry in entries if isinstance(entry.request, Lease) and not entry.ended), None)
+
+    @property
+    def stream(self) -> StreamScore | None:
+        """The lease that is played."""
+        return self._player.stream
+
+    def release(self) -> None:
+        """The holder gives its lease back: one that is played goes to its last target, one that waits is cancelled."""
+        if (score := self._player.stream) is not None:
+            score.clock.release()
+        elif (lease := self.lease) is not None:
+            self.cancel(lease.id)
+
+    def target(self, q_rad: NDArray[np.float64]) -> bool:
+        """A checked target (J,) of the lease that is played; false when it takes none now."""
+        return self._player.target(q_rad)
+
+    def waiting_ids(self) -> list[str]:
+        """Ids of the commands that are not played yet."""
+        return [p.entry.id for p in self._waiting]
+
+    def cancel(self, command_id: str) -> None:
+        """End one command, or all when the id is empty; a robot that moves for it brakes and holds."""
+        playing = self._player.entry
+        if playing is not None and command_id in ("", playing.id):
+            before = self.planner.epoch
+            self.follower.stopped = True
+            self._link.request(BusRequest.STOP)
+            for pending in self._waiting:
+                pending.epoch += pending.epoch == before  # what waits for its turn has not been stopped
+            self._player.end("cancel")
+        for pending in self._waiting:
+            if command_id in ("", pending.entry.id):
+                self._drop(pending, "cancel")
+
+    def end_halted(self) -> None:
+        """End everything but what was sent after the halt, as its own clock says."""
+        playing = self._player.entry
+        if playing is None or not self.halts.spares(playing):
+            self._player.end(self.halts.by)
+        for pending in self._waiting:
+            if not self.halts.spares(pending.entry):
+                self._drop(pending, self.halts.by)
+
+    def end_all(self, by: str, failure: Failed | None = None) -> None:
+        """End what waits and what is played, in `cancelled`, or in `failed` when that is given."""
+        for pending in self._waiting:
+            self._drop(pending, by, failure)
+        self._player.end(by, failure)
+
+    def current_command(self) -> CurrentCommand | None:
+        """What is being played."""
+        return self._player.current_command()
+
+    def look_again(self) -> None:
+        """The gaze has changed: what is played, or the pose that is held, goes on with it."""
+        self._player.start(self._player.follow_gaze())
+
+    def tick(self) -> None:
+        """Follow the bus process, end what is over, feed what goes on, idle."""
+        for state in self.follower.update():
+            self._entered(state)
+        self._player.watch(finish_loop=self._waiting.someone_waits_after)
+        self._end_silent_lease()
+        self._player.idle(free=not len(self._waiting))
+
+    def _end_silent_lease(self) -> None:
+        """A lease whose holder has fallen silent for good has failed: the robot parks, unless a command waits for it."""
+        score = self._player.stream
+        if score is None or score.clock.state is not LeaseState.OVER:
+            return
+        self._player.end("silence", lease_silent(score.clock.park_s, score.targets))
+        if not len(self._waiting):
+            log.warning("a lease fell silent for %g s: parking", score.clock.park_s)
+            self._link.request(BusRequest.PARK, stay_s=self._config.lease_limp_s)
+
+    def _entered(self, state: RobotState) -> None:
+        """End what a state of the robot ends."""
+        if state is RobotState.FAULT:
+            do = "find the cause, then `mmmd reset` and `mmmd arm`"
+            self.end_all("fault", failed("fault", self.follower.fault_reason, "a robot without fault", do))
+        elif state is RobotState.ESTOP:
+            self.end_all("estop")
+        elif state in (RobotState.LIMP, RobotState.PARKING):
+            self._player.end("park")  # a command on its way is refused or arms again by itself
+
+    def _overtake(self, newest: Pending) -> None:
+        for pending in self._waiting.overtaken_by(newest):
+            self._drop(pending, _named(newest.entry))
+
+    def _drop(self, pending: Pending, by: str, failure: Failed | None = None) -> None:
+        pending.cancelled_by = by
+        self._waiting.remove(pending)
+        if not pending.committing and pending.task is not None:
+            pending.task.cancel()
+        self._ledger.emit(pending.entry, ending(0, by, failure))
+
+    async def _perform(self, pending: Pending) -> None:
+        entry = pending.entry
+        try:
+            prepared = await self._sources.prepare(entry, lambda: self.planner.raw_now)
+            if pending.cancelled_by:  # Python 3.11's `wait_for` may swallow the cancellation
+                return
+            self._check_deadline(entry)
+            plan_id = self.planner.new_plan_id()
+            self._sources.kept.number(entry.id, plan_id)
+            self._ledger.emit(entry, prepared.accepted(entry, plan_id))
+            await self._turn(pending)
+            arming = Progress(plan_id=plan_id, stage="arming")
+            await until_armed(self.follower, self._link, lambda: self._ledger.emit(entry, arming))
+            if time.monotonic() > entry.deadline_s:
+                raise too_late(entry, "its turn came too late")
+            await self._yield(pending)
+            await self._take_over(pending, prepared, plan_id)
+        except NotPlayableError as error:
+            self._ledger.emit(entry, error.event)
+        except CommandRefusedError as error:
+            self._ledger.emit(entry, refused_later(error))
+        except RetargetError as error:
+            self.planner.give_up()
+            event = failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
+            self._ledger.emit(entry, event)
+        except asyncio.CancelledError:
+            self._ledger.emit(entry, Cancelled(plan_id=0, by=pending.cancelled_by or "shutdown"))
+        except Exception as error:  # one command must not end the daemon
+            log.exception("playing %r failed", entry.request.words)
+            self.planner.give_up()
+            self._ledger.emit(entry, failed("internal", str(error), "", "see the daemon's log"))
+        finally:
+            self._waiting.remove(pending)
+
+    def _check_deadline(self, entry: Entry) -> None:
+        """Refuse at once what cannot begin in time.
+
+        Raises:
+            NotPlayableError: it cannot.
+        """
+        request, earliest_s = entry.request, time.monotonic()
+        if request.deadline_s is None:
+            return
+        found = "the motion was ready too late"
+        if request.when == "at" and request.at_s is not None:
+            earliest_s, found = max(earliest_s, request.at_s), "its time is later than that"
+        if request.when == "after" and self._player.entry is not None:
+            earliest_s, found = earliest_s + self.planner.ahead_s, "what is played before it ends later than that"
+        if self.machine.state is RobotState.LIMP:
+            earliest_s, found = earliest_s + ARMING_S, "the robot has to be armed first"
+        if earliest_s > entry.deadline_s:
+            raise too_late(entry, found)
+
+    async def _turn(self, pending: Pending) -> None:
+        """Wait for the command's turn or time; it has the right to take over afterwards."""
+        request = pending.entry.request
+        if request.when == "now":
+            self._overtake(pending)
+        elif request.when == "at" and request.at_s is not None:
+            while (left_s := request.at_s - time.monotonic()) > 0:
+                await asyncio.sleep(min(left_s, 1.0))
+            self._waiting.renew(pending)
+            self._overtake(pending)
+        elif request.when == "after":
+            while self._player.entry is not None or not self._waiting.is_next(pending):
+                await asyncio.sleep(TICK_S)
+                if time.monotonic() > pending.entry.deadline_s:
+                    raise too_late(pending.entry, "its turn did not come in time")
+        pending.turn = True
+
+    async def _yield(self, pending: Pending) -> None:
+        """Wait a moment where a newer command may be about to take over: the robot does not set out twice."""
+        end_s = min(time.monotonic() + YIELD_S, pending.entry.deadline_s)
+        while self._waiting.may_be_overtaken(pending) and time.monotonic() < end_s:
+            await asyncio.sleep(TICK_S)
+
+    async def _take_over(self, pending: Pending, prepared: Prepared, plan_id: int) -> None:
+        """Make it what is played; what was played ends in `cancelled`."""
+        entry = pending.entry
+        pending.committing = True
+        alive: Callable[[], bool] = lambda: not pending.cancelled_by and pending.epoch == self.planner.epoch  # noqa: E731
+        if not await self._player.take_over(entry, prepared.score, plan_id, pending.epoch, alive):
+            self._ledger.emit(entry, Cancelled(plan_id=plan_id, by=pending.cancelled_by or self.halts.by or "stop"))
+
+
+def _named(entry: Entry) -> str:
+    """As those are told that end because of it."""
+    return f"{tag_of(entry.request)} {entry.id}"

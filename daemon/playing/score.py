@@ -1,0 +1,130 @@
+"""What a command plays, stretch by stretch: once, several times, or for ever.
+
+A score is asked for its next stretch shortly before it is due. Whatever can make postures in time order can be one:
+a clip here, idle movements in `daemon.playing.idle`, a generator that tells a story.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from daemon.playing.cycles import after_loop, closed, find_hold, find_loop
+from daemon.playing.posture import Posture, at_tempo, faded_in, joined, mirrored, scaled
+from daemon.wire.requests import Play
+
+AGAIN_FADE_FRAMES = 8
+"""Frames over which a motion that cannot go round grows out of its own end when it is done again."""
+LOOP_STRETCH_S = 1.5
+"""Rounds are joined to stretches of at least this length."""
+
+
+class Score(Protocol):
+    """Stretches of posture in order."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether `next` has something without waiting; asked often, in the event loop."""
+        ...
+
+    def next(self) -> tuple[Posture, bool]:
+        """The next stretch, and whether it is the last; not called again after that."""
+        ...
+
+
+@dataclass(frozen=True)
+class Marks:
+    """What is known of a clip beforehand, in frames; None where it has to be found.
+
+    Attributes:
+        loop: first frame and end of the part that goes round; None when there is none.
+        hold: frame that is held.
+    """
+
+    loop: tuple[int, int] | None
+    hold: int
+
+
+def marks_of(posture: Posture) -> Marks:
+    """Find loop and hold of a clip."""
+    return Marks(find_loop(posture), find_hold(posture))
+
+
+class ClipScore:
+    """A clip as the options of `Play` want it."""
+
+    def __init__(self, posture: Posture, play: Play, marks: Marks | None = None) -> None:
+        needed = play.loop or play.hold or play.repeat > 1
+        self._marks = marks or (marks_of(posture) if needed else Marks(None, len(posture) - 1))
+        self._posture, self._play = posture, play
+        self._rounds_left = -1 if play.loop else play.repeat - 1
+        self._begun = False
+
+    @property
+    def ready(self) -> bool:
+        """Always: the clip is there."""
+        return True
+
+    def next(self) -> tuple[Posture, bool]:
+        """The next stretch, and whether it is the last."""
+        stretch, last = self._next()
+        return varied(stretch, self._play), last
+
+    def finish(self) -> None:
+        """Go round no more: the next stretch leads to the end."""
+        self._rounds_left = 0
+
+    def _next(self) -> tuple[Posture, bool]:
+        p, loop = self._posture, self._marks.loop
+        begun, self._begun = self._begun, True
+        end = self._marks.hold + 1 if self._play.hold else len(p)
+        if not self._rounds_left:
+            if not begun or loop is None:
+                return (p[:end] if not begun else self._again(end)), True
+            return self._last_rounds()
+        if loop is None:  # the whole, again and again, out of its own end
+            stretch = self._again(len(p)) if begun else p
+            self._rounds_left -= 1
+            return stretch, False
+        if not begun:
+            head = p[: loop[0]]
+            whole = joined([head, closed(p, loop)]) if len(head) else closed(p, loop)
+            return whole, False
+        rounds = self._take_rounds(loop)
+        return closed(p, loop).at(np.arange(rounds * (loop[1] - loop[0])) % (loop[1] - loop[0])), False
+
+    def _take_rounds(self, loop: tuple[int, int]) -> int:
+        wanted = max(1, round(LOOP_STRETCH_S * self._posture.fps / (loop[1] - loop[0])))
+        rounds = wanted if self._rounds_left < 0 else min(wanted, self._rounds_left)
+        if self._rounds_left > 0:
+            self._rounds_left -= rounds
+        return rounds
+
+    def _last_rounds(self) -> tuple[Posture, bool]:
+        loop = self._marks.loop
+        assert loop is not None, "asked only of a clip that goes round"
+        tail = after_loop(self._posture, loop)
+        if self._play.hold:  # held in the loop or on the way out: one more round up to the frame that says most
+            a, b = loop
+            hold = self._marks.hold
+            tail = closed(self._posture, loop)[: hold - a + 1] if a <= hold < b else tail[: max(1, hold - b + 1)]
+        if not len(tail):
+            tail = closed(self._posture, loop)
+        return tail, True
+
+    def _again(self, end: int) -> Posture:
+        p = self._posture
+        return faded_in(p[:end], p[len(p) - 1 :], AGAIN_FADE_FRAMES)
+
+
+def varied(p: Posture, play: Play) -> Posture:
+    """Mirror, size and tempo of `play`."""
+    if play.mirror:
+        p = mirrored(p)
+    if play.amplitude != 1.0:
+        p = scaled(p, play.amplitude)
+    if play.tempo != 1.0:
+        p = at_tempo(p, play.tempo)
+    return p

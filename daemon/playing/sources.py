@@ -1,0 +1,235 @@
+"""Where motions come from: the generator for texts, stories, edits and poses, the library for gestures.
+
+A new kind of command begins here.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+from daemon.config import DaemonConfig
+from daemon.errors import ClipError
+from daemon.generator.generation import GeneratorClient, no_answer
+from daemon.generator.messages import Generated, GeneratorError
+from daemon.gestures.library import GestureLibrary
+from daemon.playing.kept_motions import KeptMotion, KeptMotions
+from daemon.playing.keyposes import KeyPose, led_through
+from daemon.playing.originals import Originals
+from daemon.playing.posture import Posture, joined, posture_of
+from daemon.playing.score import ClipScore, Marks, Score, varied
+from daemon.playing.story_score import SceneNews, StoryScore
+from daemon.playing.stream_score import StreamScore
+from daemon.state.lease import LeaseClock
+from daemon.state.ledger import Entry
+from daemon.state.replies import NotPlayableError, generator_failed, too_late
+from daemon.wire.events import Accepted, Rejected
+from daemon.wire.requests import Command, Edit, Gesture, Inbetween, Lease, Play, Replay, Say, Story, tag_of
+from mmm_core.motion import Motion
+from retarget.guarded_steps import GuardedSteps
+from retarget.robot import RobotModel
+
+OUT_OF_SCOPE_DO = "ask for gestures of head, arms and torso, in English, e.g. 'wave with your right hand'"
+_THEIRS = ("bad_edit", "bad_keyframes")
+"""Failures of the generator that tell of the request and not of the generator."""
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A motion ready to be played, and what is told about it when it is accepted."""
+
+    score: Score | StreamScore
+    duration_s: float
+    status: str = "accepted"
+    understood: str = ""
+    reason: str = ""
+    scope_score: float = 1.0
+    generate_ms: float = 0.0
+    silence_s: float | None = None
+
+    def accepted(self, entry: Entry, plan_id: int) -> Accepted:
+        """The event."""
+        return Accepted(
+            plan_id=plan_id,
+            text=entry.request.words,
+            status=self.status,
+            understood=self.understood,
+            reason=self.reason,
+            scope_score=round(self.scope_score, 4),
+            duration_s=round(self.duration_s, 3),
+            generate_ms=round(self.generate_ms, 2),
+            silence_s=self.silence_s,
+        )
+
+
+class Sources:
+    """Turns requests into scores."""
+
+    def __init__(
+        self, config: DaemonConfig, robot: RobotModel, generator: GeneratorClient, library: GestureLibrary
+    ) -> None:
+        self._config, self._generator, self.library = config, generator, library
+        self.kept = KeptMotions()
+        self._robot = robot
+        self._originals = Originals(library, self.kept, config.motions or Path())
+
+    async def prepare(self, entry: Entry, now: Callable[[], Posture]) -> Prepared:
+        """The motion of a command; `now` gives one frame, how the robot is held.
+
+        Raises:
+            NotPlayableError: there is none; its event ends the command.
+        """
+        request = entry.request
+        if isinstance(request, Say):
+            ask = self._generator.generate
+            return await self._generated(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
+        if isinstance(request, Story):
+            return await self._story(entry, request)
+        if isinstance(request, Inbetween):
+            return await self._inbetween(entry, request, now())
+        if isinstance(request, Edit):
+            return await self._edit(entry, request)
+        if isinstance(request, Replay):
+            motion = await asyncio.to_thread(self._originals.motion, request)
+            posture = await asyncio.to_thread(posture_of, motion)
+            score = await self._score(entry, posture, motion)
+            return Prepared(score, _duration_s(posture, request), understood=motion.text or request.words)
+        if isinstance(request, Gesture):
+            clip = self._originals.clip(request.name)
+            motion = clip.posture.motion(text=clip.name)
+            score = await self._score(entry, clip.posture, motion, clip.marks)
+            return Prepared(score, _duration_s(clip.posture, request), understood=f"{clip.text} (gesture {clip.name})")
+        if isinstance(request, Lease):
+            return await self._lease(request)
+        raise TypeError(f"no source for {type(request).__name__}")
+
+    def keep(self, name: str, command_id: str) -> str:
+        """Keep the motion of a command (the newest when the id is empty) as a gesture; what it shows.
+
+        Raises:
+            ClipError: there is no such motion, or it cannot be kept.
+        """
+        key = command_id or self.kept.newest()
+        kept = self.kept.of_command(key) if key else None
+        if key is None or kept is None:
+            raise ClipError(f"no motion of command {command_id!r} to keep; the newest: {self.kept.some()}; "
+                            "`mmmd say` one first")  # fmt: skip
+        self.library.keep(name, kept.words, kept.posture, f"command {key}")
+        return kept.words
+
+    async def _generated(
+        self, entry: Entry, ask: Callable[[float], Awaitable[Generated]], keys: list[KeyPose] | None = None
+    ) -> Prepared:
+        """What the generator makes of one request, led through `keys`."""
+        generated = await self._asked(entry, ask)
+        motion, request = generated.motion, entry.request
+        if motion.status == "rejected":
+            raise _out_of_scope(entry, generated.reason, generated.understood, motion.scope_score)
+        posture = posture_of(motion)
+        if keys:
+            posture = led_through(posture, keys)
+            motion = posture.motion(motion)
+        return Prepared(
+            await self._score(entry, posture, motion),
+            _duration_s(posture, request),
+            motion.status,
+            generated.understood,
+            generated.reason,
+            motion.scope_score,
+            sum(generated.timings_ms.values()),
+        )
+
+    async def _lease(self, request: Lease) -> Prepared:
+        silence_s = self._config.lease_s if request.silence_s is None else request.silence_s
+        guard = await asyncio.to_thread(GuardedSteps, self._robot)
+        clock = LeaseClock(silence_s, self._config.lease_park_s)
+        score = StreamScore(self._robot, guard, clock, request.holder)
+        understood = f"joint targets to {self._config.endpoints.stream}, at least one every {silence_s:g} s"
+        return Prepared(score, 0.0, understood=understood, silence_s=silence_s)
+
+    async def _story(self, entry: Entry, request: Story) -> Prepared:
+        score = StoryScore(request, self._generator, self._config.generate_timeout_s)
+
+        async def begin(timeout_s: float) -> list[SceneNews]:
+            async with asyncio.timeout(timeout_s):
+                return await score.begin()
+
+        news = await self._asked(entry, begin)
+        away = [f"scene {n.number} ({n.text[:40]!r}) is left out: {n.reason}" for n in news if n.status == "rejected"]
+        if score.empty:
+            raise _out_of_scope(entry, "; ".join(away)[:1000], news[0].understood, max(n.scope_score for n in news))
+        first = next(n for n in news if n.status != "rejected")
+        status = "degraded" if any(n.status != "accepted" for n in news) else "accepted"
+        reason = "; ".join([*away, *(n.reason for n in news if n.status == "degraded")])[:1000]
+        return Prepared(score, 0.0, status, first.understood, reason, first.scope_score, score.generate_ms)
+
+    async def _inbetween(self, entry: Entry, request: Inbetween, now: Posture) -> Prepared:
+        keys = [self._originals.pose(asked) for asked in request.poses]
+        if keys[0].at_s >= 1 / now.fps:
+            near = keys[0].at_s < 0.2  # in the token in which the motion begins: the first pose stands for both
+            keys = keys if near else [KeyPose(0.0, now), *keys]
+        poses = joined([key.pose for key in keys]).motion()
+        at_s = [key.at_s for key in keys]
+        ask = self._generator.between
+        return await self._generated(entry, lambda t: ask(poses, at_s, request.text, request.seed, t), keys)
+
+    async def _edit(self, entry: Entry, request: Edit) -> Prepared:
+        motion = await asyncio.to_thread(self._originals.motion, request)
+        what = (request.parts, request.start_s, request.end_s)
+        ask = self._generator.edit
+        return await self._generated(entry, lambda t: ask(motion, request.text, request.seed, *what, t))
+
+    async def _asked(self, entry: Entry, ask: Callable[[float], Awaitable[T]]) -> T:
+        """The generator's answer within the time there is.
+
+        Raises:
+            NotPlayableError: it failed, refused, or was not in time.
+        """
+        timeout_s, limited = self._config.generate_timeout_s, False
+        if entry.request.deadline_s is not None:
+            left_s = entry.deadline_s - time.monotonic()
+            timeout_s, limited = (left_s, True) if left_s < timeout_s else (timeout_s, False)
+        if timeout_s <= 0:
+            raise too_late(entry, "no time left to generate it")
+        try:
+            return await ask(timeout_s)
+        except (GeneratorError, TimeoutError) as caught:
+            error = caught if isinstance(caught, GeneratorError) else no_answer(tag_of(entry.request), timeout_s)
+            if limited and error.code == "generator_timeout":
+                raise too_late(entry, "it was not generated in time") from caught
+            if error.code in _THEIRS:
+                event = Rejected(
+                    code=error.code, asked=error.asked, found=error.found, allowed=error.allowed, do=error.do
+                )
+                raise NotPlayableError(event) from caught
+            raise NotPlayableError(generator_failed(error, self._generator.state)) from caught
+
+    async def _score(self, entry: Entry, posture: Posture, motion: Motion, marks: Marks | None = None) -> Score:
+        play = entry.request
+        assert isinstance(play, Play), "only motions have a score of posture"
+        self.kept.add(entry.id, KeptMotion(play.words, varied(posture, play), motion))
+        if play.loop or play.hold or play.repeat > 1:  # looking for the loop takes a while
+            return await asyncio.to_thread(ClipScore, posture, play, marks)
+        return ClipScore(posture, play, marks)
+
+
+def _out_of_scope(entry: Entry, reason: str, understood: str, score: float) -> NotPlayableError:
+    return NotPlayableError(Rejected(
+        code="out_of_scope",
+        asked=f"{tag_of(entry.request)} {entry.request.words[:200]!r}",
+        found=reason or "nothing the model knows",
+        allowed="upper-body motion of one person without objects",
+        do=OUT_OF_SCOPE_DO,
+        understood=understood,
+        scope_score=round(score, 4),
+    ))  # fmt: skip
+
+
+def _duration_s(posture: Posture, request: Command) -> float:
+    """Length of one performance at the asked tempo."""
+    return len(posture) / posture.fps / (request.tempo if isinstance(request, Play) else 1.0)

@@ -1,0 +1,209 @@
+"""A story as a score: scenes are asked of the generator while the ones before are played, a few seconds ahead.
+
+What the generator needs of the past comes back with each piece and is sent with the next request, so the daemon keeps two
+pieces and a few hundred bytes however long the story is. A generator that is lost is a stall: the robot brakes and holds,
+and goes on with the story when there is one again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from daemon.generator.generation import GeneratorClient
+from daemon.generator.messages import Generated, GeneratorError
+from daemon.playing.posture import Posture, at_steps, joined, mirrored, posture_of, scaled, standing
+from daemon.state.replies import NotPlayableError, generator_failed
+from daemon.wire.requests import Story
+
+log = logging.getLogger(__name__)
+
+PIECES_AHEAD = 2
+"""Pieces kept ready; a `say` that barges in waits for one request of a scene at most."""
+SHORTEST_FRAMES = 16
+"""Scenes that give less are joined to the next one."""
+PATIENCE_S = 60.0
+"""How long a story waits for a generator that is lost."""
+RETRY_S = 0.2
+AFTER_TIMEOUT_S = 2.0
+"""One that left a scene unanswered is started again within a second or so: asked sooner it would leave that one, too."""
+_LOST = ("generator_down", "generator_timeout")
+
+
+@dataclass(frozen=True)
+class SceneNews:
+    """How a scene was taken.
+
+    Attributes:
+        number: of the scene in the story, from 1 in each round.
+        text: of it.
+        status: accepted, degraded, or rejected when it was left out.
+        reason: why it is not accepted.
+        understood: the nearest known command.
+        scope_score: how near that is.
+    """
+
+    number: int
+    text: str
+    status: str
+    reason: str
+    understood: str
+    scope_score: float
+
+
+@dataclass(frozen=True)
+class _Piece:
+    posture: Posture
+    last: bool
+    news: tuple[SceneNews, ...]
+
+
+class StoryScore:
+    """A story as the options of `Play` want it. `next` may run in a worker thread, all else in the event loop.
+
+    Attributes:
+        news: of the scenes whose stretches were given out and not told of yet.
+    """
+
+    def __init__(self, request: Story, generator: GeneratorClient, timeout_s: float) -> None:
+        self._request, self._generator, self._timeout_s = request, generator, timeout_s
+        n_scenes = len(request.scenes)
+        self._n_all = None if request.loop else n_scenes * request.repeat
+        self._n_asked = self._n_barren = 0
+        self._parts: list[Posture] = []
+        self._news: list[SceneNews] = []
+        self._told = b""
+        self._complete = False
+        self._pieces: deque[_Piece] = deque()
+        self._task: asyncio.Task[None] | None = None
+        self._failure: NotPlayableError | None = None
+        self._tempo = _Tempo(request.tempo)
+        self.news: deque[SceneNews] = deque()
+        self.generate_ms = 0.0
+
+    async def begin(self) -> list[SceneNews]:
+        """Make the first piece; how the scenes up to it were taken.
+
+        Raises:
+            NotPlayableError: the generator failed.
+            GeneratorError: it is down, or did not answer in time.
+        """
+        await self._make()
+        return list(self._pieces[0].news)
+
+    @property
+    def empty(self) -> bool:
+        """Whether the story came to its end without a frame: every scene was left out."""
+        return self._complete and not any(len(piece.posture) for piece in self._pieces)
+
+    @property
+    def ready(self) -> bool:
+        """Whether a piece is there, or the error that ends the story; asks for what is to come."""
+        if self._task is not None and self._task.done():
+            self._task = None
+        if self._task is None and self._failure is None and not self._complete and len(self._pieces) < PIECES_AHEAD:
+            self._task = asyncio.create_task(self._make_patiently())
+        return bool(self._pieces) or self._failure is not None
+
+    def next(self) -> tuple[Posture, bool]:
+        """The next stretch, and whether it is the last.
+
+        Raises:
+            NotPlayableError: the generator failed; its event ends the command.
+        """
+        if not self._pieces:
+            assert self._failure is not None, "asked only when it is ready"
+            raise self._failure
+        piece = self._pieces.popleft()
+        self.news.extend(piece.news)
+        return piece.posture, piece.last
+
+    def finish(self) -> None:
+        """Go round no more: the story ends with the round that is under way."""
+        if self._n_all is None:
+            n = len(self._request.scenes)
+            self._n_all = -(-self._n_asked // n) * n
+
+    async def _make_patiently(self) -> None:
+        """Make a piece; wait for a generator that is lost."""
+        began_s, said = time.monotonic(), ""
+        while True:
+            try:
+                await self._make()
+                return
+            except GeneratorError as error:
+                if error.code not in _LOST or time.monotonic() - began_s > PATIENCE_S:
+                    self._failure = NotPlayableError(generator_failed(error, self._generator.state))
+                    return
+                if error.found != said:
+                    said = error.found
+                    log.warning("the story waits for the generator: %s", said)
+                await asyncio.sleep(AFTER_TIMEOUT_S if error.code == "generator_timeout" else RETRY_S)
+            except Exception as error:  # of the motion that came: it ends the story, not the daemon
+                log.exception("a piece of a story could not be made")
+                bad = GeneratorError("internal", "a piece of a story", str(error), "a motion", "see the daemon's log")
+                self._failure = NotPlayableError(generator_failed(bad, self._generator.state))
+                return
+
+    async def _make(self) -> None:
+        """Ask for scenes until there is enough to play, or the story is at its end."""
+        while not self._complete and sum(map(len, self._parts)) < SHORTEST_FRAMES:
+            generated = await self._ask()
+            if len(generated.motion.joints_m):
+                self._parts.append(self._varied(posture_of(generated.motion)))
+            self._n_barren = 0 if generated.motion.status != "rejected" else self._n_barren + 1
+            if self._n_barren >= len(self._request.scenes):
+                self._complete = True  # a whole round of what cannot be done
+        posture = joined(self._parts) if self._parts else standing()[:0]
+        self._pieces.append(_Piece(posture, self._complete, tuple(self._news)))
+        self._parts, self._news = [], []
+
+    async def _ask(self) -> Generated:
+        scenes, n_all = self._request.scenes, self._n_all
+        place = self._n_asked % len(scenes)
+        over = n_all is not None and self._n_asked >= n_all  # `finish` came when the last scene was asked for already
+        scene = None if over else scenes[place]
+        last = over or (n_all is not None and self._n_asked == n_all - 1)
+        text, seconds = (None, None) if scene is None else (scene.text, scene.seconds)
+        timeout_s = self._timeout_s
+        generated = await self._generator.scene(text, self._request.seed, seconds, self._told, timeout_s, last=last)
+        self._told, self._complete = generated.told, last
+        self.generate_ms += sum(generated.timings_ms.values())
+        if scene is not None:
+            self._n_asked += 1
+            m = generated.motion
+            self._news.append(
+                SceneNews(place + 1, scene.text, m.status, generated.reason, generated.understood, m.scope_score)
+            )
+        return generated
+
+    def _varied(self, p: Posture) -> Posture:
+        """Mirror, size and tempo, piece by piece as on the whole."""
+        if self._request.mirror:
+            p = mirrored(p)
+        if self._request.amplitude != 1.0:
+            p = scaled(p, self._request.amplitude)
+        return self._tempo.of(p)
+
+
+class _Tempo:
+    """Another tempo for a motion that comes in pieces: steps go on over their borders."""
+
+    def __init__(self, tempo: float) -> None:
+        self._tempo, self._at = tempo, 0.0
+        self._before: Posture | None = None
+
+    def of(self, p: Posture) -> Posture:
+        """The frames that fall into a piece; the last frame of the one before is kept for those between the two."""
+        if self._tempo == 1.0:
+            return p
+        whole = p if self._before is None else joined([self._before, p])
+        n = int((len(whole) - 1 - self._at) / self._tempo + 1e-9) + 1
+        places = self._at + self._tempo * np.arange(n, dtype=np.float64)
+        self._before, self._at = whole[len(whole) - 1 :], self._at + n * self._tempo - (len(whole) - 1)
+        return at_steps(whole, places)

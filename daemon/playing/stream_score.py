@@ -1,0 +1,153 @@
+"""What a lease plays: targets as they come, made into frames that are safe to send. No clock of its own, no I/O.
+
+It is a score whose frames are joints, not posture: what comes is meant for this robot, and is not retargeted.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.state.lease import LeaseClock, LeaseState
+from retarget.guarded_steps import GuardedSteps
+from retarget.paths import JointState
+from retarget.robot import RobotModel
+
+Array = NDArray[np.float64]
+LONGEST_GLIDE_S = 0.1
+"""Targets that come more seldom are gone to at once, as fast as the limits allow."""
+_SHARE_OF_NEWEST = 0.3
+SELF_COLLISION, SILENCE = "self-collision", "silence"
+
+
+class Glide:
+    """Between targets that come more seldom than frames, the line from one to the next, as long as they are apart."""
+
+    def __init__(self, rate_hz: float) -> None:
+        self._rate_hz = rate_hz
+        self._apart_s: float | None = None
+        self._last_s = float("-inf")
+        self._left = 0
+        self._at_rad: Array = np.zeros(0)
+        self.target_rad: Array = np.zeros(0)
+
+    def begin(self, position_rad: Array) -> None:
+        """Stand here."""
+        self._at_rad, self.target_rad, self._left = position_rad.copy(), position_rad.copy(), 0
+
+    def take(self, target_rad: Array, now_s: float) -> None:
+        """A new target (J,), which came at `now_s`."""
+        apart_s, self._last_s = now_s - self._last_s, now_s
+        if apart_s > LONGEST_GLIDE_S:
+            self._apart_s = None
+        elif self._apart_s is None:
+            self._apart_s = apart_s
+        else:
+            self._apart_s += _SHARE_OF_NEWEST * (apart_s - self._apart_s)
+        self.target_rad = target_rad.copy()
+        self._left = 1 if self._apart_s is None else max(1, math.ceil(self._apart_s * self._rate_hz))
+
+    def frame(self) -> Array:
+        """(J,) where to be in the next frame."""
+        if self._left > 1:
+            self._at_rad = self._at_rad + (self.target_rad - self._at_rad) / self._left
+            self._left -= 1
+        else:
+            self._at_rad = self.target_rad
+        return self._at_rad
+
+
+class StreamScore:
+    """Frames of one lease.
+
+    Args:
+        robot: the robot.
+        guard: makes the steps.
+        clock: the lease's.
+
+    Attributes:
+        holder: who holds it.
+        targets, bad: messages taken and refused.
+        clipped: targets beyond a position limit, which were met as far as it goes.
+    """
+
+    def __init__(self, robot: RobotModel, guard: GuardedSteps, clock: LeaseClock, holder: str) -> None:
+        self._guard, self.clock, self.holder = guard, clock, holder
+        self._glide = Glide(robot.bus.rate_hz)
+        self._gaze_rad: dict[int, float] = {}
+        self.targets = self.bad = self.clipped = 0
+        self.begun = False
+
+    @property
+    def ready(self) -> bool:
+        """Never: its frames are asked for one by one."""
+        return False
+
+    def begin(self, start: JointState, now_s: float) -> None:
+        """The joints are led by it from here on."""
+        self.go_on(start)
+        self.clock.begin(now_s)
+        self.begun = True
+
+    def go_on(self, start: JointState) -> None:
+        """The joints are elsewhere than the frames led to: go on from there, to the same target."""
+        self._guard.reset(start.position_rad, start.velocity_rad_s)
+        if not self.begun or not self.targets:
+            self._glide.begin(start.position_rad)
+
+    def take(self, q_rad: Array, now_s: float) -> bool:
+        """A checked target (J,), NaN where a joint keeps the one it has; false when the lease takes none any more."""
+        if not self.begun or not self.clock.target(now_s):
+            return False
+        self.targets += 1
+        self._glide.take(np.where(np.isnan(q_rad), self._glide.target_rad, q_rad), now_s)
+        return True
+
+    def look(self, gaze_rad: dict[int, float]) -> None:
+        """Angles of joints that a gaze holds, by index; none lets them go."""
+        self._gaze_rad = dict(gaze_rad)
+
+    def frame(self) -> Array:
+        """(J,) the next frame."""
+        if self.clock.state in (LeaseState.SILENT, LeaseState.OVER):
+            return self._guard.brake()
+        wanted = self._glide.frame().copy()
+        for joint, angle_rad in self._gaze_rad.items():
+            wanted[joint] = angle_rad
+        q_rad = self._guard.step(wanted)
+        self.clipped += self._guard.clipped
+        return q_rad
+
+    @property
+    def state(self) -> JointState:
+        """Where the frames have led to."""
+        return JointState(self._guard.position_rad, self._guard.velocity_rad_s)
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the last frame moved nothing."""
+        return self._guard.at_rest
+
+    @property
+    def released(self) -> bool:
+        """Whether it ends as soon as it has come to rest."""
+        return self.clock.state is LeaseState.RELEASED
+
+    @property
+    def held_by(self) -> str:
+        """What keeps the robot from its target: self-collision, silence, or nothing."""
+        if self.clock.state in (LeaseState.SILENT, LeaseState.OVER):
+            return SILENCE
+        return SELF_COLLISION if self._guard.held else ""
+
+    @property
+    def holds(self) -> int:
+        """Times it braked for a contact."""
+        return self._guard.holds
+
+    def touching(self) -> str:
+        """Bodies that would touch at the target, in words; empty when it is the way there."""
+        pairs = self._guard.touching(self._glide.target_rad)
+        return ", ".join(f"{a} and {b}" for a, b in pairs[:3])

@@ -1,0 +1,176 @@
+"""Commands on their way: being made, waiting for their turn or their time. The newest `now` wins over older ones.
+
+The order of commands is that in which they are to take effect: a `now` and an `after` from when they came, an `at` from
+when its time has come. A command ends those before it in that moment in which it is accepted (an `at`: in which its time
+has come), never by being asked alone: one that is refused ends nothing but itself. As long as a `now` is being made that
+may be about to win, an older one does not begin to move (`Performer`), but only so long as that usually takes.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import OrderedDict
+from dataclasses import dataclass
+
+from daemon.clock import clock_id
+from daemon.state.ledger import Entry
+from daemon.wire.requests import Request
+
+MOST_WAITING = 64
+SHADOW_S = 0.1
+"""A command that comes so soon after a stop was on its way when it was given, unless its sender's clock shows otherwise."""
+CLOCKS_KEPT = 64
+"""Clocks of other machines, of which the newest halt is remembered."""
+
+
+@dataclass(eq=False)
+class Pending:
+    """One command on its way.
+
+    Attributes:
+        entry: of the ledger.
+        epoch: of the link when it came; a stop makes it old.
+        task: what makes and plays it.
+        cancelled_by: what ended it, empty while it lives.
+        committing: whether it is just taking over, which is not interrupted half way.
+        turn: whether its turn or time has come.
+    """
+
+    entry: Entry
+    epoch: int
+    task: asyncio.Task[None] | None = None
+    cancelled_by: str = ""
+    committing: bool = False
+    turn: bool = False
+
+    @property
+    def when(self) -> str:
+        """now, after or at."""
+        return self.entry.request.when
+
+    @property
+    def undecided(self) -> bool:
+        """Whether it is a `now` that is neither accepted nor refused yet."""
+        return self.when == "now" and not self.entry.accepted
+
+
+class Halts:
+    """When a person last stopped, parked or cut torque, and what that means for a command.
+
+    Times are compared only where they are of one clock: what was sent from this machine against when the halt came here,
+    what was sent from another against when a halt was sent from there. `note` is called by the ctl thread.
+    """
+
+    def __init__(self, clock: str | None = None) -> None:
+        self._clock = clock_id() if clock is None else clock
+        self._sent_s: OrderedDict[str, float] = OrderedDict()
+        self._from = ""
+        self._n_given = self._n_served = 0
+        self.at_s, self.by = float("-inf"), ""
+
+    def note(self, by: str, request: Request | None = None) -> None:
+        """A halt was given, by a request that may say when it was sent."""
+        sent_s, clock = (None, None) if request is None else (request.t_mono, request.clock)
+        self._n_given += 1
+        self.at_s, self.by, self._from = time.monotonic(), by, clock or ""
+        if clock and clock != self._clock and sent_s is not None:
+            self._sent_s[clock] = max(sent_s, self._sent_s.pop(clock, sent_s))
+            if len(self._sent_s) > CLOCKS_KEPT:
+                self._sent_s.popitem(last=False)
+
+    def served(self) -> None:
+        """What had arrived before a halt has ended. Called by the event loop, once for each halt."""
+        self._n_served += 1
+
+    def overtook(self, entry: Entry) -> bool:
+        """Whether a command that arrives now was sent before the halt; of one that cannot show it, that is assumed.
+
+        It is as long as the halt is being served, which takes a while behind many requests, and a moment longer.
+        """
+        after = self._sent_after(entry.request)
+        if after is not None:
+            return not after
+        return self._n_served < self._n_given or time.monotonic() - self.at_s < SHADOW_S
+
+    def spares(self, entry: Entry) -> bool:
+        """Whether a command that came before the halt was served was surely sent after it."""
+        return self._sent_after(entry.request) is True
+
+    def _sent_after(self, request: Request) -> bool | None:
+        """Whether it was sent after the newest halt; None when no clock tells."""
+        sent_s, clock = request.t_mono, request.clock
+        if sent_s is None or not clock:
+            return None
+        if clock == self._clock:
+            return self.at_s < sent_s if sent_s <= time.monotonic() else None
+        halt_s = self._sent_s.get(clock)
+        if halt_s is None:
+            return None
+        if sent_s <= halt_s:
+            return False
+        return True if clock == self._from else None  # the newest halt came from elsewhere
+
+
+class WaitingRoom:
+    """All commands on their way, in order of arrival."""
+
+    def __init__(self) -> None:
+        self._all: list[Pending] = []
+
+    def __iter__(self):
+        return iter(list(self._all))
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __contains__(self, pending: object) -> bool:
+        return pending in self._all
+
+    @property
+    def full(self) -> bool:
+        """Whether no more may wait."""
+        return len(self._all) >= MOST_WAITING
+
+    def add(self, pending: Pending) -> None:
+        """A command came."""
+        self._all.append(pending)
+
+    def remove(self, pending: Pending) -> None:
+        """It is played or has ended."""
+        if pending in self._all:
+            self._all.remove(pending)
+
+    def renew(self, pending: Pending) -> None:
+        """Its time has come: it is the newest of all."""
+        self._all.remove(pending)
+        self._all.append(pending)
+
+    def overtaken_by(self, newest: Pending) -> list[Pending]:
+        """Those that end because `newest` takes over: all before it but those whose time has not come."""
+        before = self._all[: self._all.index(newest)]
+        return [p for p in before if not p.committing and not (p.when == "at" and not p.turn)]
+
+    def may_be_overtaken(self, pending: Pending) -> bool:
+        """Whether a newer `now` is being made of which is not known yet whether it is accepted."""
+        newer = self._all[self._all.index(pending) + 1 :]
+        return any(p.undecided for p in newer)
+
+    @property
+    def oldest_undecided(self) -> Pending | None:
+        """The first `now` that is still being made."""
+        return next((p for p in self._all if p.undecided), None)
+
+    def is_next(self, pending: Pending) -> bool:
+        """Whether no command stands before this one that waits for its turn."""
+        for p in self._all:
+            if p is pending:
+                return True
+            if p.when != "at" or p.turn:
+                return False
+        return True
+
+    @property
+    def someone_waits_after(self) -> bool:
+        """Whether a command waits for what is played to end."""
+        return any(p.when == "after" for p in self._all)

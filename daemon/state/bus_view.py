@@ -1,0 +1,115 @@
+"""The bus process as the front sees it: its newest cycle and what that says about the robot."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.bus.health import Health
+from daemon.driving.derating import DeratedBy
+from daemon.driving.shared import BusLink, BusState
+from daemon.wire.events import ServoHealth
+from retarget.robot import RobotModel
+from retarget.ticks import JointServoMap
+
+Array = NDArray[np.float64]
+
+
+class BusView:
+    """Reads the cycles of the bus process. `update` belongs to one thread; the rest may be read from any.
+
+    Attributes:
+        state: what the bus process is doing; limp before its first cycle.
+        goal_rad: (J,) what the servos were last told.
+        present_rad: (J,) what they last measured.
+        valid: (S,) whether each servo's last reading is from the newest cycle.
+        error: (S,) error bits of the last replies.
+        at_rest: whether the last cycle moved no goal.
+        passed: states of the cycles that the last update brought, each once, in order.
+        index: cycles published so far, as far as they have been read.
+        lost: cycles that were overwritten before they were read.
+    """
+
+    def __init__(self, link: BusLink, robot: RobotModel) -> None:
+        self._link, self._robot = link, robot
+        self._servo_map = JointServoMap(robot)
+        self.index = 0
+        self.at_rest = True
+        self._last_cycle_s: float | None = None
+        self.state = BusState.LIMP
+        self.passed: list[BusState] = []
+        self.goal_rad: Array = robot.park_rad.copy()
+        self.present_rad: Array = robot.park_rad.copy()
+        self.valid = np.zeros(robot.n_servos, bool)
+        self.error = np.zeros(robot.n_servos, np.uint8)
+        self.lost = 0
+        self.underruns = 0
+
+    def update(self) -> tuple[NDArray[Any], int]:
+        """Cycles since the last call, and how many were lost between."""
+        records, self.index, lost = self._link.cycles_since(self.index)
+        self.lost += lost
+        if (
+            self._last_cycle_s is None
+        ):  # the first look: the bus process has just become ready, its first cycle is to come
+            self._last_cycle_s = time.monotonic()
+        if len(records):
+            last = records[-1]
+            self._last_cycle_s = time.monotonic()
+            self.goal_rad = np.array(last["goal_rad"])
+            self.present_rad = self._servo_map.tick_to_rad(last["present_tick"])
+            self.valid, self.error = last["valid"] != 0, np.array(last["error"])
+            self.underruns += int((records["underrun"] != 0).sum())
+            self.at_rest = not np.any(last["velocity_rad_s"])
+            self.state = BusState(int(last["state"]))
+        states = [int(state) for state in records["state"]]
+        self.passed = [BusState(s) for i, s in enumerate(states) if i == 0 or s != states[i - 1]]
+        return records, lost
+
+    def begin(self, state: BusState = BusState.LIMP) -> None:
+        """The bus process has just said that it is ready, in `state`: its silence counts from here."""
+        self.update()  # what one before it has published is not its own
+        self.state, self.at_rest = state, True
+        self._last_cycle_s = time.monotonic()
+
+    @property
+    def silent_s(self) -> float:
+        """Seconds since the newest cycle; before the first, since the first look for one."""
+        return 0.0 if self._last_cycle_s is None else time.monotonic() - self._last_cycle_s
+
+    def health(self) -> list[ServoHealth]:
+        """Each servo as the bus process sees it now; none before its first cycle."""
+        if not self._link.n_cycles:
+            return []
+        return [
+            ServoHealth(s.servo_id, s.joint_name, Health(state).name.lower(), *counts)
+            for s, (state, _, *counts) in zip(self._robot.servos, self._link.health.tolist(), strict=True)
+        ]
+
+    @property
+    def message(self) -> str:
+        """Why the bus process is in fault, as it says itself."""
+        return self._link.text
+
+    def counters(self) -> dict[str, Any]:
+        """What `status` tells about the bus process."""
+        share, by, servo_id = self._link.derating
+        fifo, locked = self._link.has_realtime
+        invalid = [self._robot.servo_ids[i] for i in np.flatnonzero(~self.valid)] if self.index else []
+        alerts = [self._robot.servo_ids[i] for i in np.flatnonzero(self.error)]
+        return {
+            "bus_state": self.state.name.lower(),
+            "cycles": self.index,
+            "cycles_lost": self.lost,
+            "underruns": self.underruns,
+            "silent_ms": round(1e3 * self.silent_s, 1),
+            "fifo_priority": fifo,
+            "locked_memory": locked,
+            "servos_not_answering": invalid,
+            "servos_with_error": alerts,
+            "speed_share": share,
+            "derated_by": f"{DeratedBy(by).name.lower()} of servo {servo_id}" if by else "",
+        }

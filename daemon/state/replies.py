@@ -1,0 +1,84 @@
+"""Events that tell how a command went, from what is known where it went so."""
+
+from __future__ import annotations
+
+import time
+
+import msgspec
+
+from daemon.generator.messages import GeneratorError
+from daemon.state.ledger import Entry
+from daemon.state.machine import CommandRefusedError
+from daemon.wire.events import Cancelled, Failed, Rejected
+from daemon.wire.requests import tag_of
+
+
+class NotPlayableError(Exception):
+    """A command that has come to its end before it was played; `event` tells how."""
+
+    def __init__(self, event: Rejected | Failed) -> None:
+        self.event = event
+        super().__init__(event.message)
+
+
+def refusal(request_id: str, error: CommandRefusedError) -> Rejected:
+    """The event of a command that the robot's state does not allow."""
+    return Rejected(
+        id=request_id,
+        code="wrong_state",
+        asked=error.command.value,
+        found=f"the robot is in {error.state.value}",
+        allowed=", ".join(error.allowed),
+        do=error.do,
+    )
+
+
+def refused_later(error: CommandRefusedError) -> Failed:
+    """The event of an accepted command for which the robot did not get, or stay, ready."""
+    return failed("wrong_state", f"the robot is in {error.state.value}", ", ".join(error.allowed), error.do)
+
+
+def too_late(entry: Entry, found: str) -> NotPlayableError:
+    """The end of a command that cannot begin in time: rejected, or failed once it was accepted."""
+    kind = Failed if entry.accepted else Rejected
+    asked = f"{tag_of(entry.request)} within {entry.request.deadline_s:g} s"
+    do = "leave out the deadline, or ask when the robot is free"
+    return NotPlayableError(kind(code="deadline", asked=asked, found=found, allowed="a beginning in time", do=do))
+
+
+def generator_failed(error: GeneratorError, state: str) -> Failed:
+    """The event of a command for which the generator, which is in `state`, gave no motion."""
+    found = f"{error.found} (generator: {state})"
+    return Failed(code=error.code, asked=error.asked, found=found, allowed=error.allowed, do=error.do)
+
+
+def ending(plan_id: int, by: str, failure: Failed | None) -> Cancelled | Failed:
+    """The event that ends a command; each gets its own, for the ledger fills in its id."""
+    return Cancelled(plan_id=plan_id, by=by) if failure is None else msgspec.structs.replace(failure, plan_id=plan_id)
+
+
+def as_failure(event: Rejected | Failed) -> Failed:
+    """The event of a command that was accepted before this came."""
+    return Failed(code=event.code, asked=event.asked, found=event.found, allowed=event.allowed, do=event.do)
+
+
+def failed(code: str, found: str, allowed: str, do: str) -> Failed:
+    """A command that could not be carried out."""
+    return Failed(code=code, asked="say", found=found, allowed=allowed, do=do)
+
+
+def lease_held(lease: Entry) -> Rejected:
+    """The event of a lease that somebody else has."""
+    since_s = time.monotonic() - lease.t_received_ns * 1e-9
+    return Rejected(
+        code="lease_held", asked="lease", found=f"{lease.request.words} holds lease {lease.id!r} since {since_s:.1f} s",
+        allowed="one lease at a time", do="ask its holder to `release` it, or end it with `cancel`",
+    )  # fmt: skip
+
+
+def lease_silent(park_s: float, targets: int) -> Failed:
+    """The event of a lease whose holder sends no more: it has broken what a lease promises, so this is no `done`."""
+    return Failed(
+        code="lease_silent", asked="lease", found=f"no target for {park_s:g} s, after {targets}",
+        allowed="targets at least as often as the lease says, or `release`", do="the robot parks; ask for a new lease",
+    )  # fmt: skip

@@ -1,0 +1,200 @@
+"""Messages of the daemon: bytes to requests, events to bytes. Sans-I/O.
+
+A request is one frame: JSON of a known type, or plain text, which is the text of `say`. Every message has `v`, `id`,
+`type`, `seq` and `t_mono`. A frame that is wrong raises one `WireError`, which holds what was asked, found and allowed
+and what to do, so that it becomes exactly one `error` event. An accepted command ends in exactly one of `done`,
+`cancelled`, `failed`; `rejected` and `error` mean that it was never accepted.
+"""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import msgspec
+
+from daemon.errors import DaemonError
+from daemon.wire.events import EVENTS, AnyEvent, ErrorEvent, Event
+from daemon.wire.requests import (
+    CMD_TYPES,
+    CTL_TYPES,
+    MAX_ID_CHARS,
+    MAX_TEXT_CHARS,
+    PROTOCOL_VERSION,
+    STREAM_TYPES,
+    CmdRequest,
+    CtlRequest,
+    Request,
+    Say,
+    Target,
+    tag_of,
+)
+
+MAX_FRAME_BYTES = 64 * 1024
+
+
+class WireError(DaemonError, ValueError):
+    """A frame that cannot be taken; says what was asked, found and allowed, and what to do."""
+
+    def __init__(self, code: str, asked: str, found: str, allowed: str, do: str, request_id: str = "") -> None:
+        self.code, self.asked, self.found, self.allowed, self.do = code, asked, found, allowed, do
+        self.request_id = request_id
+        super().__init__(f"{asked}: found {found}; allowed: {allowed}; {do}")
+
+
+_ENCODER = msgspec.json.Encoder()
+_EVENT_DECODER = msgspec.json.Decoder(AnyEvent)
+
+
+def encode(message: Request | Event) -> bytes:
+    """JSON of a request or event."""
+    return _ENCODER.encode(message)
+
+
+def decode_event(frame: bytes) -> AnyEvent:
+    """The event in a frame.
+
+    Raises:
+        WireError: it is none.
+    """
+    try:
+        return _EVENT_DECODER.decode(frame)
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+        raise WireError("not_an_event", "read an event", str(error), _names(EVENTS), "is this mmmd's port?") from error
+
+
+def decode_cmd(frame: bytes) -> CmdRequest:
+    """The request in a frame of the `cmd` socket; a frame that is not JSON is the text of `say`.
+
+    Raises:
+        WireError: the frame cannot be taken.
+    """
+    text = _checked_text(frame)
+    if text.lstrip()[:1] in ("{", "["):
+        return _decode_json(text, CMD_TYPES, CmdRequest, "cmd")
+    check_text(text)
+    return Say(text=text.strip())
+
+
+def decode_ctl(frame: bytes) -> CtlRequest:
+    """The request in a frame of the `ctl` socket: JSON, or the bare verb.
+
+    Raises:
+        WireError: the frame cannot be taken.
+    """
+    text = _checked_text(frame).strip()
+    if text[:1] not in ("{", "["):
+        text = _ENCODER.encode({"type": text}).decode()
+    return _decode_json(text, CTL_TYPES, CtlRequest, "ctl")
+
+
+def decode_target(frame: bytes) -> Target:
+    """The joint target in a frame of the `stream` socket.
+
+    Raises:
+        WireError: the frame cannot be taken.
+    """
+    return _decode_json(_checked_text(frame), STREAM_TYPES, Target, "stream")
+
+
+def error_event(error: WireError) -> ErrorEvent:
+    """The one event that answers a bad frame."""
+    return ErrorEvent(
+        id=error.request_id, code=error.code, asked=error.asked, found=error.found, allowed=error.allowed, do=error.do
+    )
+
+
+def _checked_text(frame: bytes) -> str:
+    if len(frame) > MAX_FRAME_BYTES:
+        raise WireError(
+            "too_large", "read a request", f"{len(frame)} bytes", f"at most {MAX_FRAME_BYTES}", "send less in one frame"
+        )
+    try:
+        return frame.decode("utf-8")
+    except UnicodeDecodeError as error:
+        found = f"byte 0x{frame[error.start]:02x} at position {error.start}, which is not UTF-8"
+        raise WireError("not_utf8", "read a request", found, "UTF-8 text or JSON", "encode the text as UTF-8") from None
+
+
+def _decode_json(text: str, types: tuple[type[Request], ...], union: Any, socket: str) -> Any:
+    try:
+        raw = msgspec.json.decode(text)
+    except (msgspec.DecodeError, RecursionError) as error:
+        found = "too deeply nested" if isinstance(error, RecursionError) else str(error)
+        do = "close every brace, or send plain text that does not begin with { or ["
+        raise WireError("bad_json", "read a JSON request", found, "one JSON object", do) from None
+    if not isinstance(raw, dict):
+        do = 'send {"type": "say", "text": "..."} or plain text'
+        raise WireError("bad_json", "read a JSON request", f"a JSON {type(raw).__name__}", "one JSON object", do)
+    asked = cast("dict[str, Any]", raw)  # JSON objects have no other keys
+    request_id = asked.get("id", "")
+    request_id = request_id if isinstance(request_id, str) and len(request_id) <= MAX_ID_CHARS else ""
+    _check_version(asked, request_id)
+    kind = _check_type(asked, types, socket, request_id)
+    if kind is Say and isinstance(asked.get("text"), str):
+        check_text(asked["text"], request_id)
+    try:
+        return msgspec.convert(asked, union)
+    except msgspec.ValidationError as error:
+        name, known = str(asked["type"]), ["type", *(f.name for f in msgspec.structs.fields(kind))]
+        unknown = [key for key in asked if key not in known]
+        if unknown:
+            found = f"unknown field {', '.join(map(repr, unknown))}"
+            allowed, do = f"fields {', '.join(known)}", "remove it; see docs/wire"
+            raise WireError("unknown_field", f"'{name}' request", found, allowed, do, request_id) from None
+        allowed = f"what docs/wire/{name}.schema.json says"
+        raise WireError("bad_value", f"'{name}' request", str(error), allowed, "correct it", request_id) from None
+
+
+def _check_version(raw: dict[str, Any], request_id: str) -> None:
+    version = raw.get("v", PROTOCOL_VERSION)
+    if type(version) is not int or version != PROTOCOL_VERSION:
+        found, allowed = f"version {version!r} of the protocol", f"version {PROTOCOL_VERSION}, which this daemon speaks"
+        raise WireError("version", "read a request", found, allowed, "use a client of the same version", request_id)
+
+
+def _check_type(raw: dict[str, Any], types: tuple[type[Request], ...], socket: str, request_id: str) -> type[Request]:
+    by_name: dict[object, type[Request]] = {tag_of(t): t for t in types}
+    name = raw.get("type")
+    if isinstance(name, str) and name in by_name:
+        return by_name[name]
+    found = "no 'type'" if name is None else f"type {name!r}"
+    do = "name one of these types"
+    for its_socket, its_types in (("cmd", CMD_TYPES), ("ctl", CTL_TYPES), ("stream", STREAM_TYPES)):
+        if isinstance(name, str) and name in {tag_of(t) for t in its_types}:
+            do = f"send it to the {its_socket} socket"
+            break
+    allowed = f"on {socket}: {_names(types)}"
+    raise WireError("unknown_type", "read a request", found, allowed, do, request_id)
+
+
+def check_request(request: Request) -> None:
+    """Refuse what the daemon would refuse, before it is sent.
+
+    Raises:
+        WireError: a value is outside what the schema says.
+    """
+    decode_cmd(encode(request))
+
+
+def check_text(text: str, request_id: str = "") -> None:
+    """Refuse a text that is empty or too long.
+
+    Raises:
+        WireError: it is.
+    """
+    if not text.strip():
+        raise WireError(
+            "empty_text",
+            "say",
+            "an empty text",
+            f"1 to {MAX_TEXT_CHARS} characters",
+            "say what to do, in words",
+            request_id,
+        )
+    if len(text) > MAX_TEXT_CHARS:
+        found, do = f"{len(text)} characters", "say it in fewer words"
+        raise WireError("text_too_long", "say", found, f"1 to {MAX_TEXT_CHARS} characters", do, request_id)
+
+
+def _names(types: tuple[type[msgspec.Struct], ...]) -> str:
+    return ", ".join(tag_of(t) for t in types)

@@ -1,0 +1,236 @@
+"""What may be asked of the daemon: one struct for each request. Sans-I/O.
+
+`say`, `gesture`, `story`, `inbetween`, `edit` and `replay` share the options of `Play` (`request_base.py`); a new way to get
+a motion is one more such struct.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from daemon.wire.compositions import (
+    MOST_POSES,
+    MOST_SCENES,
+    SHORTEST_GAP_S,
+    Edit,
+    Inbetween,
+    KeyPoseOf,
+    Replay,
+    SceneOf,
+    Story,
+)
+from daemon.wire.lease_requests import LONGEST_SILENCE_S, SHORTEST_SILENCE_S, Lease, Release, Target
+from daemon.wire.request_base import (
+    IDLE_STYLES,
+    LEAST_AMPLITUDE,
+    LEAST_TEMPO,
+    LONGEST_S,
+    MAX_ID_CHARS,
+    MAX_SEED,
+    MAX_TEXT_CHARS,
+    MOST_AMPLITUDE,
+    MOST_REPEATS,
+    MOST_TEMPO,
+    PROTOCOL_VERSION,
+    SHORTEST_S,
+    Command,
+    Id,
+    Name,
+    Play,
+    PlayOptions,
+    Request,
+    Text,
+    tag_of,
+)
+
+__all__ = [
+    "CMD_TYPES",
+    "CTL_TYPES",
+    "IDLE_STYLES",
+    "LEAST_AMPLITUDE",
+    "LEAST_TEMPO",
+    "LONGEST_S",
+    "LONGEST_SILENCE_S",
+    "MAX_ID_CHARS",
+    "MAX_SEED",
+    "MAX_TEXT_CHARS",
+    "MOST_AMPLITUDE",
+    "MOST_POSES",
+    "MOST_REPEATS",
+    "MOST_SCENES",
+    "MOST_TEMPO",
+    "PROTOCOL_VERSION",
+    "REQUESTS",
+    "SHORTEST_GAP_S",
+    "SHORTEST_S",
+    "SHORTEST_SILENCE_S",
+    "STREAM_TYPES",
+    "Arm",
+    "Cancel",
+    "Capabilities",
+    "CmdRequest",
+    "Command",
+    "CtlRequest",
+    "Edit",
+    "Estop",
+    "Gesture",
+    "Id",
+    "Idle",
+    "Inbetween",
+    "KeyPoseOf",
+    "Lease",
+    "Look",
+    "Name",
+    "Park",
+    "Play",
+    "PlayOptions",
+    "Record",
+    "Release",
+    "Replay",
+    "Request",
+    "Reset",
+    "Say",
+    "SceneOf",
+    "Status",
+    "Stop",
+    "Story",
+    "Target",
+    "Text",
+    "tag_of",
+]
+
+
+class Say(Play, tag="say", kw_only=True):
+    """Move as the text says.
+
+    Attributes:
+        text: what to do, in English.
+        seed: the same text, seed and seconds give the same motion.
+        seconds: length of the motion; None lets the model choose.
+    """
+
+    text: Text
+    seed: Annotated[int, Meta(ge=0, le=MAX_SEED)] = 0
+    seconds: Annotated[float, Meta(ge=SHORTEST_S, le=LONGEST_S)] | None = None
+
+    @property
+    def words(self) -> str:
+        """The text."""
+        return self.text
+
+
+class Gesture(Play, tag="gesture", kw_only=True):
+    """Play a named clip of the library; needs no generator.
+
+    Attributes:
+        name: of the clip; `capabilities` lists all.
+    """
+
+    name: Name
+
+    @property
+    def words(self) -> str:
+        """Its name."""
+        return self.name
+
+
+class Record(Request, tag="record", kw_only=True):
+    """Keep the motion of a command as a gesture of one's own.
+
+    Attributes:
+        name: of the gesture; one of the user's own of that name is replaced.
+        command: id of the command whose motion to keep; empty means the newest.
+    """
+
+    name: Name
+    command: Id = ""
+
+
+class Look(Request, tag="look"):
+    """Where the head looks while the rest of the body does something else; neither angle given lets go again.
+
+    Attributes:
+        yaw_deg: to the left.
+        pitch_deg: down.
+    """
+
+    yaw_deg: Annotated[float, Meta(ge=-120, le=120)] | None = None
+    pitch_deg: Annotated[float, Meta(ge=-80, le=80)] | None = None
+
+
+class Idle(Request, tag="idle"):
+    """Small movements of breath and gaze while there is nothing to play.
+
+    Attributes:
+        on: whether there are any.
+        style: how much of them.
+    """
+
+    on: bool = True
+    style: Literal["calm", "lively"] = "calm"
+
+
+class Capabilities(Request, tag="capabilities"):
+    """Ask for a `capabilities` event: what this robot and this daemon can do."""
+
+
+class Cancel(Request, tag="cancel"):
+    """End a command: the robot decelerates within its limits and holds.
+
+    Attributes:
+        command: id of the command; empty means whatever is running.
+    """
+
+    command: Id = ""
+
+
+class Status(Request, tag="status"):
+    """Ask for a `state` event."""
+
+
+class Stop(Request, tag="stop"):
+    """Decelerate within the limits, hold, drop what was planned."""
+
+
+class Estop(Request, tag="estop"):
+    """Cut torque at once, or brake and hold where the daemon is set so (`estop = "hold"`); latched until `reset`.
+
+    Where it holds already a second one cuts.
+    """
+
+
+class Reset(Request, tag="reset"):
+    """Leave e-stop or fault: the robot is limp afterwards and must be armed."""
+
+
+class Arm(Request, tag="arm"):
+    """Torque on over a goal pinned to the measured pose, then a slow move to the rest pose."""
+
+
+class Park(Request, tag="park"):
+    """Move to the park pose, then torque off."""
+
+
+class Torque(Request, tag="torque"):
+    """Torque on as by `arm`; or off: brake within the limits, then limp where it stands, until an explicit `arm`.
+
+    Attributes:
+        on: which.
+    """
+
+    on: bool
+
+
+CmdRequest = (
+    Say | Story | Inbetween | Edit | Replay | Gesture | Lease | Release | Record | Look | Idle | Cancel | Status
+    | Capabilities
+)  # fmt: skip
+CtlRequest = Stop | Estop | Reset | Arm | Park | Torque | Status
+CMD_TYPES: tuple[type[Request], ...] = (
+    Say, Story, Inbetween, Edit, Replay, Gesture, Lease, Release, Record, Look, Idle, Cancel, Status, Capabilities,
+)  # fmt: skip
+CTL_TYPES: tuple[type[Request], ...] = (Stop, Estop, Reset, Arm, Park, Torque, Status)
+STREAM_TYPES: tuple[type[Request], ...] = (Target,)
+REQUESTS: tuple[type[Request], ...] = (*CMD_TYPES, *CTL_TYPES[:-1], *STREAM_TYPES)
