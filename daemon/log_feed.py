@@ -13,7 +13,7 @@ from pathlib import Path
 
 import msgspec
 
-from daemon.wire.events import LogEvent
+from daemon.wire.status import LogEvent
 
 SOCKET_VARIABLE = "MMMD_LOG_SOCKET"
 """Where the daemon's children send their lines to."""

@@ -31,7 +31,7 @@ from daemon.client.streams import AsyncStream, LeaseNews, begun
 from daemon.config import Endpoints
 from daemon.keys import KeyFolder, connect_curve
 from daemon.wire.codec import decode_event
-from daemon.wire.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal, StateEvent
+from daemon.wire.events import Ack, AnyEvent, Done, Refusal
 from daemon.wire.requests import (
     Arm,
     Cancel,
@@ -54,6 +54,7 @@ from daemon.wire.requests import (
     Torque,
     tag_of,
 )
+from daemon.wire.status import CapabilitiesEvent, StateEvent
 
 
 class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):

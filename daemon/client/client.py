@@ -21,7 +21,7 @@ from daemon.client.controls import ControlCalls
 from daemon.client.errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
 from daemon.client.streams import LeaseNews, Stream, begun
 from daemon.wire.codec import decode_event
-from daemon.wire.events import Ack, AnyEvent, CapabilitiesEvent, Done, Refusal
+from daemon.wire.events import Ack, AnyEvent, Done, Refusal
 from daemon.wire.requests import (
     Cancel,
     Capabilities,
@@ -36,6 +36,7 @@ from daemon.wire.requests import (
     Say,
     tag_of,
 )
+from daemon.wire.status import CapabilitiesEvent
 
 
 class Client(ControlCalls, CompositionCalls[Said]):

@@ -8,8 +8,9 @@ import uuid
 from daemon.client.compositions import NOT_MOVING
 from daemon.client.connection import Connection
 from daemon.client.errors import NoAnswerError, unexpected
-from daemon.wire.events import Ack, StateEvent
+from daemon.wire.events import Ack
 from daemon.wire.requests import Arm, Estop, Park, Reset, Status, Stop, Torque
+from daemon.wire.status import StateEvent
 
 
 class ControlCalls(Connection):

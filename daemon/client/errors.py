@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from daemon.clock import clock_id
 from daemon.errors import DaemonError
-from daemon.wire.events import AnyEvent, Done, Event, Refusal
+from daemon.wire.event_base import Event
+from daemon.wire.events import AnyEvent, Done, Refusal
 from daemon.wire.requests import Request, tag_of
 
 

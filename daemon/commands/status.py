@@ -10,7 +10,7 @@ from tyro.conf import OmitArgPrefixes
 from daemon.commands.connection import Connection
 
 if TYPE_CHECKING:
-    from daemon.wire.events import ServoHealth, StateEvent
+    from daemon.wire.status import ServoHealth, StateEvent
 
 _COUNTED = {"timeouts": "time-outs", "crc": "spoilt", "late": "late", "retries": "asked again", "alerts": "alerts"}
 

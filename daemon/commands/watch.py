@@ -24,7 +24,7 @@ def watch(
         n: end after so many lines.
     """
     from daemon.wire.codec import encode
-    from daemon.wire.events import HealthEvent, LogEvent, StateEvent
+    from daemon.wire.status import HealthEvent, LogEvent, StateEvent
 
     shown, last_state, last_health = 0, "", ""
     with at.client() as robot:

@@ -15,7 +15,8 @@ from daemon.state.ledger import Route, split_route
 from daemon.state.machine import CommandRefusedError
 from daemon.state.replies import refusal
 from daemon.wire.codec import WireError, decode_ctl, encode, error_event
-from daemon.wire.events import Ack, Event, Rejected
+from daemon.wire.event_base import Event
+from daemon.wire.events import Ack, Rejected
 from daemon.wire.requests import Arm, CtlRequest, Estop, Park, Reset, Status, Stop, Torque, tag_of
 
 log = logging.getLogger(__name__)

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from daemon.driving.shared import BusRequest
 from daemon.state.machine import CommandRefusedError, Trigger
-from daemon.wire.events import Event, StateEvent
+from daemon.wire.event_base import Event
 from daemon.wire.requests import Estop, Park, Stop, Torque
+from daemon.wire.status import StateEvent
 
 if TYPE_CHECKING:
     from daemon.front.front import Front

@@ -13,7 +13,8 @@ from daemon.playing.layers import gaze_note
 from daemon.playing.performer import Performer
 from daemon.playing.sources import Sources
 from daemon.state.ledger import Ledger, Route
-from daemon.wire.events import Ack, CapabilitiesEvent, Event, JointInfo, Rejected, StateEvent
+from daemon.wire.event_base import Event
+from daemon.wire.events import Ack, Rejected
 from daemon.wire.requests import (
     CMD_TYPES,
     CTL_TYPES,
@@ -37,6 +38,7 @@ from daemon.wire.requests import (
     Status,
     tag_of,
 )
+from daemon.wire.status import CapabilitiesEvent, JointInfo, StateEvent
 from retarget.robot import RobotModel
 
 TOPICS = {

@@ -40,7 +40,9 @@ from daemon.state.bus_view import BusView
 from daemon.state.ledger import Ledger, Route, split_route
 from daemon.state.machine import RobotState, StateMachine
 from daemon.wire.codec import WireError, decode_cmd, encode, error_event
-from daemon.wire.events import Event, HealthEvent, LogEvent, Rejected, StateEvent
+from daemon.wire.event_base import Event
+from daemon.wire.events import Rejected
+from daemon.wire.status import HealthEvent, LogEvent, StateEvent
 from retarget.robot import RobotModel
 
 log = logging.getLogger(__name__)

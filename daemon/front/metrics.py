@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from daemon.bus.health import Health
 from daemon.config import config_error, metrics_address
 from daemon.state.machine import RobotState
-from daemon.wire.events import ServoHealth, StateEvent
+from daemon.wire.status import ServoHealth, StateEvent
 
 log = logging.getLogger(__name__)
 

@@ -10,8 +10,10 @@ from daemon.front.stream_inbox import StreamInbox
 from daemon.playing.performer import Performer
 from daemon.state.ledger import Ledger
 from daemon.wire.codec import WireError, error_event
-from daemon.wire.events import Event, LeaseInfo, Progress, StreamInfo
+from daemon.wire.event_base import Event
+from daemon.wire.events import Progress
 from daemon.wire.requests import Lease
+from daemon.wire.status import LeaseInfo, StreamInfo
 from retarget.robot import RobotModel
 
 log = logging.getLogger(__name__)

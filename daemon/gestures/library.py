@@ -12,7 +12,7 @@ from daemon.errors import ClipError, UnknownGestureError
 from daemon.gestures.clips import Clip, load_clips, save_clips
 from daemon.playing.posture import Posture, at_tempo
 from daemon.playing.score import marks_of
-from daemon.wire.events import GestureInfo
+from daemon.wire.status import GestureInfo
 from mmm_core.motion import FPS
 
 log = logging.getLogger(__name__)

@@ -37,8 +37,9 @@ from daemon.state.replies import (
     refused_later,
     too_late,
 )
-from daemon.wire.events import Cancelled, CurrentCommand, Failed, Progress, Rejected
+from daemon.wire.events import Cancelled, Failed, Progress, Rejected
 from daemon.wire.requests import Lease, tag_of
+from daemon.wire.status import CurrentCommand
 from retarget.errors import RetargetError
 
 log = logging.getLogger(__name__)

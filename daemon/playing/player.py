@@ -29,8 +29,9 @@ from daemon.playing.stream_watch import StreamWatch
 from daemon.state.ledger import Entry, Ledger
 from daemon.state.machine import RobotState
 from daemon.state.replies import NotPlayableError, as_failure, ending, failed
-from daemon.wire.events import Cancelled, CurrentCommand, Failed, Progress, Rejected
+from daemon.wire.events import Cancelled, Failed, Progress, Rejected
 from daemon.wire.requests import Play, tag_of
+from daemon.wire.status import CurrentCommand
 from retarget.errors import RetargetError
 
 log = logging.getLogger(__name__)

@@ -6,8 +6,9 @@ from typing import Any
 
 import msgspec
 
-from daemon.wire.events import EVENTS, HealthEvent, LogEvent, StateEvent
+from daemon.wire.events import EVENTS
 from daemon.wire.requests import CMD_TYPES, STREAM_TYPES
+from daemon.wire.status import HealthEvent, LogEvent, StateEvent
 
 DROPPED_TOPIC = "v1/dropped"
 """Messages of the front that the recorder was too slow for, so far: `{"messages": N}`, at the place of the loss."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from daemon.bus.health import Health
 from daemon.driving.derating import DeratedBy
 from daemon.driving.shared import BusLink, BusState
-from daemon.wire.events import ServoHealth
+from daemon.wire.status import ServoHealth
 from retarget.robot import RobotModel
 from retarget.ticks import JointServoMap
 

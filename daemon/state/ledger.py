@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 import msgspec
 
 from daemon.wire.codec import WireError
-from daemon.wire.events import Accepted, Event, Progress
+from daemon.wire.event_base import Event
+from daemon.wire.events import Accepted, Progress
 from daemon.wire.requests import Command, tag_of
 
 KEPT = 1024

@@ -13,7 +13,8 @@ from typing import Any, cast
 import msgspec
 
 from daemon.errors import DaemonError
-from daemon.wire.events import EVENTS, AnyEvent, ErrorEvent, Event
+from daemon.wire.event_base import Event
+from daemon.wire.events import EVENTS, AnyEvent, ErrorEvent
 from daemon.wire.requests import (
     CMD_TYPES,
     CTL_TYPES,

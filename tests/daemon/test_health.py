@@ -16,7 +16,7 @@ from daemon.demo import free_endpoints
 from daemon.driving.shared import BusLink
 from daemon.front.metrics import exposition
 from daemon.state.bus_view import BusView
-from daemon.wire.events import ServoHealth, StateEvent
+from daemon.wire.status import ServoHealth, StateEvent
 from retarget.robot import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock

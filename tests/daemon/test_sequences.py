@@ -16,8 +16,8 @@ from collections.abc import Callable
 import pytest
 
 from daemon.client import CancelledByError, Client, RefusedError
-from daemon.wire.events import StateEvent
 from daemon.wire.requests import Edit, Gesture, Inbetween, KeyPoseOf, Play, Replay, Say, SceneOf, Story, tag_of
+from daemon.wire.status import StateEvent
 from tests.end_to_end.harness import RunningDaemon
 
 pytestmark = pytest.mark.timeout(150)

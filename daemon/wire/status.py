@@ -1,0 +1,225 @@
+"""What the daemon says of itself and of the robot: state, health, log, capabilities; one struct for each. Sans-I/O."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from daemon.wire.event_base import Event
+
+
+class GestureInfo(msgspec.Struct):
+    """A clip of the library.
+
+    Attributes:
+        name: for `gesture`.
+        text: what it shows.
+        seconds: its length.
+        loop: whether a part of it goes round; else the whole is done again.
+        hold_s: when it is held, with `hold`.
+        mirror: the clip that shows the same on the other side, empty when it is symmetric.
+        own: recorded or added by the user.
+    """
+
+    name: str
+    text: str
+    seconds: float
+    loop: bool
+    hold_s: float
+    mirror: str
+    own: bool = False
+
+
+class JointInfo(msgspec.Struct):
+    """A joint and what bounds it."""
+
+    name: str
+    role: str
+    position_min_rad: float
+    position_max_rad: float
+    velocity_limit_rad_s: float
+    acceleration_limit_rad_s2: float
+
+
+class CapabilitiesEvent(Event, tag="capabilities"):
+    """What this robot and this daemon can do.
+
+    Attributes:
+        version: of mmmd.
+        robot: name of the robot.
+        rate_hz: of the bus.
+        joints: the joints.
+        generator: ready, starting or down; with the checkpoint's hash.
+        checkpoint_hash: of the weights in use, empty while there are none.
+        requests: types that `cmd` and `ctl` take; each has a schema in docs/wire.
+        topics: what `pub` publishes; subscribe to a topic, or to a beginning of it.
+        options: bounds of the options of `say` and `gesture`.
+        gestures: the library.
+        idle_styles: for `idle`.
+        stream: endpoint of the `stream` socket.
+        lease: its times in seconds: silence_s (brake and hold), park_s, limp_s.
+    """
+
+    version: str
+    robot: str
+    rate_hz: float
+    joints: list[JointInfo]
+    generator: str
+    checkpoint_hash: str
+    requests: dict[str, list[str]]
+    topics: dict[str, str]
+    options: dict[str, list[float]]
+    gestures: list[GestureInfo]
+    idle_styles: list[str]
+    stream: str = ""
+    lease: dict[str, float] = msgspec.field(default_factory=dict[str, float])
+
+
+class LeaseInfo(msgspec.Struct):
+    """The lease that is held.
+
+    Attributes:
+        id: of its command, which every target names.
+        holder: who asked for it, in its own words.
+        state: accepted (not begun yet), waiting (for the first target), streaming, silent or released.
+        held_by: what keeps the robot from its target: self-collision, silence, or nothing.
+        silence_s: without a target for so long it brakes and holds.
+        silent_s: since the last target.
+        targets: messages taken.
+        clipped: frames whose target lay outside a position limit.
+    """
+
+    id: str
+    holder: str
+    state: str
+    held_by: str = ""
+    silence_s: float = 0.0
+    silent_s: float = 0.0
+    targets: int = 0
+    clipped: int = 0
+
+
+class StreamInfo(msgspec.Struct):
+    """The `stream` socket.
+
+    Attributes:
+        endpoint: where it is.
+        lease: who may send to it now; None for nobody.
+        bad: messages refused since the start, by code.
+    """
+
+    endpoint: str
+    lease: LeaseInfo | None = None
+    bad: dict[str, int] = msgspec.field(default_factory=dict[str, int])
+
+
+class CurrentCommand(msgspec.Struct):
+    """The command that is being played."""
+
+    id: str
+    plan_id: int
+    text: str
+    frames: int
+    frames_pushed: int
+
+
+class ServoHealth(msgspec.Struct):
+    """What can be said of a servo, and what was counted since its port was opened.
+
+    Attributes:
+        id: of the servo.
+        joint: name of the servo in the robot file.
+        state: ok, late (its last answer came after the deadline), missing (none in the last cycle), faulted (reports a
+            hardware error, or came back without torque or settings) or quarantined (long silent, asked once a second).
+        timeouts: cycles without its answer.
+        crc: of those, with bytes that were no answer.
+        late: answers after the deadline.
+        retries: questions outside the cycle that were asked again.
+        alerts: hardware alerts that began.
+    """
+
+    id: int
+    joint: str
+    state: str
+    timeouts: int = 0
+    crc: int = 0
+    late: int = 0
+    retries: int = 0
+    alerts: int = 0
+
+
+class HealthEvent(Event, tag="health"):
+    """Every servo, once a second on `v1/health`.
+
+    Attributes:
+        robot: name of the robot.
+        servos: in the order of the robot file; none before the first bus cycle.
+        silent_ms: since the newest bus cycle: what is said of the servos is as old.
+    """
+
+    robot: str
+    servos: list[ServoHealth]
+    silent_ms: float
+
+
+class LogEvent(Event, tag="log"):
+    """A line of the daemon's log, on `v1/log`; `t_mono` is when it was written.
+
+    Attributes:
+        level: info, warning or error.
+        process: front, bus, generator or recorder.
+        module: the logger's name.
+        text: the line.
+    """
+
+    level: str
+    process: str
+    module: str
+    text: str
+
+
+class StateEvent(Event, tag="state"):
+    """The robot and the daemon, 20 times a second on `v1/state` and in answer to `status`.
+
+    Attributes:
+        robot: name of the robot.
+        bus: URL of the bus.
+        state: limp, arming, idle, moving, holding, parking, fault or estop.
+        must_arm: an explicit `arm` is needed before the next text.
+        reason: why the robot is in fault, else empty.
+        command: what is being played, None when nothing is.
+        waiting: ids of the commands that wait for their turn or their time.
+        idle: style of the idle movements, `off` when there are none.
+        gaze_deg: where the head was told to look (left, down), None when it is free.
+        stream: the socket for joint targets, and who holds its lease.
+        generator: ready, starting or down, with the reason.
+        joint_names: J names.
+        goal_rad: (J,) what the servos were last told.
+        present_rad: (J,) what they last measured.
+        queued_ms: setpoints that the bus process has in hand.
+        bus_info: counters of the bus process.
+        servos_not_ok: those whose state is not ok; all are on `v1/health`.
+        recording: path of the log, empty when there is none; says so when recording has stopped.
+        uptime_s: since the start of the daemon.
+    """
+
+    robot: str
+    bus: str
+    state: str
+    must_arm: bool
+    reason: str
+    command: CurrentCommand | None
+    generator: str
+    joint_names: list[str]
+    goal_rad: list[float]
+    present_rad: list[float]
+    queued_ms: float
+    bus_info: dict[str, Any]
+    recording: str
+    uptime_s: float
+    waiting: list[str] = msgspec.field(default_factory=list[str])
+    idle: str = "off"
+    gaze_deg: tuple[float, float] | None = None
+    stream: StreamInfo | None = None
+    servos_not_ok: list[ServoHealth] = msgspec.field(default_factory=list[ServoHealth])
