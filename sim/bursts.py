@@ -11,6 +11,7 @@ from collections import deque
 from dataclasses import dataclass
 
 TINY_S = 1e-9
+"""Times nearer to each other than this are one: hours into a run a double is good for some 1e-11 s."""
 
 
 @dataclass
@@ -31,8 +32,8 @@ class Burst:
         """Range of the bytes that are on the wire between two times, also in part."""
         if self.byte_s <= 0:
             return 0, 0
-        first = max(0, math.floor((from_s - self.start_s) / self.byte_s + 1e-6))
-        last = min(len(self.data), math.ceil((to_s - self.start_s) / self.byte_s - 1e-6))
+        first = max(0, math.floor((from_s - self.start_s + TINY_S) / self.byte_s))
+        last = min(len(self.data), math.ceil((to_s - self.start_s - TINY_S) / self.byte_s))
         return first, max(first, last)
 
     def garble(self, from_s: float, to_s: float, draw: random.Random) -> None:

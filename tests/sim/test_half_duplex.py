@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,6 +11,7 @@ from servo_bench import Bench
 
 from daemon.bus import packet
 from daemon.bus.packet import PacketDecoder
+from sim.bursts import Burst
 from sim.clock import VirtualClock
 from sim.errors import SimSettingError
 from sim.port import SimPort
@@ -147,6 +150,27 @@ def test_same_bytes_at_the_same_time_are_anded() -> None:
     wire.answer(0.0, b"\xf0\xff", 1_000_000)
     wire.answer(0.0, b"\x3f\xff\x01", 1_000_000)
     assert wire.take(1.0) == b"\x30\xff\x01"
+
+
+@given(
+    shift=st.integers(-20, 20),
+    lengths=st.tuples(st.integers(1, 20), st.integers(1, 20)),
+    baud=st.sampled_from([57_600, 1_000_000, 4_000_000]),
+    hours=st.floats(0, 100),
+)
+def test_bytes_meet_after_hours_as_they_do_in_the_first_second(
+    shift: int, lengths: tuple[int, int], baud: int, hours: float
+) -> None:
+    """Times of hours have lost digits; a soak of 4.6 hours once fell over it."""
+
+    def met(start_s: float) -> tuple[bytes, list[tuple[int, bytes]]]:
+        byte_s, n = 10 / baud, lengths
+        burst = Burst(start_s, byte_s, bytearray(range(128, 128 + n[0])))
+        other = Burst(start_s + shift * byte_s, byte_s, bytearray(range(64, 64 + n[1])))
+        rest = burst.meet(other, random.Random(0))
+        return bytes(burst.data), [(round((r.start_s - start_s) / byte_s), bytes(r.data)) for r in rest]
+
+    assert met(hours * 3600) == met(0.0)
 
 
 @pytest.mark.parametrize(
