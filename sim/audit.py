@@ -111,8 +111,10 @@ class Audit:
             self._violate(t_s, servo_id, "unpinned_torque", f"goal {goal_tick}, standing at {present_tick}")
 
     def torque_in_fault(self, t_s: float, servo_id: int) -> None:
-        """Somebody asked a servo for torque that has latched a fault."""
-        self._violate(t_s, servo_id, "torque_in_fault", "it has to be rebooted first")
+        """Somebody asked a servo for torque that has latched a fault; before any answer of it nobody can know."""
+        track = self._tracks.get(servo_id)
+        if track is None or track.alerts:
+            self._violate(t_s, servo_id, "torque_in_fault", "it has to be rebooted first")
 
     def torque_limit(self, t_s: float, servo_id: int, limit: int, most: int) -> None:
         """A servo of Protocol 1.0 was given a torque limit, over the `most` that its owner has allowed it."""

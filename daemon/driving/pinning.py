@@ -67,7 +67,8 @@ def pin_where_they_stand(
     No cycle comes between the last look and its end, so that torque may come on at once.
 
     Raises:
-        ServoFaultError: a goal is not taken, or a joint moves each time while goals are pinned.
+        ServoFaultError: a goal is not taken, a servo tells of a hardware error by now, or a joint moves each time while
+            goals are pinned.
     """
     row, pin_tick = 0, _ticks(bus, _PIN_TICK)
     for _ in range(PIN_ATTEMPTS):
@@ -79,6 +80,7 @@ def pin_where_they_stand(
                 raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
         bus.set_effort(effort, confirmed=True)
         now = bus.exchange(None)
+        refuse_hardware_errors(bus, now)
         moved = np.where(now.valid, np.abs(now.position_tick - present), np.iinfo(np.int32).max)
         if (moved <= pin_tick).all():
             return present

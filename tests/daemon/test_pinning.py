@@ -7,6 +7,7 @@ from rig import Rig, rig, swing
 
 from daemon.driving.shared import BusRequest, BusState
 from sim.faults import Fault
+from sim.servo_power import OVERLOAD_BIT
 
 ID = 13
 
@@ -58,6 +59,23 @@ def test_a_joint_moved_within_the_tolerance_is_no_reason_to_pin_anew():
         r.arm()
         assert hand.left == 0
         r.assert_limits_kept()
+
+
+@pytest.mark.parametrize("name", ["reference", "op3"])
+def test_a_servo_that_trips_while_goals_are_pinned_is_named_and_nobody_gets_torque(name: str) -> None:
+    """A soak of 4.8 hours met it: torque was asked of all, the tripped one among them, and only then was it noticed."""
+    with rig(name) as r:
+        last = r.robot.servo_ids[-1]
+        tripped = r.robot.servo_ids[2]
+        r.sim.on_goal = lambda _t_s, servo_id, _tick: (
+            r.sim.servos[tripped].trip(OVERLOAD_BIT) if servo_id == last else None
+        )
+        r.link.request(BusRequest.ARM)
+        r.cycle()
+        r.until(BusState.FAULT, BusState.HOLDING)
+        assert r.state is BusState.FAULT and f"servo {tripped}: " in r.link.text and "overload" in r.link.text
+        assert not any(x["torque"] for x in r.records) and not any(r.torque)
+        assert r.sim.audit.report()["violations"] == 0
 
 
 @pytest.mark.parametrize("probability", [0.05, 0.3])

@@ -137,6 +137,18 @@ def test_goals_to_a_tripped_servo_are_counted_after_a_moment_and_asking_it_for_t
     assert audit.report()["violations_by_kind"] == {"torque_in_fault": 1}
 
 
+@pytest.mark.parametrize(("answers", "violations"), [(0, 0), (1, 1)])
+def test_torque_asked_of_a_servo_that_has_just_tripped_is_a_violation_once_it_has_said_so(
+    answers: int, violations: int
+) -> None:
+    audit = Audit(ROBOT)
+    audit.goal(0.0, SERVO.servo_id, 2048, False)  # pinned
+    for _ in range(answers):
+        audit.heard_in_fault(0.002, SERVO.servo_id)
+    audit.torque_in_fault(0.003, SERVO.servo_id)
+    assert audit.report()["violations"] == violations
+
+
 def led_on(alerts: int, for_s: float) -> dict[str, int]:
     """A servo that has tripped and told so often is led on for so long."""
     audit = Audit(ROBOT)
