@@ -260,7 +260,8 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
             if status.state in states:
                 return status
             if time.monotonic() > end_s:
-                asked = f"wait for {' or '.join(states)} (the robot is in {status.state})"
+                why = f": {status.reason}" if status.reason else ""
+                asked = f"wait for {' or '.join(states)} (the robot is in {status.state}{why})"
                 raise NoAnswerError(self.endpoints.ctl, asked, timeout_s)
             await asyncio.sleep(0.05)
 

@@ -110,6 +110,7 @@ class ControlCalls(Connection):
             if status.state in states:
                 return status
             if time.monotonic() > end_s:
-                asked = f"wait for {' or '.join(states)} (the robot is in {status.state})"
+                why = f": {status.reason}" if status.reason else ""
+                asked = f"wait for {' or '.join(states)} (the robot is in {status.state}{why})"
                 raise NoAnswerError(self.endpoints.ctl, asked, timeout_s)
             time.sleep(0.05)

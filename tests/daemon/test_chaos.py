@@ -304,7 +304,7 @@ def test_the_generator_killed_and_frozen_in_each_state_is_started_again():
                     os.kill(child_pid(daemon, "daemon.generator.process"), number)
                     time.sleep(0.1)
                     assert client.status().state in STAYS[state]
-                within(3, "noticed", lambda: not client.status().generator.startswith("ready"))
+                within(12, "noticed", lambda: not client.status().generator.startswith("ready"))
                 if state in ("limp", "idle", "moving", "holding"):
                     assert client.gesture("nod").done  # the library needs no generator
             client.reset()
