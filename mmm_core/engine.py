@@ -13,12 +13,14 @@ from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
 from mmm_core.corpus.mirroring import canonical, mirror_words
+from mmm_core.count_words import count_asked
 from mmm_core.eight_bit import can_eight_bit, to_eight_bit
 from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.features import Root, mirror, recover, recover_from_positions
 from mmm_core.generation import Clock, Generation, no_motion, understood
 from mmm_core.motion import FPS, Motion
 from mmm_core.packed import fastest_precision, pack
+from mmm_core.repeats import CANDIDATE_STRIDE, ids_of_count
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
 from mmm_core.sequence import COMMAND_STRIDE, commands_of, joined
@@ -29,8 +31,6 @@ Precision = Literal["fp32", "bf16", "int8"]
 """Of the matrix products. Any but fp32 is another model's choice of tokens now and then."""
 SHORTEST_S = 0.8
 MOST_CANDIDATES = 64
-CANDIDATE_STRIDE = 7_919_999
-"""Between the seeds of candidates, so that neighbouring seeds do not share any."""
 _TYPICAL = (
     ("wave with your right hand", 9.6), ("raise both arms, then clap twice", 3.2), ("bow deeply", 2.0),
     ("turn your head to the left", 1.2), ("play the guitar", 3.2), ("point up with your left hand", 1.6),
@@ -114,7 +114,8 @@ class Engine:
             text: a command in English.
             seed: any integer from 0 to 2^31 - 1.
             seconds: length of the motion, at most 9.8; None lets the model choose.
-            candidates: motions made at once, of which the one is taken that the model itself finds likeliest.
+            candidates: motions made at once, of which the one is taken that the model itself finds likeliest; with two or
+                more, a number of strokes that the text names is kept more often (`mmm_core.repeats`).
 
         Raises:
             GenerationError: seed, seconds or candidates out of range, or no seconds for a model without lengths.
@@ -131,10 +132,14 @@ class Engine:
         with torch.inference_mode():
             done = verdict.kept or text
             commands = commands_of(self, mirror_words(done) if is_mirrored else done, states, n_frames)
-            rows = [
-                self._best_ids(c.states, c.n_tokens, (seed + i * COMMAND_STRIDE) % 2**31, candidates)
-                for i, c in enumerate(commands)
-            ]
+            counts = candidates > 1 and len(commands) == 1 and n_frames is None and self.model.rest_pose == "mmmd"
+            if counts and (count := count_asked(done)) is not None:
+                rows = [ids_of_count(self, commands[0], count, seed, candidates)]
+            else:
+                rows = [
+                    self._best_ids(c.states, c.n_tokens, (seed + i * COMMAND_STRIDE) % 2**31, candidates)
+                    for i, c in enumerate(commands)
+                ]
             ids = joined(self, commands, rows, seed)
             clock.lap("decode")
             motion = self.motion(ids, text, seed, verdict, n_frames, is_mirrored=is_mirrored)

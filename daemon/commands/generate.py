@@ -72,7 +72,8 @@ def generate(
         bvh: BVH file to write as well.
         batch: JSON lines of {"id", "text", "seed", "seconds"}: one .npz named by its id for each.
         story: JSON lines of {"text", "seconds"}: one motion with generated transitions, of any length.
-        candidates: motions made at once, of which the model's likeliest is kept.
+        candidates: motions made at once, of which the model's likeliest is kept; with two or more, a number of strokes that the
+            text names ("clap five times") is kept more often.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
         precision: of matrix products; int8 for the shipped model where the processor multiplies such integers (VNNI), else

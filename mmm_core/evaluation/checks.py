@@ -245,7 +245,11 @@ def peaks(signal: Array, least: float) -> list[int]:
     """Frames of the peaks that `strokes` counts."""
     if len(signal) < 3 or np.ptp(signal) < least:
         return []
-    turn = max(0.6 * least, 0.22 * float(np.ptp(signal)))
+    return peaks_beyond(signal, max(0.6 * least, 0.22 * float(np.ptp(signal))))
+
+
+def peaks_beyond(signal: Array, turn: float) -> list[int]:
+    """Frames of the peaks that rise by more than `turn` from the valley before, and are fallen from by as much or are last."""
     found: list[int] = []
     rising, valley, peak = False, float(signal[0]), float(signal[0])
     for frame, value in enumerate(signal[1:].tolist(), 1):

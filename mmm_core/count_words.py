@@ -1,0 +1,37 @@
+"""How often a text asks for something: "three times", "twice", "two bows" -> 3, 2, 2. A rule: numbers are a closed set."""
+
+from __future__ import annotations
+
+import re
+
+MOST = 12
+"""Greater numbers are no number of strokes that fits into a motion."""
+_WORDS = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+_VALUE = {word: i for i, word in enumerate(_WORDS, 1)} | {str(i): i for i in range(1, MOST + 1)}
+_NUMBER = rf"({'|'.join(_WORDS)}|1[0-2]|[1-9])"
+_NOT_STROKES = (
+    "arms?|hands?|fists?|palms?|fingers?|thumbs?|eyes?|ears?|elbows?|shoulders?|wrists?|knees?|legs?|feet|foot|heads?|sides?|"
+    "s|secs?|seconds?|minutes?|hours?|degrees?|met(?:er|re)s?|cm|inch(?:es)?|people|persons?|things?|others?|us|of|or|to|and"
+)
+_ONCE = re.compile(
+    r"(?<!\bat )\b(once|twice|thrice)\b(?! (?:more|again|upon|you|he|she|it|that|this|the|i|they|we)\b)", re.IGNORECASE
+)
+_SINGLE = re.compile(r"\b(?:one time|(?:a|one) single|(?:just|only) one)\b", re.IGNORECASE)
+_TIMES = re.compile(rf"\b{_NUMBER}\s*(?:times|x)\b", re.IGNORECASE)
+_THINGS = re.compile(
+    rf"(?<!give me )(?<!gimme )(?<!the )(?<!those )(?<!these )(?<!your )(?<!my )(?<!all )(?<!at )(?<!to )(?<!of )(?<!like )"
+    rf"\b{_NUMBER}\s+(?:(?!(?:{_NOT_STROKES})\b)[a-z-]+\s+)?(?!(?:{_NOT_STROKES})\b)[a-z-]+s\b",
+    re.IGNORECASE,
+)
+
+
+def count_asked(text: str) -> int | None:
+    """The number of strokes that a text names; None where it names none, several, or one greater than twelve."""
+    text = " ".join(text.split())
+    found = {{"once": 1, "twice": 2, "thrice": 3}[m[1].lower()] for m in _ONCE.finditer(text)}
+    found |= {1} if _SINGLE.search(text) else set()
+    found |= {_VALUE[m[1].lower()] for m in _TIMES.finditer(text)}
+    found |= {
+        n for m in _THINGS.finditer(text) if (n := _VALUE[m[1].lower()]) > 1 and not _TIMES.match(text, m.start())
+    }
+    return found.pop() if len(found) == 1 else None
