@@ -20,7 +20,7 @@ from mmm_core.features import Root, mirror, recover, recover_from_positions
 from mmm_core.generation import Clock, Generation, no_motion, understood
 from mmm_core.motion import FPS, Motion
 from mmm_core.packed import fastest_precision, pack
-from mmm_core.repeats import CANDIDATE_STRIDE, ids_of_count
+from mmm_core.repeats import ids_of_count
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
 from mmm_core.sequence import COMMAND_STRIDE, commands_of, joined
@@ -31,6 +31,8 @@ Precision = Literal["fp32", "bf16", "int8"]
 """Of the matrix products. Any but fp32 is another model's choice of tokens now and then."""
 SHORTEST_S = 0.8
 MOST_CANDIDATES = 64
+CANDIDATE_STRIDE = 7_919_999
+"""Between the seeds of candidates, so that neighbouring seeds do not share any."""
 _TYPICAL = (
     ("wave with your right hand", 9.6), ("raise both arms, then clap twice", 3.2), ("bow deeply", 2.0),
     ("turn your head to the left", 1.2), ("play the guitar", 3.2), ("point up with your left hand", 1.6),
@@ -258,16 +260,20 @@ class Engine:
         with torch.inference_mode():
             return tokenizer.encode(torch.from_numpy(motion.features[None, :n_frames]))[0]
 
-    def _best_ids(self, states: TextStates, n_tokens: int, seed: int, candidates: int) -> Tensor:
-        """(n_tokens, C) ids for a text, the likeliest of `candidates`; the first has the seed itself."""
+    def candidate_ids(self, states: TextStates, n_tokens: int, seed: int, n: int) -> list[Tensor]:
+        """(n_tokens, C) ids for a text, `n` times; the first has the seed itself."""
         transformer = self.model.transformer
-        rows = [empty_row(transformer, n_tokens)] * candidates
-        seeds = [seed + i * CANDIDATE_STRIDE for i in range(candidates)]
-        several = states if candidates == 1 else states.repeated(candidates)
-        filled = fill(transformer, several, rows, seeds, self.settings)
+        seeds = [seed + i * CANDIDATE_STRIDE for i in range(n)]
+        several = states if n == 1 else states.repeated(n)
+        return fill(transformer, several, [empty_row(transformer, n_tokens)] * n, seeds, self.settings)
+
+    def _best_ids(self, states: TextStates, n_tokens: int, seed: int, candidates: int) -> Tensor:
+        """(n_tokens, C) ids for a text, the likeliest of `candidates`."""
+        made = self.candidate_ids(states, n_tokens, seed, candidates)
         if candidates == 1:
-            return filled[0]
-        return filled[int(pseudo_log_likelihood(transformer, several, filled).argmax())]
+            return made[0]
+        likely = pseudo_log_likelihood(self.model.transformer, states.repeated(candidates), made)
+        return made[int(likely.argmax())]
 
 
 def check_seed(seed: int) -> None:

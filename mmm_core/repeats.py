@@ -9,12 +9,13 @@ seam a [MASK] is left for the model to fill (MMM, arXiv 2312.03596, sec. 3.3: an
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import torch
 from torch import Tensor
 
-from mmm_core.sampling import empty_row, fill
+from mmm_core.sampling import fill
 from mmm_core.scope import ScopeVerdict
 from mmm_core.strokes import Strokes, strokes_of
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from mmm_core.engine import Engine
     from mmm_core.sequence import Command
 
-CANDIDATE_STRIDE = 7_919_999
-"""Between the seeds of candidates, so that neighbouring seeds do not share any."""
 CLEAR = 0.3
 """Strokes are left out only of a motion that repeats itself as well as this."""
 ALIKE = 0.5
@@ -41,9 +40,7 @@ def ids_of_count(engine: Engine, command: Command, count: int, seed: int, candid
     Two candidates serve as well as more (docs/model.md).
     """
     transformer = engine.model.transformer
-    seeds = [seed + i * CANDIDATE_STRIDE for i in range(candidates)]
-    rows = [empty_row(transformer, command.n_tokens)] * candidates
-    made = fill(transformer, command.states.repeated(candidates), rows, seeds, engine.settings)
+    made = engine.candidate_ids(command.states, command.n_tokens, seed, candidates)
     features = engine.model.tokenizer.decode(torch.stack(made)).numpy()
     motions = [
         engine.motion_of_features(f, ids, command.text, seed, _TAKEN) for f, ids in zip(features, made, strict=True)
@@ -63,7 +60,7 @@ def with_count(ids: Tensor, strokes: Strokes, count: int, mask_id: int) -> Tenso
     if missing == 0 or not strokes.frames:
         return None
     if missing < 0:
-        return _without(ids, strokes, -missing, mask_id) if strokes.sure and strokes.misfit <= CLEAR and count else None
+        return _without(ids, strokes, -missing, mask_id) if strokes.sure and strokes.misfit <= CLEAR else None
     whole = _between_peaks(strokes) if len(strokes.frames) > 1 else _around_peak(strokes)
     if whole is None:
         return None
@@ -90,7 +87,7 @@ def _between_peaks(strokes: Strokes) -> tuple[int, int]:
         tokens = (pair[1] - pair[0]) / FRAMES_PER_TOKEN
         return strokes.apart(*pair) + 0.02 * abs(tokens - round(tokens))
 
-    return min(zip(strokes.frames, strokes.frames[1:], strict=False), key=cost)
+    return min(pairwise(strokes.frames), key=cost)
 
 
 def _around_peak(strokes: Strokes) -> tuple[int, int] | None:

@@ -25,7 +25,7 @@ from daemon.client.compositions import (
     CompositionCalls,
     patience_s,
 )
-from daemon.client.errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
+from daemon.client.errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected, waited_in_vain
 from daemon.client.lines import Line, within
 from daemon.client.streams import AsyncStream, LeaseNews, begun
 from daemon.config import Endpoints
@@ -260,9 +260,7 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
             if status.state in states:
                 return status
             if time.monotonic() > end_s:
-                why = f": {status.reason}" if status.reason else ""
-                asked = f"wait for {' or '.join(states)} (the robot is in {status.state}{why})"
-                raise NoAnswerError(self.endpoints.ctl, asked, timeout_s)
+                raise waited_in_vain(self.endpoints.ctl, states, status, timeout_s)
             await asyncio.sleep(0.05)
 
     async def watch(self, *topics: str, timeout_s: float = REPLY_TIMEOUT_S) -> AsyncGenerator[tuple[str, AnyEvent]]:

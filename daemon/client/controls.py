@@ -7,7 +7,7 @@ import uuid
 
 from daemon.client.compositions import NOT_MOVING
 from daemon.client.connection import Connection
-from daemon.client.errors import NoAnswerError, unexpected
+from daemon.client.errors import unexpected, waited_in_vain
 from daemon.wire.events import Ack
 from daemon.wire.requests import Arm, Estop, Park, Reset, Status, Stop, Torque
 from daemon.wire.status import StateEvent
@@ -110,7 +110,5 @@ class ControlCalls(Connection):
             if status.state in states:
                 return status
             if time.monotonic() > end_s:
-                why = f": {status.reason}" if status.reason else ""
-                asked = f"wait for {' or '.join(states)} (the robot is in {status.state}{why})"
-                raise NoAnswerError(self.endpoints.ctl, asked, timeout_s)
+                raise waited_in_vain(self.endpoints.ctl, states, status, timeout_s)
             time.sleep(0.05)

@@ -10,6 +10,7 @@ from daemon.errors import DaemonError
 from daemon.wire.event_base import Event
 from daemon.wire.events import AnyEvent, Done, Refusal
 from daemon.wire.requests import Request, tag_of
+from daemon.wire.status import StateEvent
 
 
 class NoAnswerError(DaemonError, TimeoutError):
@@ -61,6 +62,12 @@ class Said:
 def stamp(request: Request) -> None:
     """Write into a request when it is sent, and on which clock."""
     request.t_mono, request.clock = time.monotonic(), clock_id() or None
+
+
+def waited_in_vain(endpoint: str, states: tuple[str, ...], status: StateEvent, timeout_s: float) -> NoAnswerError:
+    """The error of a robot that came to none of `states` in time."""
+    why = f": {status.reason}" if status.reason else ""
+    return NoAnswerError(endpoint, f"wait for {' or '.join(states)} (the robot is in {status.state}{why})", timeout_s)
 
 
 def unexpected(event: Event, asked: str) -> DaemonError:

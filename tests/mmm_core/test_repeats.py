@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -58,17 +59,21 @@ def test_any_text_has_a_number_or_none(text: str) -> None:
     assert count_asked(text) in (None, *range(1, 13))
 
 
+@cache
+def nodding() -> Motion:
+    return Engine.load().generate("nod", seed=0).motion
+
+
 def swinging(n: int, period: int = 12, rest: int = 8) -> Motion:
-    """The shipped model's record of nothing in particular, its head nodding so often."""
-    engine_motion = Engine.load().generate("nod", seed=0).motion
+    """A body that stands still, its head nodding so often."""
     T = 2 * rest + n * period
     pitch = np.zeros(T)
     pitch[rest : rest + n * period] = 0.2 * (1 - np.cos(2 * np.pi * np.arange(n * period) / period))
     head = np.stack([np.cos(pitch / 2), np.sin(pitch / 2), 0 * pitch, 0 * pitch], -1).astype(np.float32)
-    still = np.repeat(engine_motion.joints_m[:1], T, axis=0)
+    still = np.repeat(nodding().joints_m[:1], T, axis=0)
     return replace(
-        engine_motion, joints_m=still, head_quat_wxyz=head, forearm_twist_rad=np.zeros((T, 2), np.float32),
-        features=np.zeros((T, engine_motion.features.shape[1]), np.float32), tokens=np.zeros(0, np.int32),
+        nodding(), joints_m=still, head_quat_wxyz=head, forearm_twist_rad=np.zeros((T, 2), np.float32),
+        features=np.zeros((T, nodding().features.shape[1]), np.float32), tokens=np.zeros(0, np.int32),
     )  # fmt: skip
 
 
