@@ -37,16 +37,24 @@ class ServoBus(Cycle):
     """
 
     def ping_all(self, *, patient: bool = False) -> dict[int, Identity]:
-        """Model number and firmware of each servo that answers; all are asked when `patient`, however silent it is."""
+        """Model number and firmware of each servo that answers; all are asked when `patient`, however silent it is.
+
+        Few silent ones among others are asked once more: a machine or a wire may be held up for longer than one is waited for.
+        """
         found: dict[int, Identity] = {}
-        for row, servo_id in enumerate(self.ids):
-            try:
-                found[servo_id] = self._identify(row)
-            except LinkTimeoutError:
-                pass
+        for row in range(len(self.ids)):
+            self._take_identity(row, found)
             if not patient and row == _SILENT_ENOUGH - 1 and not found:
-                break  # wrong baud or no power: do not wait for the rest
+                return found  # wrong baud or no power: do not wait for the rest
+        silent = [row for row, servo_id in enumerate(self.ids) if servo_id not in found]
+        if found and len(silent) < _SILENT_ENOUGH:
+            for row in silent:
+                self._take_identity(row, found)
         return found
+
+    def _take_identity(self, row: int, found: dict[int, Identity]) -> None:
+        with contextlib.suppress(LinkTimeoutError):
+            found[self.ids[row]] = self._identify(row)
 
     def _identify(self, row: int) -> Identity:
         dialect, servo_id = self._of(row), self.ids[row]

@@ -78,6 +78,7 @@ def pin_where_they_stand(
             pinned = bus.read_item(servo_id, "goal_position")
             if pinned != tick:
                 raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
+        refuse_hardware_errors(bus, bus.exchange(None))  # protocol 1.0 forgets its alarm when it is told an effort
         bus.set_effort(effort, confirmed=True)
         now = bus.exchange(None)
         refuse_hardware_errors(bus, now)

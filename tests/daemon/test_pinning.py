@@ -61,7 +61,7 @@ def test_a_joint_moved_within_the_tolerance_is_no_reason_to_pin_anew():
         r.assert_limits_kept()
 
 
-@pytest.mark.parametrize("name", ["reference", "op3"])
+@pytest.mark.parametrize("name", ["reference", "op3", "reachy_2021", "poppy_torso"])
 def test_a_servo_that_trips_while_goals_are_pinned_is_named_and_nobody_gets_torque(name: str) -> None:
     """A soak of 4.8 hours met it: torque was asked of all, the tripped one among them, and only then was it noticed."""
     with rig(name) as r:

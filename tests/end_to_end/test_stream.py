@@ -206,7 +206,10 @@ def test_a_lease_takes_over_from_a_text_without_a_jolt(robot, running):
             wave(robot, stream, 0.5)
         ended = list(events)
     assert isinstance(ended[-1], ev.Cancelled) and ended[-1].by == f"lease {stream.news.id}"
-    assert isinstance(stream.news.end, ev.Done) and stream.news.end.gate_clipped_frames <= 2
+    end = stream.news.end
+    assert isinstance(end, ev.Done)
+    # Where the machine is held up the bus process brakes, and what was on its way meanwhile is limited until it goes on.
+    assert end.gate_clipped_frames <= 2 + 4 * end.underruns
 
 
 @pytest.mark.parametrize("verb", ["stop", "cancel", "park", "estop"])

@@ -98,6 +98,14 @@ def test_whoever_answers_is_found_behind_silent_ones(n: int, silent: list[int]) 
     assert ("nothing answers" in str(caught.value)) == (len(silent) == n)
 
 
+@pytest.mark.parametrize("servo_id", [1, 7, 16])
+def test_a_servo_that_is_held_up_for_longer_than_it_is_waited_for_is_asked_once_more(servo_id: int) -> None:
+    """A machine that stalled for a tenth of a second at its first servo refused to arm: "no answer"."""
+    rig = bus_rig(Fault("silent", 0.0, 0.15, servo_id=servo_id))
+    rig.bus.verify()
+    assert rig.clock.now_s() > 0.1 and rig.bus.health.counters.retries[rig.bus.ids.index(servo_id)] >= 2
+
+
 def test_a_silent_bus_is_given_up_after_four_servos() -> None:
     rig = bus_rig(Fault("silent"))
     with pytest.raises(BusMismatchError, match="nothing answers") as caught:
