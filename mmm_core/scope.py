@@ -3,7 +3,8 @@
 A small classifier reads the untouched sentence vector: trained on the corpus's own sentences against texts of things that
 cannot be done (`mmm_core.corpus.outside`, `mmm_core.training.scope_training`). To its log-odds comes the margin by which the
 text lies nearer to a known command than to anything outside. The score is that sum as a probability; the known command that
-lies nearest is how the text was understood. A text of several clauses of which some cannot be done is degraded to the others.
+lies nearest is how the text was understood (`mmm_core.meaning`). A text of several clauses of which some cannot be done is
+degraded to the others.
 Method, thresholds and figures: docs/scope.md.
 """
 
@@ -16,6 +17,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mmm_core.meaning import Meanings
 from mmm_core.motion import Status
 
 REJECT_BELOW = 0.5
@@ -36,9 +38,6 @@ COSINE_DEGRADE_BELOW = 0.58
 OUTSIDE_MARGIN = 0.03
 """There a text is refused when something outside lies nearer by this much, and reported as degraded from a tie on."""
 
-_SIDES = re.compile(r"\b(left|right|both)\b")
-_NUMBERS = {"once": "1", "one": "1", "twice": "2", "two": "2", "three": "3", "four": "4", "five": "5", "six": "6"}
-_COUNTS = re.compile(r"\b(once|twice|one|two|three|four|five|six|[1-9])\b")
 _BETWEEN_CLAUSES = re.compile(
     r"""\s*[,;.]?\s*(?<!\bup\s)(?<!\bback\s)(?<!\bleft\s)(?<!\bright\s)
     \b(?:and\ then|and\ afterwards|after\ that|then|and|while\ you|while|before\ you)\b\s*
@@ -99,23 +98,19 @@ class ScopeIndex:
     vectors: Tensor
     n_known: int
     classifier: ScopeClassifier | None = None
-    _named: list[tuple[frozenset[str], frozenset[str]]] = field(init=False)
+    _meanings: Meanings = field(init=False)
 
     def __post_init__(self) -> None:
-        """Note which sides and counts each known command names."""
-        object.__setattr__(self, "_named", [(_sides(c), _counts(c)) for c in self.commands[: self.n_known]])
+        """Read the known commands."""
+        object.__setattr__(self, "_meanings", Meanings(self.commands[: self.n_known]))
 
     def judge(self, text: str, sentence: Tensor) -> ScopeVerdict:
-        """Verdict for a text as a whole and its unit sentence vector (D,).
-
-        The vector hardly tells left from right or two from three, so the meaning is taken from the known commands that
-        name the same sides and counts, else the same sides and no count, else from all.
-        """
+        """Verdict for a text as a whole and its unit sentence vector (D,)."""
         if unreadable := _unreadable(text):
             return ScopeVerdict("rejected", 0.0, "", unreadable)
         cosine = self.vectors @ sentence
         known, outside = cosine[: self.n_known], cosine[self.n_known :]
-        nearest = self.commands[self._meaning(text, known)]
+        nearest = self._meanings.nearest(text, known)
         other = float(outside.max()) if len(outside) else -1.0
         impossible = self.commands[self.n_known + int(outside.argmax())] if len(outside) else ""
         if self.classifier is None:
@@ -139,17 +134,6 @@ class ScopeIndex:
         assert self.classifier is not None
         logit = float(self.classifier(sentence[None])) + MARGIN_WEIGHT * margin
         return float(torch.sigmoid(torch.tensor(logit - LOGIT_AT_HALF)))
-
-    def _meaning(self, text: str, known: Tensor) -> int:
-        """Index of the nearest known command that says nothing else than the text about sides and counts."""
-        sides, counts = _sides(text), _counts(text)
-        for wanted in ((sides, counts), (sides, frozenset[str]())):
-            fitting = torch.tensor([named == wanted for named in self._named])
-            if fitting.any():
-                nearest = int(known.masked_fill(~fitting, -1.0).argmax())
-                if wanted[1] == frozenset() or float(known[nearest]) > 0.95 * float(known.max()):
-                    return nearest
-        return int(known.argmax())
 
 
 def clauses_of(text: str) -> list[str]:
@@ -204,11 +188,3 @@ def _unreadable(text: str) -> str:
     if found := _CODE.search(text):
         return f"'{found[0]}' belongs to programs, not to commands in English"
     return ""
-
-
-def _sides(text: str) -> frozenset[str]:
-    return frozenset(_SIDES.findall(text.lower()))
-
-
-def _counts(text: str) -> frozenset[str]:
-    return frozenset(_NUMBERS.get(str(word), str(word)) for word in _COUNTS.findall(text.lower()))
