@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,25 +15,30 @@ from daemon.playing.cycles import closed, find_loop
 from daemon.playing.idle import IdleScore
 from daemon.playing.planner import FADE_FRAMES
 from daemon.playing.posture import Posture, distance_deg, faded_in, joined, posture_of, standing
+from daemon.playing.sources import PREFIX_FRAMES
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.features import recover
-from mmm_core.motion import FPS
+from mmm_core.motion import FPS, Motion
 from retarget.paths import JointState
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
+
+if TYPE_CHECKING:
+    from mmm_core.engine import Engine
 
 Array = NDArray[np.float64]
 
 WINDOW = 20
 """Frames (one second) around a seam, and of a window of real motion."""
+PREFIX_S = 0.4
 UPPER = (12, 15, 16, 17, 18, 19, 20, 21)
 _METHOD = (
     "peak jerk: largest third difference of position times 20^3, m/s3, over neck, head, shoulders, elbows, wrists against the"
     " pelvis on the common body, in one second around the seam at 20 fps; mean over seams divided by the mean over one-second"
-    " windows of held-out CMU motion (the livelier half); prompts cut in at a random moment, out of idle movements, and"
-    " loops; velocity step: change of the goal's velocity at the seam from one bus period to the next beyond what the path"
-    " itself changes in a period, as a share of the joint's limit; closure: angle between the frame a loop ends in and the"
-    " one before its beginning"
+    " windows of held-out CMU motion (the livelier half); prompts cut in at a random moment (also with a prefix of 0.4 s), out"
+    " of idle movements, and loops; velocity step: change of the goal's velocity at the seam from one bus period to the next"
+    " beyond what the path itself changes in a period, as a share of the joint's limit; closure: angle between the frame a"
+    " loop ends in and the one before its beginning"
 )
 
 
@@ -45,14 +51,16 @@ def bench_seams(n: int = 60, seed: int = 0, robot: str = "reference", data: str 
     rng = np.random.default_rng(seed)
     engine = Engine.load(threads=1)
     motions = [engine.generate(t, seed=seed + i).motion for i, t in enumerate(draw_texts(2 * n, seed))]
-    clips = [posture_of(m) for m in motions if len(m.joints_m) > 2 * WINDOW]
+    motions = [m for m in motions if len(m.joints_m) > 2 * WINDOW]
+    clips = [posture_of(m) for m in motions]
     real = _real_jerk(Path(data), rng)
     prompt, steps = _prompt_seams(clips, rng, Retargeter(load_robot(robot)))
+    prefixed = _prefix_seams(engine, motions, np.random.default_rng(seed))
     idle = [_idle_seam(p, rng) for p in clips[:n]]
     loops = [(p, loop) for p in clips if (loop := find_loop(p)) is not None]
     rounds = [_peak_jerk(joined([closed(p, loop)] * 3), loop[1] - loop[0]) for p, loop in loops]
     closure = [_closure_deg(p, loop) for p, loop in loops]
-    kinds = {"prompt_to_prompt": prompt, "idle_to_prompt": idle, "loop": rounds}
+    kinds = {"prompt_to_prompt": prompt, "prompt_with_prefix": prefixed, "idle_to_prompt": idle, "loop": rounds}
     ratios = {kind: round(float(np.mean(values)) / real, 3) for kind, values in kinds.items()}
     return {
         "peak_jerk_ratio": max(ratios.values()),
@@ -89,6 +97,23 @@ def _prompt_seams(
     return jerk, steps
 
 
+def _prefix_seams(engine: Engine, motions: list[Motion], rng: np.random.Generator) -> list[float]:
+    """Peak jerk where the second text of each pair goes on from the first one's motion, as `say` with a prefix does."""
+    from mmm_core.keyframes import features_of
+    from mmm_core.prefix import go_on
+
+    jerk: list[float] = []
+    for a, b in zip(motions[::2], motions[1::2], strict=False):
+        whole = posture_of(a)
+        k = int(rng.integers(WINDOW // 2, len(whole) - WINDOW // 2))
+        shown = whole.at(np.arange(k - PREFIX_FRAMES, k)).motion()
+        before = replace(shown, features=features_of(shown).numpy())
+        after = posture_of(go_on(engine, before, PREFIX_S, b.text, seed=b.seed).motion)
+        after = faded_in(after, whole.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
+        jerk.append(_peak_jerk(joined([whole[:k], after]), k))
+    return jerk
+
+
 def _idle_seam(p: Posture, rng: np.random.Generator) -> float:
     """Peak jerk where a text takes over from idle movements."""
     score = IdleScore("lively", int(rng.integers(1000)))
@@ -111,8 +136,6 @@ def _peak_jerk(p: Posture, at: int) -> float:
 
 
 def _on_common_body(p: Posture) -> Posture:
-    from dataclasses import replace
-
     return replace(p, lengths_m=standing().lengths_m)
 
 

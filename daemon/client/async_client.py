@@ -91,13 +91,15 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         *,
         seed: int = 0,
         seconds: float | None = None,
+        prefix_s: float = 0.0,
         wait: bool = True,
         timeout_s: float | None = None,
         command_id: str = "",
         **options: Unpack[PlayOptions],
     ) -> Said:
         """Move as the text says; arguments and errors as for `daemon.client.Client.say`."""
-        request = Say(id=command_id or uuid.uuid4().hex, text=text, seed=seed, seconds=seconds, **options)
+        name = command_id or uuid.uuid4().hex
+        request = Say(id=name, text=text, seed=seed, seconds=seconds, prefix_s=prefix_s, **options)
         return await self.play(request, wait=wait, timeout_s=timeout_s)
 
     async def gesture(

@@ -15,6 +15,7 @@ def say(
     text: Annotated[str, tyro.conf.Positional],
     seed: int = 0,
     seconds: float | None = None,
+    prefix_s: float = 0.0,
     how: OmitArgPrefixes[PlayFlags] = PlayFlags(),  # noqa: B008
     wait: bool = True,
     json: bool = False,
@@ -30,6 +31,8 @@ def say(
         text: what to do, in English.
         seed: the same text, seed and seconds give the same motion.
         seconds: length of the motion; the model chooses when it is not given.
+        prefix_s: so much of what is played just then, 0.2 to 1.6, is what the new motion goes on from: a smoother seam, and
+            less of what the text asks for. 0 for none.
         how: how it is to be played.
         wait: return when the motion has ended; --no-wait returns once it is accepted.
         json: print each event as one JSON object a line.
@@ -37,4 +40,4 @@ def say(
     """
     from daemon.wire.requests import Say
 
-    return play(built(Say, how, text=text, seed=seed, seconds=seconds), at, wait=wait, json=json)
+    return play(built(Say, how, text=text, seed=seed, seconds=seconds, prefix_s=prefix_s), at, wait=wait, json=json)

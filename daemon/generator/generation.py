@@ -97,17 +97,22 @@ class GeneratorClient:
         """Whether an answer is outstanding."""
         return bool(self._open)
 
-    async def generate(self, text: str, seed: int, seconds: float | None, timeout_s: float) -> Generated:
-        """The motion for `text`.
+    async def generate(
+        self, text: str, seed: int, seconds: float | None, timeout_s: float, *, before: Motion | None = None,
+        prefix_s: float = 0.0,
+    ) -> Generated:  # fmt: skip
+        """The motion for `text`; given what is there before it, one that goes on from the last `prefix_s` of that.
 
         Raises:
             GeneratorError: it failed, gave no usable motion, or not in time (`code` tells which).
         """
         asked = f"a motion for {text!r}"
         await self._until_ready(asked)
-        return await self._motion(
-            GenerateMessage(id=next(self._ids), text=text, seed=seed, seconds=seconds), timeout_s, asked
-        )
+        request = GenerateMessage(
+            id=next(self._ids), text=text, seed=seed, seconds=seconds, prefix_s=prefix_s,
+            before=None if before is None else arrays_of(before),
+        )  # fmt: skip
+        return await self._motion(request, timeout_s, asked)
 
     async def scene(
         self, text: str | None, seed: int, seconds: float | None, told: bytes, timeout_s: float, *, last: bool

@@ -23,6 +23,7 @@ from mmm_core.engine import Engine, no_motion
 from mmm_core.errors import GenerationError
 from mmm_core.keyframes import Keyframe, between, features_of
 from mmm_core.motion import Motion
+from mmm_core.prefix import go_on
 from mmm_core.scope import ScopeVerdict
 from mmm_core.story import Scene, Told, tell_on
 
@@ -50,8 +51,17 @@ class EngineMaker:
         return maker
 
     def generate(self, request: GenerateMessage) -> Generated:
-        """A motion."""
-        made = self._engine.generate(request.text, seed=request.seed, seconds=request.seconds)
+        """A motion, by itself or going on from what is there.
+
+        Raises:
+            GenerationError: seconds or prefix out of range.
+        """
+        if request.before is None:
+            made = self._engine.generate(request.text, seed=request.seed, seconds=request.seconds)
+        else:
+            before = _with_features(motion_from(request.before))
+            text, seed, seconds = request.text, request.seed, request.seconds
+            made = go_on(self._engine, before, request.prefix_s, text, seed=seed, seconds=seconds)
         return Generated(made.motion, made.understood, made.reason, made.timings_ms, self.checkpoint_hash)
 
     def scene(self, request: SceneMessage) -> Generated:
@@ -74,9 +84,7 @@ class EngineMaker:
         what = Edit(request.start_s, request.end_s, parts or None)
 
         def made() -> Motion:
-            motion = motion_from(request.motion)
-            if not motion.features.any() and not len(motion.tokens):
-                motion = replace(motion, features=features_of(motion).numpy())
+            motion = _with_features(motion_from(request.motion))
             return edit(self._engine, motion, what, request.text, seed=request.seed)
 
         return self._unless_rejected(request.text, request.seed, made, "bad_edit")
@@ -117,6 +125,13 @@ class EngineMaker:
             halves = HALVES.get(part, ())
             found += halves if halves and part not in names and set(halves) <= set(names) else (part,)
         return tuple(dict.fromkeys(found))
+
+
+def _with_features(motion: Motion) -> Motion:
+    """The same, with the features of its joints where it came with neither features nor ids."""
+    if motion.features.any() or len(motion.tokens):
+        return motion
+    return replace(motion, features=features_of(motion).numpy())
 
 
 def _frame(motion: Motion, i: int) -> Motion:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from daemon.errors import DaemonError
 from mmm_core.motion import N_FEATURES, N_JOINTS, Motion
 
-GENERATION_VERSION = 2
+GENERATION_VERSION = 3
 MIN_FRAMES = 2
 """A motion of fewer frames is no motion."""
 
@@ -55,13 +55,22 @@ class MotionArrays(msgspec.Struct, kw_only=True):
 
 
 class GenerateMessage(msgspec.Struct, tag="generate", kw_only=True):
-    """Ask for a motion."""
+    """Ask for a motion.
+
+    Attributes:
+        text: a command.
+        seconds: of the motion; None lets the model choose.
+        before: what it is to go on from; None for a motion by itself.
+        prefix_s: so much of the end of `before` is context of the new motion.
+    """
 
     v: int = GENERATION_VERSION
     id: int
     text: str
     seed: int = 0
     seconds: float | None = None
+    before: MotionArrays | None = None
+    prefix_s: float = 0.0
 
 
 class SceneMessage(msgspec.Struct, tag="scene", kw_only=True):

@@ -217,7 +217,7 @@ class Performer:
     async def _perform(self, pending: Pending) -> None:
         entry = pending.entry
         try:
-            prepared = await self._sources.prepare(entry, lambda: self.planner.raw_now)
+            prepared = await self._sources.prepare(entry, self.planner)
             if pending.cancelled_by:  # Python 3.11's `wait_for` may swallow the cancellation
                 return
             self._check_deadline(entry)

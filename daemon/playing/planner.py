@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 from daemon.driving.shared import N_SETPOINTS, BusLink
 from daemon.playing.plan import Piece, Plan
 from daemon.playing.plan_statistics import PlanStatistics
-from daemon.playing.posture import Posture, posture_of, standing
+from daemon.playing.posture import Posture, joined, posture_of, standing
 from daemon.playing.stream_plan import StreamPlan
 from daemon.playing.stream_score import StreamScore
 from daemon.state.bus_view import BusView
+from mmm_core.motion import FPS
 from retarget.as_human import joints_of_path
 from retarget.human import read_human
 from retarget.paths import JointState
@@ -229,6 +230,16 @@ class Planner:
         """The same without layers."""
         plan = self.current
         return self._raw if plan is None else plan.posture_from(max(0, plan.statistics.last_frame), 1, raw=True)
+
+    def committed(self, n: int, ahead_s: float) -> Posture:
+        """`n` frames of posture as they are played, up to about where a motion takes over that takes `ahead_s` to make."""
+        plan = self.current
+        if plan is None or not self.running:
+            return self.posture_now.at(np.zeros(n, np.intp))
+        ahead_s += RETARGET_MARGIN * self._retarget_s
+        last = min(self._next_frame(plan) + round(ahead_s * self._rate_hz), plan.n_frames - 1)
+        places = [last - round(k * self._rate_hz / FPS) for k in reversed(range(n))]
+        return joined([plan.posture_from(place, 1) for place in places])
 
     @property
     def dry(self) -> bool:

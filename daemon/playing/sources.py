@@ -10,7 +10,7 @@ import time
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from daemon.config import DaemonConfig
 from daemon.errors import ClipError
@@ -20,7 +20,7 @@ from daemon.gestures.library import GestureLibrary
 from daemon.playing.kept_motions import KeptMotion, KeptMotions
 from daemon.playing.keyposes import KeyPose, led_through
 from daemon.playing.originals import Originals
-from daemon.playing.posture import Posture, joined, posture_of
+from daemon.playing.posture import Posture, joined, mirrored, posture_of
 from daemon.playing.score import ClipScore, Marks, Score, varied
 from daemon.playing.story_score import SceneNews, StoryScore
 from daemon.playing.stream_score import StreamScore
@@ -34,9 +34,26 @@ from retarget.guarded_steps import GuardedSteps
 from retarget.robot import RobotModel
 
 OUT_OF_SCOPE_DO = "ask for gestures of head, arms and torso, in English, e.g. 'wave with your right hand'"
+PREFIX_FRAMES = 32
+"""So much of what is played is shown to the generator, however little of it is the prefix: ids depend on what was before."""
+FIRST_MAKE_S = 0.1
+"""Assumed time until a motion with a prefix is made; later ones are measured."""
 _THEIRS = ("bad_edit", "bad_keyframes")
 """Failures of the generator that tell of the request and not of the generator."""
 T = TypeVar("T")
+
+
+class Played(Protocol):
+    """What is known of the motion that is played."""
+
+    @property
+    def raw_now(self) -> Posture:
+        """One frame, how the robot is held, without layers."""
+        ...
+
+    def committed(self, n: int, ahead_s: float) -> Posture:
+        """`n` frames up to where a motion would take over that takes `ahead_s` to make."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -76,22 +93,22 @@ class Sources:
         self._config, self._generator, self.library = config, generator, library
         self.kept = KeptMotions()
         self._robot = robot
+        self._make_s = FIRST_MAKE_S
         self._originals = Originals(library, self.kept, config.motions or Path())
 
-    async def prepare(self, entry: Entry, now: Callable[[], Posture]) -> Prepared:
-        """The motion of a command; `now` gives one frame, how the robot is held.
+    async def prepare(self, entry: Entry, played: Played) -> Prepared:
+        """The motion of a command.
 
         Raises:
             NotPlayableError: there is none; its event ends the command.
         """
         request = entry.request
         if isinstance(request, Say):
-            ask = self._generator.generate
-            return await self._generated(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
+            return await self._said(entry, request, played)
         if isinstance(request, Story):
             return await self._story(entry, request)
         if isinstance(request, Inbetween):
-            return await self._inbetween(entry, request, now())
+            return await self._inbetween(entry, request, played.raw_now)
         if isinstance(request, Edit):
             return await self._edit(entry, request)
         if isinstance(request, Replay):
@@ -143,6 +160,18 @@ class Sources:
             motion.scope_score,
             sum(generated.timings_ms.values()),
         )
+
+    async def _said(self, entry: Entry, request: Say, played: Played) -> Prepared:
+        ask = self._generator.generate
+        if not request.prefix_s:
+            return await self._generated(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
+        before, began_s = played.committed(PREFIX_FRAMES, self._make_s), time.monotonic()
+        motion, prefix_s = (mirrored(before) if request.mirror else before).motion(), request.prefix_s
+        prepared = await self._generated(
+            entry, lambda t: ask(request.text, request.seed, request.seconds, t, before=motion, prefix_s=prefix_s)
+        )
+        self._make_s += 0.3 * (time.monotonic() - began_s - self._make_s)
+        return prepared
 
     async def _lease(self, request: Lease) -> Prepared:
         silence_s = self._config.lease_s if request.silence_s is None else request.silence_s

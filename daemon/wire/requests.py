@@ -26,6 +26,7 @@ from daemon.wire.request_base import (
     IDLE_STYLES,
     LEAST_AMPLITUDE,
     LEAST_TEMPO,
+    LONGEST_PREFIX_S,
     LONGEST_S,
     MAX_ID_CHARS,
     MAX_SEED,
@@ -34,6 +35,7 @@ from daemon.wire.request_base import (
     MOST_REPEATS,
     MOST_TEMPO,
     PROTOCOL_VERSION,
+    SHORTEST_PREFIX_S,
     SHORTEST_S,
     Command,
     Id,
@@ -51,6 +53,7 @@ __all__ = [
     "IDLE_STYLES",
     "LEAST_AMPLITUDE",
     "LEAST_TEMPO",
+    "LONGEST_PREFIX_S",
     "LONGEST_S",
     "LONGEST_SILENCE_S",
     "MAX_ID_CHARS",
@@ -64,6 +67,7 @@ __all__ = [
     "PROTOCOL_VERSION",
     "REQUESTS",
     "SHORTEST_GAP_S",
+    "SHORTEST_PREFIX_S",
     "SHORTEST_S",
     "SHORTEST_SILENCE_S",
     "STREAM_TYPES",
@@ -109,11 +113,26 @@ class Say(Play, tag="say", kw_only=True):
         text: what to do, in English.
         seed: the same text, seed and seconds give the same motion.
         seconds: length of the motion; None lets the model choose.
+        prefix_s: so much of what is played just then is context of the new motion, which goes on from it: a smoother seam,
+            and less of what the text asks for. 0 for none.
     """
 
     text: Text
     seed: Annotated[int, Meta(ge=0, le=MAX_SEED)] = 0
     seconds: Annotated[float, Meta(ge=SHORTEST_S, le=LONGEST_S)] | None = None
+    prefix_s: Annotated[float, Meta(ge=0, le=LONGEST_PREFIX_S)] = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse a prefix of what is not known yet.
+
+        Raises:
+            ValueError: which becomes one `error` event.
+        """
+        super().__post_init__()
+        if self.prefix_s and self.when != "now":
+            raise ValueError('`prefix_s` is of what is played now: it goes with `when` "now" only')
+        if 0 < self.prefix_s < SHORTEST_PREFIX_S:
+            raise ValueError(f"`prefix_s` is 0 or {SHORTEST_PREFIX_S} to {LONGEST_PREFIX_S}")
 
     @property
     def words(self) -> str:

@@ -11,7 +11,7 @@ from daemon.bus.servo_bus import ServoBus
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.streamer import Streamer
 from daemon.playing.planner import RETARGET_MARGIN, SPARE_FRAMES, Planner
-from daemon.playing.posture import posture_of
+from daemon.playing.posture import distance_deg, posture_of, standing
 from daemon.state.bus_view import BusView
 from retarget.limits import JointLimits
 from retarget.robot import load_robot
@@ -183,6 +183,29 @@ def test_taking_over_at_any_instant_keeps_limits_and_the_gate_changes_nothing(in
         assert_within_limits(bench)
     finally:
         bench.close()
+
+
+@pytest.mark.parametrize("ahead_s", [0.05, 0.3])
+def test_what_is_committed_is_what_will_have_been_played(bench, ahead_s):
+    """The generator is shown the frames up to the take-over, some of them before their time."""
+    bench.arm()
+    plan = bench.play(RIGHT)
+    whole = posture_of(RIGHT)
+    bench.cycle(30)
+    shown = bench.planner.committed(8, ahead_s)
+    end_s = (plan.statistics.last_frame + 1) * PERIOD_S + ahead_s + RETARGET_MARGIN * bench.planner._retarget_s
+    at = round(end_s * whole.fps)
+    off_deg = [distance_deg(shown, whole.at(np.arange(at + d - 7, at + d + 1))).max() for d in (-1, 0, 1)]
+    assert min(off_deg) < 1e-4 < 1 < max(off_deg)
+
+
+def test_what_is_committed_at_rest_is_how_the_robot_is_held(bench):
+    bench.arm()
+    assert float(distance_deg(bench.planner.committed(32, 0.1), standing()).max()) < 1e-4
+    bench.play(RIGHT)
+    bench.finish()
+    held = bench.planner.committed(32, 0.1)
+    assert len(held) == 32 and float(distance_deg(held, posture_of(RIGHT)[-1:]).max()) < 1e-4
 
 
 def test_velocity_goes_over_without_a_step(bench):

@@ -11,7 +11,7 @@ import pytest
 
 from daemon.client import CancelledByError, RefusedError
 from daemon.wire import events as ev
-from daemon.wire.requests import KeyPoseOf, SceneOf, Story
+from daemon.wire.requests import KeyPoseOf, Say, SceneOf, Story
 from mmm_core.checkpoint import MODEL_FILE
 from tests.end_to_end.harness import RunningDaemon, mmmd
 from tests.end_to_end.test_start_and_end import child_pid
@@ -83,6 +83,25 @@ def test_a_story_outlives_its_generator(run):
         assert isinstance(heard[-1], ev.Done), heard[-1]
         assert [e.scene for e in heard if isinstance(e, ev.Progress) and e.scene is not None][-1] == 8
         assert heard[-1].frames == pytest.approx((8 * 2.0 + 7 * 0.4) * 100, abs=60)
+
+
+def test_a_text_goes_on_from_what_is_played(run):
+    """With a prefix the motion is another than without, and begins where the robot is by then; the audit sees the rest."""
+    with run.client() as robot, run.client() as other:
+        robot.arm()
+        moved = {}
+        for prefix_s in (0.0, 1.6):
+            events = other.events_of(Say(id=f"up {prefix_s}", text="raise both arms", seconds=3.0, seed=1))
+            while getattr(next(events), "stage", "") != "moving":
+                pass
+            time.sleep(1.5)
+            said = robot.say("clap your hands", seed=4, prefix_s=prefix_s)
+            assert isinstance(list(events)[-1], ev.Cancelled)
+            assert said.done is not None and said.done.gate_clipped_frames <= 4 * said.done.underruns
+            moved[prefix_s] = said.done.duration_s, said.done.peak_speed_rad_s
+        assert moved[0.0] != moved[1.6]
+        with pytest.raises(ValueError, match="prefix_s"):
+            robot.say("clap your hands", prefix_s=0.4, when="after")
 
 
 def test_poses_are_met_in_time(run):
