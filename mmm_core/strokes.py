@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.evaluation.checks import look_at, peaks_beyond
 from mmm_core.motion import Motion
+from mmm_core.shown import look_at
 
 Array = NDArray[np.floating]
 
@@ -72,6 +72,24 @@ def body_path(motion: Motion) -> Array:
     trunk = np.stack([s.trunk_yaw_deg, s.trunk_pitch_deg, s.trunk_roll_deg], -1) / _TRUNK_DEG_PER_M
     forearms = [_FOREARM_M * s.fore[side] for side in ("left", "right")]
     return np.concatenate([s.wrists_m["left"], s.wrists_m["right"], head, trunk, *forearms], -1)
+
+
+def peaks_beyond(signal: Array, turn: float) -> list[int]:
+    """Frames of the peaks that rise by more than `turn` from the valley before, and are fallen from by as much or are last."""
+    found: list[int] = []
+    rising, valley, peak = False, float(signal[0]), float(signal[0])
+    for frame, value in enumerate(signal[1:].tolist(), 1):
+        if rising:
+            if value > peak:
+                peak, found[-1] = value, frame
+            if value < peak - turn:
+                rising, valley = False, value
+        else:
+            valley = min(valley, value)
+            if value > valley + turn:
+                found.append(frame)
+                rising, peak = True, value
+    return found
 
 
 def _cycle(path: Array) -> tuple[int, int, float, float] | None:

@@ -180,8 +180,8 @@ def main() -> int:
 
 def _cost(motion: Motion, wanted: Wanted, retargeter: Retargeter) -> float | None:
     """How far a motion is from the best; None when it fails a check."""
-    from mmm_core.evaluation.checks import look_at
     from mmm_core.evaluation.probes import judge
+    from mmm_core.shown import look_at
 
     if motion.status != "accepted" or len(motion.joints_m) < 16:
         return None

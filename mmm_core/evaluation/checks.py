@@ -1,4 +1,4 @@
-"""Kinematic checks: what a motion shows, read from joints and head, without looking at the text.
+"""Kinematic checks of what a motion shows (`mmm_core.shown`), without looking at the text.
 
 Each check answers one question about a motion of the corpus's kinds. That they are right on motions that are right, and
 wrong on mirrored, absent and other ones, is tested.
@@ -6,93 +6,20 @@ wrong on mirrored, absent and other ones, is tested.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import FPS
-from mmm_core.skeleton import matrix_from_quat, normalise
+from mmm_core.shown import Shown, angle_deg
+from mmm_core.strokes import peaks_beyond
 
 Array = NDArray[np.floating]
 
-ARM_MOVED_DEG = 24.0
 HEAD_MOVED_DEG = 11.0
 TRUNK_MOVED_DEG = 6.0
 PALM_M = 0.08
 """From the wrist joint to the middle of the palm."""
 _STERNUM_M = np.array([0.0, -0.13, 0.13])
-_ARMS = {"left": (16, 18, 20), "right": (17, 19, 21)}
-
-
-@dataclass(frozen=True)
-class Shown:
-    """What a motion shows.
-
-    Attributes:
-        arms: which arms left their hanging pose: "left", "right", "both" or "".
-        head_yaw_deg, head_pitch_deg, head_roll_deg: (T,) head against the chest: left, down, left.
-        trunk_yaw_deg, trunk_pitch_deg, trunk_roll_deg: (T,) chest against the pelvis: left, forward, left.
-        upper, fore: per side, (T, 3) bone directions in the chest frame (left, up, forward).
-        wrists_m: per side, (T, 3) wrist in the chest frame, from the middle of the shoulders.
-        lift_m: (T,) height of the shoulders above the neck's root, in the chest frame.
-        twist_rad: per side, (T,) forearm twist; None where it is not known.
-    """
-
-    arms: str
-    head_yaw_deg: Array
-    head_pitch_deg: Array
-    head_roll_deg: Array
-    trunk_yaw_deg: Array
-    trunk_pitch_deg: Array
-    trunk_roll_deg: Array
-    upper: dict[str, Array]
-    fore: dict[str, Array]
-    wrists_m: dict[str, Array]
-    lift_m: Array
-    twist_rad: dict[str, Array | None]
-
-
-def look_at(joints_m: Array, head_quat_wxyz: Array, forearm_twist_rad: Array | None = None) -> Shown:
-    """Read a motion: (T, 22, 3) joints, (T, 4) head orientation and, where known, (T, 2) forearm twist."""
-    joints = np.asarray(joints_m, np.float64)
-    pelvis = _frame(joints[:, 1] - joints[:, 2], np.broadcast_to([0.0, 1, 0], joints[:, 0].shape))
-    chest = _frame(joints[:, 13] - joints[:, 14], joints[:, 12] - joints[:, 3])
-    to_chest = np.swapaxes(chest, -1, -2)
-    upper, fore, wrists = {}, {}, {}
-    middle = (joints[:, 16] + joints[:, 17]) / 2
-    for side, (shoulder, elbow, wrist) in _ARMS.items():
-        upper[side] = np.einsum("tij,tj->ti", to_chest, normalise(joints[:, elbow] - joints[:, shoulder]))
-        fore[side] = np.einsum("tij,tj->ti", to_chest, normalise(joints[:, wrist] - joints[:, elbow]))
-        wrists[side] = np.einsum("tij,tj->ti", to_chest, joints[:, wrist] - middle)
-    head = _yaw_pitch_roll_deg(to_chest @ matrix_from_quat(np.asarray(head_quat_wxyz, np.float64)))
-    trunk = _yaw_pitch_roll_deg(np.swapaxes(pelvis, -1, -2) @ chest)
-    twist: dict[str, Array | None] = {
-        side: None if forearm_twist_rad is None else np.asarray(forearm_twist_rad)[:, i] for i, side in enumerate(_ARMS)
-    }
-    lift = np.einsum("ti,ti->t", chest[:, :, 1], middle - joints[:, 9])
-    return Shown(_moved(upper, fore), *head, *trunk, upper, fore, wrists, lift, twist)
-
-
-def _moved(upper: dict[str, Array], fore: dict[str, Array]) -> str:
-    """Which arms left their hanging pose."""
-    moved: list[str] = []
-    for side in _ARMS:
-        hanging = np.array([0.15 if side == "left" else -0.15, -0.97, 0.2])
-        away = np.maximum(_angle_deg(upper[side], hanging), _angle_deg(fore[side], hanging))
-        moved += [side] if away.max() > ARM_MOVED_DEG else []
-    return "both" if len(moved) == 2 else "".join(moved)
-
-
-def part(s: Shown, start: int, end: int) -> Shown:
-    """What frames `start` to `end` show."""
-    upper, fore = ({side: v[start:end] for side, v in d.items()} for d in (s.upper, s.fore))
-    return Shown(
-        _moved(upper, fore), s.head_yaw_deg[start:end], s.head_pitch_deg[start:end], s.head_roll_deg[start:end],
-        s.trunk_yaw_deg[start:end], s.trunk_pitch_deg[start:end], s.trunk_roll_deg[start:end], upper, fore,
-        {side: v[start:end] for side, v in s.wrists_m.items()}, s.lift_m[start:end],
-        {side: None if v is None else v[start:end] for side, v in s.twist_rad.items()},
-    )  # fmt: skip
 
 
 def limb(s: Shown) -> str:
@@ -227,7 +154,7 @@ def _raised(s: Shown) -> NDArray[np.bool_]:
 
 def _held(s: Shown, side: str) -> NDArray[np.bool_]:
     """Frames in which an arm moves least of those in which it is away from rest."""
-    away = _angle_deg(s.upper[side], np.array([0.0, -1, 0])) + _angle_deg(s.fore[side], np.array([0.0, -1, 0]))
+    away = angle_deg(s.upper[side], np.array([0.0, -1, 0])) + angle_deg(s.fore[side], np.array([0.0, -1, 0]))
     wanted = away > 0.7 * away.max()
     speed = np.linalg.norm(np.gradient(s.fore[side], axis=0), axis=-1)
     return wanted & (speed <= np.median(speed[wanted]))
@@ -248,24 +175,6 @@ def peaks(signal: Array, least: float) -> list[int]:
     return peaks_beyond(signal, max(0.6 * least, 0.22 * float(np.ptp(signal))))
 
 
-def peaks_beyond(signal: Array, turn: float) -> list[int]:
-    """Frames of the peaks that rise by more than `turn` from the valley before, and are fallen from by as much or are last."""
-    found: list[int] = []
-    rising, valley, peak = False, float(signal[0]), float(signal[0])
-    for frame, value in enumerate(signal[1:].tolist(), 1):
-        if rising:
-            if value > peak:
-                peak, found[-1] = value, frame
-            if value < peak - turn:
-                rising, valley = False, value
-        else:
-            valley = min(valley, value)
-            if value > valley + turn:
-                found.append(frame)
-                rising, peak = True, value
-    return found
-
-
 def _aim(left: float, up: float, least: float) -> str:
     """left, right, up, down or two of them; "" when both shares are below `least`."""
     height = "up" if up > least else "down" if up < -least else ""
@@ -282,21 +191,3 @@ def _largest(values: dict[str, float], least: float) -> str:
 
 def _reach(angle_deg: Array) -> float:
     return float(np.abs(angle_deg - angle_deg[0]).max())
-
-
-def _yaw_pitch_roll_deg(R: Array) -> tuple[Array, Array, Array]:
-    forward, left = R[..., 2], R[..., 0]
-    yaw = np.arctan2(forward[:, 0], forward[:, 2])
-    pitch = -np.arcsin(np.clip(forward[:, 1], -1, 1))
-    roll = -np.arcsin(np.clip(left[:, 1], -1, 1))
-    return np.rad2deg(yaw), np.rad2deg(pitch), np.rad2deg(roll)
-
-
-def _angle_deg(a: Array, b: Array) -> Array:
-    return np.rad2deg(np.arccos(np.clip((a * normalise(b)).sum(-1), -1, 1)))
-
-
-def _frame(left: Array, up: Array) -> Array:
-    x = normalise(left)
-    z = normalise(np.cross(x, up))
-    return np.stack([x, np.cross(z, x), z], -1)

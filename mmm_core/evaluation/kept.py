@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.heldout import PROBES, Probe
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise_spec
-from mmm_core.evaluation.checks import Shown, look_at
 from mmm_core.evaluation.probes import judge
 from mmm_core.features import recover
+from mmm_core.shown import Shown, look_at
 from mmm_core.tokenizer import Tokenizer
 from mmm_core.tokens import FRAMES_PER_TOKEN
 

@@ -8,9 +8,9 @@ from typing import Any
 
 from mmm_core.corpus.heldout import PROBES, Probe
 from mmm_core.evaluation import checks
-from mmm_core.evaluation.checks import Shown, look_at
 from mmm_core.evaluation.signs import shows
 from mmm_core.motion import Motion
+from mmm_core.shown import Shown, look_at, part
 
 SLOW_CYCLE_S, FAST_CYCLE_S = 0.72, 0.64
 """Longer from stroke to stroke is slow, shorter is fast; 0.6 to 0.7 s are usual."""
@@ -49,7 +49,7 @@ def _in_order(first: Probe, second: Probe, shown: Shown) -> bool:
     n_frames = len(shown.head_yaw_deg)
 
     def parts(a: Probe, b: Probe, t: int) -> bool:
-        return _is_seen(a, checks.part(shown, 0, t)) and _is_seen(b, checks.part(shown, t, n_frames))
+        return _is_seen(a, part(shown, 0, t)) and _is_seen(b, part(shown, t, n_frames))
 
     moments = range(MIN_PART, n_frames - MIN_PART, 2)
     return any(parts(first, second, t) for t in moments) and not any(parts(second, first, t) for t in moments)

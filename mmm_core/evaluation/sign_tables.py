@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.corpus import reach
-from mmm_core.evaluation.checks import Shown, strokes
+from mmm_core.evaluation.checks import strokes
+from mmm_core.shown import Shown
 
 Array = NDArray[np.floating]
 Vector = tuple[float, float, float]

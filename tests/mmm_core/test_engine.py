@@ -13,7 +13,7 @@ from safetensors.torch import load_file, save_file
 from mmm_core.checkpoint import MODEL_FILE, load_model
 from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, GenerationError
-from mmm_core.evaluation.checks import look_at
+from mmm_core.shown import look_at
 from mmm_core.tokens import unpack_ids
 
 

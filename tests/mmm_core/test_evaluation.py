@@ -13,11 +13,11 @@ from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, Probe
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthesise_spec
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.evaluation import checks
-from mmm_core.evaluation.checks import Shown
 from mmm_core.evaluation.kept import performed, shown
 from mmm_core.evaluation.probes import judge
 from mmm_core.evaluation.signs import shows
 from mmm_core.features import mirror
+from mmm_core.shown import Shown
 
 LIMB_FAMILIES = (
     "wave", "raise", "point", "clap", "bow", "nod", "shake_head", "look", "tilt_head", "lean",

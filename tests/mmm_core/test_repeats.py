@@ -15,10 +15,9 @@ from hypothesis import strategies as st
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.count_words import count_asked
 from mmm_core.engine import Engine
-from mmm_core.evaluation.checks import peaks_beyond
 from mmm_core.motion import Motion
 from mmm_core.repeats import with_count
-from mmm_core.strokes import Strokes, strokes_of
+from mmm_core.strokes import Strokes, peaks_beyond, strokes_of
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 
 MASK = -1
