@@ -232,14 +232,14 @@ class Planner:
         return self._raw if plan is None else plan.posture_from(max(0, plan.statistics.last_frame), 1, raw=True)
 
     def committed(self, n: int, ahead_s: float) -> Posture:
-        """`n` frames of posture as they are played, up to about where a motion takes over that takes `ahead_s` to make."""
+        """`n` frames of posture at 20 fps as they are played, up to about where a motion that takes `ahead_s` takes over."""
         plan = self.current
         if plan is None or not self.running:
-            return self.posture_now.at(np.zeros(n, np.intp))
+            return replace(self.posture_now.at(np.zeros(n, np.intp)), fps=FPS)
         ahead_s += RETARGET_MARGIN * self._retarget_s
         last = min(self._next_frame(plan) + round(ahead_s * self._rate_hz), plan.n_frames - 1)
         places = [last - round(k * self._rate_hz / FPS) for k in reversed(range(n))]
-        return joined([plan.posture_from(place, 1) for place in places])
+        return replace(joined([plan.posture_from(place, 1) for place in places]), fps=FPS)
 
     @property
     def dry(self) -> bool:
