@@ -1,8 +1,8 @@
 """A motion for a text that goes on from what is there: its last ids are the context of the new ones.
 
 MMM (arXiv 2312.03596) sec. 3.3: everything but the committed ids is [MASK]. What is committed is given as frames, whatever
-made them, and read by the tokenizer. Seams are smoother so, and the motion shows less of what was asked for, the more the
-longer the prefix is (measured in docs/daemon.md): the model was not trained to begin in the middle of another motion.
+made them, and read by the tokenizer. The longer the prefix, the more the motion goes on from there, and the less it shows of
+the text (measured in docs/daemon.md): the model was not trained to begin in the middle of another motion.
 """
 
 from __future__ import annotations

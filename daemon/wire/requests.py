@@ -113,8 +113,8 @@ class Say(Play, tag="say", kw_only=True):
         text: what to do, in English.
         seed: the same text, seed and seconds give the same motion.
         seconds: length of the motion; None lets the model choose.
-        prefix_s: so much of what is played just then is context of the new motion, which goes on from it: a smoother seam,
-            and less of what the text asks for. 0 for none.
+        prefix_s: so much of what is played just then is context of the new motion, which goes on from it: the longer, the
+            less it sets out anew, and the less it shows of the text. 0 for none.
     """
 
     text: Text
