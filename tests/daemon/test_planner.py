@@ -195,12 +195,13 @@ def test_what_is_committed_is_what_will_have_been_played(bench, ahead_s, fps):
     plan = bench.play(replace(RIGHT, fps=fps))
     whole = at_tempo(posture_of(RIGHT), fps / 20.0)
     bench.cycle(30)
+    bench.planner._retarget_s = 0.03  # measured, else
     shown = bench.planner.committed(8, ahead_s)
     assert shown.fps == whole.fps == 20.0
     end_s = (plan.statistics.last_frame + 1) * PERIOD_S + ahead_s + RETARGET_MARGIN * bench.planner._retarget_s
     at = round(end_s * whole.fps)
-    off_deg = [distance_deg(shown, whole.at(np.arange(at + d - 7, at + d + 1))).max() for d in (-1, 0, 1)]
-    assert min(off_deg) < (1e-4 if fps == 20.0 else 8) < max(off_deg)
+    off_deg = [distance_deg(shown, whole.at(np.arange(at + d - 7, at + d + 1))).max() for d in (-2, -1, 0, 1, 2)]
+    assert min(off_deg) < (1e-4 if fps == 20.0 else 10) < max(off_deg)
 
 
 def test_what_is_committed_at_rest_is_how_the_robot_is_held(bench):
