@@ -7,7 +7,9 @@ import re
 MOST = 12
 """Greater numbers are no number of strokes that fits into a motion."""
 _WORDS = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-_VALUE = {word: i for i, word in enumerate(_WORDS, 1)} | {str(i): i for i in range(1, MOST + 1)}
+NUMBERS = {word: i for i, word in enumerate(_WORDS, 1)} | {str(i): i for i in range(1, MOST + 1)}
+"""What a word or digits stand for."""
+TIMES = {"once": 1, "twice": 2, "thrice": 3}
 _NUMBER = rf"({'|'.join(_WORDS)}|1[0-2]|[1-9])"
 _NOT_STROKES = (
     "arms?|hands?|fists?|palms?|fingers?|thumbs?|eyes?|ears?|elbows?|shoulders?|wrists?|knees?|legs?|feet|foot|heads?|sides?|"
@@ -28,10 +30,10 @@ _THINGS = re.compile(
 def count_asked(text: str) -> int | None:
     """The number of strokes that a text names; None where it names none, several, or one greater than twelve."""
     text = " ".join(text.split())
-    found = {{"once": 1, "twice": 2, "thrice": 3}[m[1].lower()] for m in _ONCE.finditer(text)}
+    found = {TIMES[m[1].lower()] for m in _ONCE.finditer(text)}
     found |= {1} if _SINGLE.search(text) else set()
-    found |= {_VALUE[m[1].lower()] for m in _TIMES.finditer(text)}
+    found |= {NUMBERS[m[1].lower()] for m in _TIMES.finditer(text)}
     found |= {
-        n for m in _THINGS.finditer(text) if (n := _VALUE[m[1].lower()]) > 1 and not _TIMES.match(text, m.start())
+        n for m in _THINGS.finditer(text) if (n := NUMBERS[m[1].lower()]) > 1 and not _TIMES.match(text, m.start())
     }
     return found.pop() if len(found) == 1 else None

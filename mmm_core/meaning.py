@@ -7,14 +7,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import torch
 from torch import Tensor
 
+from mmm_core.count_words import NUMBERS, TIMES
+
 _SIDES = re.compile(r"\b(left|right|both)\b")
-_NUMBERS = {"once": "1", "one": "1", "twice": "2", "two": "2", "three": "3", "four": "4", "five": "5", "six": "6"}
-_COUNTS = re.compile(r"\b(once|twice|one|two|three|four|five|six|[1-9])\b")
-_TIMES = re.compile(r"\s*\b(?:(?:two|three|four|five|six|[2-9]) times|once|twice)\b")
+_VALUES = NUMBERS | TIMES
+_COUNTS = re.compile(rf"\b({'|'.join(_VALUES)})\b")
+_TIMES = re.compile(rf"\s*\b(?:(?:{'|'.join(NUMBERS)}) times|{'|'.join(TIMES)})\b")
 _WAYS = {
     "up": re.compile(r"\b(?:rais|lift|hoist|up\b|upwards?\b|rise)"),
     "down": re.compile(r"\b(?:lower(?:s|ed|ing)?\b|drop|down\b|downwards?\b|sink|fall|hang)"),
@@ -63,11 +66,11 @@ class Meanings:
 class _Said:
     """One thing that each of N commands says, or not."""
 
-    def __init__(self, said: Iterable[frozenset[str]]) -> None:
-        self._numbers: dict[frozenset[str], int] = {}
+    def __init__(self, said: Iterable[frozenset[Any]]) -> None:
+        self._numbers: dict[frozenset[Any], int] = {}
         self._of = torch.tensor([self._numbers.setdefault(s, len(self._numbers)) for s in said])
 
-    def are(self, what: frozenset[str]) -> Tensor:
+    def are(self, what: frozenset[Any]) -> Tensor:
         """(N,) which of them say this."""
         return self._of == self._numbers.get(what, -1)
 
@@ -80,5 +83,5 @@ def _ways(text: str) -> frozenset[str]:
     return frozenset(way for way, words in _WAYS.items() if words.search(text.lower()))
 
 
-def _counts(text: str) -> frozenset[str]:
-    return frozenset(_NUMBERS.get(str(word), str(word)) for word in _COUNTS.findall(text.lower()))
+def _counts(text: str) -> frozenset[int]:
+    return frozenset(_VALUES[str(word)] for word in _COUNTS.findall(text.lower()))

@@ -19,7 +19,7 @@ from mmm_core.sampling import empty_row, fill
 from mmm_core.sequence import COMMAND_STRIDE, Command, commands_of, joined
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds
 
-LONGEST_PREFIX_S = 1.6
+LONGEST_PREFIX_TOKENS = 8
 
 
 def go_on(
@@ -43,9 +43,10 @@ def go_on(
     n_frames = None if seconds is None else frames_for_seconds(seconds, FPS)
     ids_before = engine.ids_of(before)
     n_prefix = round(prefix_s / TOKEN_S)
-    if not 1 <= n_prefix <= min(len(ids_before), round(LONGEST_PREFIX_S / TOKEN_S)):
+    if not 1 <= n_prefix <= min(len(ids_before), LONGEST_PREFIX_TOKENS):
         asked = f"a prefix of {prefix_s:g} s of a motion of {len(ids_before) * TOKEN_S:.1f} s"
-        raise GenerationError(asked, f"{TOKEN_S:g} to {LONGEST_PREFIX_S:g} s, and no more than there is")
+        longest_s = LONGEST_PREFIX_TOKENS * TOKEN_S
+        raise GenerationError(asked, f"{TOKEN_S:g} to {longest_s:g} s, and no more than there is")
     clock = Clock()
     states, verdict = engine.understand(text)
     clock.lap("text")

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import Any
 
 from daemon.bench.report import context
+from daemon.wire.requests import LONGEST_S
 
-LONGEST_S = 9.8
 TEXT = "wave with your right hand five times"
 IN_TURN = "wave with your right hand five times, then clap twice"
 REPEATS = 11

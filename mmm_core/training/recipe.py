@@ -120,6 +120,8 @@ class Recipe:
 
     Attributes:
         seed: of the corpus and, unless its schedule has one of its own, of every stage.
+        start: a finished checkpoint to go on from ("shipped": the one in this package): its tokenizer stays, transformer and
+            lengths begin with its weights; empty for none.
         data: what it is made from.
         text: which text encoder.
         tokenizer: motion to ids.
@@ -130,6 +132,7 @@ class Recipe:
     """
 
     seed: int = 0
+    start: str = ""
     data: DataRecipe = field(default_factory=lambda: DataRecipe(synthesised=14_000))
     text: TextRecipe = field(default_factory=TextRecipe)
     tokenizer: TokenizerRecipe = field(default_factory=TokenizerRecipe)

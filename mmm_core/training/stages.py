@@ -20,7 +20,7 @@ import torch
 from torch import Tensor, nn
 
 from mmm_core import distributed
-from mmm_core.checkpoint import Model, load_model, load_text_encoder, save_model
+from mmm_core.checkpoint import MODEL_FILE, Model, load_model, load_text_encoder, save_model
 from mmm_core.clip import ClipText, read_clip
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.datasets import MotionFolder, open_folder
@@ -114,10 +114,40 @@ class Stages:
         return load_text_encoder() if how.encoder == "minilm" else read_clip(Path(how.clip), Path(how.vocabulary))
 
     @cached_property
+    def start(self) -> Model | None:
+        """The checkpoint that the recipe goes on from, if there is one.
+
+        Raises:
+            CheckpointError: it cannot be read, or has other sizes than the recipe asks for.
+        """
+        if not self.recipe.start:
+            return None
+        path = self._start_path
+        model, how = load_model(path), self.recipe
+        found, books = model.transformer.config, model.tokenizer.n_codebooks
+        sizes = how.tokenizer.config(len(model.tokenizer.mean))
+        if sizes != model.tokenizer.config:
+            raise CheckpointError(path, "tokenizer", f"{model.tokenizer.config}", f"{sizes}, as the recipe says")
+        wanted = how.transformer.config(sizes, books, found.text_dim)
+        if replace(wanted, dropout=found.dropout) != found:
+            raise CheckpointError(path, "transformer", f"{found}", f"{wanted}, as the recipe says")
+        return model
+
+    @property
+    def _start_path(self) -> Path:
+        return MODEL_FILE if self.recipe.start == "shipped" else Path(self.recipe.start)
+
+    @cached_property
     def tokenizer(self) -> Tokenizer | VqVae:
         """Motion to ids, trained; with the decoder as it was when the ids were made."""
+        start = self.start  # before hours of work on what will be refused
         how, clips = self.recipe.tokenizer, self.clips
         width = clips[0].features.shape[1]
+        if start is not None:
+            if len(start.tokenizer.mean) != width:
+                found = f"a tokenizer of {len(start.tokenizer.mean)} features"
+                raise CheckpointError(self._start_path, "tokenizer", found, f"{width}, as the data have")
+            return start.tokenizer
         shown = torch.from_numpy(max(clips, key=lambda c: len(c.features)).features)
         run = replace(self.run, sampler=lambda module, path: self._draw_reconstruction(module, shown, path))
         statistics = None
@@ -160,7 +190,9 @@ class Stages:
     def length(self) -> LengthPredictor:
         """Seconds from text."""
         fps = FPS if self.folder is None else self.folder.fps
-        return train_length(self.corpus, [len(c.features) / fps for c in self.clips], self.recipe.length, self.run)
+        start = None if self.start is None else self.start.length
+        seconds = [len(c.features) / fps for c in self.clips]
+        return train_length(self.corpus, seconds, self.recipe.length, self.run, start)
 
     @cached_property
     def transformer(self) -> MotionTransformer:
@@ -169,8 +201,9 @@ class Stages:
         config = how.config(tokenizer.config, tokenizer.n_codebooks, self.corpus.captions.words.shape[1])
         texts = self.text.encode(list(SAMPLE_TEXTS))
         run = replace(self.run, sampler=lambda module, path: self._draw_samples(module, texts, path))
+        start = None if self.start is None else self.start.transformer
         return train_transformer(
-            self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch
+            self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch, start
         )
 
     @cached_property
@@ -196,7 +229,7 @@ class Stages:
     def model(self) -> Model:
         """All stages, as a model to be saved."""
         length, transformer, tokenizer = self.length, self.transformer, self.tokenizer
-        if isinstance(tokenizer, Tokenizer) and self.recipe.tokenizer.decoder.steps:
+        if isinstance(tokenizer, Tokenizer) and self.recipe.tokenizer.decoder.steps and self.start is None:
             tune_decoder(tokenizer, self.clips, self.recipe.tokenizer.decoder, self.run)
         synthesised = bool(self.recipe.data.synthesised)
         text = self.text if isinstance(self.text, ClipText) else None

@@ -96,12 +96,18 @@ def train_transformer(
     run: Run,
     how: Corruption | None = None,
     tokens_per_batch: int = TOKENS_PER_BATCH,
+    start: MotionTransformer | None = None,
 ) -> MotionTransformer:
-    """A transformer trained on `corpus`: eq. 2, or eq. 3 where `config` predicts the first codebooks only."""
+    """A transformer trained on `corpus`: eq. 2, or eq. 3 where `config` predicts the first codebooks only.
+
+    It begins with the weights of `start`, which has the sizes of `config`, or from nothing.
+    """
     how = how or Corruption()
     torch.manual_seed(schedule.seed)
     model = MotionTransformer(config)
     model.set_codebooks([q.codebook for q in tokenizer.books])
+    if start is not None:
+        model.load_state_dict(start.state_dict())
     buckets = length_buckets(corpus.ids)
     weight = np.array([_drawing_weight(rows, corpus.is_real, how.real_share) for rows in buckets.values()])
     lengths, K, P = list(buckets), config.n_codes, config.n_out
@@ -143,13 +149,17 @@ def train_transformer(
     return model
 
 
-def train_length(corpus: TokenCorpus, seconds: list[float], schedule: Schedule, run: Run) -> LengthPredictor:
-    """A length predictor trained by maximum likelihood on each caption and its clip's length.
+def train_length(
+    corpus: TokenCorpus, seconds: list[float], schedule: Schedule, run: Run, start: LengthPredictor | None = None
+) -> LengthPredictor:
+    """A length predictor trained by maximum likelihood on each caption and its clip's length, from `start` or from nothing.
 
     People's clips are cut from recordings, so their length says little; they count only where there is nothing else.
     """
     torch.manual_seed(schedule.seed)
     predictor = LengthPredictor(corpus.captions.words.shape[1])
+    if start is not None:
+        predictor.load_state_dict(start.state_dict())
     taken = corpus.is_real if corpus.is_real.all() else ~corpus.is_real
     pairs = [(row, seconds[i]) for i, rows in enumerate(corpus.caption_rows) if taken[i] for row in rows]
     device = run.torch_device

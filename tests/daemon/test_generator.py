@@ -22,6 +22,8 @@ from daemon.generator.generation import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.generator.process import answer
 from mmm_core.checkpoint import MODEL_FILE
+from mmm_core.engine import Engine
+from mmm_core.prefix import go_on
 from tests.daemon.kinematic import KinematicGenerator, KinematicMaker, raised_arm
 
 needs_model = pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout")
@@ -178,6 +180,17 @@ def test_the_process_serves_the_shipped_model_and_ends_with_its_parent(endpoint)
     try:
         motion = ask(endpoint, lambda client: client.generate("wave with your right hand", 7, 2.0, 60.0)).motion
         assert len(motion.joints_m) == 40 and motion.status == "accepted"
+
+        def on(client, **how):
+            return client.generate("raise both arms", 4, 2.0, 60.0, **how)
+
+        alone = ask(endpoint, on).motion
+        after = ask(endpoint, lambda client: on(client, before=motion, prefix_s=0.8)).motion
+        other = ask(endpoint, lambda client: on(client, before=motion, prefix_s=0.2)).motion
+        expected = go_on(Engine.load(threads=None), motion, 0.8, "raise both arms", seed=4, seconds=2.0).motion
+        np.testing.assert_allclose(after.joints_m, expected.joints_m, atol=1e-3)
+        for motion in (alone, other):
+            assert np.abs(after.joints_m - motion.joints_m).max() > 0.01
     finally:
         process.kill()
         process.wait(10)

@@ -12,6 +12,9 @@ from hypothesis import strategies as st
 from daemon.wire import codec as wire
 from daemon.wire import events, requests
 from daemon.wire.schemas import schemas, text_of
+from mmm_core.motion import FPS
+from mmm_core.prefix import LONGEST_PREFIX_TOKENS
+from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 
 DOCS = Path(__file__).parents[2] / "docs" / "wire"
 
@@ -178,3 +181,11 @@ def test_published_schemas_are_those_of_the_code():
     expected = {name: text_of(schema) for name, schema in schemas().items()}
     found = {path.name: path.read_text("utf-8") for path in DOCS.glob("*.schema.json")}
     assert found == expected
+
+
+def test_lengths_that_may_be_asked_for_are_those_the_model_has():
+    """The wire states them itself: a client loads no model."""
+    token_s = FRAMES_PER_TOKEN / FPS
+    assert (requests.SHORTEST_S, requests.LONGEST_S) == pytest.approx((token_s, MAX_TOKENS * token_s))
+    longest_s = LONGEST_PREFIX_TOKENS * token_s
+    assert (requests.SHORTEST_PREFIX_S, requests.LONGEST_PREFIX_S) == pytest.approx((token_s, longest_s))

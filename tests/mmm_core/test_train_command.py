@@ -106,6 +106,29 @@ def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path
         assert engine.generate("wave with your right hand", seed=1, seconds=1).motion.joints_m.shape == (20, 22, 3)
 
 
+def test_a_recipe_goes_on_from_a_finished_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The tokenizer, decoder and all, is as it was; the transformer has its weights and goes on from there."""
+    first = small(tmp_path / "first.toml")
+    assert main(["train", "--config", str(first), "--run", str(tmp_path / "first"), "--sample-every", "0"]) == 0
+    start = tmp_path / "first" / "model.safetensors"
+    old = load_model(start)
+    for steps in (0, 8):
+        config, run = small(tmp_path / f"more{steps}.toml", steps=steps, synthesised=14), tmp_path / f"more{steps}"
+        config.write_text(f'start = "{start}"\n{config.read_text()}')
+        assert main(["train", "--config", str(config), "--run", str(run), "--sample-every", "0"]) == 0
+        new = load_model(run / "model.safetensors")
+        for name, tensor in old.tokenizer.state_dict().items():
+            assert torch.equal(new.tokenizer.state_dict()[name], tensor), name
+        same = torch.equal(new.transformer.head.weight, old.transformer.head.weight)
+        assert same == (steps == 0)
+        assert new.provenance["clips"] == 14
+    for change, named in (("width = 32", "transformer"), ("n_codes = 16", "tokenizer")):
+        other = tmp_path / f"{named}.toml"
+        other.write_text(config.read_text().replace(change, change + "0"))
+        assert main(["train", "--config", str(other), "--run", str(tmp_path / named)]) == 1
+        assert f"{start}: key '{named}'" in capsys.readouterr().err
+
+
 def test_the_scope_of_a_finished_run_is_built_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     config, run, out = small(tmp_path / "small.toml"), tmp_path / "run", tmp_path / "again.safetensors"
     old = load_model()
@@ -215,7 +238,7 @@ def test_a_bad_recipe_is_named_by_its_key(tmp_path: Path, change: str, message: 
 
 
 def test_an_unknown_recipe_lists_those_that_ship(capsys: pytest.CaptureFixture[str]) -> None:
-    assert known_recipes() == ["compact", "paper"]
+    assert known_recipes() == ["compact", "compact_go_on", "paper"]
     for name in known_recipes():
         read_recipe(name)
     assert main(["train", "--config", "nothing"]) == 1
