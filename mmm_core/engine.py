@@ -31,6 +31,8 @@ Precision = Literal["fp32", "bf16", "int8"]
 """Of the matrix products. Any but fp32 is another model's choice of tokens now and then."""
 SHORTEST_S = 0.8
 MOST_CANDIDATES = 64
+CANDIDATES_TO_COUNT = 2
+"""More keep a number no better (docs/model.md)."""
 CANDIDATE_STRIDE = 7_919_999
 """Between the seeds of candidates, so that neighbouring seeds do not share any."""
 _TYPICAL = (
@@ -109,21 +111,22 @@ class Engine:
         for i, (text, seconds) in enumerate(_TYPICAL):
             self.generate(text, seed=i, seconds=seconds)
 
-    def generate(self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int = 1) -> Generation:
-        """The motion for `text`; the same text, seed and seconds give the same motion.
+    def generate(self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int | None = None) -> Generation:
+        """The motion for `text`; the same text, seed, seconds and candidates give the same motion.
 
         Args:
             text: a command in English.
             seed: any integer from 0 to 2^31 - 1.
             seconds: length of the motion, at most 9.8; None lets the model choose.
             candidates: motions made at once, of which the one is taken that the model itself finds likeliest; with two or
-                more, a number of strokes that the text names is kept more often (`mmm_core.repeats`).
+                more, a number of strokes that the text names is kept more often (`mmm_core.repeats`). None makes two where
+                the text names a number and no length is asked for, else one.
 
         Raises:
             GenerationError: seed, seconds or candidates out of range, or no seconds for a model without lengths.
         """
         check_seed(seed)
-        if not 1 <= candidates <= MOST_CANDIDATES:
+        if candidates is not None and not 1 <= candidates <= MOST_CANDIDATES:
             raise GenerationError(f"{candidates} candidates were asked for", f"1 to {MOST_CANDIDATES}")
         n_frames = None if seconds is None else frames_for_seconds(seconds, FPS)
         clock = Clock()
@@ -134,12 +137,12 @@ class Engine:
         with torch.inference_mode():
             done = verdict.kept or text
             commands = commands_of(self, mirror_words(done) if is_mirrored else done, states, n_frames)
-            counts = candidates > 1 and len(commands) == 1 and n_frames is None and self.model.rest_pose == "mmmd"
+            counts = candidates != 1 and len(commands) == 1 and n_frames is None and self.model.rest_pose == "mmmd"
             if counts and (count := count_asked(done)) is not None:
-                rows = [ids_of_count(self, commands[0], count, seed, candidates)]
+                rows = [ids_of_count(self, commands[0], count, seed, candidates or CANDIDATES_TO_COUNT)]
             else:
                 rows = [
-                    self._best_ids(c.states, c.n_tokens, (seed + i * COMMAND_STRIDE) % 2**31, candidates)
+                    self._best_ids(c.states, c.n_tokens, (seed + i * COMMAND_STRIDE) % 2**31, candidates or 1)
                     for i, c in enumerate(commands)
                 ]
             ids = joined(self, commands, rows, seed)

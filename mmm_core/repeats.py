@@ -35,10 +35,7 @@ _TAKEN = ScopeVerdict("accepted", 1.0, "", "")
 
 
 def ids_of_count(engine: Engine, command: Command, count: int, seed: int, candidates: int) -> Tensor:
-    """(L, C) ids of a command that asks for `count` strokes; the model's own length, longer or shorter by strokes.
-
-    Two candidates serve as well as more (docs/model.md).
-    """
+    """(L, C) ids of a command that asks for `count` strokes; the model's own length, longer or shorter by strokes."""
     transformer = engine.model.transformer
     made = engine.candidate_ids(command.states, command.n_tokens, seed, candidates)
     features = engine.model.tokenizer.decode(torch.stack(made)).numpy()

@@ -48,7 +48,7 @@ def generate(
     bvh: Path | None = None,
     batch: Path | None = None,
     story: Path | None = None,
-    candidates: int = 1,
+    candidates: int | None = None,
     model: Path | None = None,
     threads: int = 1,
     precision: Precision | None = None,
@@ -73,7 +73,7 @@ def generate(
         batch: JSON lines of {"id", "text", "seed", "seconds"}: one .npz named by its id for each.
         story: JSON lines of {"text", "seconds"}: one motion with generated transitions, of any length.
         candidates: motions made at once, of which the model's likeliest is kept; with two or more, a number of strokes that the
-            text names ("clap five times") is kept more often.
+            text names ("clap five times") is kept more often. Two for such texts, else one, when it is not given.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
         precision: of matrix products; int8 for the shipped model where the processor multiplies such integers (VNNI), else

@@ -10,7 +10,7 @@ import numpy as np
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight")
 _THIRD = {"have": "has", "be": "is", "shoo": "shoos"}
-_GERUND = {"lie": "lying", "be": "being", "tie": "tying", "die": "dying", "program": "programming", "swivel": "swiveling", "unplug": "unplugging", "control": "controlling", "regret": "regretting", "forbid": "forbidding", "begin": "beginning"}  # fmt: skip
+_GERUND = {"lie": "lying", "be": "being", "tie": "tying", "die": "dying", "program": "programming", "swivel": "swiveling", "unplug": "unplugging", "control": "controlling", "regret": "regretting", "forbid": "forbidding", "begin": "beginning", "concur": "concurring", "demur": "demurring", "defer": "deferring", "permit": "permitting", "admit": "admitting", "transfer": "transferring", "transmit": "transmitting"}  # fmt: skip
 _DOUBLED = re.compile(r"^[^aeiou]*(?:qu)?[aeiou][bdgklmnprtv]$")
 _SPELLINGS = (("forward", "forwards"), ("backward", "backwards"), ("upwards", "upward"), ("downwards", "downward"), ("towards", "toward"), ("favourite", "favorite"), ("colour", "color"), ("practise", "practice"), ("rhythm", "rythm"))  # fmt: skip
 """British and American (and one common slip); the first is what the patterns say."""
@@ -64,7 +64,7 @@ def persons_words(phrase: str, pronoun: str) -> str:
     phrase = re.sub(r"\byourself\b", self_word, phrase)
     phrase = re.sub(r"\byour\b", pronoun, phrase)
     phrase = re.sub(
-        r"\b(behind|around|in front of|towards|below|above|to|from|over|about|beside|near|beneath|under|for) you\b",
+        r"\b(behind|around|in front of|towards|below|above|to|from|over|about|beside|near|beneath|under|for|of) you\b",
         rf"\1 {other}",
         phrase,
     )
