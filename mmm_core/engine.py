@@ -111,7 +111,9 @@ class Engine:
         for i, (text, seconds) in enumerate(_TYPICAL):
             self.generate(text, seed=i, seconds=seconds)
 
-    def generate(self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int | None = None) -> Generation:
+    def generate(
+        self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int | None = None
+    ) -> Generation:
         """The motion for `text`; the same text, seed, seconds and candidates give the same motion.
 
         Args:
