@@ -15,6 +15,7 @@ from torch import Tensor
 from mmm_core.text import TextEncoder, TextStates
 from mmm_core.tokenizer import Tokenizer
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.training.run import written_whole
 from mmm_core.vqvae import VqVae
 
 ENCODE_BATCH = 64
@@ -62,7 +63,9 @@ class CaptionStates:
 
     def save(self, path: Path) -> None:
         """Keep the states on disk."""
-        torch.save({"words": self.words, "n_words": torch.from_numpy(self.n_words), "sentences": self.sentences}, path)
+        state = {"words": self.words, "n_words": torch.from_numpy(self.n_words), "sentences": self.sentences}
+        with written_whole(path) as partial:
+            torch.save(state, partial)
 
     @classmethod
     def load(cls, path: Path) -> CaptionStates:
@@ -121,7 +124,9 @@ def save_clips(path: Path, clips: Sequence[Clip]) -> None:
     lengths = np.array([len(c.features) for c in clips])
     captions = np.array(["\n".join(c.captions) for c in clips])
     features = np.concatenate([c.features for c in clips])
-    np.savez(path, features=features, lengths=lengths, captions=captions, is_real=np.array([c.is_real for c in clips]))
+    is_real = np.array([c.is_real for c in clips])
+    with written_whole(path) as partial:
+        np.savez(partial, features=features, lengths=lengths, captions=captions, is_real=is_real)
 
 
 def load_clips(path: Path) -> list[Clip]:

@@ -10,7 +10,8 @@ import csv
 import math
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
@@ -214,18 +215,28 @@ def _board(run: Run, name: str) -> Any:
     return SummaryWriter(str(run.folder / "tensorboard" / name))  # type: ignore[no-untyped-call]
 
 
+@contextmanager
+def written_whole(path: Path) -> Iterator[Path]:
+    """Where to write a file that takes the place of `path` at once; while it is written the older one stays.
+
+    Raises:
+        CheckpointError: it could not be written.
+    """
+    partial = path.with_name(f"partial_{path.name}")
+    try:
+        yield partial
+        os.replace(partial, path)
+    except (OSError, RuntimeError) as error:
+        partial.unlink(missing_ok=True)
+        kept = "the state of an earlier step is whole" if path.is_file() else "there is no earlier state"
+        first = str(error).split("\n", 1)[0]
+        raise CheckpointError(path, "", f"could not be written ({first}); {kept}", "room on the disk") from error
+
+
 def _save(path: Path, state: dict[str, Any]) -> None:
-    """Replace the state file at once; while it is written the older one stays."""
     if distributed.rank() == 0:
-        partial = path.with_suffix(".part")
-        try:
+        with written_whole(path) as partial:
             torch.save(state, partial)
-            os.replace(partial, path)
-        except (OSError, RuntimeError) as error:
-            partial.unlink(missing_ok=True)
-            kept = "the state of an earlier step is whole" if path.is_file() else "there is no earlier state"
-            first = str(error).split("\n", 1)[0]
-            raise CheckpointError(path, "", f"could not be written ({first}); {kept}", "room on the disk") from error
     distributed.wait()
 
 

@@ -13,7 +13,7 @@ from torch import nn
 
 from mmm_core.corpus.synthesis import synthesise
 from mmm_core.tokenizer import Tokenizer, TokenizerConfig
-from mmm_core.training.batches import Clip
+from mmm_core.training.batches import CaptionStates, Clip, load_clips, save_clips
 from mmm_core.training.run import Run, Schedule, train
 from mmm_core.training.tokenizer_training import train_tokenizer
 from mmm_core.training.transformer_training import Corruption, corrupt
@@ -45,6 +45,36 @@ def test_a_run_cut_at_any_step_gives_the_same_weights(tmp_path: Path) -> None:
     train(again, loss_of(again), schedule, Run(tmp_path / "cut"), "m")
     assert torch.equal(whole.weight, again.weight)
     assert torch.equal(whole.bias, again.bias)
+
+
+@pytest.mark.parametrize("module", [np, torch])
+def test_what_a_killed_run_was_writing_is_not_taken_for_whole(
+    tmp_path: Path, module: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Corpus and caption states: cut while they are written there is no file, and the next run makes it anew."""
+    name = "savez" if module is np else "save"
+    path = tmp_path / "corpus.npz"
+    clips = [Clip(np.full((4, 3), i, np.float32), [f"caption {i}"], i == 1) for i in range(2)]
+    states = CaptionStates(torch.ones(3, 4).half(), np.array([1, 2]), torch.ones(2, 4).half())
+
+    def write() -> None:
+        save_clips(path, clips) if module is np else states.save(path)
+
+    def cut(*args: object, **_: object) -> None:
+        next(Path(a) for a in args if isinstance(a, Path)).write_bytes(b"half of it")
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(module, name, cut)
+        with pytest.raises(KeyboardInterrupt):
+            write()
+    assert not path.exists()
+    write()
+    if module is np:
+        assert [c.captions for c in load_clips(path)] == [["caption 0"], ["caption 1"]]
+    else:
+        assert torch.equal(CaptionStates.load(path).words, states.words)
+    assert [p.name for p in tmp_path.iterdir()] == ["corpus.npz"]
 
 
 def test_training_learns_and_leaves_the_averaged_weights(tmp_path: Path) -> None:
