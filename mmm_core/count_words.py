@@ -9,19 +9,23 @@ MOST = 12
 _WORDS = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 NUMBERS = {word: i for i, word in enumerate(_WORDS, 1)} | {str(i): i for i in range(1, MOST + 1)}
 """What a word or digits stand for."""
-TIMES = {"once": 1, "twice": 2, "thrice": 3}
-_NUMBER = rf"({'|'.join(_WORDS)}|1[0-2]|[1-9])"
+ADVERBS = {"once": 1, "twice": 2, "thrice": 3}
+"""Words that say so many times by themselves."""
+_NUMBER = rf"({'|'.join(NUMBERS)})"
 _NOT_STROKES = (
     "arms?|hands?|fists?|palms?|fingers?|thumbs?|eyes?|ears?|elbows?|shoulders?|wrists?|knees?|legs?|feet|foot|heads?|sides?|"
-    "s|secs?|seconds?|minutes?|hours?|degrees?|met(?:er|re)s?|cm|inch(?:es)?|people|persons?|things?|others?|us|of|or|to|and"
+    "s|secs?|seconds?|minutes?|degrees?|met(?:er|re)s?|cm|inch(?:es)?|people|persons?|things?|others?|us|of|or|to|and|"
+    "hours?|days?|weeks?|months?|years?|beats?|heartbeats?|counts?|breaths?|bars?|measures?"
 )
 _ONCE = re.compile(
-    r"(?<!\bat )\b(once|twice|thrice)\b(?! (?:more|again|upon|you|he|she|it|that|this|the|i|they|we)\b)", re.IGNORECASE
+    rf"(?<!\bat )\b({'|'.join(ADVERBS)})\b(?! (?:more|again|upon|you|he|she|it|that|this|the|i|they|we)\b)",
+    re.IGNORECASE,
 )
 _SINGLE = re.compile(r"\b(?:one time|(?:a|one) single|(?:just|only) one)\b", re.IGNORECASE)
 _TIMES = re.compile(rf"\b{_NUMBER}\s*(?:times|x)\b", re.IGNORECASE)
 _THINGS = re.compile(
-    rf"(?<!give me )(?<!gimme )(?<!the )(?<!those )(?<!these )(?<!your )(?<!my )(?<!all )(?<!at )(?<!to )(?<!of )(?<!like )"
+    r"(?<!\bfor )(?<!\bone )(?<!give me )(?<!gimme )(?<!the )(?<!those )(?<!these )(?<!your )(?<!my )(?<!all )(?<!at )"
+    r"(?<!to )(?<!of )(?<!like )"
     rf"\b{_NUMBER}\s+(?:(?!(?:{_NOT_STROKES})\b)[a-z-]+\s+)?(?!(?:{_NOT_STROKES})\b)[a-z-]+s\b",
     re.IGNORECASE,
 )
@@ -30,7 +34,7 @@ _THINGS = re.compile(
 def count_asked(text: str) -> int | None:
     """The number of strokes that a text names; None where it names none, several, or one greater than twelve."""
     text = " ".join(text.split())
-    found = {TIMES[m[1].lower()] for m in _ONCE.finditer(text)}
+    found = {ADVERBS[m[1].lower()] for m in _ONCE.finditer(text)}
     found |= {1} if _SINGLE.search(text) else set()
     found |= {NUMBERS[m[1].lower()] for m in _TIMES.finditer(text)}
     found |= {

@@ -32,7 +32,7 @@ Precision = Literal["fp32", "bf16", "int8"]
 SHORTEST_S = 0.8
 MOST_CANDIDATES = 64
 CANDIDATES_TO_COUNT = 2
-"""More keep a number no better (docs/model.md)."""
+"""More take longer and keep a number within one no more often (docs/model.md)."""
 CANDIDATE_STRIDE = 7_919_999
 """Between the seeds of candidates, so that neighbouring seeds do not share any."""
 _TYPICAL = (

@@ -7,17 +7,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 import torch
 from torch import Tensor
 
-from mmm_core.count_words import NUMBERS, TIMES
+from mmm_core.count_words import ADVERBS, NUMBERS
 
 _SIDES = re.compile(r"\b(left|right|both)\b")
-_VALUES = NUMBERS | TIMES
+_VALUES = NUMBERS | ADVERBS
 _COUNTS = re.compile(rf"\b({'|'.join(_VALUES)})\b")
-_TIMES = re.compile(rf"\s*\b(?:(?:{'|'.join(NUMBERS)}) times|{'|'.join(TIMES)})\b")
+_TIMES = re.compile(rf"\s*\b(?:(?:{'|'.join(NUMBERS)}) times|{'|'.join(ADVERBS)})\b")
 _WAYS = {
     "up": re.compile(r"\b(?:rais|lift|hoist|up\b|upwards?\b|rise)"),
     "down": re.compile(r"\b(?:lower(?:s|ed|ing)?\b|drop|down\b|downwards?\b|sink|fall|hang)"),
@@ -66,11 +65,11 @@ class Meanings:
 class _Said:
     """One thing that each of N commands says, or not."""
 
-    def __init__(self, said: Iterable[frozenset[Any]]) -> None:
-        self._numbers: dict[frozenset[Any], int] = {}
+    def __init__(self, said: Iterable[frozenset[str | int]]) -> None:
+        self._numbers: dict[frozenset[str | int], int] = {}
         self._of = torch.tensor([self._numbers.setdefault(s, len(self._numbers)) for s in said])
 
-    def are(self, what: frozenset[Any]) -> Tensor:
+    def are(self, what: frozenset[str | int]) -> Tensor:
         """(N,) which of them say this."""
         return self._of == self._numbers.get(what, -1)
 

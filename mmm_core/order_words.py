@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import re
 
+from mmm_core.count_words import ADVERBS, NUMBERS
+
 
 def _any(*phrases: str) -> str:
     """A pattern for any of some phrases."""
@@ -19,7 +21,7 @@ def _pattern(pattern: str) -> re.Pattern[str]:
 
 _WHO = _any("you", "he", "she", "it", "they", "we", "the robot")
 _HAVE = _any("'s", "'ve", "'re", " is", " are", " has", " have", "")
-_NUMBER = _any("one", "two", "three", "four", "five", "six", "seven", "eight", r"\d+")
+_NUMBER = _any(*(word for word in NUMBERS if word.isalpha()), r"\d+")
 DONE = (
     _any("once", "when", "as soon as", "after", "the moment")
     + r"\s+"
@@ -115,7 +117,7 @@ LEANS = _pattern(
         "(?:hold|keep)(?:s|ing)?"
         "(?: (?:it|them|that|this|there|on|still|for|the pose|the position|your (?:position|balance)|until)|$)",
         "(?:with|using|to the|the other|other|same)", rf"(?:the )?(?:left|right|same)(?: {_LIMB})?$",
-        "(?:not|no|don't|do not|never|without|instead|but)", rf"(?:{_NUMBER}|once|twice)(?: more| times?| seconds?)?",
+        "(?:not|no|don't|do not|never|without|instead|but)", rf"(?:{_NUMBER}|{'|'.join(ADVERBS)})(?: more| times?| seconds?)?",
         "(?:faster|slower|harder|higher|louder|quicker)", "(?:for|until|at|in|on|as)",
         r"(?:\S+ ){0,3}(?:it|them|again|likewise|the same|as well|too|nothing)",
     )

@@ -20,6 +20,7 @@ from mmm_core.sequence import COMMAND_STRIDE, Command, commands_of, joined
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds
 
 LONGEST_PREFIX_TOKENS = 8
+"""Ours; from four on the motion shows less of what the text asks for (docs/daemon.md)."""
 
 
 def go_on(

@@ -18,7 +18,9 @@ REPEATS = 11
 def bench_generate(seed: int = 0) -> dict[str, Any]:
     """`motion_ms`, `in_turn_ms` (a text of two commands), `reference_forward_ms`, the `ratio`, `precision` and `steps`.
 
-    Both are timed alternately, so that a busy machine slows both. The reference is the official MMM's shape (width
+    `counted_ms` is a text with a number and no length, whose strokes are counted; `uncounted_ms` the same without.
+
+    All are timed alternately, so that a busy machine slows both. The reference is the official MMM's shape (width
     1024, 16 + 2 blocks, 8192 codes, 51 rows, 77 words) in this code with random weights: speed does not depend on them.
     """
     import torch
@@ -44,15 +46,23 @@ def bench_generate(seed: int = 0) -> dict[str, Any]:
     def in_turn() -> None:
         engine.generate(IN_TURN, seed=seed, seconds=LONGEST_S)
 
+    def counted() -> None:
+        engine.generate(TEXT, seed=seed)
+
+    def uncounted() -> None:
+        engine.generate(TEXT, seed=seed, candidates=1)
+
+    timed = (forward, motion, in_turn, counted, uncounted)
     for _ in range(3):
-        forward()
-        motion()
-        in_turn()
-    forward_s, motion_s, in_turn_s = alternate(forward, motion, in_turn)
+        for function in timed:
+            function()
+    forward_s, motion_s, in_turn_s, counted_s, uncounted_s = alternate(*timed)
     n_tokens = 49
     return {
         "motion_ms": round(1e3 * motion_s, 1),
         "in_turn_ms": round(1e3 * in_turn_s, 1),
+        "counted_ms": round(1e3 * counted_s, 1),
+        "uncounted_ms": round(1e3 * uncounted_s, 1),
         "reference_forward_ms": round(1e3 * forward_s, 1),
         "ratio": round(motion_s / forward_s, 3),
         "precision": engine.precision,

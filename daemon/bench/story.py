@@ -6,9 +6,9 @@ import time
 from typing import Any
 
 from daemon.bench.report import context
+from daemon.wire.requests import LONGEST_S
 
 N_SCENES = 59
-SCENE_S = 9.8
 THREADS = 2
 
 
@@ -19,7 +19,7 @@ def bench_story(n_scenes: int = N_SCENES, seed: int = 0) -> dict[str, Any]:
     from mmm_core.story import Scene, tell
 
     engine = Engine.load(threads=THREADS)
-    scenes = [Scene(text, SCENE_S) for text in draw_texts(n_scenes, seed)]
+    scenes = [Scene(text, LONGEST_S) for text in draw_texts(n_scenes, seed)]
     for _ in tell(engine, scenes[:3], seed=seed):
         pass  # warm
     start = time.perf_counter()
@@ -34,5 +34,5 @@ def bench_story(n_scenes: int = N_SCENES, seed: int = 0) -> dict[str, Any]:
         "first_frame_ms": round(1e3 * first_s, 1),
         "scenes": n_scenes,
         "threads": THREADS,
-        **context(seed, f"one run after a warm one, {n_scenes} texts of {SCENE_S} s, streamed, joints recovered"),
+        **context(seed, f"one run after a warm one, {n_scenes} texts of {LONGEST_S} s, streamed, joints recovered"),
     }

@@ -73,7 +73,8 @@ def generate(
         batch: JSON lines of {"id", "text", "seed", "seconds"}: one .npz named by its id for each.
         story: JSON lines of {"text", "seconds"}: one motion with generated transitions, of any length.
         candidates: motions made at once, of which the model's likeliest is kept; with two or more, a number of strokes that the
-            text names ("clap five times") is kept more often. Two for such texts, else one, when it is not given.
+            text names ("clap five times") is kept more often. When it is not given: two for a text with a number and no seconds,
+            else one. A story has one of each.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
         precision: of matrix products; int8 for the shipped model where the processor multiplies such integers (VNNI), else
@@ -88,8 +89,10 @@ def generate(
     if batch is not None and bvh is not None:
         raise CommandError("generate: --bvh goes with one text; with --batch leave it out")
     if batch is not None:
-        return _generate_batch(_prompts(batch), out, _load(model, threads, precision), json)
+        return _generate_batch(_prompts(batch), out, _load(model, threads, precision), candidates, json)
     if story is not None:
+        if candidates is not None:
+            raise CommandError("generate: --candidates does not go with --story; leave it out")
         return _tell(story, out, bvh, seed, _load(model, threads, precision))
     prompt = Prompt("", text or "", seed, seconds)
     problem = _problem(prompt)
@@ -113,7 +116,7 @@ def generate(
     return 0
 
 
-def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, json: bool) -> int:
+def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candidates: int | None, json: bool) -> int:
     from rich.console import Console
     from rich.progress import track
 
@@ -121,7 +124,7 @@ def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, json: b
     rejected = 0
     console = Console(stderr=True)
     for prompt in track(prompts, "generating", console=console, disable=not console.is_terminal):
-        made = engine.generate(prompt.text, seed=prompt.seed, seconds=prompt.seconds)
+        made = engine.generate(prompt.text, seed=prompt.seed, seconds=prompt.seconds, candidates=candidates)
         path = folder / f"{prompt.id}.npz"
         made.motion.save_npz(path)
         rejected += made.status == "rejected"

@@ -18,6 +18,7 @@ from daemon.generator.messages import (
     UnfitRequestError,
     motion_from,
 )
+from daemon.wire.requests import LONGEST_S
 from mmm_core.editing import Edit, edit, part_names
 from mmm_core.engine import Engine, no_motion
 from mmm_core.errors import GenerationError
@@ -46,7 +47,7 @@ class EngineMaker:
             CheckpointError: a file is missing or does not fit.
         """
         maker = cls(Engine.load(model, threads=threads))
-        for seconds in (None, 9.8):  # the first calls allocate
+        for seconds in (None, LONGEST_S):  # the first calls allocate
             maker.generate(GenerateMessage(id=0, text="wave with your right hand", seconds=seconds))
         return maker
 

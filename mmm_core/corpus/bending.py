@@ -10,7 +10,7 @@ import numpy as np
 
 NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight")
 _THIRD = {"have": "has", "be": "is", "shoo": "shoos"}
-_GERUND = {"lie": "lying", "be": "being", "tie": "tying", "die": "dying", "program": "programming", "swivel": "swiveling", "unplug": "unplugging", "control": "controlling", "regret": "regretting", "forbid": "forbidding", "begin": "beginning", "concur": "concurring", "demur": "demurring", "defer": "deferring", "permit": "permitting", "admit": "admitting", "transfer": "transferring", "transmit": "transmitting"}  # fmt: skip
+_GERUND = {"lie": "lying", "be": "being", "tie": "tying", "die": "dying", "program": "programming", "swivel": "swiveling", "unplug": "unplugging", "control": "controlling", "regret": "regretting", "forbid": "forbidding", "begin": "beginning", "concur": "concurring", "demur": "demurring", "defer": "deferring", "permit": "permitting", "admit": "admitting", "transfer": "transferring", "transmit": "transmitting", "eavesdrop": "eavesdropping", "enwrap": "enwrapping", "expel": "expelling", "lollygag": "lollygagging", "patrol": "patrolling", "reset": "resetting", "boogie": "boogieing"}  # fmt: skip
 _DOUBLED = re.compile(r"^[^aeiou]*(?:qu)?[aeiou][bdgklmnprtv]$")
 _SPELLINGS = (("forward", "forwards"), ("backward", "backwards"), ("upwards", "upward"), ("downwards", "downward"), ("towards", "toward"), ("favourite", "favorite"), ("colour", "color"), ("practise", "practice"), ("rhythm", "rythm"))  # fmt: skip
 """British and American (and one common slip); the first is what the patterns say."""

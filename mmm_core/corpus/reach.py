@@ -54,8 +54,8 @@ def reach(palm_m: Vector, elbow: Vector = ELBOW_DOWN, twist_rad: float = 0.0) ->
     return ArmPose(_vector(upper), _vector(fore), twist_rad)
 
 
-def near(place_m: Vector, out_m: float = 0.0, up_m: float = 0.0, forward_m: float = 0.0) -> Vector:
-    """A place beside another."""
+def beside(place_m: Vector, out_m: float = 0.0, up_m: float = 0.0, forward_m: float = 0.0) -> Vector:
+    """`place_m` moved outward, up and forward, metres."""
     return (place_m[0] + out_m, place_m[1] + up_m, place_m[2] + forward_m)
 
 

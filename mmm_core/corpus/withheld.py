@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 
 from mmm_core.corpus import scope_development, scope_prompts
+from mmm_core.corpus.bending import NUMBERS
 from mmm_core.corpus.heldout import PROBES
 
 _EMPTY_WORDS = frozenset((
@@ -17,7 +18,7 @@ _EMPTY_WORDS = frozenset((
 """Words that a command does not become another one by."""
 
 
-_DIGITS = dict(zip("12345678", ("one", "two", "three", "four", "five", "six", "seven", "eight"), strict=True))
+_DIGITS = dict(zip("12345678", NUMBERS[1:], strict=True))
 
 
 def _key(text: str) -> str:

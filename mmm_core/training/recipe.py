@@ -116,7 +116,7 @@ class ScopeRecipe:
 
 @dataclass(frozen=True)
 class Recipe:
-    """Everything; see the files in `recipes` for two whole ones.
+    """Everything; see the files in `recipes`.
 
     Attributes:
         seed: of the corpus and, unless its schedule has one of its own, of every stage.

@@ -20,7 +20,7 @@ import torch
 from torch import Tensor, nn
 
 from mmm_core import distributed
-from mmm_core.checkpoint import MODEL_FILE, Model, load_model, load_text_encoder, save_model
+from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder, save_model
 from mmm_core.clip import ClipText, read_clip
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.datasets import MotionFolder, open_folder
@@ -118,13 +118,20 @@ class Stages:
         """The checkpoint that the recipe goes on from, if there is one.
 
         Raises:
-            CheckpointError: it cannot be read, or has other sizes than the recipe asks for.
+            CheckpointError: it cannot be read, or has other sizes, another text encoder or another body than are asked for.
         """
         if not self.recipe.start:
             return None
         path = self._start_path
         model, how = load_model(path), self.recipe
+        self._check_same_start(path)
         found, books = model.transformer.config, model.tokenizer.n_codebooks
+        pose = "mmmd" if self.folder is None else "humanml3d"
+        if model.rest_pose != pose:
+            raise CheckpointError(path, "rest_pose", model.rest_pose, f"{pose}, as the data have")
+        if (model.text is None) != (how.text.encoder == "minilm"):
+            has = "minilm" if model.text is None else "clip"
+            raise CheckpointError(path, "text", f"a model that reads {has}", f"{how.text.encoder}, as the recipe says")
         sizes = how.tokenizer.config(len(model.tokenizer.mean))
         if sizes != model.tokenizer.config:
             raise CheckpointError(path, "tokenizer", f"{model.tokenizer.config}", f"{sizes}, as the recipe says")
@@ -132,6 +139,18 @@ class Stages:
         if replace(wanted, dropout=found.dropout) != found:
             raise CheckpointError(path, "transformer", f"{found}", f"{wanted}, as the recipe says")
         return model
+
+    def _check_same_start(self, path: Path) -> None:
+        """A run that goes on does so from the same file: ids of another tokenizer mean other motions."""
+        marker, found = self.run.folder / "start.sha256", file_hash(path)
+        if not marker.is_file():
+            self.run.folder.mkdir(parents=True, exist_ok=True)
+            marker.write_text(found)
+        began = marker.read_text().strip()
+        if began != found:
+            raise CheckpointError(
+                path, "", f"sha256 {found[:12]}", f"{began[:12]}, which the run began with, or a new --run"
+            )
 
     @property
     def _start_path(self) -> Path:
@@ -176,7 +195,7 @@ class Stages:
         """The gate, before anything is trained on the tokenizer."""
         if self.recipe.tokenizer.gate and isinstance(self.tokenizer, Tokenizer) and distributed.rank() == 0:
             if faults := tokenizer_figures(self.tokenizer)["faults"]:
-                path = self.run.folder / "tokenizer.pt"
+                path = self.run.folder / "tokenizer.pt" if self.start is None else self._start_path
                 raise TrainingDataError(path, "tokenizer.gate", "; ".join(faults), "more steps, or gate = false")
 
     def _caption_states(self, captions: list[str], encoder: TextEncoder, name: str) -> CaptionStates:
@@ -239,10 +258,13 @@ class Stages:
 
     def provenance(self) -> dict[str, object]:
         """Where a checkpoint comes from: recipe, data with its licence, seed, revision, last losses."""
-        sources = ["synthesised gestures (this repository, Apache-2.0)"] if self.recipe.data.synthesised else []
+        sources = [f"those of its start ({self.start.provenance.get('data', 'not stated')})"] if self.start else []
+        sources += ["synthesised gestures (this repository, Apache-2.0)"] if self.recipe.data.synthesised else []
         if self.data is not None:
             sources.append(f"{self.data.name}: {self.recipe.data.licence or 'licence not stated by the recipe'}")
+        start = {"start": {"sha256": file_hash(self._start_path), **self.start.provenance}} if self.start else {}
         return {
+            **start,
             "recipe": json.loads(json.dumps(self.recipe.to_dict())),
             "seed": self.recipe.seed,
             "data": "; ".join(sources),

@@ -86,7 +86,14 @@ class KinematicMaker:
         self._answer = answer
 
     def generate(self, request: GenerateMessage) -> Generated:
-        return self._answer(request.text, request.seed, request.seconds)
+        """What it is to go on from is told by `understood`: how long that is, and which wrist is higher at its end."""
+        made = self._answer(request.text, request.seed, request.seconds)
+        if request.before is None:
+            return made
+        before = motion_from(request.before)
+        higher = ("left", "right")[int(before.joints_m[-1, 20, 1] < before.joints_m[-1, 21, 1])]
+        shown = f"{len(before.joints_m)} frames, {higher} arm up, {request.prefix_s:g} s of them"
+        return replace(made, understood=f"{made.understood} after {shown}")
 
     def scene(self, request: SceneMessage) -> Generated:
         """One motion a scene; `told` counts them, and a generator that does not get it back refuses."""

@@ -15,7 +15,7 @@ from daemon.client.errors import stamp
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire import requests
-from tests.end_to_end.harness import RunningDaemon
+from tests.end_to_end.harness import RunningDaemon, plays_well
 
 OPEN: list[zmq.Socket] = []
 """Sockets of the running test: they must not be collected before their context closes them."""
@@ -113,6 +113,20 @@ def test_a_text_during_a_motion_takes_over(robot, running, context):
         ("two", "accepted"), ("one", "cancelled"), ("two", "progress"), ("two", "done")
     ]  # fmt: skip
     assert events[1].by == "say two"
+
+
+@pytest.mark.parametrize(("mirror", "up"), [(False, "right"), (True, "left")])
+def test_a_text_with_a_prefix_is_generated_from_what_will_have_been_played(robot, running, mirror, up):
+    """The generator is shown the last 1.6 s; of a motion that is to be mirrored, their mirror image."""
+    with running.client() as other:
+        events = other.events_of(requests.Say(id=f"before {up}", text="raise your right arm", seconds=6.0))
+        while getattr(next(events), "stage", "") != "moving":
+            pass
+        time.sleep(1.5)
+        said = robot.say("raise your left arm", prefix_s=0.8, mirror=mirror)
+        assert isinstance(list(events)[-1], ev.Cancelled)
+    assert said.events[0].understood.endswith(f"after 32 frames, {up} arm up, 0.8 s of them")
+    assert said.done is not None and plays_well(said.done)
 
 
 def test_of_many_texts_at_once_the_newest_is_played_and_each_ends_once(robot, running, context):

@@ -189,8 +189,8 @@ def test_the_process_serves_the_shipped_model_and_ends_with_its_parent(endpoint)
         other = ask(endpoint, lambda client: on(client, before=motion, prefix_s=0.2)).motion
         expected = go_on(Engine.load(threads=None), motion, 0.8, "raise both arms", seed=4, seconds=2.0).motion
         np.testing.assert_allclose(after.joints_m, expected.joints_m, atol=1e-3)
-        for motion in (alone, other):
-            assert np.abs(after.joints_m - motion.joints_m).max() > 0.01
+        for different in (alone, other):
+            assert np.abs(after.joints_m - different.joints_m).max() > 0.01
     finally:
         process.kill()
         process.wait(10)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from daemon.playing.sources import PREFIX_FRAMES
 from daemon.wire import codec as wire
 from daemon.wire import events, requests
 from daemon.wire.schemas import schemas, text_of
@@ -189,3 +190,6 @@ def test_lengths_that_may_be_asked_for_are_those_the_model_has():
     assert (requests.SHORTEST_S, requests.LONGEST_S) == pytest.approx((token_s, MAX_TOKENS * token_s))
     longest_s = LONGEST_PREFIX_TOKENS * token_s
     assert (requests.SHORTEST_PREFIX_S, requests.LONGEST_PREFIX_S) == pytest.approx((token_s, longest_s))
+    assert PREFIX_FRAMES >= LONGEST_PREFIX_TOKENS * FRAMES_PER_TOKEN, (
+        "the generator is shown all that it may go on from"
+    )

@@ -17,12 +17,16 @@ from daemon.client import Client, NoAnswerError
 from daemon.config import Endpoints
 from daemon.driving.realtime import BUS_PRIORITY, give_back_fifo
 from daemon.generator.messages import Generated
+from daemon.wire.events import Done
 from sim.pty import PtyServer
 from tests.daemon.kinematic import KinematicGenerator, generate
 
 Answer = Callable[[str, int, float | None], Generated]
 MMMD = [sys.executable, "-m", "daemon.cli"]
 START_TIMEOUT_S = 40.0
+MOST_CLIPPED_IN_AN_UNDERRUN = 4
+"""Where the machine is held up the bus process brakes; frames that were on their way meanwhile, up to 4 of the 10 that are
+queued, are limited until it goes on."""
 
 
 class RunningDaemon:
@@ -108,6 +112,13 @@ def mmmd(*arguments: str, timeout_s: float = 30.0, **environment: str) -> subpro
         [*MMMD, *arguments], capture_output=True, text=True, timeout=timeout_s, check=False,
         env={**os.environ, **environment},
     )  # fmt: skip
+
+
+def plays_well(done: Done) -> bool:
+    """Whether a motion ran dry in less than a twentieth of its frames, and was limited nowhere else than there."""
+    return (
+        20 * done.underruns <= done.frames and done.gate_clipped_frames <= MOST_CLIPPED_IN_AN_UNDERRUN * done.underruns
+    )
 
 
 def go_first(pid: int, flags: int = 0) -> None:

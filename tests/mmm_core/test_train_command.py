@@ -25,6 +25,7 @@ from mmm_core.training import scope_training
 from mmm_core.training.recipe import known_recipes, read_recipe
 from mmm_core.training.run import Run, Schedule
 from mmm_core.training.run import train as run_stage
+from mmm_core.training.stages import Stages
 from tests.mmm_core.folders import make_folder
 
 SCHEDULE = "steps = {steps}\nlearning_rate = 1e-3\nwarmup_steps = 2\nsave_every = 3\n"
@@ -121,12 +122,29 @@ def test_a_recipe_goes_on_from_a_finished_model(tmp_path: Path, capsys: pytest.C
             assert torch.equal(new.tokenizer.state_dict()[name], tensor), name
         same = torch.equal(new.transformer.head.weight, old.transformer.head.weight)
         assert same == (steps == 0)
-        assert new.provenance["clips"] == 14
-    for change, named in (("width = 32", "transformer"), ("n_codes = 16", "tokenizer")):
+        assert new.provenance["clips"] == 14 and new.provenance["start"]["clips"] == 12
+        assert "those of its start (synthesised gestures" in new.provenance["data"]
+        assert torch.equal(new.length.out.weight, old.length.out.weight) == (steps == 0)
+    folder = make_folder(tmp_path / "data", "humanml3d")
+    for change, instead, options, named in (
+        ("width = 32", "width = 64", [], "transformer"),
+        ("n_codes = 16", "n_codes = 32", [], "tokenizer"),
+        ("[data]", "[text]\nencoder = 'clip'\n[data]", [], "text"),
+        ("", "", ["--data", str(folder)], "rest_pose"),
+    ):
         other = tmp_path / f"{named}.toml"
-        other.write_text(config.read_text().replace(change, change + "0"))
-        assert main(["train", "--config", str(other), "--run", str(tmp_path / named)]) == 1
+        other.write_text(config.read_text().replace(change, instead) if change else config.read_text())
+        assert main(["train", "transformer", "--config", str(other), "--run", str(tmp_path / named), *options]) == 1
         assert f"{start}: key '{named}'" in capsys.readouterr().err
+    save_model(start, load_model())
+    assert main(["train", "--config", str(config), "--run", str(run)]) == 1
+    assert "which the run began with" in capsys.readouterr().err
+    assert main(["train", "tokenizer", "--config", str(config), "--run", str(run)]) == 2
+    assert "whose tokenizer stays" in capsys.readouterr().err
+
+
+def test_the_recipe_that_goes_on_fits_the_shipped_model(tmp_path: Path) -> None:
+    assert Stages(read_recipe("compact_go_on"), Run(tmp_path)).start is not None
 
 
 def test_the_scope_of_a_finished_run_is_built_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -242,7 +260,7 @@ def test_an_unknown_recipe_lists_those_that_ship(capsys: pytest.CaptureFixture[s
     for name in known_recipes():
         read_recipe(name)
     assert main(["train", "--config", "nothing"]) == 1
-    assert "compact, paper" in capsys.readouterr().err
+    assert "compact, compact_go_on, paper" in capsys.readouterr().err
 
 
 def test_the_papers_recipe_has_the_released_sizes() -> None:

@@ -319,7 +319,7 @@ SOCIAL: dict[str, Family] = {
         "clasp hands with me and ^shake {n}", "wring my hand {n}", "~a (clasp|wring) of the hand in greeting {n}", "conclude the (bargain|contract|treaty) with a handshake",
         "strike a bargain with a handshake", "~it's a deal, with a handshake", "ratify the treaty with a handshake", "settle the (dispute|bet) with a handshake",
         "~a (businesslike|gentlemanly|presidential|diplomatic|cordial|vigorous|formal) handshake {n}", "~a (diplomat's|salesman's|gentleman's|candidate's) handshake {n}",
-        "make my acquaintance with a handshake", "~{N} (hearty|vigorous|formal) handshakes", "~a deal-sealing (shake|handshake) {n}", "~a gentlemen's agreement, shaken on {n}",
+        "make my acquaintance with a handshake", "~{N} (hearty|formal) handshakes", "~a deal-sealing (shake|handshake) {n}", "~a gentlemen's agreement, shaken on {n}",
         "reconcile with me by shaking hands {n}", "glad-hand the voters {n}", "~a paw shake with me {n}", "shake paws with me {n}",
         "take the ambassador by the hand and ^shake it {n}", "jiggle my hand up and down in a handshake {n}", "~the shaking of hands {n}", "bury the hatchet with a handshake",
         "exchange a handshake with me", "swap handshakes with the captain of the other team {n}", "~an up-and-down shake of joined hands {n}"),

@@ -12,7 +12,7 @@ from mmm_core.corpus.reach import (
     LOWER_BACK,
     OTHER_SHOULDER,
     STERNUM,
-    near,
+    beside,
     reach,
 )
 from mmm_core.corpus.score import SIDE, Score
@@ -205,7 +205,7 @@ TOUCH_BODY: dict[str, Family] = {
         "bash your chest with your fists by turns {n}", "impersonate a gorilla with alternating fists on the chest {n}",
         "~your fists (hammer|pound|pummel) your chest by turns {n}", "~a tattoo on the chest with alternating fists {n}",
         "~a drumming silverback, fist after fist on the chest {n}")), sides=ALL, counts=(3, 4)),
-    "sternum_fist": Family(strokes(reach(near(STERNUM, 0.06, 0.02, 0.12)), reach(near(STERNUM, -0.02, 0.03, -0.07)), 0.7), Words(("tap your chest {n}",
+    "sternum_fist": Family(strokes(reach(beside(STERNUM, 0.06, 0.02, 0.12)), reach(beside(STERNUM, -0.02, 0.03, -0.07)), 0.7), Words(("tap your chest {n}",
         "pat your (chest|heart) {n}", "tap (on |)your heart {n}", "knock on your chest {n}", "give your chest {N} taps", "say it was me by tapping your chest {n}",
         "touch your chest {n}", "beat your heart (gently|softly) {n}", "~(light|soft|gentle) taps on the chest {n}", "~(light|gentle) pats on the chest {n}",
         "~{N} (taps|pats) on (your|the) (chest|breastbone|heart)", "~{N} chest taps", "~{N} light taps on the sternum", "~taps on the (heart|breastbone) {n}",

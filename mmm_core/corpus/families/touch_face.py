@@ -9,7 +9,7 @@ from mmm_core.corpus.reach import (
     ELBOW_DOWN,
     EYES,
     MOUTH,
-    near,
+    beside,
     reach,
 )
 from mmm_core.corpus.score import ArmPose, Score
@@ -26,7 +26,7 @@ def _kiss(score: Score, g: Gesture) -> None:
 
 
 def _yawn(score: Score, g: Gesture) -> None:
-    arms_to(score, g, reach(near(MOUTH, forward_m=0.02)), amount=0.02)
+    arms_to(score, g, reach(beside(MOUTH, forward_m=0.02)), amount=0.02)
     score.move(0.8 / g.tempo, trunk=(0.0, -0.09, 0.0), head=(0.0, -0.22, 0.0), shrug=0.5)
     score.hold(score.rng.uniform(0.3, 0.8))
     score.move(0.7 / g.tempo, trunk=(0.0, 0.03, 0.0), head=(0.0, 0.05, 0.0), shrug=0.0)
@@ -60,7 +60,7 @@ TOUCH_FACE: dict[str, Family] = {
         "~a philosopher deep in thought", "~a (pensive|thoughtful) expression", "tap your chin", "pinch your chin", "fondle your beard", "twirl your goatee", "knead your jaw",
         "cradle your chin in your palm", "~a (chin stroke|beard stroke|chin rub|chin scratch)", "~knuckles under the (jaw|chin)", "~thumb and forefinger at the chin",
         "~an idea in the making, hand at the chin")), sides=ONE, holds=True),
-    "facepalm": Family(still(reach(near(EYES, 0.0, 0.0, 0.01), (0.7, -0.5, 0.6)), head=(0.0, 0.2, 0.0)), Words(("(do|make) a facepalm", "facepalm", "be embarrassed",
+    "facepalm": Family(still(reach(beside(EYES, 0.0, 0.0, 0.01), (0.7, -0.5, 0.6)), head=(0.0, 0.2, 0.0)), Words(("(do|make) a facepalm", "facepalm", "be embarrassed",
         "hide your face in shame", "despair", "show that you cannot believe it", "regret what you did", "~a (huge |big |)facepalm", "~a moment of (shame|embarrassment)",
         "~an oh no moment", "~the facepalm (emoji|meme)", "~facepalm", "do (a|the) Picard facepalm", "hide your face (from shame|)", "be (ashamed|mortified)",
         "act (embarrassed|ashamed|mortified)", "show (embarrassment|shame)", "despair of (me|us|mankind)", "say oh no how stupid", "cringe", "groan and ^facepalm",
@@ -84,7 +84,7 @@ TOUCH_FACE: dict[str, Family] = {
         "hide your (face|eyes) behind one hand", "~shame and despair", "~an embarrassed (sigh|face)", "feel (embarrassed|ashamed)", "die of embarrassment",
         "plant your palm on your face", "veil your face with one hand", "pinch the bridge of your nose", "mask your face with one hand", "clap one hand over your face",
         "facepalm at my (terrible|silly) joke", "~how mortifying", "~your palm meets your face", "~a groan into one palm", "~so cringe")), sides=ONE, holds=True),
-    "cover_eyes": Family(still(reach(near(EYES, 0.02, 0.0, 0.02), (0.8, -0.3, 0.5))), Words(("cover (your|both) eyes( with both hands|)",
+    "cover_eyes": Family(still(reach(beside(EYES, 0.02, 0.0, 0.02), (0.8, -0.3, 0.5))), Words(("cover (your|both) eyes( with both hands|)",
         "(put|press|hold) both hands over your (eyes|face)", "hide your face (in|behind) (your|both) hands", "see no evil", "play hide and seek", "hide behind your hands",
         "bury your face in your hands", "cover your face( with both hands|)", "cry into your hands", "refuse to see it", "do not look and ^cover your eyes",
         "~(both |)hands over (your|the) eyes", "~both hands over (your|the) face", "~(your|both) hands (cover|hide|are over) your (eyes|face)",
@@ -127,7 +127,7 @@ TOUCH_FACE: dict[str, Family] = {
         "~{S} (fingertips|fingers|palm) from the lips out to the (audience|crowd) with a kiss {n}", "~your {S} hand carries a kiss from your lips into the air {n}",
         "~{N} (smooches|kisses) off the {S} palm", "~your {S} palm leaves your lips and sends a kiss {n}"),
         any=("~mwah", "~xoxo", "~a kiss on the palm, tossed to me {n}", "~kisses from a (film star|diva|beauty queen) {n}")), counts=(1,)),
-    "hush": Family(still(reach(near(MOUTH, 0.0, -0.02, 0.02), (0.5, -0.85, 0.3))), Words(("hush", "say (hush|shh|be quiet)", "tell (me|everybody) to be quiet",
+    "hush": Family(still(reach(beside(MOUTH, 0.0, -0.02, 0.02), (0.5, -0.85, 0.3))), Words(("hush", "say (hush|shh|be quiet)", "tell (me|everybody) to be quiet",
         "(make|give) a (quiet|silence|hush) (sign|gesture)", "ask for silence", "call for quiet", "put a finger to your lips", "shush (me|everyone|the class)", "keep a secret",
         "show that it is secret", "~a (hush|quiet|silence|shushing|shh) (sign|gesture)", "~a finger (to|on|against|in front of) (your|the) lips", "~finger to lips",
         "~a sign to (keep quiet|be silent|shut up)", "~a (librarian's|teacher's|soft) shh", "~index finger (at|on|before) the lips", "hush (me|the baby|everybody)",
@@ -156,7 +156,7 @@ TOUCH_FACE: dict[str, Family] = {
         any=("~it is a secret", "~silence please", "~a call for silence", "say hush because the baby sleeps", "seal your lips with one finger",
         "~a finger upright (at|against|before) the (lips|mouth)", "~shush", "~hush", "~shh", "~quiet in the library", "~the baby is asleep, shh",
         "~a vertical finger at the mouth", "~a librarian demanding quiet", "touch your pointer finger to your lips")), sides=ONE, holds=True),
-    "cover_mouth": Family(still(reach(near(MOUTH, 0.0, 0.0, 0.01), (0.8, -0.5, 0.4))), Words(("cover your mouth", "gasp in shock", "act shocked", "cough( politely|)",
+    "cover_mouth": Family(still(reach(beside(MOUTH, 0.0, 0.0, 0.01), (0.8, -0.5, 0.4))), Words(("cover your mouth", "gasp in shock", "act shocked", "cough( politely|)",
         "giggle( behind your hand|)", "sneeze into your hand", "show that you are shocked", "~a gasp (of shock|of horror|)", "~a (polite|small|little) cough", "~a sneeze",
         "sneeze", "gasp (in surprise|in horror|with shock|)", "titter behind your hand", "snigger behind your hand",
         "hide (your laughter|a smile|your mouth|a grin) behind your hand", "act (stunned|horrified|scandalised)", "say (oops|oh my god|oh dear) and ^cover your mouth",
@@ -208,7 +208,7 @@ TOUCH_FACE: dict[str, Family] = {
         "swallow a yawn behind your {S} hand", "smother your yawn in your {S} palm", "gape behind your {S} hand", "hold your {S} hand before a yawning mouth",
         "~a (gaping|stifled|weary|muffled) yawn (into|behind) the {S} (palm|hand|fist)", "~your {S} palm muffles a yawn", "~your {S} hand in front of your yawning mouth")),
         sides=ONE),
-    "drink": Family(still(reach(near(MOUTH, 0.02, 0.0, 0.03), (0.7, -0.65, 0.3), 0.4), (0.6, 1.4), head=(0.0, -0.16, 0.0)),
+    "drink": Family(still(reach(beside(MOUTH, 0.02, 0.0, 0.03), (0.7, -0.65, 0.3), 0.4), (0.6, 1.4), head=(0.0, -0.16, 0.0)),
         Words(("drink( some water| a glass of water| a cup of tea|)", "take a (drink|sip|sip of coffee)", "pretend to drink( from a cup|)", "sip (your tea|a coffee)",
         "have a drink", "empty your glass", "~a (drink|sip|gulp|swig) (of water|of tea|of beer|)", "~a (drink|sip|swig) from a (cup|glass|bottle)", "~a cup of (tea|coffee)",
         "~a glass (of water|) at your lips", "~a thirsty gulp", "sip (some water|a cocktail|your beer|from a cup)",
@@ -236,7 +236,7 @@ TOUCH_FACE: dict[str, Family] = {
         "~your {S} hand tips a (mug|tumbler|beaker) into your mouth"),
         any=("~a coffee break", "~a sip of something hot", "show that you are thirsty by drinking", "~a tea (break|ceremony)", "~bottoms up, drain the glass", "~thirst",
         "~a tankard of ale, down it goes", "be (thirsty|parched) and ^drink", "~you drain the cup to the last drop", "~a wine tasting")), sides=ONE, holds=True),
-    "eat": Family(strokes(reach((0.12, -0.3, 0.36), ELBOW_DOWN, 0.5), reach(near(MOUTH, 0.0, -0.01, 0.02), (0.6, -0.75, 0.2), 0.6), 1.1, 0.48),
+    "eat": Family(strokes(reach((0.12, -0.3, 0.36), ELBOW_DOWN, 0.5), reach(beside(MOUTH, 0.0, -0.01, 0.02), (0.6, -0.75, 0.2), 0.6), 1.1, 0.48),
         Words(("eat( with a spoon| soup| something| an apple|) {n}", "have (a meal|dinner|lunch)", "pretend to eat {n}", "take (a bite|{N} bites)",
         "bring food to your mouth {n}", "feed yourself {n}", "spoon up your soup {n}", "act as if you are eating {n}", "~a (bite|mouthful) to eat",
         "~a (meal|snack|bowl of soup|plate of pasta) to eat", "~{N} (bites|mouthfuls|spoonfuls)", "~{N} (bites|spoonfuls|mouthfuls) of (soup|food|porridge)",
@@ -264,7 +264,7 @@ TOUCH_FACE: dict[str, Family] = {
         "use a fork in your {S} hand to eat {n}", "~a (fork|ladle|chopstick) in the {S} hand (travels|moves|goes) to your mouth {n}",
         "~{N} (spoonfuls|forkfuls|morsels|bites) with your {S} hand", "~your {S} hand (feeds you|shovels food into your mouth) {n}",
         "~{S} hand from the plate to the mouth {n}")), sides=ONE, counts=(2, 3)),
-    "brush_teeth": Family(strokes(reach(near(MOUTH, -0.03, 0.0, 0.03), (1, -0.2, 0.2)), reach(near(MOUTH, 0.09, 0.0, 0.03), (1, -0.2, 0.2)), 0.55),
+    "brush_teeth": Family(strokes(reach(beside(MOUTH, -0.03, 0.0, 0.03), (1, -0.2, 0.2)), reach(beside(MOUTH, 0.09, 0.0, 0.03), (1, -0.2, 0.2)), 0.55),
         Words(("brush your teeth {n}", "clean your teeth {n}", "pretend to brush your teeth {n}", "use a toothbrush", "scrub your teeth {n}", "do your morning tooth brushing",
         "move a toothbrush in front of your mouth {n}", "(scrub|polish) your front teeth {n}", "brush (left and right|back and forth) in front of your mouth {n}",
         "~a brush of the teeth {n}", "~a toothbrush (in front of|at) the mouth {n}", "~a toothbrush moving left and right {n}", "~{N} strokes with the toothbrush",
