@@ -146,7 +146,7 @@ def on_dask(settings: Settings, pairs: list[tuple[Path, Path]], address: str) ->
     try:
         import distributed
     except ImportError as error:
-        raise CommandError("--dask needs Dask: pip install 'mmmd[dask]'") from error
+        raise CommandError("--dask needs Dask: pip install '.[dask]'") from error
     library: Any = distributed
     jobs = [(settings, path.resolve(), target.resolve()) for path, target in pairs]
     batches = [jobs[i : i + _DASK_BATCH] for i in range(0, len(jobs), _DASK_BATCH)]

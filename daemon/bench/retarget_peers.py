@@ -29,7 +29,7 @@ _MOST_FRAMES = 400
 def mink_figures(motions: list[Motion]) -> dict[str, Any]:
     """Milliseconds a frame and direction errors of mink and of our closed form; says so where mink is missing."""
     if importlib.util.find_spec("mink") is None or importlib.util.find_spec("daqp") is None:
-        return {"mink": "not installed: pip install 'mmmd[bench]'"}
+        return {"mink": "not installed: pip install '.[bench]'"}
     retargeter = Retargeter(load_robot(_ROBOT))
     human: list[HumanPose] = []
     n = 0

@@ -12,7 +12,9 @@ TEXTS = ("wave with your right hand", "raise both arms", "nod twice")
 
 
 def demo(
-    *texts: Annotated[str, tyro.conf.arg(metavar="TEXT")], robot: str = "reference", out: Path = Path("out/demo")
+    texts: Annotated[tuple[str, ...], tyro.conf.Positional] = (),
+    robot: str = "reference",
+    out: Path = Path("out/demo"),
 ) -> int:
     """Start simulated servos on a tty and the daemon on them, send three texts, draw and replay what happened.
 

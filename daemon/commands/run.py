@@ -44,11 +44,12 @@ def run(
 
     Exit status: 0 after a park, 3 when a fault or e-stop was latched, 1 when it could not start, 2 for bad use.
 
-    Example: mmmd run --robot op3 --bus "dxl:///dev/ttyUSB0?baud=1000000" --log run.mcap
+    Example: mmmd run --robot op3 --bus dxl:///dev/ttyUSB0 --log run.mcap
 
     Args:
         robot: name of a packaged robot, or path of a robot.toml; reference when nothing says otherwise.
-        bus: where the servos are: sim:// or dxl://DEVICE?baud=N, several ports with commas between them.
+        bus: where the servos are: sim:// or dxl://DEVICE?baud=N (without: the robot file's), several ports with commas
+            between them.
         config: TOML file; else $MMMD_CONFIG, ~/.config/mmmd/mmmd.toml, /etc/mmmd/mmmd.toml.
         log: MCAP file to record into, or a folder: then each start has a file of its own, named by the time.
         log_size_mb: a log of this size is ended and the next one begun (NAME.1.mcap, ...); 0 for never.

@@ -211,7 +211,7 @@ def _board(run: Run, name: str) -> Any:
         from torch.utils.tensorboard import SummaryWriter
     except ImportError:
         found = "tensorboard is not installed"
-        raise TrainingDataError(run.folder, "run.tensorboard", found, "pip install 'mmmd[train]', or false") from None
+        raise TrainingDataError(run.folder, "run.tensorboard", found, "pip install '.[train]', or false") from None
     return SummaryWriter(str(run.folder / "tensorboard" / name))  # type: ignore[no-untyped-call]
 
 
