@@ -305,7 +305,10 @@ def plain_phrases(family: str, direction: str = "") -> list[tuple[str, str]]:
 
 
 def known_commands(most_of_a_row: int = 12) -> set[str]:
-    """Plain commands of every family: each side and direction, without counts or with three."""
+    """Plain commands of every family: each side and direction, without counts or with three.
+
+    Of each row they are the shortest phrase, its first ones, which are what people say most, and others spread over the rest.
+    """
     found: set[str] = set()
     for name, family in FAMILIES.items():
         for direction in family.directions or ("",):
@@ -313,8 +316,11 @@ def known_commands(most_of_a_row: int = 12) -> set[str]:
             for row, phrase in plain_phrases(name, direction):
                 rows.setdefault(row, []).append(phrase)
             for row, phrases in rows.items():
-                step = max(1.0, len(phrases) / most_of_a_row)
-                for phrase in (phrases[int(i * step)] for i in range(min(len(phrases), most_of_a_row))):
+                first = -(-most_of_a_row // 2)
+                rest = phrases[first:]
+                spread = rest[:: max(1, -(-len(rest) // max(1, most_of_a_row - first)))]
+                shortest = min(phrases, key=lambda p: len(p.replace("{n}", "").split()))
+                for phrase in dict.fromkeys((shortest, *phrases[:first], *spread)):
                     for side in ("left", "right") if row == "one" or "{S}" in phrase else ("",):
                         for often, number in (("", "three"), ("three times", "3")) if "{" in phrase else (("", ""),):
                             text = phrase.replace("{S}", side).replace("{D}", direction)
