@@ -307,7 +307,8 @@ def plain_phrases(family: str, direction: str = "") -> list[tuple[str, str]]:
 def known_commands(most_of_a_row: int = 12) -> set[str]:
     """Plain commands of every family: each side and direction, without counts or with three.
 
-    Of each row they are the shortest phrase, its first ones, which are what people say most, and others spread over the rest.
+    Of each row they are the shortest phrase, beside it about `most_of_a_row` others: its first ones, which are what people say
+    most, and as many spread over the rest.
     """
     found: set[str] = set()
     for name, family in FAMILIES.items():

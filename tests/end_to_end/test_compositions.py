@@ -42,9 +42,7 @@ def test_a_story_moves_with_its_first_part_and_leaves_out_what_it_cannot_do(run)
         robot.arm()
         said = robot.story([("wave with your right hand", 1.6), "walk to the window", ("nod twice", 1.6), ("bow", 2.0)])
         done = said.done
-        assert (
-            done is not None and done.gate_clipped_frames <= 4 * done.underruns
-        )  # a starved machine brakes and goes on
+        assert done is not None and plays_well(done)
         seconds = 1.6 + 1.6 + 2.0 + 2 * 0.4  # two transitions
         assert done.frames == pytest.approx(seconds * 100, abs=40)
         scenes = [e for e in said.events if isinstance(e, ev.Progress) and e.stage == "scene"]

@@ -17,22 +17,11 @@ from mmm_core.corpus.families.strokes import (
 from mmm_core.corpus.score import ArmPose, Score, Vector
 
 _POINT_AT: dict[str, Vector] = {
-    "left": (1, 0.04, 0.14),
-    "right": (-1, 0.04, 0.14),
-    "forward": (0.02, 0.05, 1),
-    "up": (0.05, 1, 0.1),
-    "down": (0.1, -0.75, 0.65),
-    "up left": (0.7, 0.68, 0.2),
-    "up right": (-0.7, 0.68, 0.2),
-    "down left": (0.72, -0.6, 0.35),
-    "down right": (-0.72, -0.6, 0.35),
+    "left": (1, 0.04, 0.14), "right": (-1, 0.04, 0.14), "forward": (0.02, 0.05, 1), "up": (0.05, 1, 0.1), "down": (0.1, -0.75, 0.65),
+    "up left": (0.7, 0.68, 0.2), "up right": (-0.7, 0.68, 0.2), "down left": (0.72, -0.6, 0.35), "down right": (-0.72, -0.6, 0.35),
 }  # fmt: skip
 """Left, up, forward; turned to outward for the acting arm."""
-
-
 _POINT_SELF = ArmPose((0.35, -0.75, 0.45), (-0.75, 0.35, -0.1))
-
-
 _POINT_BACK = ArmPose((0.65, -0.1, 0.55), (0.15, 0.7, -0.75))
 
 
@@ -84,8 +73,6 @@ _BECKON_READY, _BECKON_IN = (
     ArmPose((0.35, -0.6, 0.65), (0.05, 0.1, 1.0), 1.2),
     ArmPose((0.35, -0.6, 0.6), (-0.15, 0.85, 0.4), 1.2),
 )
-
-
 _NEAR, _FAR = ArmPose((0.4, -0.6, 0.6), (-0.2, 0.5, 0.75), 0.4), ArmPose((0.35, -0.3, 0.9), (0.2, -0.1, 1.0), -0.8)
 
 

@@ -18,8 +18,6 @@ from mmm_core.corpus.reach import (
 from mmm_core.corpus.score import SIDE, Score
 
 _ABOVE, _BELOW = reach((-0.12, -0.19, 0.22), (0.6, -0.7, 0.1)), reach((-0.14, -0.24, 0.15), (0.6, -0.8, 0.0))
-
-
 _X_HANDS = reach((-0.1, 0.02, 0.3), (0.5, -0.8, 0.0))
 
 
