@@ -15,6 +15,8 @@ from torch import Tensor
 
 from mmm_core.schedule import Schedule, masked_counts
 
+KEPT = -0.5
+"""Uncertainty of a chosen id is never below 0, but for rounding."""
 LogitsFn = Callable[[Tensor, Tensor], Tensor]
 """The model: (B, L, C) ids with [MASK] where to fill, and which (B, L) are asked for -> (N, P, K) logits at those N
 positions, row by row, of the first P codebooks."""
@@ -24,11 +26,20 @@ NoiseFn = Callable[[int, Tensor, tuple[int, int]], Tensor]
 
 @dataclass(frozen=True)
 class DecodeSettings:
-    """How to decode: steps for the longest motion, schedule, and randomness (0 = arg-max)."""
+    """How to decode.
+
+    Attributes:
+        n_steps: steps for the longest motion.
+        schedule: how the masked share falls.
+        temperature: randomness; 0 = arg-max.
+        opening: so many positions at a row's beginning take their likeliest ids in the first step and are never masked
+            again: they can be played after it.
+    """
 
     n_steps: int = 10
     schedule: Schedule = "cosine"
     temperature: float = 1.0
+    opening: int = 0
 
 
 def seeded_noise(seeds: list[int]) -> NoiseFn:
@@ -82,19 +93,24 @@ def decode(
     open_positions = open_ids.any(-1)  # (B, L)
     if counts is None:
         counts = [masked_counts(n, settings.n_steps, settings.schedule) for n in open_positions.sum(1).tolist()]
-    uncertainty = torch.where(open_positions, 1.0, -1.0)  # (B, L); only open positions can be masked again
+    uncertainty = torch.where(open_positions, 1.0, -1.0)  # (B, L); what is below `KEPT` is never masked again
     for step in range(max((len(c) for c in counts), default=0)):
         wanted = torch.tensor([c[step] if step < len(c) else 0 for c in counts])
         rank = uncertainty.argsort(dim=1, descending=True, stable=True).argsort(dim=1)
-        masked = rank < wanted[:, None]  # (B, L): the `wanted` most uncertain of each row
+        masked = (rank < wanted[:, None]) & (uncertainty > KEPT)  # (B, L): the `wanted` most uncertain of each row
+        if not masked.any():
+            break
         tokens[open_ids & masked[..., None]] = mask_id
         logits = logits_fn(torch.cat([tokens, seen_only], -1), masked).float()  # (N, P, K)
         chosen = _choose(logits, settings.temperature, noise, step, masked)  # (N, P)
+        opening = masked.nonzero()[:, 1] < settings.opening
+        chosen[opening] = logits[opening].argmax(-1)
         filled = open_ids[masked]  # (N, P): what is really chosen, the rest is known
         tokens[masked] = torch.where(filled, chosen, tokens[masked])
         likelihood = logits.softmax(-1).gather(-1, chosen[..., None])[..., 0]
         uncertainty.fill_(-1.0)
         uncertainty[masked] = 1.0 - (likelihood * filled).sum(-1) / filled.sum(-1)
+        uncertainty[:, : settings.opening] = -1.0
     return torch.cat([tokens, seen_only], -1)
 
 
@@ -109,17 +125,22 @@ def decode_plain(
         score = {i: 1.0 for i, books in open_books.items() if books}
         for step, count in enumerate(masked_counts(len(score), settings.n_steps, settings.schedule)):
             chosen_positions = sorted(sorted(score, key=lambda i: (-score[i], i))[:count])
+            if not chosen_positions:
+                break
             asked = torch.zeros(1, len(ids), dtype=torch.bool)
             for i in chosen_positions:
                 ids[i, open_books[i]] = mask_id
                 asked[0, i] = True
             logits = logits_fn(ids[None], asked).float()
             choice = _choose(logits, settings.temperature, seeded_noise([seed]), step, asked)
+            opening = [n for n, i in enumerate(chosen_positions) if i < settings.opening]
+            choice[opening] = logits[opening].argmax(-1)
             score = {}
             for n, i in enumerate(chosen_positions):
                 books = open_books[i]
                 ids[i, books] = choice[n, books]
                 score[i] = 1.0 - sum(float(logits[n, c].softmax(-1)[choice[n, c]]) for c in books) / len(books)
+            score = {i: uncertain for i, uncertain in score.items() if i >= settings.opening}
         results.append(ids)
     return torch.stack(results)
 

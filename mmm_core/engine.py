@@ -13,17 +13,15 @@ from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
 from mmm_core.corpus.mirroring import canonical, mirror_words
-from mmm_core.count_words import count_asked
 from mmm_core.eight_bit import can_eight_bit, to_eight_bit
 from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.features import Root, mirror, recover, recover_from_positions
-from mmm_core.generation import Clock, Generation, no_motion, understood
+from mmm_core.generation import Generation
+from mmm_core.making import Making
 from mmm_core.motion import FPS, Motion
 from mmm_core.packed import fastest_precision, pack
-from mmm_core.repeats import ids_of_count
-from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings, empty_row, fill, pseudo_log_likelihood
+from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings
 from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
-from mmm_core.sequence import COMMAND_STRIDE, commands_of, joined
 from mmm_core.text import TextEncoder, TextStates, without_pictures
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
 
@@ -31,10 +29,6 @@ Precision = Literal["fp32", "bf16", "int8"]
 """Of the matrix products. Any but fp32 is another model's choice of tokens now and then."""
 SHORTEST_S = 0.8
 MOST_CANDIDATES = 64
-CANDIDATES_TO_COUNT = 2
-"""More take longer and keep a number within one no more often (docs/model.md)."""
-CANDIDATE_STRIDE = 7_919_999
-"""Between the seeds of candidates, so that neighbouring seeds do not share any."""
 _TYPICAL = (
     ("wave with your right hand", 9.6), ("raise both arms, then clap twice", 3.2), ("bow deeply", 2.0),
     ("turn your head to the left", 1.2), ("play the guitar", 3.2), ("point up with your left hand", 1.6),
@@ -127,35 +121,19 @@ class Engine:
         Raises:
             GenerationError: seed, seconds or candidates out of range, or no seconds for a model without lengths.
         """
+        return self.begin(text, seed=seed, seconds=seconds, candidates=candidates).finished()
+
+    def begin(self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int | None = None) -> Making:
+        """The same motion, not made yet: first a draft of it can be had, then itself. Arguments as in `generate`.
+
+        Raises:
+            GenerationError: as `generate`.
+        """
         check_seed(seed)
         if candidates is not None and not 1 <= candidates <= MOST_CANDIDATES:
             raise GenerationError(f"{candidates} candidates were asked for", f"1 to {MOST_CANDIDATES}")
         n_frames = None if seconds is None else frames_for_seconds(seconds, FPS)
-        clock = Clock()
-        states, verdict, is_mirrored = self.understand_fresh(text)
-        clock.lap("text")
-        if verdict.status == "rejected":
-            return Generation(no_motion(text, seed, verdict), understood(verdict), verdict.reason, clock.laps_ms)
-        with torch.inference_mode():
-            done = verdict.kept or text
-            commands = commands_of(self, mirror_words(done) if is_mirrored else done, states, n_frames)
-            counts = candidates != 1 and len(commands) == 1 and n_frames is None and self.model.rest_pose == "mmmd"
-            if counts and (count := count_asked(done)) is not None:
-                rows = [ids_of_count(self, commands[0], count, seed, candidates or CANDIDATES_TO_COUNT)]
-            else:
-                rows = [
-                    self._best_ids(c.states, c.n_tokens, (seed + i * COMMAND_STRIDE) % 2**31, candidates or 1)
-                    for i, c in enumerate(commands)
-                ]
-            ids = joined(self, commands, rows, seed)
-            clock.lap("decode")
-            motion = self.motion(ids, text, seed, verdict, n_frames, is_mirrored=is_mirrored)
-            clock.lap("motion")
-        taken_as = understood(verdict)
-        if len(commands) > 1:
-            several = ", then ".join(c.understood for c in commands)
-            taken_as = mirror_words(several) if is_mirrored else several
-        return Generation(motion, taken_as, verdict.reason, clock.laps_ms)
+        return Making(self, text, seed, n_frames, candidates)
 
     def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
         """States of a text, and how far it lies from what the model can do."""
@@ -264,21 +242,6 @@ class Engine:
             raise GenerationError("a motion without features or tokens was given", "one written by `mmmd generate`")
         with torch.inference_mode():
             return tokenizer.encode(torch.from_numpy(motion.features[None, :n_frames]))[0]
-
-    def candidate_ids(self, states: TextStates, n_tokens: int, seed: int, n: int) -> list[Tensor]:
-        """(n_tokens, C) ids for a text, `n` times; the first has the seed itself."""
-        transformer = self.model.transformer
-        seeds = [seed + i * CANDIDATE_STRIDE for i in range(n)]
-        several = states if n == 1 else states.repeated(n)
-        return fill(transformer, several, [empty_row(transformer, n_tokens)] * n, seeds, self.settings)
-
-    def _best_ids(self, states: TextStates, n_tokens: int, seed: int, candidates: int) -> Tensor:
-        """(n_tokens, C) ids for a text, the likeliest of `candidates`."""
-        made = self.candidate_ids(states, n_tokens, seed, candidates)
-        if candidates == 1:
-            return made[0]
-        likely = pseudo_log_likelihood(self.model.transformer, states.repeated(candidates), made)
-        return made[int(likely.argmax())]
 
 
 def check_seed(seed: int) -> None:

@@ -8,6 +8,7 @@ seam a [MASK] is left for the model to fill (MMM, arXiv 2312.03596, sec. 3.3: an
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -34,11 +35,10 @@ _UNCLEAR, _NONE, _PER_MISFIT = 0.5, 3.0, 0.8
 _TAKEN = ScopeVerdict("accepted", 1.0, "", "")
 
 
-def ids_of_count(engine: Engine, command: Command, count: int, seed: int, candidates: int) -> Tensor:
-    """(L, C) ids of a command that asks for `count` strokes; the model's own length, longer or shorter by strokes."""
+def ids_of_count(engine: Engine, command: Command, made: Sequence[Tensor], count: int, seed: int) -> Tensor:
+    """(L, C) ids of a command that asks for `count` strokes, from candidates (n_tokens, C); longer or shorter by strokes."""
     transformer = engine.model.transformer
-    made = engine.candidate_ids(command.states, command.n_tokens, seed, candidates)
-    features = engine.model.tokenizer.decode(torch.stack(made)).numpy()
+    features = engine.model.tokenizer.decode(torch.stack(list(made))).numpy()
     motions = [
         engine.motion_of_features(f, ids, command.text, seed, _TAKEN) for f, ids in zip(features, made, strict=True)
     ]

@@ -31,6 +31,7 @@ class SamplingSettings:
         temperature: randomness; 0 always takes the likeliest id.
         guidance: how much the text is stressed; 1 is the plain model, above it a second pass without text is subtracted.
         schedule: how the masked share falls.
+        opening: tokens at the beginning that stay as the first step gives them, so that playing may begin (`mmm_core.making`).
         official: the released sampler's steps (`schedule.official_counts`) instead of the three numbers above.
     """
 
@@ -40,6 +41,7 @@ class SamplingSettings:
     temperature: float = 0.5
     guidance: float = 1.0
     schedule: Schedule = "cosine"
+    opening: int = 0
     official: bool = False
 
     def n_steps(self, n_tokens: int) -> int:
@@ -108,7 +110,7 @@ def fill(
     n_open = [int((row[:, :n_predicted] == ids.mask).any(-1).sum()) for row in rows]
     counts = [_counts(n, len(row), settings, early_exit=len(rows) == 1 and n_predicted == transformer.config.n_codebooks)
               for n, row in zip(n_open, rows, strict=True)]  # fmt: skip
-    how = DecodeSettings(settings.most_steps, settings.schedule, settings.temperature)
+    how = DecodeSettings(settings.most_steps, settings.schedule, settings.temperature, settings.opening)
     filled = decode(batch, logits_fn, ids.mask, how, list(seeds), n_predicted=n_predicted, counts=counts, noise=noise)
     return [filled[i, : len(row)] for i, row in enumerate(rows)]
 

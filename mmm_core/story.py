@@ -14,9 +14,10 @@ from itertools import islice
 import torch
 from torch import Tensor
 
-from mmm_core.engine import Engine, check_seed, no_motion
+from mmm_core.engine import Engine, check_seed
 from mmm_core.errors import GenerationError
 from mmm_core.features import Root, root_after
+from mmm_core.generation import no_motion
 from mmm_core.motion import FPS, Motion
 from mmm_core.sampling import empty_row, fill
 from mmm_core.scope import ScopeVerdict

@@ -67,6 +67,7 @@ class GeneratorClient:
         self._socket.connect(endpoint)
         self._ids = itertools.count(1)
         self._open: dict[int, asyncio.Future[FromGenerator]] = {}
+        self._follows: dict[int, asyncio.Future[FromGenerator]] = {}  # a draft
         self._reader: asyncio.Task[None] | None = None
         self._ready = asyncio.Event()
         self._down_reason = ""
@@ -86,16 +87,27 @@ class GeneratorClient:
         self.state, self._down_reason = "starting", ""
         self._ready.clear()
         self._lives += 1
+        self._lose_follows()
 
     def mark_down(self, reason: str) -> None:
         """The generator is gone; requests fail at once."""
         self.state, self._down_reason = f"down: {reason}", reason
         self._ready.clear()
+        self._lose_follows()
+
+    def _lose_follows(self) -> None:
+        """What was to follow a draft never comes."""
+        for follows in self._follows.values():
+            if not follows.done():
+                found, do = f"the generator is {self.state}", "see the daemon's output"
+                follows.set_exception(
+                    GeneratorError("generator_down", "what follows a draft", found, "a generator that runs", do)
+                )
 
     @property
     def busy(self) -> bool:
         """Whether an answer is outstanding."""
-        return bool(self._open)
+        return bool(self._open or self._follows)
 
     async def generate(
         self, text: str, seed: int, seconds: float | None, timeout_s: float, *, before: Motion | None = None,
@@ -113,6 +125,43 @@ class GeneratorClient:
             before=None if before is None else arrays_of(before),
         )  # fmt: skip
         return await self._motion(request, timeout_s, asked)
+
+    async def draft(
+        self, text: str, seed: int, seconds: float | None, timeout_s: float
+    ) -> tuple[Generated, asyncio.Task[Generated] | None]:
+        """A draft of the motion for `text`, and the motion to come; or the motion and None.
+
+        Raises:
+            GeneratorError: as `generate`; the task raises it too.
+        """
+        asked = f"a motion for {text!r}"
+        await self._until_ready(asked)
+        request = GenerateMessage(id=next(self._ids), text=text, seed=seed, seconds=seconds, draft=True)
+        follows = self._follows[request.id] = asyncio.get_running_loop().create_future()
+        whole: asyncio.Task[Generated] | None = None
+        try:
+            first = _generated(await self._ask(request, timeout_s, asked), asked, may_be_draft=True)
+            if first.draft_of:
+                whole = asyncio.create_task(self._whole(request.id, follows, timeout_s, asked))
+                whole.add_done_callback(_heard)
+            return first, whole
+        finally:
+            if whole is None:
+                del self._follows[request.id]
+
+    async def _whole(
+        self, request_id: int, follows: asyncio.Future[FromGenerator], timeout_s: float, asked: str
+    ) -> Generated:
+        """What follows a draft."""
+        life = self._lives
+        try:
+            async with asyncio.timeout(timeout_s):
+                return _generated(await follows, asked)
+        except TimeoutError:
+            self.timeouts += life == self._lives
+            raise no_answer(asked, timeout_s) from None
+        finally:
+            del self._follows[request_id]
 
     async def scene(
         self, text: str | None, seed: int, seconds: float | None, told: bytes, timeout_s: float, *, last: bool
@@ -158,15 +207,7 @@ class GeneratorClient:
     async def _motion(
         self, request: ToGenerator, timeout_s: float, asked: str, min_frames: int = MIN_FRAMES
     ) -> Generated:
-        reply = await self._ask(request, timeout_s, asked)
-        if isinstance(reply, FailureMessage):
-            do = "see the daemon's output; say it in other words or with another seed"
-            if reply.code in ("bad_edit", "bad_keyframes"):
-                do = "correct it"
-            raise GeneratorError(reply.code, asked, reply.found, reply.allowed, do)
-        if not isinstance(reply, GeneratedMessage):
-            raise bad_motion(asked, f"the answer '{type(reply).__name__}'")
-        return generated_from(reply, min_frames)
+        return _generated(await self._ask(request, timeout_s, asked), asked, min_frames)
 
     async def ping(self, timeout_s: float) -> str:
         """The hash of the generator's checkpoint.
@@ -217,9 +258,10 @@ class GeneratorClient:
             except msgspec.MsgspecError as error:
                 log.warning("the generator sent what is no message: %s", error)
                 continue
-            waiting = self._open.get(reply.id)
-            if waiting is not None and not waiting.done():
-                waiting.set_result(reply)
+            for waiting in (self._open.get(reply.id), self._follows.get(reply.id)):
+                if waiting is not None and not waiting.done():
+                    waiting.set_result(reply)
+                    break
 
     async def close(self) -> None:
         """Drop what is open and close the socket."""
@@ -228,6 +270,30 @@ class GeneratorClient:
             with contextlib.suppress(asyncio.CancelledError):
                 await self._reader
         self._socket.close(0)
+
+
+def _generated(
+    reply: FromGenerator, asked: str, min_frames: int = MIN_FRAMES, *, may_be_draft: bool = False
+) -> Generated:
+    """The motion in a reply.
+
+    Raises:
+        GeneratorError: there is none.
+    """
+    if isinstance(reply, FailureMessage):
+        do = "see the daemon's output; say it in other words or with another seed"
+        if reply.code in ("bad_edit", "bad_keyframes"):
+            do = "correct it"
+        raise GeneratorError(reply.code, asked, reply.found, reply.allowed, do)
+    if not isinstance(reply, GeneratedMessage):
+        raise bad_motion(asked, f"the answer '{type(reply).__name__}'")
+    return generated_from(reply, min_frames, may_be_draft=may_be_draft)
+
+
+def _heard(whole: asyncio.Task[Generated]) -> None:
+    """Nobody may be waiting for it any more."""
+    if not whole.cancelled() and whole.exception() is not None:
+        log.debug("what follows a draft: %s", whole.exception())
 
 
 def no_answer(asked: str, timeout_s: float) -> GeneratorError:

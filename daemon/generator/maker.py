@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,8 +20,9 @@ from daemon.generator.messages import (
 )
 from daemon.wire.requests import LONGEST_S
 from mmm_core.editing import Edit, edit, part_names
-from mmm_core.engine import Engine, no_motion
+from mmm_core.engine import Engine
 from mmm_core.errors import GenerationError
+from mmm_core.generation import Generation, no_motion
 from mmm_core.keyframes import Keyframe, between, features_of
 from mmm_core.motion import Motion
 from mmm_core.prefix import go_on
@@ -48,22 +49,24 @@ class EngineMaker:
         """
         maker = cls(Engine.load(model, threads=threads))
         for seconds in (None, LONGEST_S):  # the first calls allocate
-            maker.generate(GenerateMessage(id=0, text="wave with your right hand", seconds=seconds))
+            list(maker.generate(GenerateMessage(id=0, text="wave with your right hand", seconds=seconds, draft=True)))
         return maker
 
-    def generate(self, request: GenerateMessage) -> Generated:
-        """A motion, by itself or going on from what is there.
+    def generate(self, request: GenerateMessage) -> Iterator[Generated]:
+        """A motion, by itself or going on from what is there; by itself after a draft of it if one is asked for.
 
         Raises:
             GenerationError: seconds or prefix out of range.
         """
-        if request.before is None:
-            made = self._engine.generate(request.text, seed=request.seed, seconds=request.seconds)
-        else:
+        text, seed, seconds = request.text, request.seed, request.seconds
+        if request.before is not None:
             before = _with_features(motion_from(request.before))
-            text, seed, seconds = request.text, request.seed, request.seconds
-            made = go_on(self._engine, before, request.prefix_s, text, seed=seed, seconds=seconds)
-        return Generated(made.motion, made.understood, made.reason, made.timings_ms, self.checkpoint_hash)
+            yield self._of(go_on(self._engine, before, request.prefix_s, text, seed=seed, seconds=seconds))
+            return
+        making = self._engine.begin(text, seed=seed, seconds=seconds)
+        if request.draft and (draft := making.draft()) is not None:
+            yield self._of(draft, making.n_frames)
+        yield self._of(making.finished())
 
     def scene(self, request: SceneMessage) -> Generated:
         """The next piece of a story.
@@ -101,6 +104,10 @@ class EngineMaker:
             return between(self._engine, keys, request.text, seed=request.seed)
 
         return self._unless_rejected(request.text, request.seed, made, "bad_keyframes")
+
+    def _of(self, made: Generation, draft_of: int = 0) -> Generated:
+        how = (made.understood, made.reason, made.timings_ms, self.checkpoint_hash)
+        return Generated(made.motion, *how, draft_of=draft_of)
 
     def _unless_rejected(self, text: str, seed: int, make: Callable[[], Motion], code: str) -> Generated:
         """What `make` makes, unless the text is out of scope; no text at all is in scope."""

@@ -1,6 +1,7 @@
 """The messages between the front and the generator: msgpack, one each way per request. Holds no torch.
 
 `generate`, `scene`, `edit`, `between` or `ping` to the generator; `generated`, `failure` or `pong` back with the same `id`.
+Who asks for a draft gets two: a `generated` that is a draft, then the motion, or the failure that there is none.
 No request needs one that came before it: what a story needs of its past travels in `told`, so that a generator may be
 killed, restarted or changed in the middle of one.
 """
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from daemon.errors import DaemonError
 from mmm_core.motion import N_FEATURES, N_JOINTS, Motion
 
-GENERATION_VERSION = 3
+GENERATION_VERSION = 4
 MIN_FRAMES = 2
 """A motion of fewer frames is no motion."""
 
@@ -62,6 +63,7 @@ class GenerateMessage(msgspec.Struct, tag="generate", kw_only=True):
         seconds: of the motion; None lets the model choose.
         before: what it is to go on from; None for a motion by itself.
         prefix_s: so much of the end of `before` is context of the new motion.
+        draft: whether a draft, which can be played at once, is to come first; where none can be made none comes.
     """
 
     v: int = GENERATION_VERSION
@@ -71,6 +73,7 @@ class GenerateMessage(msgspec.Struct, tag="generate", kw_only=True):
     seconds: float | None = None
     before: MotionArrays | None = None
     prefix_s: float = 0.0
+    draft: bool = False
 
 
 class SceneMessage(msgspec.Struct, tag="scene", kw_only=True):
@@ -156,7 +159,7 @@ class FailureMessage(msgspec.Struct, tag="failure", kw_only=True):
 
 
 class GeneratedMessage(MotionArrays, tag="generated", kw_only=True):
-    """A motion; `told` is where a story then stands."""
+    """A motion, or a draft of one; `told` is where a story then stands."""
 
     id: int
     understood: str
@@ -164,6 +167,7 @@ class GeneratedMessage(MotionArrays, tag="generated", kw_only=True):
     timings_ms: dict[str, float]
     checkpoint_hash: str
     told: bytes = b""
+    draft_of: int = 0
 
 
 ToGenerator = GenerateMessage | SceneMessage | EditMessage | BetweenMessage | PingMessage
@@ -184,6 +188,7 @@ class Generated:
         timings_ms: the generator's stages.
         checkpoint_hash: the weights it used.
         told: where a story then stands; else empty.
+        draft_of: frames that the motion will have, about, of which this is a draft; 0 when it is the motion.
     """
 
     motion: Motion
@@ -192,6 +197,7 @@ class Generated:
     timings_ms: dict[str, float]
     checkpoint_hash: str
     told: bytes = b""
+    draft_of: int = 0
 
 
 def encode(message: ToGenerator | FromGenerator) -> bytes:
@@ -232,6 +238,7 @@ def generated_message(request_id: int, generated: Generated) -> GeneratedMessage
         timings_ms=generated.timings_ms,
         checkpoint_hash=generated.checkpoint_hash,
         told=generated.told,
+        draft_of=generated.draft_of,
     )
 
 
@@ -256,12 +263,14 @@ def motion_from(arrays: MotionArrays) -> Motion:
     )
 
 
-def generated_from(message: GeneratedMessage, min_frames: int = MIN_FRAMES) -> Generated:
+def generated_from(message: GeneratedMessage, min_frames: int = MIN_FRAMES, *, may_be_draft: bool = False) -> Generated:
     """The motion in a message, checked.
 
     Raises:
-        GeneratorError: wrong sizes, not finite, or too few frames.
+        GeneratorError: wrong sizes, not finite, too few frames, or a draft that nobody asked for.
     """
+    if message.draft_of and not may_be_draft:
+        raise bad_motion(message.text, "a draft that nobody asked for")
     try:
         motion = motion_from(message)
     except ValueError as error:
@@ -269,7 +278,7 @@ def generated_from(message: GeneratedMessage, min_frames: int = MIN_FRAMES) -> G
     if motion.status != "rejected" and message.n_frames < min_frames:
         raise bad_motion(message.text, f"{message.n_frames} frames")
     how = (message.understood, message.reason, message.timings_ms, message.checkpoint_hash)
-    return Generated(motion, *how, message.told)
+    return Generated(motion, *how, message.told, message.draft_of)
 
 
 def bad_motion(text: str, found: str) -> GeneratorError:

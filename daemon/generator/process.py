@@ -10,7 +10,7 @@ import importlib.metadata
 import logging
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol
 
@@ -50,8 +50,8 @@ POLL_MS = 200
 class Maker(Protocol):
     """What makes motions: `daemon.generator.maker` with the model, others in tests."""
 
-    def generate(self, request: GenerateMessage) -> Generated:
-        """A motion."""
+    def generate(self, request: GenerateMessage) -> Iterator[Generated]:
+        """A motion, after a draft of it where one is asked for and can be made."""
         ...
 
     def scene(self, request: SceneMessage) -> Generated:
@@ -67,30 +67,33 @@ class Maker(Protocol):
         ...
 
 
-def answer(request: ToGenerator, maker: Maker, checkpoint_hash: str) -> FromGenerator:
-    """The reply to one request; an error of the model becomes a `failure`, never the end of the process."""
+def answers(request: ToGenerator, maker: Maker, checkpoint_hash: str) -> Iterator[FromGenerator]:
+    """What is replied to one request; an error of the model becomes a `failure`, never the end of the process."""
     if request.v != GENERATION_VERSION:
         found, allowed = f"version {request.v} of the generator's protocol", f"version {GENERATION_VERSION}"
-        return FailureMessage(id=request.id, code="version", found=found, allowed=allowed)
-    if isinstance(request, PingMessage):
-        return PongMessage(id=request.id, checkpoint_hash=checkpoint_hash, version=importlib.metadata.version("mmmd"))
-    try:
-        return generated_message(request.id, _made(request, maker))
-    except UnfitRequestError as error:
-        return FailureMessage(id=request.id, code=error.code, found=error.found, allowed=error.allowed)
-    except Exception as error:  # whatever the model raises, the next text must still be answered
-        log.exception("generating %r failed", request.text)
-        return FailureMessage(id=request.id, code="generator_error", found=str(error), allowed="a motion")
+        yield FailureMessage(id=request.id, code="version", found=found, allowed=allowed)
+    elif isinstance(request, PingMessage):
+        yield PongMessage(id=request.id, checkpoint_hash=checkpoint_hash, version=importlib.metadata.version("mmmd"))
+    else:
+        try:
+            for made in _made(request, maker):
+                yield generated_message(request.id, made)
+        except UnfitRequestError as error:
+            yield FailureMessage(id=request.id, code=error.code, found=error.found, allowed=error.allowed)
+        except Exception as error:  # whatever the model raises, the next text must still be answered
+            log.exception("generating %r failed", request.text)
+            yield FailureMessage(id=request.id, code="generator_error", found=str(error), allowed="a motion")
 
 
-def _made(request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage, maker: Maker) -> Generated:
+def _made(request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage, maker: Maker) -> Iterator[Generated]:
     if isinstance(request, SceneMessage):
-        return maker.scene(request)
-    if isinstance(request, EditMessage):
-        return maker.edit(request)
-    if isinstance(request, BetweenMessage):
-        return maker.between(request)
-    return maker.generate(request)
+        yield maker.scene(request)
+    elif isinstance(request, EditMessage):
+        yield maker.edit(request)
+    elif isinstance(request, BetweenMessage):
+        yield maker.between(request)
+    else:
+        yield from maker.generate(request)
 
 
 def serve(socket: zmq.Socket[bytes], maker: Maker, checkpoint_hash: str, alive: Callable[[], bool]) -> None:
@@ -104,7 +107,8 @@ def serve(socket: zmq.Socket[bytes], maker: Maker, checkpoint_hash: str, alive: 
         except (msgspec.MsgspecError, UnicodeDecodeError) as error:
             log.warning("dropped a frame that is no request: %s", error)
             continue
-        socket.send_multipart([*route, encode(answer(request, maker, checkpoint_hash))])
+        for reply in answers(request, maker, checkpoint_hash):
+            socket.send_multipart([*route, encode(reply)])
 
 
 def run(

@@ -40,6 +40,11 @@ class KeptMotions:
         while len(self._kept) > KEPT:
             self._kept.popitem(last=False)
 
+    def renew(self, command_id: str, posture: Posture, motion: Motion) -> None:
+        """What was kept of a command, if it still is, was a draft of this."""
+        if command_id in self._kept:
+            self._kept[command_id] = replace(self._kept[command_id], posture=posture, motion=motion)
+
     def number(self, command_id: str, plan_id: int) -> None:
         """Its plan got a number."""
         if command_id in self._kept:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.playing.draft_score import DraftScore
 from daemon.playing.follower import Follower
 from daemon.playing.idle import IdleScore
 from daemon.playing.layers import Layers
@@ -176,9 +177,7 @@ class Player:
             came_s = plan.first_target_s if isinstance(plan, StreamPlan) else None
             moving = Progress(plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms, target_t_mono=came_s)
             self._ledger.emit(entry, moving)
-        self._tell_scenes(plan.plan_id)
-        if finish_loop and isinstance(self._score, (ClipScore, StoryScore)):
-            self._score.finish()
+        self._follow_score(self._score, plan.plan_id, finish_loop=finish_loop)
         if isinstance(plan, StreamPlan) and entry is not None:
             self._stream.look(plan, entry)
         if not plan.complete:
@@ -277,6 +276,34 @@ class Player:
             self._planner.give_up()
             log.error("idle movements could not be made: %s", error)
 
+    def _follow_score(self, score: Score | StreamScore, plan_id: int, *, finish_loop: bool) -> None:
+        """What is to be done of a score beside playing it."""
+        if isinstance(score, StoryScore):
+            self._tell_scenes(score, plan_id)
+        if finish_loop and isinstance(score, (ClipScore, StoryScore)):
+            score.finish()
+        if isinstance(score, DraftScore) and score.may_go_over and not self._feeding:
+            self._feeding = True
+            self.start(self._go_over(score))
+
+    async def _go_over(self, score: DraftScore) -> None:
+        """Let the motion take the place of its draft, from where the draft is being played."""
+        took_s = 0.0
+        try:
+            async with self._lock:
+                while self._score is score and score.tries_left and self._planner.running:
+                    score.tries_left -= 1
+                    began_s = time.monotonic()
+                    if await self._replan(score, took_s=took_s):
+                        score.tries_left = 0
+                    took_s = time.monotonic() - began_s
+        except RetargetError as error:  # the draft goes on
+            score.tries_left = 0
+            self._planner.give_up()
+            log.error("the motion of a draft does not fit the robot: %s", error)
+        finally:
+            self._feeding = False
+
     async def _feed(self) -> None:
         """Make the next stretch and append it; one that cannot be made ends the command."""
         score = self._score
@@ -320,30 +347,36 @@ class Player:
         if entry is not None:
             self._ledger.emit(entry, ending(plan.plan_id if plan is not None else 0, "", as_failure(event)))
 
-    def _tell_scenes(self, plan_id: int) -> None:
-        while self.entry is not None and isinstance(self._score, StoryScore) and self._score.news:
-            n = self._score.news.popleft()
+    def _tell_scenes(self, score: StoryScore, plan_id: int) -> None:
+        while self.entry is not None and score.news:
+            n = score.news.popleft()
             self._ledger.emit(self.entry, Progress(
                 plan_id=plan_id, stage="scene", scene=n.number, text=n.text, status=n.status, reason=n.reason,
                 understood=n.understood, scope_score=round(n.scope_score, 4),
             ))  # fmt: skip
 
-    async def _replan(self) -> None:
-        """What is left of the plan, made again with the layers as they now are."""
+    async def _replan(self, draft: DraftScore | None = None, *, took_s: float = 0.0) -> bool:
+        """What is left of the plan, made again with the layers as they now are; of a draft, the motion that it was of.
+
+        Whether that is what is played now.
+        """
         if self._planner.dry:
-            return
-        start = self._planner.hand_over()
+            return False
+        start = self._planner.hand_over(took_s=took_s)
         plan = self._planner.current
         if plan is None or start.frame is None:
-            return
-        last = self._is_last
-        pieces = self._making(plan.rest_raw(start.frame), start, complete=last)
+            return False
+        last, rest = self._is_last, plan.rest_raw(start.frame)
+        if draft is not None:
+            last, rest = True, draft.rest(len(rest))
+        pieces = self._making(rest, start, complete=last)
         piece = await asyncio.to_thread(next, pieces)
         if plan is not self._planner.current or plan.epoch != self._planner.epoch or self._planner.hand_over_missed:
             self._planner.give_up()
-            return
+            return False
         self._planner.go_on_otherwise(piece)
         self._make_on(pieces, piece, last)
+        return True
 
     def _making(self, raw: Posture, start: HandOver, *, complete: bool, easy: bool = False) -> Iterator[Piece]:
         """The path of a stretch, growing out of what was before, piece by piece. Asked for in a worker thread."""

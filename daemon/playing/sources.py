@@ -17,6 +17,7 @@ from daemon.errors import ClipError
 from daemon.generator.generation import GeneratorClient, no_answer
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.gestures.library import GestureLibrary
+from daemon.playing.draft_score import DraftScore
 from daemon.playing.kept_motions import KeptMotion, KeptMotions
 from daemon.playing.keyposes import KeyPose, led_through
 from daemon.playing.originals import Originals
@@ -144,26 +145,40 @@ class Sources:
     ) -> Prepared:
         """What the generator makes of one request, led through `keys`."""
         generated = await self._asked(entry, ask)
-        motion, request = generated.motion, entry.request
-        if motion.status == "rejected":
-            raise _out_of_scope(entry, generated.reason, generated.understood, motion.scope_score)
+        _check_in_scope(entry, generated)
+        motion = generated.motion
         posture = posture_of(motion)
         if keys:
             posture = led_through(posture, keys)
             motion = posture.motion(motion)
-        return Prepared(
-            await self._score(entry, posture, motion),
-            _duration_s(posture, request),
-            motion.status,
-            generated.understood,
-            generated.reason,
-            motion.scope_score,
-            sum(generated.timings_ms.values()),
-        )
+        return _prepared(generated, await self._score(entry, posture, motion), _duration_s(posture, entry.request))
+
+    async def _drafted(self, entry: Entry, request: Say) -> Prepared:
+        """What can be played at once of a text, while the generator goes on with it."""
+        ask = self._generator.draft
+        first, whole = await self._asked(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
+        _check_in_scope(entry, first)
+        draft = posture_of(first.motion)
+        score = await self._score(entry, draft, first.motion)
+        if whole is None:
+            return _prepared(first, score, _duration_s(draft, request))
+
+        def posture(generated: Generated) -> Posture:
+            return varied(posture_of(generated.motion), request)
+
+        def keep(done: asyncio.Task[Generated]) -> None:
+            if not done.cancelled() and done.exception() is None:
+                self.kept.renew(entry.id, posture(done.result()), done.result().motion)
+
+        whole.add_done_callback(keep)
+        duration_s = first.draft_of / draft.fps / request.tempo
+        return _prepared(first, DraftScore(varied(draft, request), whole, posture), duration_s)
 
     async def _said(self, entry: Entry, request: Say, played: Played) -> Prepared:
         ask = self._generator.generate
         if not request.prefix_s:
+            if request.when == "now" and not (request.loop or request.hold or request.repeat > 1):
+                return await self._drafted(entry, request)
             return await self._generated(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
         before, began_s = played.committed(PREFIX_FRAMES, self._make_s), time.monotonic()
         motion, prefix_s = (mirrored(before) if request.mirror else before).motion(), request.prefix_s
@@ -245,6 +260,19 @@ class Sources:
         if play.loop or play.hold or play.repeat > 1:  # looking for the loop takes a while
             return await asyncio.to_thread(ClipScore, posture, play, marks)
         return ClipScore(posture, play, marks)
+
+
+def _prepared(generated: Generated, score: Score, duration_s: float) -> Prepared:
+    """With what the generator tells of a motion."""
+    motion, made_ms = generated.motion, sum(generated.timings_ms.values())
+    how = (motion.status, generated.understood, generated.reason, motion.scope_score, made_ms)
+    return Prepared(score, duration_s, *how)
+
+
+def _check_in_scope(entry: Entry, generated: Generated) -> None:
+    """Raises NotPlayableError for what was refused."""
+    if generated.motion.status == "rejected":
+        raise _out_of_scope(entry, generated.reason, generated.understood, generated.motion.scope_score)
 
 
 def _out_of_scope(entry: Entry, reason: str, understood: str, score: float) -> NotPlayableError:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -85,15 +85,26 @@ class KinematicMaker:
     def __init__(self, answer: Callable[[str, int, float | None], Generated] = generate) -> None:
         self._answer = answer
 
-    def generate(self, request: GenerateMessage) -> Generated:
-        """What it is to go on from is told by `understood`: how long that is, and which wrist is higher at its end."""
+    def generate(self, request: GenerateMessage) -> Iterator[Generated]:
+        """What it is to go on from is told by `understood`: how long that is, and which wrist is higher at its end.
+
+        Of a text with "drafted" in it there is a draft of half the way up and half the length, and half a second later the
+        motion; with "lost" the motion never comes.
+        """
         made = self._answer(request.text, request.seed, request.seconds)
-        if request.before is None:
-            return made
-        before = motion_from(request.before)
-        higher = ("left", "right")[int(before.joints_m[-1, 20, 1] < before.joints_m[-1, 21, 1])]
-        shown = f"{len(before.joints_m)} frames, {higher} arm up, {request.prefix_s:g} s of them"
-        return replace(made, understood=f"{made.understood} after {shown}")
+        if request.before is not None:
+            before = motion_from(request.before)
+            higher = ("left", "right")[int(before.joints_m[-1, 20, 1] < before.joints_m[-1, 21, 1])]
+            shown = f"{len(before.joints_m)} frames, {higher} arm up, {request.prefix_s:g} s of them"
+            made = replace(made, understood=f"{made.understood} after {shown}")
+        elif request.draft and "drafted" in request.text:
+            n_frames = len(made.motion.joints_m)
+            lower = self._answer(request.text, request.seed, n_frames / FPS / 2).motion
+            yield replace(made, motion=lower, draft_of=n_frames)
+            if "lost" in request.text:
+                raise ValueError("lost after the draft")
+            time.sleep(0.5)
+        yield made
 
     def scene(self, request: SceneMessage) -> Generated:
         """One motion a scene; `told` counts them, and a generator that does not get it back refuses."""

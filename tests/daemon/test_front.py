@@ -115,6 +115,18 @@ def test_a_text_during_a_motion_takes_over(robot, running, context):
     assert events[1].by == "say two"
 
 
+def test_a_draft_is_played_at_once_and_its_motion_takes_its_place(robot):
+    said = robot.say("drafted: lift your right arm", seconds=3.0)
+    assert said.done.first_motion_ms < 450, "the motion comes half a second after its draft"
+    assert said.events[0].duration_s == 3.0 and 2.9 < said.done.duration_s < 4.0
+    assert plays_well(said.done) and kinds(said.events) == ["accepted", "progress", "done"]
+
+
+def test_a_draft_whose_motion_never_comes_is_played_to_its_end(robot):
+    said = robot.say("drafted and lost: lift your right arm", seconds=3.0)
+    assert 1.4 < said.done.duration_s < 2.5
+
+
 @pytest.mark.parametrize(("mirror", "up"), [(False, "right"), (True, "left")])
 def test_a_text_with_a_prefix_is_generated_from_what_will_have_been_played(robot, running, mirror, up):
     """The generator is shown the last 1.6 s; of a motion that is to be mirrored, their mirror image."""

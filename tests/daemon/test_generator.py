@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from daemon.generator import messages as generation
 from daemon.generator.generation import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
-from daemon.generator.process import answer
+from daemon.generator.process import answers
 from mmm_core.checkpoint import MODEL_FILE
 from mmm_core.engine import Engine
 from mmm_core.prefix import go_on
@@ -100,8 +100,59 @@ def test_any_bytes_either_decode_or_are_refused(frame):
 
 
 def test_an_error_of_the_model_is_answered():
-    reply = answer(generation.GenerateMessage(id=3, text="broken"), KinematicMaker(), "k")
+    (reply,) = answers(generation.GenerateMessage(id=3, text="broken"), KinematicMaker(), "k")
     assert isinstance(reply, generation.FailureMessage) and reply.id == 3 and "broke" in reply.found
+
+
+def test_a_draft_comes_before_its_motion(endpoint):
+    peer = KinematicGenerator(endpoint)
+
+    async def call(client):
+        first, whole = await client.draft("drafted wave", 0, 2.0, 5.0)
+        assert client.busy and first.draft_of == 40 and len(first.motion.joints_m) == 20
+        motion = (await whole).motion
+        assert not client.busy and len(motion.joints_m) == 40
+        alone, nothing = await client.draft("wave", 0, 2.0, 5.0)
+        assert nothing is None and not alone.draft_of and not client.busy
+
+    try:
+        ask(endpoint, call)
+    finally:
+        peer.close()
+
+
+@pytest.mark.parametrize(
+    ("end", "code"),
+    [
+        (lambda client: None, "generator_error"),
+        (lambda client: client.mark_down("ended with status 1"), "generator_down"),
+        (lambda client: client.mark_starting(), "generator_down"),
+    ],
+)
+def test_a_motion_that_never_follows_its_draft_is_a_named_failure(endpoint, end, code):
+    peer = KinematicGenerator(endpoint)
+
+    async def call(client):
+        first, whole = await client.draft(
+            "drafted wave, lost" if code == "generator_error" else "drafted wave", 0, 2.0, 5.0
+        )
+        end(client)
+        with pytest.raises(GeneratorError) as caught:
+            await whole
+        assert first.draft_of and not client.busy
+        return caught.value
+
+    try:
+        assert ask(endpoint, call).code == code
+    finally:
+        peer.close()
+
+
+def test_a_draft_that_nobody_asked_for_is_no_motion():
+    reply = generation.generated_message(1, Generated(raised_arm(), "", "", {}, "", draft_of=20))
+    with pytest.raises(GeneratorError, match="nobody asked for"):
+        generation.generated_from(reply)
+    assert generation.generated_from(reply, may_be_draft=True).draft_of == 20
 
 
 def test_a_generator_that_is_silent_is_a_named_failure(endpoint):

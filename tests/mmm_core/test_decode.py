@@ -39,19 +39,28 @@ def test_the_cosine_counts_are_the_papers() -> None:
     assert masked_counts(49, 10) == [49, 48, 46, 43, 39, 34, 28, 22, 15, 7]
 
 
-@given(st.integers(1, 20), st.integers(1, 3), st.integers(0, 99), st.floats(0, 1), st.data())
+@given(st.integers(1, 20), st.integers(1, 3), st.integers(0, 99), st.floats(0, 1), st.integers(0, 6), st.data())
 def test_the_fast_decoder_equals_the_plain_one(
-    L: int, C: int, seed: int, temperature: float, data: st.DataObject
+    L: int, C: int, seed: int, temperature: float, opening: int, data: st.DataObject
 ) -> None:
     ids = torch.randint(0, K, (2, L, C), generator=torch.Generator().manual_seed(seed))
     n = 2 * L * C
     hidden = torch.tensor(data.draw(st.lists(st.booleans(), min_size=n, max_size=n))).reshape(2, L, C)
     ids[hidden] = MASK
-    settings = DecodeSettings(6, "cosine", temperature)
+    settings = DecodeSettings(6, "cosine", temperature, opening)
     fast = decode(ids, fixed_logits, MASK, settings, [seed, seed + 1])
     assert torch.equal(fast, decode_plain(ids, fixed_logits, MASK, settings, [seed, seed + 1]))
     assert torch.equal(fast[~hidden], ids[~hidden]), "known tokens survive decoding"
     assert (fast < K).all(), "nothing stays masked"
+
+
+@given(st.integers(1, 20), st.integers(0, 25), st.integers(0, 99))
+def test_the_opening_is_what_is_likeliest_in_the_first_step(L: int, opening: int, seed: int) -> None:
+    ids = torch.full((1, L, 2), MASK)
+    likeliest = decode(ids, fixed_logits, MASK, DecodeSettings(1, "cosine", 0.0), [seed])
+    for steps in (1, 6):
+        made = decode(ids, fixed_logits, MASK, DecodeSettings(steps, "cosine", 1.0, opening), [seed])
+        assert torch.equal(made[:, :opening], likeliest[:, :opening])
 
 
 def test_a_batch_gives_each_row_what_it_gets_alone() -> None:

@@ -1,0 +1,69 @@
+"""A draft after one step, and the motion whose beginning it is: the same whether or not there was a draft."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from mmm_core.engine import Engine
+from mmm_core.making import OPENING_TOKENS
+from mmm_core.tokens import FRAMES_PER_TOKEN
+
+TEXTS = (
+    "wave with your right hand", "wave with your left hand", "clap three times", "nod, then bow", "point up with your left hand"
+)  # fmt: skip
+
+
+@cache
+def engine() -> Engine:
+    return Engine.load(threads=None)
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_the_motion_is_the_same_with_and_without_a_draft(text: str) -> None:
+    making = engine().begin(text, seed=3)
+    draft, motion = making.draft(), making.finished().motion
+    assert draft is not None and draft.status == "accepted"
+    assert np.array_equal(motion.features, engine().generate(text, seed=3).motion.features)
+    assert np.array_equal(motion.tokens, engine().generate(text, seed=3).motion.tokens)
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_the_motion_begins_as_its_draft_does(text: str) -> None:
+    making = engine().begin(text, seed=3)
+    draft, motion = making.draft(), making.finished().motion
+    assert draft is not None
+    half = OPENING_TOKENS * FRAMES_PER_TOKEN // 2
+    apart_m = np.linalg.norm(draft.motion.joints_m[:half] - motion.joints_m[:half], axis=-1)
+    assert apart_m.max() < 0.03
+
+
+def test_the_later_part_of_a_motion_is_made_anew() -> None:
+    making = engine().begin(TEXTS[0], seed=3)
+    draft, motion = making.draft(), making.finished().motion
+    assert draft is not None
+    assert np.array_equal(draft.motion.tokens[:OPENING_TOKENS], motion.tokens[:OPENING_TOKENS])
+    assert not np.array_equal(draft.motion.tokens, motion.tokens)
+
+
+@pytest.mark.parametrize("seconds", [None, 3.3])
+def test_the_motion_has_as_many_frames_as_was_told(seconds: float | None) -> None:
+    for text in ("wave with your right hand", "nod, then bow"):
+        making = engine().begin(text, seed=1, seconds=seconds)
+        assert making.n_frames == len(making.finished().motion.joints_m)
+
+
+def test_of_several_commands_the_first_is_drafted() -> None:
+    making = engine().begin("nod, then clap your hands", seed=1)
+    draft = making.draft()
+    assert draft is not None
+    assert len(draft.motion.joints_m) == len(engine().begin("nod", seed=1).finished().motion.joints_m)
+    assert making.n_frames > len(draft.motion.joints_m)
+
+
+def test_what_is_rejected_has_no_draft() -> None:
+    making = engine().begin("do a backflip", seed=1)
+    assert making.draft() is None
+    assert making.finished().status == "rejected" and making.n_frames == 0
