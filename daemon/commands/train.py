@@ -5,19 +5,25 @@ from __future__ import annotations
 import logging
 import os
 import sys
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
 from daemon.errors import CommandError
 
-Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator", "scope"]
+if TYPE_CHECKING:
+    from mmm_core.training.recipe import Recipe
+    from mmm_core.training.run import Run
+
+Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator", "scope", "ablation"]
 
 
 def train(
     stage: Annotated[Stage, tyro.conf.Positional] = "all",
-    config: str = "compact",
+    config: str = "",
     data: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None,
     run_dir: Annotated[Path | None, tyro.conf.arg(aliases=["--run"])] = None,
     out: Path | None = None,
@@ -26,6 +32,7 @@ def train(
     threads: int = 1,
     sample_every: int = 500,
     tensorboard: bool = False,
+    variant: tuple[str, ...] = (),
 ) -> int:
     """Train a model, or one stage of it with what it needs, from one TOML recipe.
 
@@ -42,11 +49,14 @@ def train(
 
     Example, only the scope of a finished run anew: mmmd train scope --run runs/compact --out model.safetensors
 
+    Example, one choice of the recipe changed at a time: mmmd train ablation --data DIR --precision bf16 --run runs/ablation
+
     Example, two processes: torchrun --nproc-per-node 2 -m daemon.cli train --config my.toml --run-dir runs/my
 
     Args:
-        stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint.
-        config: name of a recipe that ships, or a TOML file (docs/training.md).
+        stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint;
+            ablation trains variants of a recipe and prints what the probes and real captions say of each.
+        config: name of a recipe that ships, or a TOML file (docs/training.md); compact, or ablation for that stage.
         data: folder with clips.jsonl, or a HumanML3D or KIT-ML folder; stands for the recipe's data.folder.
         run_dir: folder of the run: corpus, states, CSV logs, samples; runs/NAME when it is not given.
         out: checkpoint to write after all stages; model.safetensors in the run's folder when it is not given.
@@ -55,6 +65,7 @@ def train(
         threads: CPU threads.
         sample_every: steps between pictures in the run's samples/; 0 for none.
         tensorboard: write TensorBoard events as well (extra `train`).
+        variant: names of variants (ablation); all when none is given.
     """
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     import torch
@@ -66,7 +77,10 @@ def train(
 
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     torch.set_num_threads(threads)
+    config = config or ("ablation" if stage == "ablation" else "compact")
     recipe = read_recipe(config)
+    if variant and stage != "ablation":
+        raise CommandError(f"train {stage}: --variant is for `mmmd train ablation`")
     if stage == "tokenizer" and recipe.start:
         raise CommandError(
             f"train tokenizer: {config} goes on from {recipe.start}, whose tokenizer stays; train another stage"
@@ -74,6 +88,8 @@ def train(
     folder = run_dir or Path("runs") / Path(config).stem
     where = Run(folder, device, precision, sample_every, tensorboard)
     distributed.start(where.torch_device)
+    if stage == "ablation":
+        return _ablation(recipe, replace(where, sample_every=0), data, variant)
     if stage == "all":
         written = out or folder / "model.safetensors"
         make_model(recipe, where, data, written)
@@ -87,4 +103,19 @@ def train(
         written = folder / ("evaluator.safetensors" if stage == "evaluator" else f"{stage}.pt")
     if distributed.rank() == 0:
         sys.stdout.write(f"{written}\n")
+    return 0
+
+
+def _ablation(recipe: Recipe, run: Run, data: Path | None, variants: Sequence[str]) -> int:
+    """Train and measure variants; their tables."""
+    from mmm_core.training.ablation import TOKENIZERS, TRANSFORMERS, run_ablations, table
+
+    folder = data or (Path(recipe.data.folder) if recipe.data.folder else None)
+    if folder is None or not (folder / "clips.jsonl").is_file():
+        raise CommandError(
+            "train ablation: --data with clips.jsonl is needed: real captions are measured (docs/DATA.md)"
+        )
+    figures = run_ablations(recipe, run, folder, variants)
+    tables = [table(figures, TRANSFORMERS), table(figures, TOKENIZERS)]
+    sys.stdout.write("\n\n".join(t for t in tables if t) + "\n")
     return 0

@@ -18,8 +18,9 @@ class Accepted(Event, tag="accepted"):
         understood: nearest known command and its score.
         reason: why it is degraded, else empty.
         scope_score: how near the text lies to what the model can do.
-        duration_s: length of the generated motion; 0 for a story, of which only the first part is known.
-        generate_ms: time the generator took.
+        duration_s: length of the generated motion, of one whose strokes are counted (`say` with a number) as first drafted; 0
+            for a story, of which only the first part is known.
+        generate_ms: time the generator took until there was something to play.
         silence_s: of a lease: without a target for so long it brakes and holds; None for a motion.
     """
 

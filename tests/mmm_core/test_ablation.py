@@ -1,0 +1,96 @@
+"""`mmmd train ablation`: variants are trained and measured alike, what has figures is not made again, bad input is named."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from daemon.cli import main
+from mmm_core.corpus.heldout import PROBES
+from mmm_core.errors import TrainingDataError
+from mmm_core.evaluation import kept, probes
+from mmm_core.training import ablation
+from mmm_core.training.ablation import BASE, TOKENIZERS, TRANSFORMERS, run_ablations, table
+from mmm_core.training.recipe import read_recipe
+from mmm_core.training.run import Run
+from mmm_core.training.transformer_training import Corruption
+
+DATA = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared")) / "data"
+needs_data = pytest.mark.skipif(
+    not (DATA / "clips.jsonl").is_file(), reason="the shared motion data is not beside this checkout"
+)
+SMALL = "512 x 4"
+EACH_KIND = [
+    next(p for p in PROBES if expects(p))
+    for expects in (
+        lambda p: p.count and not p.then, lambda p: p.direction and p.side, lambda p: p.hold_s, lambda p: p.tempo, lambda p: p.then
+    )
+]  # fmt: skip
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few probes and repeats: each is a motion made and judged."""
+    for module in (probes, kept):
+        monkeypatch.setattr(module, "PROBES", EACH_KIND)
+    monkeypatch.setattr(kept, "N_EACH", 1)
+    for name in ("PROBE_SEEDS", "REAL_REPEATS"):
+        monkeypatch.setattr(ablation, name, 1)
+    monkeypatch.setattr(ablation, "REAL_EACH", 2)
+
+
+@needs_data
+@pytest.mark.usefixtures("few")
+def test_variants_are_trained_and_measured_and_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recipe = tmp_path / "small.toml"
+    shipped = (Path(ablation.__file__).parent / "recipes" / "ablation.toml").read_text()
+    small = shipped.replace("synthesised = 10000", "synthesised = 20")
+    recipe.write_text(small.replace("steps = 800", "steps = 2").replace("steps = 1200", "steps = 2"))
+    command = ["train", "ablation", "--config", str(recipe), "--data", str(DATA), "--run", str(tmp_path / "run"),
+               "--variant", BASE, SMALL]  # fmt: skip
+    assert main(command) == 0
+    printed = capsys.readouterr().out
+    assert f"| {BASE} |" in printed and f"| {SMALL} |" in printed and "error_mm" in printed
+    figures = {path.parent.name: json.loads(path.read_text()) for path in tmp_path.glob("run/*/figures.json")}
+    assert set(figures) == {"as_shipped", "512_x_4"}
+    assert figures["as_shipped"]["r1_ratio"] >= 0 and figures["512_x_4"]["codes_used"] > 0
+    (tmp_path / "run/as_shipped/figures.json").write_text(json.dumps({"limb": 0.25}))
+    assert run_ablations(read_recipe(str(recipe)), Run(tmp_path / "run"), DATA, [BASE]) == {BASE: {"limb": 0.25}}
+
+
+def test_what_is_asked_for_wrongly_is_named(tmp_path: Path) -> None:
+    with pytest.raises(TrainingDataError, match=r"1024 x 2.*128 x 16"):
+        run_ablations(read_recipe("ablation"), Run(tmp_path), DATA, ["1024 x 2"])
+    with pytest.raises(TrainingDataError, match="'start': none"):
+        run_ablations(read_recipe("compact"), Run(tmp_path), DATA)
+
+
+def test_on_the_command_line_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["train", "ablation", "--data", str(tmp_path), "--run", str(tmp_path)]) != 0
+    assert "clips.jsonl" in capsys.readouterr().err
+    assert main(["train", "length", "--variant", BASE, "--run", str(tmp_path)]) != 0
+    assert "mmmd train ablation" in capsys.readouterr().err
+
+
+def test_a_variant_differs_from_the_shipped_recipe_in_its_one_choice() -> None:
+    base, shipped = read_recipe("ablation"), read_recipe("compact")
+    assert (base.transformer.corruption, base.tokenizer.config(263)) == (
+        shipped.transformer.corruption,
+        shipped.tokenizer.config(263),
+    )
+    for name, variant in {**TRANSFORMERS, **TOKENIZERS}.items():
+        changed = {**variant.corruption, **variant.tokenizer}
+        here = {**vars(Corruption()), **vars(base.transformer.corruption), **vars(base.tokenizer)}
+        different = [key for key, value in changed.items() if here[key] != value]
+        assert len(different) == (0 if name == BASE or "as shipped" in name else 1), name
+
+
+def test_a_table_has_a_line_for_each_variant() -> None:
+    figures = {"a": {"limb": 0.5, "side": 1.0}, "b": {"limb": 0.12345, "side": 0.0}}
+    assert table(figures, ["b", "c", "a"]).splitlines() == [
+        "|  | limb | side |", "| --- | --- | --- |", "| b | 0.123 | 0 |", "| a | 0.5 | 1 |"
+    ]  # fmt: skip
+    assert table(figures, ["c"]) == ""
