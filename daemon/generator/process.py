@@ -10,6 +10,7 @@ import importlib.metadata
 import logging
 import os
 import sys
+from collections import deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol
@@ -26,6 +27,7 @@ from daemon.generator.messages import (
     FailureMessage,
     FromGenerator,
     Generated,
+    GeneratedMessage,
     GenerateMessage,
     PingMessage,
     PongMessage,
@@ -45,6 +47,8 @@ log = logging.getLogger(__name__)
 
 NICENESS = 5
 POLL_MS = 200
+MOST_BEGUN = 8
+"""Motions of which only the draft is made; with so many the oldest is made before anything else."""
 
 
 class Maker(Protocol):
@@ -97,18 +101,27 @@ def _made(request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage
 
 
 def serve(socket: zmq.Socket[bytes], maker: Maker, checkpoint_hash: str, alive: Callable[[], bool]) -> None:
-    """Answer requests on a ROUTER socket, one after the other, while `alive()`."""
+    """Answer requests on a ROUTER socket while `alive()`: what is asked anew comes before what follows a draft."""
+    begun: deque[tuple[list[bytes], Iterator[FromGenerator]]] = deque()
     while alive():
-        if not socket.poll(POLL_MS):
+        asked = socket.poll(0 if begun else POLL_MS)
+        if asked and len(begun) < MOST_BEGUN:
+            *route, frame = socket.recv_multipart()
+            try:
+                request = decode_request(frame)
+            except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+                log.warning("dropped a frame that is no request: %s", error)
+                continue
+            replies = answers(request, maker, checkpoint_hash)
+        elif begun:
+            route, replies = begun.popleft()
+        else:
             continue
-        *route, frame = socket.recv_multipart()
-        try:
-            request = decode_request(frame)
-        except (msgspec.MsgspecError, UnicodeDecodeError) as error:
-            log.warning("dropped a frame that is no request: %s", error)
-            continue
-        for reply in answers(request, maker, checkpoint_hash):
+        for reply in replies:
             socket.send_multipart([*route, encode(reply)])
+            if isinstance(reply, GeneratedMessage) and reply.draft_of:
+                begun.append((route, replies))
+                break
 
 
 def run(

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import math
 import time
-from collections.abc import Callable, Coroutine, Iterator
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 import numpy as np
@@ -19,14 +18,15 @@ from daemon.playing.draft_score import DraftScore
 from daemon.playing.follower import Follower
 from daemon.playing.idle import IdleScore
 from daemon.playing.layers import Layers
-from daemon.playing.plan import Piece, Plan
-from daemon.playing.planner import FADE_FRAMES, HandOver, Planner
-from daemon.playing.posture import Posture, distance_deg, faded_in, standing
+from daemon.playing.plan import Plan
+from daemon.playing.planner import Planner
+from daemon.playing.posture import Posture, standing
 from daemon.playing.score import ClipScore, Score
 from daemon.playing.story_score import StoryScore
 from daemon.playing.stream_plan import StreamPlan
 from daemon.playing.stream_score import StreamScore
 from daemon.playing.stream_watch import StreamWatch
+from daemon.playing.stretches import Stretches
 from daemon.state.ledger import Entry, Ledger
 from daemon.state.machine import RobotState
 from daemon.state.replies import NotPlayableError, as_failure, ending, failed
@@ -45,8 +45,6 @@ IDLE_AFTER_S = 0.8
 """Stillness before idle movements begin."""
 GAZE_S = 0.8
 BRAKING_TIMEOUT_S = 2.0
-_EASY_DEG_S = 60.0
-"""Idle movements lead back to standing no faster."""
 
 
 class Player:
@@ -64,8 +62,7 @@ class Player:
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._feeding = False
-        self._pieces: Iterator[Piece] | None = None
-        self._is_last = False
+        self._stretches = Stretches(planner, layers)
         self._moving_told = False
         self._held = False
         self._held_since_s: float | None = None
@@ -93,7 +90,7 @@ class Player:
                 stretch = stretch or await asyncio.to_thread(score.next)
                 raw, last = stretch
                 start, began_s = self._planner.hand_over(took_s=took_s), time.monotonic()
-                pieces = self._making(raw, start, complete=last, easy=entry is None)
+                pieces = self._stretches.making(raw, start, complete=last, easy=entry is None)
                 piece = await asyncio.to_thread(next, pieces)
                 if not alive():
                     self._planner.give_up()
@@ -108,7 +105,7 @@ class Player:
             t_received_ns = entry.t_received_ns if entry is not None else time.monotonic_ns()
             command_id = entry.id if entry is not None else ""
             self._planner.commit(piece, plan_id, command_id, epoch, t_received_ns)
-            self._make_on(pieces, piece, last)
+            self._stretches.go_on(pieces, piece, is_last=last)
             self._tell_taken_over(before, previous, entry)
             return True
 
@@ -181,7 +178,7 @@ class Player:
         if isinstance(plan, StreamPlan) and entry is not None:
             self._stream.look(plan, entry)
         if not plan.complete:
-            ready = self._pieces is not None or self._score.ready
+            ready = self._stretches.unfinished or self._score.ready
             due = self._planner.ahead_s < FEED_AHEAD_S and plan.epoch == self._planner.epoch
             if ready and due and not self._feeding:
                 self._feeding = True
@@ -221,7 +218,7 @@ class Player:
             return
         if self._planner.running and self._score is not None:
             async with self._lock:
-                await self._replan()
+                await self._stretches.make_again()
             return
         end_s = time.monotonic() + BRAKING_TIMEOUT_S
         while self._follower.machine.state is RobotState.MOVING and time.monotonic() < end_s:
@@ -241,7 +238,8 @@ class Player:
             log.error("a stretch could not be made", exc_info=error)
 
     def _begin(self, entry: Entry | None, score: Score | StreamScore) -> None:
-        self.entry, self._score, self._pieces = entry, score, None
+        self.entry, self._score = entry, score
+        self._stretches.forget()
         self._moving_told, self._held_since_s = False, None
         self._held = entry is not None and isinstance(entry.request, Play) and entry.request.hold
         if entry is not None:
@@ -250,7 +248,7 @@ class Player:
 
     def _forget(self) -> None:
         self.entry, self._score = None, None  # what was idling stays so until the bus process has played it out
-        self._pieces = None
+        self._stretches.forget()
         self._still_since_s = time.monotonic()
 
     def _fail(self, entry: Entry | None, found: str, plan_id: int) -> None:
@@ -294,7 +292,7 @@ class Player:
                 while self._score is score and score.tries_left and self._planner.running:
                     score.tries_left -= 1
                     began_s = time.monotonic()
-                    if await self._replan(score, took_s=took_s):
+                    if await self._stretches.make_again(score, took_s=took_s):
                         score.tries_left = 0
                     took_s = time.monotonic() - began_s
         except RetargetError as error:  # the draft goes on
@@ -308,7 +306,7 @@ class Player:
         """Make the next stretch and append it; one that cannot be made ends the command."""
         score = self._score
         try:
-            await self._append()
+            await self._append(score)
         except NotPlayableError as error:
             self._give_up(score, error.event)
         except RetargetError as error:
@@ -321,21 +319,10 @@ class Player:
         finally:
             self._feeding = False
 
-    async def _append(self) -> None:
+    async def _append(self, score: Score | StreamScore | None) -> None:
         async with self._lock:
-            plan, score = self._planner.current, self._score
-            if plan is None or score is None or isinstance(score, StreamScore) or plan.complete or plan.end is not None:
-                return
-            pieces, last = self._pieces, self._is_last
-            if pieces is None:
-                raw, last = await asyncio.to_thread(score.next)
-                start = HandOver(plan.state_at(plan.n_frames - 1), raw, plan.n_frames - 1)
-                pieces = self._making(raw, start, complete=last)
-            piece = await asyncio.to_thread(next, pieces)
-            if plan is self._planner.current and score is self._score and plan.epoch == self._planner.epoch:
-                plan.append(piece)
-                self._make_on(pieces, piece, last)
-                self._planner.pump()
+            if score is not None and score is self._score and not isinstance(score, StreamScore):
+                await self._stretches.append(score, lambda: score is self._score)
 
     def _give_up(self, score: Score | StreamScore | None, event: Rejected | Failed) -> None:
         """End the command whose next stretch failed; what is in the bus process is played, then it brakes and holds."""
@@ -354,44 +341,6 @@ class Player:
                 plan_id=plan_id, stage="scene", scene=n.number, text=n.text, status=n.status, reason=n.reason,
                 understood=n.understood, scope_score=round(n.scope_score, 4),
             ))  # fmt: skip
-
-    async def _replan(self, draft: DraftScore | None = None, *, took_s: float = 0.0) -> bool:
-        """What is left of the plan, made again with the layers as they now are; of a draft, the motion that it was of.
-
-        Whether that is what is played now.
-        """
-        if self._planner.dry:
-            return False
-        start = self._planner.hand_over(took_s=took_s)
-        plan = self._planner.current
-        if plan is None or start.frame is None:
-            return False
-        last, rest = self._is_last, plan.rest_raw(start.frame)
-        if draft is not None:
-            last, rest = True, draft.rest(len(rest))
-        pieces = self._making(rest, start, complete=last)
-        piece = await asyncio.to_thread(next, pieces)
-        if plan is not self._planner.current or plan.epoch != self._planner.epoch or self._planner.hand_over_missed:
-            self._planner.give_up()
-            return False
-        self._planner.go_on_otherwise(piece)
-        self._make_on(pieces, piece, last)
-        return True
-
-    def _making(self, raw: Posture, start: HandOver, *, complete: bool, easy: bool = False) -> Iterator[Piece]:
-        """The path of a stretch, growing out of what was before, piece by piece. Asked for in a worker thread."""
-        posture = self._layers.over(raw)
-        if start.before is not raw:
-            n = FADE_FRAMES
-            if easy:
-                far_deg = float(distance_deg(start.before[-1:], posture[:1])[0])
-                n = max(n, math.ceil(far_deg / _EASY_DEG_S * posture.fps))
-            posture = faded_in(posture, start.before, n)
-        yield from self._planner.pieces(posture, raw, start.state, complete=complete)
-
-    def _make_on(self, pieces: Iterator[Piece], made: Piece, is_last: bool) -> None:
-        """Keep what is left of a stretch that is being made, and whether it is the last."""
-        self._pieces, self._is_last = None if made.is_last else pieces, is_last
 
     async def _until_at_rest(self) -> None:
         end_s = time.monotonic() + BRAKING_TIMEOUT_S

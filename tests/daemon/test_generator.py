@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from daemon.generator import messages as generation
 from daemon.generator.generation import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
-from daemon.generator.process import answers
+from daemon.generator.process import MOST_BEGUN, answers
 from mmm_core.checkpoint import MODEL_FILE
 from mmm_core.engine import Engine
 from mmm_core.prefix import go_on
@@ -119,6 +119,49 @@ def test_a_draft_comes_before_its_motion(endpoint):
         ask(endpoint, call)
     finally:
         peer.close()
+
+
+def test_the_drafts_of_several_texts_come_before_their_motions(endpoint):
+    peer = KinematicGenerator(endpoint)
+    came = []
+
+    async def one(client, text):
+        first, whole = await client.draft(text, 0, 1.0, 20.0)
+        came.append((first.motion.text, "draft"))
+        came.append(((await whole).motion.text, "whole"))
+
+    async def call(client):
+        await client.draft("slow, so that the others wait together", 0, 1.0, 5.0)
+        texts = [f"drafted {i}" for i in range(3)]
+        await asyncio.gather(client.generate("slow", 0, 1.0, 5.0), *(one(client, text) for text in texts))
+        return texts
+
+    try:
+        texts = ask(endpoint, call)
+    finally:
+        peer.close()
+    assert came == [(text, "draft") for text in texts] + [(text, "whole") for text in texts]
+
+
+def test_many_drafts_do_not_starve_the_motions(endpoint):
+    """Of so many texts at once the first motions come before the last drafts."""
+    peer = KinematicGenerator(endpoint)
+    came = []
+
+    async def one(client, i):
+        _, whole = await client.draft(f"drafted {i}", 0, 1.0, 20.0)
+        came.append(("draft", i))
+        await whole
+        came.append(("whole", i))
+
+    async def call(client):
+        await asyncio.gather(*(one(client, i) for i in range(MOST_BEGUN + 2)))
+
+    try:
+        ask(endpoint, call)
+    finally:
+        peer.close()
+    assert came.index(("whole", 0)) < came.index(("draft", MOST_BEGUN))
 
 
 @pytest.mark.parametrize(
