@@ -31,12 +31,15 @@ Array = NDArray[np.float64]
 WINDOW = 20
 """Frames (one second) around a seam, and of a window of real motion."""
 PREFIX_S = 0.4
+LATEST_GO_OVER = 10
+"""A motion takes its draft's place within the draft's first half second."""
 UPPER = (12, 15, 16, 17, 18, 19, 20, 21)
 _METHOD = (
     "peak jerk: largest third difference of position times 20^3, m/s3, over neck, head, shoulders, elbows, wrists against the"
     " pelvis on the common body, in one second around the seam at 20 fps; mean over seams divided by the mean over one-second"
     " windows of held-out CMU motion (the livelier half); prompts cut in at a random moment (also with a prefix of 0.4 s), out"
-    " of idle movements, and loops; velocity step: change of the goal's velocity at the seam from one bus period to the next"
+    " of idle movements, loops, and motions that take their draft's place in its first half second; velocity step: change of the"
+    " goal's velocity at the seam from one bus period to the next"
     " beyond what the path itself changes in a period, as a share of the joint's limit; closure: angle between the frame a"
     " loop ends in and the one before its beginning"
 )
@@ -60,7 +63,10 @@ def bench_seams(n: int = 60, seed: int = 0, robot: str = "reference", data: str 
     loops = [(p, loop) for p in clips if (loop := find_loop(p)) is not None]
     rounds = [_peak_jerk(joined([closed(p, loop)] * 3), loop[1] - loop[0]) for p, loop in loops]
     closure = [_closure_deg(p, loop) for p, loop in loops]
-    kinds = {"prompt_to_prompt": prompt, "prompt_with_prefix": prefixed, "idle_to_prompt": idle, "loop": rounds}
+    kinds = {
+        "prompt_to_prompt": prompt, "prompt_with_prefix": prefixed, "idle_to_prompt": idle, "loop": rounds,
+        "draft_to_motion": _draft_seams(engine, motions[:n], np.random.default_rng(seed)),
+    }  # fmt: skip
     ratios = {kind: round(float(np.mean(values)) / real, 3) for kind, values in kinds.items()}
     return {
         "peak_jerk_ratio": max(ratios.values()),
@@ -111,6 +117,20 @@ def _prefix_seams(engine: Engine, motions: list[Motion], rng: np.random.Generato
         after = posture_of(go_on(engine, before, PREFIX_S, b.text, seed=b.seed).motion)
         after = faded_in(after, whole.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
         jerk.append(_peak_jerk(joined([whole[:k], after]), k))
+    return jerk
+
+
+def _draft_seams(engine: Engine, motions: list[Motion], rng: np.random.Generator) -> list[float]:
+    """Peak jerk where a motion takes the place of its draft."""
+    jerk: list[float] = []
+    for motion in motions:
+        made = engine.begin(motion.text, seed=motion.seed).draft()
+        if made is None:
+            continue
+        draft, whole = posture_of(made.motion), posture_of(motion)
+        k = int(rng.integers(1, LATEST_GO_OVER))
+        after = faded_in(whole[k:], draft.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
+        jerk.append(_peak_jerk(joined([draft[:k], after]), k))
     return jerk
 
 
