@@ -179,7 +179,8 @@ class Performer:
         """Follow the bus process, end what is over, feed what goes on, idle."""
         for state in self.follower.update():
             self._entered(state)
-        self._player.watch(finish_loop=self._waiting.someone_waits_after)
+        waiting = self._waiting
+        self._player.watch(finish_loop=waiting.someone_waits_after, is_to_last=not waiting.someone_is_about)
         self._end_silent_lease()
         self._player.idle(free=not len(self._waiting))
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.driving.shared import N_SETPOINTS, BusLink
+from daemon.playing.lead import Lead
 from daemon.playing.plan import Piece, Plan
 from daemon.playing.plan_statistics import PlanStatistics
 from daemon.playing.posture import Posture, joined, posture_of, standing
@@ -30,9 +31,9 @@ from retarget.pipeline import BLOCK_FRAMES, Retargeter
 from retarget.robot import RobotModel
 
 FIRST_RETARGET_S = 0.03
-"""Assumed time until the first piece of the first path is made; later ones are measured."""
-RETARGET_MARGIN, RETRY_MARGIN, SPARE_FRAMES = 1.0, 1.2, 1
-"""The hand-over frame is so much later than a first piece is expected to take, or took just now, and so many frames more."""
+"""Assumed time until the first piece of the first path is there; later ones are measured."""
+RETRY_MARGIN, SPARE_FRAMES = 1.2, 1
+"""The hand-over frame is so much later than an attempt took that came too late, and always so many frames more."""
 FADE_FRAMES = 8
 """Frames of posture (0.4 s) over which a motion grows out of what came before it."""
 
@@ -66,7 +67,8 @@ class Planner:
         self._stream_frames = max(2, math.ceil(stream_queue_s * self._rate_hz))
         self._from_rest = False
         self._handing_over: int | None = None
-        self._retarget_s = FIRST_RETARGET_S
+        self._lead = Lead(FIRST_RETARGET_S)
+        self._handed_over_s = time.monotonic()
         self._last_goal_tick: NDArray[np.int32] | None = None
         self._plans: list[Plan] = []
         self._last_id = 0
@@ -88,6 +90,9 @@ class Planner:
             took_s: that piece of an attempt before.
         """
         plan, self._from_rest, self._handing_over = self.current, False, None
+        self._handed_over_s = time.monotonic()
+        if took_s:
+            self._lead.took(took_s)
         if isinstance(plan, StreamPlan) and self.running and self._ran_dry(plan):
             plan.end, self._from_rest = plan.pushed, True  # nothing moves until `commit`, or `give_up`
             at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
@@ -96,7 +101,7 @@ class Planner:
             self.drop()
             at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
             return HandOver(at_rest, self._posture, None)
-        ahead_s = max(RETARGET_MARGIN * self._retarget_s, RETRY_MARGIN * took_s)
+        ahead_s = max(self._lead.seconds, RETRY_MARGIN * took_s)
         waiting = sum(p.limit - p.pushed for p in self._plans[:-1])  # of plans before, and what the bus has of them
         before = waiting + max(0, self._link.queued_frames - plan.pushed)
         frame = self._next_frame(plan) + max(0, int(ahead_s * self._rate_hz) + SPARE_FRAMES - before)
@@ -129,15 +134,12 @@ class Planner:
         Raises:
             MotionError: the motion cannot be retargeted.
         """
-        began = time.perf_counter()
         motion, first, frames = posture.motion(), 0, BLOCK_FRAMES / posture.fps * self._rate_hz
         if abs(frames - round(frames)) < 1e-9:
             paths = self._retargeter.pieces(motion, start, settle=complete)
         else:  # a piece would end between two frames of the bus
             paths = iter([(self._retargeter.retarget(motion, start, settle=complete), len(posture))])
         for path, n in paths:
-            if not first:
-                self._retarget_s += 0.3 * (time.perf_counter() - began - self._retarget_s)
             is_last = first + n >= len(posture)
             yield Piece(path, posture[first:], raw[first:], is_last, is_last and complete)
             first += n
@@ -166,6 +168,7 @@ class Planner:
         statistics = PlanStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
         plan = Plan(plan_id, command_id, epoch, self._rate_hz, statistics)
         plan.append(piece)
+        self._lead.took(time.monotonic() - self._handed_over_s)
         plan.pushed = min(self._succeed(plan), plan.n_frames - 1)
         self.pump()
         return plan
@@ -210,6 +213,7 @@ class Planner:
         beyond = self._end_at_hand_over()
         plan.cut(frame)
         plan.append(piece)
+        self._lead.took(time.monotonic() - self._handed_over_s)
         plan.end, plan.pushed = None, min(plan.pushed + beyond, plan.n_frames - 1)
         self.pump()
 
@@ -236,7 +240,7 @@ class Planner:
         plan = self.current
         if plan is None or not self.running:
             return replace(self.posture_now.at(np.zeros(n, np.intp)), fps=FPS)
-        ahead_s += RETARGET_MARGIN * self._retarget_s
+        ahead_s += self._lead.seconds
         last = min(self._next_frame(plan) + round(ahead_s * self._rate_hz), plan.n_frames - 1)
         places = [last - round(k * self._rate_hz / FPS) for k in reversed(range(n))]
         return replace(joined([plan.posture_from(place, 1) for place in places]), fps=FPS)

@@ -158,8 +158,13 @@ class Player:
             return None
         return CurrentCommand(entry.id, plan.plan_id, entry.request.words, plan.expected_frames, plan.pushed)
 
-    def watch(self, *, finish_loop: bool) -> None:
-        """Tell of the first motion, make the next stretch in time, end what is over."""
+    def watch(self, *, finish_loop: bool, is_to_last: bool) -> None:
+        """Tell of the first motion, make the next stretch in time, end what is over.
+
+        Args:
+            finish_loop: what goes round is to end with its round.
+            is_to_last: nothing is about to take over, so that a draft's motion is worth being put in its place.
+        """
         plan, entry = self._planner.current, self.entry
         if self._score is None:
             return
@@ -174,7 +179,7 @@ class Player:
             came_s = plan.first_target_s if isinstance(plan, StreamPlan) else None
             moving = Progress(plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms, target_t_mono=came_s)
             self._ledger.emit(entry, moving)
-        self._follow_score(self._score, plan.plan_id, finish_loop=finish_loop)
+        self._follow_score(self._score, plan.plan_id, finish_loop=finish_loop, is_to_last=is_to_last)
         if isinstance(plan, StreamPlan) and entry is not None:
             self._stream.look(plan, entry)
         if not plan.complete:
@@ -274,13 +279,13 @@ class Player:
             self._planner.give_up()
             log.error("idle movements could not be made: %s", error)
 
-    def _follow_score(self, score: Score | StreamScore, plan_id: int, *, finish_loop: bool) -> None:
+    def _follow_score(self, score: Score | StreamScore, plan_id: int, *, finish_loop: bool, is_to_last: bool) -> None:
         """What is to be done of a score beside playing it."""
         if isinstance(score, StoryScore):
             self._tell_scenes(score, plan_id)
         if finish_loop and isinstance(score, (ClipScore, StoryScore)):
             score.finish()
-        if isinstance(score, DraftScore) and score.may_go_over and not self._feeding:
+        if isinstance(score, DraftScore) and score.may_go_over and is_to_last and not self._feeding:
             self._feeding = True
             self.start(self._go_over(score))
 

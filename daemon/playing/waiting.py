@@ -171,6 +171,11 @@ class WaitingRoom:
         return True
 
     @property
+    def someone_is_about(self) -> bool:
+        """Whether a `now` is on its way to take over."""
+        return any(p.when == "now" for p in self._all)
+
+    @property
     def someone_waits_after(self) -> bool:
         """Whether a command waits for what is played to end."""
         return any(p.when == "after" for p in self._all)

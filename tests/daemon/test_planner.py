@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from daemon.bus.servo_bus import ServoBus
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.streamer import Streamer
-from daemon.playing.planner import RETARGET_MARGIN, SPARE_FRAMES, Planner
+from daemon.playing.lead import Lead
+from daemon.playing.planner import SPARE_FRAMES, Planner
 from daemon.playing.posture import at_tempo, distance_deg, posture_of, standing
 from daemon.state.bus_view import BusView
 from retarget.limits import JointLimits
@@ -161,7 +162,7 @@ def test_what_is_in_hand_is_taken_back_when_another_motion_takes_over(bench):
     first = len(bench.records)
     bench.cycle(60)
     of_new = [i for i, r in enumerate(bench.records[first:]) if r["plan_id"] == plan.plan_id]
-    lead = RETARGET_MARGIN * bench.planner._retarget_s * ROBOT.bus.rate_hz + SPARE_FRAMES
+    lead = bench.planner._lead.seconds * ROBOT.bus.rate_hz + SPARE_FRAMES
     assert of_new[0] <= lead + 3 < 30
     bench.finish()
     assert_within_limits(bench)
@@ -195,10 +196,10 @@ def test_what_is_committed_is_what_will_have_been_played(bench, ahead_s, fps):
     plan = bench.play(replace(RIGHT, fps=fps))
     whole = at_tempo(posture_of(RIGHT), fps / 20.0)
     bench.cycle(30)
-    bench.planner._retarget_s = 0.03  # measured, else
+    bench.planner._lead = Lead(0.03)  # measured, else
     shown = bench.planner.committed(8, ahead_s)
     assert shown.fps == whole.fps == 20.0
-    end_s = (plan.statistics.last_frame + 1) * PERIOD_S + ahead_s + RETARGET_MARGIN * bench.planner._retarget_s
+    end_s = (plan.statistics.last_frame + 1) * PERIOD_S + ahead_s + bench.planner._lead.seconds
     at = round(end_s * whole.fps)
     off_deg = [distance_deg(shown, whole.at(np.arange(at + d - 7, at + d + 1))).max() for d in (-2, -1, 0, 1, 2)]
     assert min(off_deg) < (1e-4 if fps == 20.0 else 10) < max(off_deg)
