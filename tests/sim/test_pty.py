@@ -165,6 +165,7 @@ def test_the_command_serves_two_ports_names_its_faults_and_audits(tmp_path: Path
         port = SerialPort(str(tmp_path / "left"), BAUD)
         assert answered(port, 2)
         port.write(packet.write(3, 64, b"\1"))
+        assert answered(port, 3)  # what is written into an answer is lost, as on a wire
         port.write(packet.write(3, 116, (4000).to_bytes(4, "little")))
         assert answered(port, 3)
         port.close()
