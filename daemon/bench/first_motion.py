@@ -16,6 +16,7 @@ from daemon.bench.report import context, percentiles_ms
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
 from daemon.demo import free_endpoints
+from daemon.errors import DaemonError
 from daemon.keys import KeyFolder
 from daemon.wire.events import Cancelled, Done, Failed, Progress, Rejected
 from daemon.wire.requests import Say
@@ -30,7 +31,8 @@ _METHOD = (
     " bus cycle whose goal tick of any servo differs; from rest: the robot stands still; idle: idle movements are going on;"
     " during: a motion is being played; story: a story"
     " without end is being told; loaded: from rest, while one busy process for each core runs at normal priority;"
-    " remote: from rest, generator in another process over loopback TCP with CURVE; {} texts before to warm up"
+    " remote: from rest, generator in another process over loopback TCP with CURVE; {} texts before to warm up; faults, where the"
+    " machine holds the bus process up, are told, reset and armed again"
 )
 
 
@@ -81,29 +83,38 @@ def _times(
     first_s: list[float] = []
     generate_s: list[float] = []
     refused: dict[str, str] = {}
+    faults: list[str] = []
     for i, text in enumerate(texts):
-        if before:
-            client.story(before, loop=True, seed=seed + i, wait=False)
-            client.wait_for("moving", timeout_s=10)
-            time.sleep(STORY_S)
-        first_ms, generate_ms, reason = _first_motion(client, f"{name}-{i}", text, seed + i)
-        if first_ms is None:
-            refused[text] = reason
-        else:
-            first_s.append(first_ms / 1e3)
-            generate_s.append(generate_ms / 1e3)
-        if not cancel:
-            client.wait_for("idle", timeout_s=15)
-            time.sleep(1.2)
-        elif stop:
-            client.stop()
-            client.wait_for("idle", "holding", timeout_s=10)
-            time.sleep(REST_S)
-        else:
-            time.sleep(REST_S)
+        try:
+            if before:
+                client.story(before, loop=True, seed=seed + i, wait=False)
+                client.wait_for("moving", timeout_s=10)
+                time.sleep(STORY_S)
+            first_ms, generate_ms, reason = _first_motion(client, f"{name}-{i}", text, seed + i)
+            if first_ms is None:
+                refused[text] = reason
+            else:
+                first_s.append(first_ms / 1e3)
+                generate_s.append(generate_ms / 1e3)
+            if not cancel:
+                client.wait_for("idle", timeout_s=15)
+                time.sleep(1.2)
+            elif stop:
+                client.stop()
+                client.wait_for("idle", "holding", timeout_s=10)
+                time.sleep(REST_S)
+            else:
+                time.sleep(REST_S)
+        except DaemonError as error:
+            if client.status().state != "fault":
+                raise
+            faults.append(str(error))
+            client.reset()
+            client.arm()
     if not first_s:
         raise RuntimeError(f"no text moved the robot ({name}): {refused}")
     figures: dict[str, Any] = percentiles_ms(first_s) | {"n": len(first_s), "generate": percentiles_ms(generate_s)}
+    figures |= {"faults": faults} if faults else {}
     return figures | ({"without_motion": refused} if refused else {})
 
 
