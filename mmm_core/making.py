@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from mmm_core.engine import Engine
 
 OPENING_TOKENS = 3
-"""0.6 s: longer than a motion takes to be made and the robot to go over to it, and no worse by the probes (docs/model.md)."""
+"""0.6 s: longer than a motion usually takes to be made and gone over to; what it does to the probes: docs/model.md."""
 CANDIDATES_TO_COUNT = 2
 """More take longer and keep a number within one no more often (docs/model.md)."""
 CANDIDATE_STRIDE = 7_919_999

@@ -293,7 +293,7 @@ def _generated(
 def _heard(whole: asyncio.Task[Generated]) -> None:
     """Nobody may be waiting for it any more."""
     if not whole.cancelled() and whole.exception() is not None:
-        log.debug("what follows a draft: %s", whole.exception())
+        log.warning("a draft goes on without its motion: %s", whole.exception())
 
 
 def no_answer(asked: str, timeout_s: float) -> GeneratorError:
