@@ -149,8 +149,8 @@ def save_text_encoder(path: Path, encoder: MiniLm, source: str) -> None:
     _save(path, tensors, metadata)
 
 
-def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None) -> MiniLm:
-    """Read the text encoder, the packed one when None.
+def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None, n_left_out: int = 0) -> MiniLm:
+    """Read the text encoder, the packed one when None, for a model that has the last `n_left_out` layers for its own.
 
     Raises:
         CheckpointError: as `load_model`.
@@ -159,7 +159,7 @@ def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None)
     tensors, metadata = _load(path, "mmmd-text")
     if not word_pieces.is_file():
         raise CheckpointError(word_pieces, "", "no such file", "the word pieces that belong to the text encoder")
-    encoder = MiniLm(MiniLmConfig(**json.loads(metadata["config"])), WordPieces.from_file(str(word_pieces)))
+    encoder = MiniLm(MiniLmConfig(**json.loads(metadata["config"])), WordPieces.from_file(str(word_pieces)), n_left_out)
     quantised = tensors.pop("word_embedding.bytes").float() * tensors.pop("word_embedding.scale").float()
     tensors["word_embedding.weight"] = quantised
     _fill(encoder, tensors, path, "")

@@ -15,7 +15,7 @@ ARM_MOVED_DEG = 24.0
 _ARMS = {"left": (16, 18, 20), "right": (17, 19, 21)}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shown:
     """What a motion shows.
 

@@ -35,7 +35,8 @@ class TextStates:
     """What the transformer sees of B texts.
 
     Attributes:
-        words: (B, W, D) state of each word piece.
+        words: (B, W, D) state of each word piece; below the encoder's last layers where the model has these for its own
+            (`TransformerConfig.n_words`).
         word_mask: (B, W) bool, true where there is a word piece.
         sentence: (B, D) unit vectors.
     """
@@ -93,7 +94,7 @@ class MiniLmConfig:
     max_positions: int = 512
 
 
-class _Layer(nn.Module):
+class WordLayer(nn.Module):
     """Post-norm transformer layer of BERT."""
 
     def __init__(self, config: MiniLmConfig) -> None:
@@ -116,11 +117,16 @@ class _Layer(nn.Module):
 
 
 class MiniLm(nn.Module):
-    """The compact encoder. Call `encode`; weights are set by `mmm_core.checkpoint`."""
+    """The compact encoder. Call `encode`; weights are set by `mmm_core.checkpoint`.
 
-    def __init__(self, config: MiniLmConfig, word_pieces: WordPieces) -> None:
+    Attributes:
+        n_left_out: of its layers, the last ones, that word states have not been through: a model that has such layers of its
+            own reads them on. Sentence vectors have been through all.
+    """
+
+    def __init__(self, config: MiniLmConfig, word_pieces: WordPieces, n_left_out: int = 0) -> None:
         super().__init__()
-        self.config = config
+        self.config, self.n_left_out = config, n_left_out
         self.word_pieces = word_pieces
         self.word_pieces.no_padding()
         self.word_pieces.enable_truncation(MAX_WORD_PIECES)
@@ -128,7 +134,7 @@ class MiniLm(nn.Module):
         self.position_embedding = nn.Embedding(config.max_positions, config.width)
         self.type_embedding = nn.Parameter(torch.zeros(config.width))
         self.embedding_norm = nn.LayerNorm(config.width, eps=1e-12)
-        self.layers = nn.ModuleList(_Layer(config) for _ in range(config.n_layers))
+        self.layers = nn.ModuleList(WordLayer(config) for _ in range(config.n_layers))
 
     def piece_ids(self, texts: list[str]) -> tuple[Tensor, Tensor]:
         """Word piece ids (B, W), padded with 0, and their mask (B, W)."""
@@ -144,11 +150,14 @@ class MiniLm(nn.Module):
         ids, mask = self.piece_ids(texts)
         x = self.word_embedding(ids) + self.position_embedding.weight[: ids.shape[1]] + self.type_embedding
         x = self.embedding_norm(x)
-        for layer in self.layers:
+        words = x
+        for depth, layer in enumerate(self.layers, 1):
             x = layer(x, mask[:, None, None, :])
+            if depth <= len(self.layers) - self.n_left_out:
+                words = x
         weights = mask[..., None].to(x.dtype)
         sentence = F.normalize((x * weights).sum(1) / weights.sum(1), dim=-1)
-        return TextStates(x, mask, sentence)
+        return TextStates(words, mask, sentence)
 
 
 def minilm_from_bert(state: dict[str, Tensor]) -> dict[str, Tensor]:

@@ -14,7 +14,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mmm_core.text import TextStates
+from mmm_core.text import MiniLmConfig, TextStates, WordLayer
 from mmm_core.tokens import MAX_TOKENS, SpecialIds
 
 MASKED_KEY = -1e9
@@ -25,7 +25,8 @@ class TransformerConfig:
     """Sizes; `n_codebooks` ids stand at each position and are embedded by the tokenizer's frozen code vectors.
 
     The first `n_predicted` of them are predicted (None: all), the others only seen: the paper's upper-body editing
-    predicts the upper half given the lower (MMM eq. 3).
+    predicts the upper half given the lower (MMM eq. 3). The last `n_words` layers of the text encoder belong to the model and
+    are trained with it; word states come from below them (0: the encoder is left as it is).
     """
 
     n_codes: int = 512
@@ -38,6 +39,7 @@ class TransformerConfig:
     text_dim: int = 384
     dropout: float = 0.1
     n_predicted: int | None = None
+    n_words: int = 0
 
     @property
     def n_out(self) -> int:
@@ -158,6 +160,7 @@ class MotionTransformer(nn.Module):
         self.register_buffer("positions", sinusoids(MAX_TOKENS + 2, config.width), persistent=False)
         self.specials = nn.Parameter(0.5 * torch.randn(3, code_width))  # END, PAD, MASK
         self.embed = nn.Linear(code_width, config.width)
+        self.word_layers = nn.ModuleList(WordLayer(MiniLmConfig(width=config.text_dim)) for _ in range(config.n_words))
         self.word_in = nn.Linear(config.text_dim, config.width)
         self.sentence_in = nn.Linear(config.text_dim, config.width)
         self.no_words = nn.Parameter(0.02 * torch.randn(config.text_dim))
@@ -167,6 +170,11 @@ class MotionTransformer(nn.Module):
         self.head = nn.Linear(config.width, config.n_out * config.n_codes, bias=False)
         self.apply(_initialise)
 
+    def set_words(self, layers: nn.ModuleList) -> None:
+        """Take the text encoder's last layers to begin with."""
+        for mine, theirs in zip(self.word_layers, list(layers)[len(layers) - len(self.word_layers) :], strict=True):
+            mine.load_state_dict(theirs.state_dict())
+
     def set_codebooks(self, codebooks: list[Tensor]) -> None:
         """Take the tokenizer's code vectors, scaled to unit variance."""
         stacked = torch.stack(codebooks)
@@ -174,7 +182,10 @@ class MotionTransformer(nn.Module):
 
     def read_text(self, text: TextStates) -> TextContext:
         """Everything of a text that does not change between decoding steps."""
-        words = self.word_in(text.words).float()
+        words = text.words
+        for layer in self.word_layers:
+            words = layer(words, text.word_mask[:, None, None, :])
+        words = self.word_in(words).float()
         bias = torch.zeros_like(text.word_mask, dtype=words.dtype).masked_fill(~text.word_mask, MASKED_KEY)
         keys_values = [b.attention.keys_values(b.norm_words(words)) for b in self.cross]  # type: ignore[union-attr]
         return TextContext(self.sentence_in(text.sentence).float(), keys_values, bias[:, None, None, :])

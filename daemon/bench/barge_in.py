@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import zmq
 
-from daemon.bench.daemon_rig import percentile, running_daemon
+from daemon.bench.daemon_rig import arm_again, percentile, running_daemon
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
@@ -111,8 +111,7 @@ def _talk(client: Client, texts: list[str], rng: np.random.Generator, heard: _He
             listen(float(rng.uniform(SHORTEST_GAP_S, LONGEST_GAP_S)))
             if heard.fault:
                 faults.append(heard.fault)
-                client.reset()
-                client.arm()
+                arm_again(client)
                 heard.fault = ""
             if i % STOP_EVERY == STOP_EVERY - 1:
                 stops_s.append(time.monotonic())

@@ -8,12 +8,17 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Generator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from daemon.client import Client
 from daemon.demo import child, free_endpoints, wait_until_ready
+from daemon.errors import DaemonError
+
+ARM_TRIES = 5
+ARM_PAUSE_S = 1.0
 
 _BUSY = "x = 1\nwhile True:\n    x = x * 3 % 1000003\n"
 
@@ -35,6 +40,23 @@ def running_daemon(robot: str, *options: str, audit: Path | None = None) -> Gene
             yield client, log
             if client.status().state not in ("fault", "estop", "limp"):
                 client.park()
+
+
+def arm_again(client: Client) -> None:
+    """Out of a fault, as a person would: reset, arm, and once more where the machine's next hold-up comes while it arms.
+
+    Raises:
+        DaemonError: the robot is still in fault after the last try.
+    """
+    for tries_left in reversed(range(ARM_TRIES)):
+        try:
+            client.reset()
+            client.arm()
+            return
+        except DaemonError:
+            if not tries_left or client.status().state != "fault":
+                raise
+            time.sleep(ARM_PAUSE_S)
 
 
 def _keys_among(options: Sequence[str]) -> Path | None:

@@ -11,7 +11,7 @@ from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Any
 
-from daemon.bench.daemon_rig import busy_cores, running_daemon
+from daemon.bench.daemon_rig import arm_again, busy_cores, running_daemon
 from daemon.bench.report import context, percentiles_ms
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
@@ -46,6 +46,8 @@ def bench_first_motion(n: int = 50, seed: int = 0, robot: str = "reference") -> 
         client.stop()
         story = _times(client, texts[N_WARM:], seed, "story", stop=False, before=_STORY)
         client.stop()
+        if client.status().state == "fault":
+            arm_again(client)
         client.idle(True, "lively")
         idle = _times(client, texts[N_WARM:], seed, "idle", cancel=False)
         client.idle(False)
@@ -85,6 +87,9 @@ def _times(
     refused: dict[str, str] = {}
     faults: list[str] = []
     for i, text in enumerate(texts):
+        if client.status().state == "fault":  # it came while the text before was being played
+            faults.append(f"after text {i}")
+            arm_again(client)
         try:
             if before:
                 client.story(before, loop=True, seed=seed + i, wait=False)
@@ -109,8 +114,7 @@ def _times(
             if client.status().state != "fault":
                 raise
             faults.append(str(error))
-            client.reset()
-            client.arm()
+            arm_again(client)
     if not first_s:
         raise RuntimeError(f"no text moved the robot ({name}): {refused}")
     figures: dict[str, Any] = percentiles_ms(first_s) | {"n": len(first_s), "generate": percentiles_ms(generate_s)}

@@ -8,6 +8,7 @@ its own family, not standing still and hardly any other family, is tested on syn
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,7 @@ class Arm:
     away: NDArray[np.bool_]
 
 
+@lru_cache(maxsize=16)
 def arm_of(s: Shown, side: str) -> Arm:
     """The arm of a side, outward positive."""
     out = np.array([1.0 if side == "left" else -1.0, 1, 1])

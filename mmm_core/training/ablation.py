@@ -17,7 +17,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from mmm_core.checkpoint import Model, save_model
+from mmm_core.checkpoint import Model, load_text_encoder, save_model
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.engine import Engine
 from mmm_core.errors import TrainingDataError
@@ -28,7 +28,7 @@ from mmm_core.features import recover
 from mmm_core.tokenizer import Tokenizer
 from mmm_core.tokens import FRAMES_PER_TOKEN
 from mmm_core.training.batches import Clip, encode_clips
-from mmm_core.training.recipe import Recipe
+from mmm_core.training.recipe import Recipe, TextRecipe
 from mmm_core.training.run import Run, written_whole
 from mmm_core.training.stages import Stages
 from mmm_core.training.tokenizer_training import train_tokenizer
@@ -49,10 +49,12 @@ class Variant:
 
     Attributes:
         corruption: fields of `Corruption`.
+        text: fields of `TextRecipe`.
         tokenizer: fields of `TokenizerRecipe`; such a variant trains a tokenizer and no transformer.
     """
 
     corruption: Mapping[str, float] = field(default_factory=dict)
+    text: Mapping[str, float] = field(default_factory=dict)
     tokenizer: Mapping[str, int] = field(default_factory=dict)
 
 
@@ -64,6 +66,7 @@ TRANSFORMERS: Mapping[str, Variant] = {
     "visible ids never replaced": Variant({"kept_share": 1.0}),
     "gestures alone": Variant({"real_share": 0.0}),
     "four motions in ten from people": Variant({"real_share": 0.4}),
+    "last two layers of the text encoder trained": Variant(text={"tuned_layers": 2}),
 }
 TOKENIZERS: Mapping[str, Variant] = {
     "512 x 16 (as shipped)": Variant(tokenizer={"n_codes": 512, "code_dim": 16}),
@@ -99,6 +102,9 @@ def run_ablations(recipe: Recipe, run: Run, data: Path, only: Sequence[str] = ()
         if not path.is_file():
             log.info("%s", name)
             folder.mkdir(parents=True, exist_ok=True)
+            text = replace(recipe.text, **known[name].text)  # pyright: ignore[reportArgumentType]
+            if text != shared.recipe.text:  # other caption states; both corpora at once would fill the memory
+                shared = Stages(replace(recipe, text=text), shared.run, data)
             make = _transformer_figures if name in TRANSFORMERS else _tokenizer_figures
             found = make(shared, known[name], replace(run, folder=folder), data)
             with written_whole(path) as partial:
@@ -108,14 +114,17 @@ def run_ablations(recipe: Recipe, run: Run, data: Path, only: Sequence[str] = ()
 
 
 def _transformer_figures(shared: Stages, variant: Variant, run: Run, data: Path) -> dict[str, Any]:
-    how, tokenizer, start = shared.recipe.transformer, shared.tokenizer, shared.start
+    how, tokenizer, start, text = shared.recipe.transformer, shared.tokenizer, shared.start, shared.recipe.text
     assert start is not None, "checked above"
-    config = how.config(tokenizer.config, tokenizer.n_codebooks, shared.corpus.captions.words.shape[1])
+    words = shared.corpus.captions.words.shape[1]
+    config = how.config(tokenizer.config, tokenizer.n_codebooks, words, text.tuned_layers)
     corruption = replace(how.corruption, **variant.corruption)
     transformer = train_transformer(
-        shared.corpus, tokenizer, config, how.schedule, run, corruption, how.tokens_per_batch
-    )
-    model = Model(tokenizer, transformer, start.length, start.scope, shared.provenance())
+        shared.corpus, tokenizer, config, how.schedule, run, corruption, how.tokens_per_batch,
+        words=load_text_encoder().layers, words_rate=text.tuned_rate,
+    )  # fmt: skip
+    length = start.length if text == TextRecipe() else shared.length
+    model = Model(tokenizer, transformer, length, start.scope, shared.provenance())
     checkpoint = run.folder / "model.safetensors"
     save_model(checkpoint, model)
     return _measured(checkpoint, data)

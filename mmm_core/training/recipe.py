@@ -36,11 +36,21 @@ class DataRecipe:
 
 @dataclass(frozen=True)
 class TextRecipe:
-    """Which text encoder reads the captions: the packed MiniLM, or CLIP from files."""
+    """Which text encoder reads the captions: the packed MiniLM, or CLIP from files.
+
+    Attributes:
+        encoder: its name.
+        clip: CLIP's weights.
+        vocabulary: CLIP's word pieces.
+        tuned_layers: the last layers of MiniLM, which the model takes for its own and trains; 0 leaves it as it is.
+        tuned_rate: their learning rate, as a share of the transformer's.
+    """
 
     encoder: Literal["minilm", "clip"] = "minilm"
     clip: str = ""
     vocabulary: str = ""
+    tuned_layers: int = 0
+    tuned_rate: float = 0.1
 
 
 @dataclass(frozen=True)
@@ -97,12 +107,14 @@ class TransformerRecipe:
     corruption: Corruption = field(default_factory=Corruption)
     schedule: Schedule = field(default_factory=lambda: Schedule(steps=6200, learning_rate=1e-3))
 
-    def config(self, tokenizer: TokenizerConfig | VqVaeConfig, n_codebooks: int, text_dim: int) -> TransformerConfig:
+    def config(
+        self, tokenizer: TokenizerConfig | VqVaeConfig, n_codebooks: int, text_dim: int, n_words: int = 0
+    ) -> TransformerConfig:
         """Sizes; layout "halves" predicts the upper body given the lower."""
         halves = isinstance(tokenizer, VqVaeConfig) and tokenizer.layout == "halves"
         return TransformerConfig(
             tokenizer.n_codes, n_codebooks, tokenizer.code_dim, self.width, self.n_heads, self.n_cross, self.n_self,
-            text_dim, self.dropout, 1 if halves else None,
+            text_dim, self.dropout, 1 if halves else None, n_words,
         )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ import csv
 import math
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -102,11 +102,19 @@ class Run:
             raise TrainingDataError(self.folder, "run.device", repr(self.device), "cpu, cuda, cuda:N") from None
 
 
-def train(module: nn.Module, loss_fn: LossFn, schedule: Schedule, run: Run, name: str) -> nn.Module:
+def train(
+    module: nn.Module,
+    loss_fn: LossFn,
+    schedule: Schedule,
+    run: Run,
+    name: str,
+    slower: Mapping[str, float] | None = None,
+) -> nn.Module:
     """Train `module` in place and leave it on the CPU with its averaged weights, in evaluation mode.
 
     State is kept in `folder/name.pt` (weights, averages, optimiser, step) and `folder/name.csv`; an interrupted run
-    goes on from there, a finished one is only loaded.
+    goes on from there, a finished one is only loaded. `slower` gives parts of the module, by the beginning of their parameters'
+    names, a share of the learning rate.
 
     Raises:
         CheckpointError: the state cannot be read, or cannot be written (the older one stays whole).
@@ -117,10 +125,10 @@ def train(module: nn.Module, loss_fn: LossFn, schedule: Schedule, run: Run, name
     module.to(device)
     distributed.from_first(module.state_dict().values())
     state_file = run.folder / f"{name}.pt"
-    parameters = [p for p in module.parameters() if p.requires_grad]
-    optimiser = torch.optim.AdamW(
-        parameters, schedule.learning_rate, schedule.betas, weight_decay=schedule.weight_decay
-    )
+    by_share = _by_share(module, slower or {})
+    parameters = [p for group in by_share.values() for p in group]
+    groups = [{"params": group} for group in by_share.values()]
+    optimiser = torch.optim.AdamW(groups, schedule.learning_rate, schedule.betas, weight_decay=schedule.weight_decay)
     averages = [p.detach().clone() for p in parameters]
     first = 0
     if state_file.is_file():
@@ -134,8 +142,8 @@ def train(module: nn.Module, loss_fn: LossFn, schedule: Schedule, run: Run, name
         for step in range(first, schedule.steps):
             torch.manual_seed(schedule.seed * 1_000_003 + step)
             generator = torch.Generator().manual_seed(schedule.seed * 1_000_003 + step + 1)
-            for group in optimiser.param_groups:
-                group["lr"] = schedule.rate(step)
+            for share, group in zip(by_share, optimiser.param_groups, strict=True):
+                group["lr"] = share * schedule.rate(step)
             with torch.autocast(device.type, torch.bfloat16, enabled=run.precision == "bf16"):
                 losses = loss_fn(step, generator)
             optimiser.zero_grad(set_to_none=True)
@@ -161,6 +169,16 @@ def train(module: nn.Module, loss_fn: LossFn, schedule: Schedule, run: Run, name
         for parameter, average in zip(parameters, averages, strict=True):
             parameter.copy_(average)
     return module.cpu().eval()
+
+
+def _by_share(module: nn.Module, slower: Mapping[str, float]) -> dict[float, list[nn.Parameter]]:
+    """Parameters by their share of the learning rate; those with all of it first."""
+    by_share: dict[float, list[nn.Parameter]] = {1.0: []}
+    for name, parameter in module.named_parameters():
+        share = next((s for beginning, s in slower.items() if name.startswith(beginning)), 1.0)
+        if parameter.requires_grad:
+            by_share.setdefault(share, []).append(parameter)
+    return by_share
 
 
 class _Log:

@@ -32,7 +32,7 @@ from mmm_core.kit import joints_from_kit
 from mmm_core.length import LengthPredictor
 from mmm_core.motion import FPS, N_FEATURES
 from mmm_core.sampling import SamplingSettings, empty_row, fill
-from mmm_core.text import TextEncoder, TextStates
+from mmm_core.text import MiniLm, MiniLmConfig, TextEncoder, TextStates
 from mmm_core.tokenizer import Tokenizer
 from mmm_core.training.batches import (
     CaptionStates,
@@ -109,9 +109,20 @@ class Stages:
 
     @cached_property
     def text(self) -> TextEncoder:
-        """The encoder that reads captions."""
+        """The encoder that reads captions.
+
+        Raises:
+            TrainingDataError: more of its layers are to be trained than it has.
+        """
         how = self.recipe.text
-        return load_text_encoder() if how.encoder == "minilm" else read_clip(Path(how.clip), Path(how.vocabulary))
+        most = MiniLmConfig().n_layers if how.encoder == "minilm" else 0
+        if not 0 <= how.tuned_layers <= most:
+            raise TrainingDataError(
+                self.run.folder, "text.tuned_layers", f"{how.tuned_layers}", f"0 to {most} of {how.encoder}"
+            )
+        if how.encoder == "minilm":
+            return load_text_encoder(n_left_out=how.tuned_layers)
+        return read_clip(Path(how.clip), Path(how.vocabulary))
 
     @cached_property
     def start(self) -> Model | None:
@@ -135,7 +146,9 @@ class Stages:
         sizes = how.tokenizer.config(len(model.tokenizer.mean))
         if sizes != model.tokenizer.config:
             raise CheckpointError(path, "tokenizer", f"{model.tokenizer.config}", f"{sizes}, as the recipe says")
-        wanted = how.transformer.config(sizes, books, found.text_dim)
+        wanted = how.transformer.config(sizes, books, found.text_dim, how.text.tuned_layers)
+        if found.n_words == 0:  # they begin as the text encoder's own
+            wanted = replace(wanted, n_words=0)
         if replace(wanted, dropout=found.dropout) != found:
             raise CheckpointError(path, "transformer", f"{found}", f"{wanted}, as the recipe says")
         return model
@@ -188,7 +201,8 @@ class Stages:
         row = {caption: i for i, caption in enumerate(captions)}
         rows = [[row[c] for c in clip.captions] for clip in self.clips]
         is_real = np.array([c.is_real for c in self.clips])
-        states = self._caption_states(captions, self.text, "captions.pt")
+        below = self.recipe.text.tuned_layers
+        states = self._caption_states(captions, self.text, f"captions_below_{below}.pt" if below else "captions.pt")
         return TokenCorpus(encode_clips(self.clips, self.tokenizer), rows, states, is_real)
 
     def _check_tokenizer(self) -> None:
@@ -209,7 +223,9 @@ class Stages:
     def length(self) -> LengthPredictor:
         """Seconds from text."""
         fps = FPS if self.folder is None else self.folder.fps
-        start = None if self.start is None else self.start.length
+        start = None
+        if self.start is not None and self.start.transformer.config.n_words == self.recipe.text.tuned_layers:
+            start = self.start.length  # else it has learnt to read other word states
         seconds = [len(c.features) / fps for c in self.clips]
         return train_length(self.corpus, seconds, self.recipe.length, self.run, start)
 
@@ -217,13 +233,15 @@ class Stages:
     def transformer(self) -> MotionTransformer:
         """Text to ids."""
         how, tokenizer = self.recipe.transformer, self.tokenizer
-        config = how.config(tokenizer.config, tokenizer.n_codebooks, self.corpus.captions.words.shape[1])
+        tuned = self.recipe.text.tuned_layers
+        config = how.config(tokenizer.config, tokenizer.n_codebooks, self.corpus.captions.words.shape[1], tuned)
         texts = self.text.encode(list(SAMPLE_TEXTS))
         run = replace(self.run, sampler=lambda module, path: self._draw_samples(module, texts, path))
         start = None if self.start is None else self.start.transformer
         return train_transformer(
-            self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch, start
-        )
+            self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch, start,
+            self.text.layers if isinstance(self.text, MiniLm) else None, self.recipe.text.tuned_rate,
+        )  # fmt: skip
 
     @cached_property
     def evaluator(self) -> Evaluator:
@@ -234,7 +252,7 @@ class Stages:
         captions = sorted({c for clip in self.clips for c in clip.captions})
         row = {caption: i for i, caption in enumerate(captions)}
         rows = [[row[c] for c in clip.captions] for clip in self.clips]
-        shared = self.recipe.text.encoder == "minilm"
+        shared = self.recipe.text.encoder == "minilm" and not self.recipe.text.tuned_layers
         encoder, name = (self.text, "captions.pt") if shared else (load_text_encoder(), "captions_minilm.pt")
         states = self._caption_states(captions, encoder, name)
         width, words = self.clips[0].features.shape[1], states.words.shape[1]

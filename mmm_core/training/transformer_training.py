@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 import torch.nn.functional as F
-from torch import Tensor
+from torch import Tensor, nn
 
 from mmm_core import distributed
 from mmm_core.length import LengthPredictor
@@ -97,17 +97,22 @@ def train_transformer(
     how: Corruption | None = None,
     tokens_per_batch: int = TOKENS_PER_BATCH,
     start: MotionTransformer | None = None,
+    words: nn.ModuleList | None = None,
+    words_rate: float = 1.0,
 ) -> MotionTransformer:
     """A transformer trained on `corpus`: eq. 2, or eq. 3 where `config` predicts the first codebooks only.
 
-    It begins with the weights of `start`, which has the sizes of `config`, or from nothing.
+    It begins with the weights of `start`, which has the sizes of `config`, or from nothing; with the last of the text encoder's
+    layers, `words`, where `config` has some of its own and `start` has not. They learn at `words_rate` of the learning rate.
     """
     how = how or Corruption()
     torch.manual_seed(schedule.seed)
     model = MotionTransformer(config)
     model.set_codebooks([q.codebook for q in tokenizer.books])
+    if words is not None and config.n_words:
+        model.set_words(words)
     if start is not None:
-        model.load_state_dict(start.state_dict())
+        model.load_state_dict(model.state_dict() | start.state_dict())
     buckets = length_buckets(corpus.ids)
     weight = np.array([_drawing_weight(rows, corpus.is_real, how.real_share) for rows in buckets.values()])
     lengths, K, P = list(buckets), config.n_codes, config.n_out
@@ -145,7 +150,7 @@ def train_transformer(
         right = (logits[motion].argmax(-1) == target).float().mean()
         return {"loss": loss, "right": right}
 
-    train(model, loss_fn, schedule, run, "transformer")
+    train(model, loss_fn, schedule, run, "transformer", slower={"word_layers.": words_rate})
     return model
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from daemon.cli import main
+from mmm_core.checkpoint import load_model
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.errors import TrainingDataError
 from mmm_core.evaluation import kept, probes
@@ -16,13 +17,13 @@ from mmm_core.training import ablation
 from mmm_core.training.ablation import BASE, TOKENIZERS, TRANSFORMERS, run_ablations, table
 from mmm_core.training.recipe import read_recipe
 from mmm_core.training.run import Run
-from mmm_core.training.transformer_training import Corruption
 
 DATA = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared")) / "data"
 needs_data = pytest.mark.skipif(
     not (DATA / "clips.jsonl").is_file(), reason="the shared motion data is not beside this checkout"
 )
 SMALL = "512 x 4"
+TUNED = "last two layers of the text encoder trained"
 EACH_KIND = [
     next(p for p in PROBES if expects(p))
     for expects in (
@@ -48,14 +49,24 @@ def test_variants_are_trained_and_measured_and_kept(tmp_path: Path, capsys: pyte
     recipe = tmp_path / "small.toml"
     shipped = (Path(ablation.__file__).parent / "recipes" / "ablation.toml").read_text()
     small = shipped.replace("synthesised = 10000", "synthesised = 20")
-    recipe.write_text(small.replace("steps = 800", "steps = 2").replace("steps = 1200", "steps = 2"))
+    recipe.write_text(
+        small.replace("steps = 800", "steps = 2")
+        .replace("steps = 1200", "steps = 2")
+        .replace("steps = 2500", "steps = 2")
+    )
     command = ["train", "ablation", "--config", str(recipe), "--data", str(DATA), "--run", str(tmp_path / "run"),
-               "--variant", BASE, SMALL]  # fmt: skip
+               "--variant", BASE, TUNED, SMALL]  # fmt: skip
     assert main(command) == 0
     printed = capsys.readouterr().out
-    assert f"| {BASE} |" in printed and f"| {SMALL} |" in printed and "error_mm" in printed
+    assert all(f"| {name} |" in printed for name in (BASE, TUNED, SMALL)) and "error_mm" in printed
     figures = {path.parent.name: json.loads(path.read_text()) for path in tmp_path.glob("run/*/figures.json")}
-    assert set(figures) == {"as_shipped", "512_x_4"}
+    assert set(figures) == {"as_shipped", "last_two_layers_of_the_text_encoder_trained", "512_x_4"}
+    assert (
+        load_model(
+            tmp_path / "run/last_two_layers_of_the_text_encoder_trained/model.safetensors"
+        ).transformer.config.n_words
+        == 2
+    )
     assert figures["as_shipped"]["r1_ratio"] >= 0 and figures["512_x_4"]["codes_used"] > 0
     (tmp_path / "run/as_shipped/figures.json").write_text(json.dumps({"limb": 0.25}))
     assert run_ablations(read_recipe(str(recipe)), Run(tmp_path / "run"), DATA, [BASE]) == {BASE: {"limb": 0.25}}
@@ -82,8 +93,8 @@ def test_a_variant_differs_from_the_shipped_recipe_in_its_one_choice() -> None:
         shipped.tokenizer.config(263),
     )
     for name, variant in {**TRANSFORMERS, **TOKENIZERS}.items():
-        changed = {**variant.corruption, **variant.tokenizer}
-        here = {**vars(Corruption()), **vars(base.transformer.corruption), **vars(base.tokenizer)}
+        changed = {**variant.corruption, **variant.tokenizer, **variant.text}
+        here = {**vars(base.transformer.corruption), **vars(base.tokenizer), **vars(base.text)}
         different = [key for key, value in changed.items() if here[key] != value]
         assert len(different) == (0 if name == BASE or "as shipped" in name else 1), name
 

@@ -142,14 +142,12 @@ def asked_side(name: str, side: str) -> str:
 @pytest.fixture(scope="module")
 def seen_elsewhere(everything: list[tuple[Gesture, Shown, Shown]]) -> dict[str, list[bool]]:
     """For each family whether its sign is seen in each clip of every other family."""
-    return {
-        name: [
-            shows(s, name, asked_side(name, g.side), (family.directions or ("",))[0])
-            for g, s, _ in everything
-            if g.family != name
-        ]
-        for name, family in FAMILIES.items()
-    }
+    seen: dict[str, list[bool]] = {name: [] for name in FAMILIES}
+    for g, s, _ in everything:
+        for name, family in FAMILIES.items():
+            if g.family != name:
+                seen[name].append(shows(s, name, asked_side(name, g.side), (family.directions or ("",))[0]))
+    return seen
 
 
 @pytest.mark.parametrize("name", sorted(FAMILIES))

@@ -16,7 +16,7 @@ import pytest
 import torch
 
 from daemon.cli import main
-from mmm_core.checkpoint import load_model, save_model
+from mmm_core.checkpoint import load_model, load_text_encoder, save_model
 from mmm_core.corpus.grammar import known_commands
 from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, TrainingDataError
@@ -141,6 +141,56 @@ def test_a_recipe_goes_on_from_a_finished_model(tmp_path: Path, capsys: pytest.C
     assert "which the run began with" in capsys.readouterr().err
     assert main(["train", "tokenizer", "--config", str(config), "--run", str(run)]) == 2
     assert "whose tokenizer stays" in capsys.readouterr().err
+
+
+def test_the_last_layers_of_the_text_encoder_become_the_models_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """They begin as the encoder's: untrained they change nothing. Trained they change words and leave sentences as they were."""
+    first = small(tmp_path / "first.toml")
+    assert main(["train", "--config", str(first), "--run", str(tmp_path / "first"), "--sample-every", "0"]) == 0
+    start, text = tmp_path / "first" / "model.safetensors", "wave with your right hand"
+    made = {}
+    for steps in (0, 8):
+        config, run = small(tmp_path / f"tuned{steps}.toml", steps=steps), tmp_path / f"tuned{steps}"
+        config.write_text(f'start = "{start}"\n[text]\ntuned_layers = 2\ntuned_rate = 0.5\n{config.read_text()[9:]}')
+        assert main(["train", "--config", str(config), "--run", str(run), "--sample-every", "0"]) == 0
+        made[steps] = Engine.load(run / "model.safetensors", threads=None, precision="fp32")
+    old, (untrained, trained) = Engine.load(start, threads=None, precision="fp32"), (made[0], made[8])
+    for engine in (untrained, trained):
+        ours, theirs = engine.understand(text)[0], old.understand(text)[0]
+        torch.testing.assert_close(ours.sentence, theirs.sentence)
+        assert not torch.allclose(ours.words, theirs.words, atol=0.1), "they come from below the last layers"
+    motions = [engine.generate(text, seed=4, seconds=2).motion for engine in (old, untrained)]
+    np.testing.assert_array_equal(motions[0].tokens, motions[1].tokens)
+    base = load_text_encoder().layers[-1].state_dict()
+    kept, moved = (load_model(tmp_path / f"tuned{steps}" / "model.safetensors").transformer for steps in (0, 8))
+    assert all(torch.equal(t, base[name]) for name, t in kept.word_layers[-1].state_dict().items())
+    assert not torch.equal(moved.word_layers[-1].state_dict()["qkv.weight"], base["qkv.weight"])
+    again = tmp_path / "again.toml"
+    again.write_text(config.read_text().replace(str(start), str(tmp_path / "tuned8" / "model.safetensors")))
+    assert main(["train", "length", "--config", str(again), "--run", str(tmp_path / "again")]) == 0
+    for recipe, tuned, named in ((again, 0, "transformer"), (first, 7, "text.tuned_layers")):
+        other = tmp_path / f"{named}.toml"
+        rest = recipe.read_text().replace("tuned_layers = 2", f"tuned_layers = {tuned}")
+        other.write_text(rest if "tuned_layers" in rest else f"{rest}[text]\ntuned_layers = {tuned}\n")
+        assert main(["train", "transformer", "--config", str(other), "--run", str(tmp_path / named)]) == 1
+        assert named in capsys.readouterr().err
+
+
+def test_a_share_of_the_learning_rate_for_a_part(tmp_path: Path) -> None:
+    """Adam's first step is as long as the rate, whatever the gradient."""
+    module = torch.nn.ModuleDict({"fast": torch.nn.Linear(4, 4), "slow": torch.nn.Linear(4, 4)})
+    before = {name: p.detach().clone() for name, p in module.named_parameters()}
+
+    def loss(_step: int, _generator: torch.Generator) -> dict[str, torch.Tensor]:
+        return {"loss": torch.stack([layer(torch.ones(4)).square().sum() for layer in module.values()]).sum()}
+
+    schedule = Schedule(steps=1, learning_rate=1e-2, warmup_steps=0, weight_decay=0.0, ema_decay=0.0, clip_norm=0.0)
+    run_stage(module, loss, schedule, Run(tmp_path), "parts", slower={"slow.": 0.1})
+    moved = {name: float((p.detach() - before[name]).abs().max()) for name, p in module.named_parameters()}
+    assert moved["fast.weight"] == pytest.approx(1e-2, rel=1e-2)
+    assert moved["slow.weight"] == pytest.approx(1e-3, rel=1e-2)
 
 
 def test_the_recipe_that_goes_on_fits_the_shipped_model(tmp_path: Path) -> None:
