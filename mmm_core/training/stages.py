@@ -147,8 +147,8 @@ class Stages:
         if sizes != model.tokenizer.config:
             raise CheckpointError(path, "tokenizer", f"{model.tokenizer.config}", f"{sizes}, as the recipe says")
         wanted = how.transformer.config(sizes, books, found.text_dim, how.text.tuned_layers)
-        if found.n_words == 0:  # they begin as the text encoder's own
-            wanted = replace(wanted, n_words=0)
+        if 0 in (found.n_words, wanted.n_words):  # its words' layers begin as the text encoder's, or are left behind
+            wanted = replace(wanted, n_words=found.n_words)
         if replace(wanted, dropout=found.dropout) != found:
             raise CheckpointError(path, "transformer", f"{found}", f"{wanted}, as the recipe says")
         return model

@@ -102,8 +102,8 @@ def train_transformer(
 ) -> MotionTransformer:
     """A transformer trained on `corpus`: eq. 2, or eq. 3 where `config` predicts the first codebooks only.
 
-    It begins with the weights of `start`, which has the sizes of `config`, or from nothing; with the last of the text encoder's
-    layers, `words`, where `config` has some of its own and `start` has not. They learn at `words_rate` of the learning rate.
+    It begins with the weights of `start`, which has the sizes of `config`, or from nothing. The layers of words that `config` may
+    have begin as the last of the text encoder's, `words`, where `start` has none, and learn at `words_rate` of the learning rate.
     """
     how = how or Corruption()
     torch.manual_seed(schedule.seed)
@@ -112,7 +112,8 @@ def train_transformer(
     if words is not None and config.n_words:
         model.set_words(words)
     if start is not None:
-        model.load_state_dict(model.state_dict() | start.state_dict())
+        mine = model.state_dict()
+        model.load_state_dict(mine | {name: t for name, t in start.state_dict().items() if name in mine})
     buckets = length_buckets(corpus.ids)
     weight = np.array([_drawing_weight(rows, corpus.is_real, how.real_share) for rows in buckets.values()])
     lengths, K, P = list(buckets), config.n_codes, config.n_out

@@ -170,7 +170,14 @@ def test_the_last_layers_of_the_text_encoder_become_the_models_own(
     again = tmp_path / "again.toml"
     again.write_text(config.read_text().replace(str(start), str(tmp_path / "tuned8" / "model.safetensors")))
     assert main(["train", "length", "--config", str(again), "--run", str(tmp_path / "again")]) == 0
-    for recipe, tuned, named in ((again, 0, "transformer"), (first, 7, "text.tuned_layers")):
+    frozen = tmp_path / "frozen.toml"
+    frozen.write_text(
+        again.read_text().replace("tuned_layers = 2", "tuned_layers = 0").replace("steps = 8", "steps = 0")
+    )
+    assert main(["train", "--config", str(frozen), "--run", str(tmp_path / "frozen"), "--sample-every", "0"]) == 0
+    left = load_model(tmp_path / "frozen" / "model.safetensors").transformer
+    assert left.config.n_words == 0 and torch.equal(left.head.weight, moved.head.weight)
+    for recipe, tuned, named in ((again, 1, "transformer"), (first, 7, "text.tuned_layers")):
         other = tmp_path / f"{named}.toml"
         rest = recipe.read_text().replace("tuned_layers = 2", f"tuned_layers = {tuned}")
         other.write_text(rest if "tuned_layers" in rest else f"{rest}[text]\ntuned_layers = {tuned}\n")
