@@ -21,6 +21,7 @@ from mmm_core.corpus.grammar import known_commands
 from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, TrainingDataError
 from mmm_core.evaluation.extractors import load_evaluator
+from mmm_core.text import TextEncoder
 from mmm_core.training import scope_training
 from mmm_core.training.recipe import known_recipes, read_recipe
 from mmm_core.training.run import Run, Schedule
@@ -70,8 +71,20 @@ INDEX_ROWS = 1
 """Known commands of a row in the index: reading all four that ship have takes longer than the training here."""
 
 
+_READ: dict[str, torch.Tensor] = {}
+"""Vectors of the scope's sentences: most are the same in every training here, and reading them takes longer than it."""
+
+
 @pytest.fixture(autouse=True)
-def short_index(monkeypatch: pytest.MonkeyPatch) -> None:
+def quick_scope(monkeypatch: pytest.MonkeyPatch) -> None:
+    read = scope_training.sentence_vectors
+
+    def read_once(texts: list[str], encoder: TextEncoder) -> torch.Tensor:
+        if new := [text for text in dict.fromkeys(texts) if text not in _READ]:
+            _READ.update(zip(new, read(new, encoder), strict=True))
+        return torch.stack([_READ[text] for text in texts])
+
+    monkeypatch.setattr(scope_training, "sentence_vectors", read_once)
     monkeypatch.setattr(scope_training, "INDEX_ROWS", INDEX_ROWS)
 
 
