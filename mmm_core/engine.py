@@ -19,7 +19,7 @@ from mmm_core.features import Root, mirror, recover, recover_from_positions
 from mmm_core.generation import Generation
 from mmm_core.making import Making
 from mmm_core.motion import FPS, Motion
-from mmm_core.packed import fastest_precision, has_matrix_units, pack
+from mmm_core.packed import fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings
 from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
 from mmm_core.text import TextEncoder, TextStates, without_pictures
@@ -69,8 +69,7 @@ class Engine:
             threads: torch's threads for the whole process; None leaves them as they are.
             settings: how the model is asked; None takes what suits the checkpoint.
             precision: of the transformer; None takes int8 for a model of this repository on a processor that multiplies
-                eight-bit integers, else fp32; "auto" times fp32 and bf16. The text encoder takes bf16 with bf16, and with
-                int8 where the processor has matrix units (AMX); else fp32.
+                eight-bit integers, else fp32; "auto" times fp32 and bf16. The text encoder is fp32 beside int8.
 
         Raises:
             CheckpointError: a file is missing or does not fit.
@@ -93,7 +92,7 @@ class Engine:
         if chosen == "int8" and not can_int8:
             needed = "int8 needs a processor and PyTorch with VNNI, and a model of whole motions"
             raise GenerationError("precision int8 was asked for", f"fp32 or bf16: {needed}")
-        words = "bf16" if chosen == "bf16" or (chosen == "int8" and has_matrix_units()) else "fp32"
+        words = "bf16" if chosen == "bf16" else "fp32"
         pack(encoder, words)
         engine = cls(model, encoder, file_hash(path), settings or plain, chosen)
         if chosen == "int8":

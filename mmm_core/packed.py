@@ -53,11 +53,6 @@ def can_pack() -> bool:
     return torch.backends.mkldnn.is_available() and _PACK is not None and _APPLY is not None
 
 
-def has_matrix_units() -> bool:
-    """Whether this processor multiplies bf16 matrices in units of their own (AMX)."""
-    return can_pack() and bool(torch.cpu.get_capabilities().get("amx_bf16", False))
-
-
 def fastest_precision(width: int = 1024, n_calls: int = 8) -> Packing:
     """The faster of the two here, by timing a layer of `width`: about 20 ms. fp32 unless bf16 gains a quarter."""
     if not can_pack():
