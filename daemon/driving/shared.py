@@ -289,6 +289,11 @@ class BusLink:
         """Throw away every setpoint pushed so far."""
         self._words[_Word.POPPED] = self._words[_Word.PUSHED]
 
+    @property
+    def cut_asked(self) -> bool:
+        """Whether an e-stop that cuts torque waits to be taken."""
+        return int(self._words[BusRequest.ESTOP]) != self._seen[BusRequest.ESTOP]
+
     def take_requests(self) -> list[BusRequest]:
         """Requests since the last call in the order in which they were given, without those that a later one made void."""
         asked = {kind: int(self._words[kind]) for kind in BusRequest}

@@ -35,6 +35,8 @@ log = logging.getLogger(__name__)
 HEARTBEAT_LOST_S = 0.5
 PARK_AFTER_S = 5.0
 """A silent front: after the first time decelerate and hold, after the second park and go limp."""
+LOOK_S = 0.002
+"""How often it looks for an e-stop between two cycles."""
 FAULT_LIMP_S = 10.0
 """A fault or e-stop in which torque was kept, and a front so long silent: nobody will come, the servos go limp."""
 NO_WAY_LIMP_S = 10.0
@@ -92,14 +94,12 @@ class Streamer:
         gc.freeze()
         due_s = self._clock.now_s()
         while not self.stopping:
-            self.cycle()
-            due_s += self._period_s
             now_s = self._clock.now_s()
-            if now_s > due_s + self._period_s:  # skip what was missed; never burst
-                missed = int((now_s - due_s) / self._period_s)
-                self._late_cycles += missed
-                due_s += missed * self._period_s
-            self._clock.sleep_until(due_s)
+            if now_s > due_s + self._period_s / 2:  # skip what was missed; never burst
+                self._late_cycles += round((now_s - due_s) / self._period_s)
+                due_s = now_s
+            self.cycle()
+            due_s = self._waited_until(due_s + self._period_s)
         self._cut_torque()
 
     def close(self) -> None:
@@ -137,6 +137,14 @@ class Streamer:
             self._fault(str(error))
         self._publish(self._bus.reading)
         self._cycle += 1
+
+    def _waited_until(self, due_s: float) -> float:
+        """Wait for the next cycle; when it began. An e-stop that cuts waits for none: no goal follows that would come early."""
+        while (now_s := self._clock.now_s()) < due_s:
+            if self._link.cut_asked:
+                return now_s
+            self._clock.sleep_until(min(due_s, now_s + LOOK_S))
+        return due_s
 
     # Requests.
 

@@ -28,6 +28,8 @@ class BusView:
         valid: (S,) whether each servo's last reading is from the newest cycle.
         error: (S,) error bits of the last replies.
         at_rest: whether the last cycle moved no goal.
+        silent_s: age of the newest cycle at the last update, before the first since the first look for one. Not of now: a front
+            that was held up between looking and judging would take its own pause for the bus process's.
         passed: states of the cycles that the last update brought, each once, in order.
         index: cycles published so far, as far as they have been read.
         lost: cycles that were overwritten before they were read.
@@ -38,6 +40,7 @@ class BusView:
         self._servo_map = JointServoMap(robot)
         self.index = 0
         self.at_rest = True
+        self.silent_s = 0.0
         self._last_cycle_s: float | None = None
         self.state = BusState.LIMP
         self.passed: list[BusState] = []
@@ -50,15 +53,14 @@ class BusView:
 
     def update(self) -> tuple[NDArray[Any], int]:
         """Cycles since the last call, and how many were lost between."""
+        looked_s = time.monotonic()
         records, self.index, lost = self._link.cycles_since(self.index)
         self.lost += lost
-        if (
-            self._last_cycle_s is None
-        ):  # the first look: the bus process has just become ready, its first cycle is to come
+        if len(records) or self._last_cycle_s is None:  # None: the bus process is ready, its first cycle is to come
             self._last_cycle_s = time.monotonic()
+        self.silent_s = max(0.0, looked_s - self._last_cycle_s)
         if len(records):
             last = records[-1]
-            self._last_cycle_s = time.monotonic()
             self.goal_rad = np.array(last["goal_rad"])
             self.present_rad = self._servo_map.tick_to_rad(last["present_tick"])
             self.valid, self.error = last["valid"] != 0, np.array(last["error"])
@@ -73,12 +75,7 @@ class BusView:
         """The bus process has just said that it is ready, in `state`: its silence counts from here."""
         self.update()  # what one before it has published is not its own
         self.state, self.at_rest = state, True
-        self._last_cycle_s = time.monotonic()
-
-    @property
-    def silent_s(self) -> float:
-        """Seconds since the newest cycle; before the first, since the first look for one."""
-        return 0.0 if self._last_cycle_s is None else time.monotonic() - self._last_cycle_s
+        self.silent_s, self._last_cycle_s = 0.0, time.monotonic()
 
     def health(self) -> list[ServoHealth]:
         """Each servo as the bus process sees it now; none before its first cycle."""

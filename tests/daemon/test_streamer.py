@@ -11,10 +11,10 @@ from daemon.bus.servo_bus import ServoBus
 from daemon.driving import shared
 from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
 from daemon.driving.starting import start
-from daemon.driving.streamer import FAULT_LIMP_S, HEARTBEAT_LOST_S, PARK_AFTER_S, TORQUE_OFF_REPEATS
+from daemon.driving.streamer import FAULT_LIMP_S, HEARTBEAT_LOST_S, LOOK_S, PARK_AFTER_S, TORQUE_OFF_REPEATS
 from daemon.errors import PortMissingError
 from retarget.collision import SelfContact
-from retarget.robot import list_robots, load_robot
+from retarget.robot import RobotModel, list_robots, load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault
@@ -442,36 +442,64 @@ def test_a_stall_longer_than_the_servos_watchdog_is_a_fault():
         r.assert_limits_kept()
 
 
-def test_late_cycles_are_skipped_and_counted_not_made_up_for():
-    class Slow(VirtualClock):
-        def sleep_until(self, t_s: float) -> None:
-            late = 0.055 if len(woken) == 50 else 0.0
-            woken.append(t_s)
-            super().sleep_until(t_s + late)
+class Running:
+    """A streamer that runs by itself on a clock of its own; `begun_s` is when each of its cycles began."""
 
-    woken: list[float] = []
-    robot, clock = load_robot("reference"), Slow()
-    link = BusLink.create(robot.n_joints)
-    try:
-        bus = ServoBus(SimPort(SimBus(robot), VirtualClock()), robot.servos, VirtualClock())
-        streamer = start(robot, lambda: bus, link, clock)
+    def __init__(self, robot: RobotModel, link: BusLink, clock: VirtualClock, n_cycles: int) -> None:
+        self.sim, self.begun_s = SimBus(robot), list[float]()
+        bus_clock = VirtualClock()
+        streamer = start(robot, lambda: ServoBus(SimPort(self.sim, bus_clock), robot.servos, bus_clock), link, clock)
         assert streamer is not None
-        cycles = 0
         inner = streamer.cycle
 
         def cycle() -> None:
-            nonlocal cycles
+            self.begun_s.append(clock.now_s())
             inner()
-            cycles += 1
-            streamer.stopping = cycles == 100
+            streamer.stopping = len(self.begun_s) == n_cycles
 
         streamer.cycle = cycle  # type: ignore[method-assign]
-        streamer.run()
+        self.streamer = streamer
+
+
+def test_late_cycles_are_skipped_and_counted_not_made_up_for():
+    class Slow(VirtualClock):
+        def sleep_until(self, t_s: float) -> None:
+            super().sleep_until(t_s + (0.055 if self.true_s < 0.5 <= t_s else 0.0))
+
+    robot = load_robot("reference")
+    link = BusLink.create(robot.n_joints)
+    try:
+        running = Running(robot, link, Slow(), n_cycles=100)
+        running.streamer.run()
         record = link.cycles_since(link.n_cycles - 1)[0][0]
     finally:
         link.close()
     assert 4 <= record["late_cycles"] <= 6
-    assert (np.diff(woken) >= robot.bus.period_s - 1e-9).all(), "never two cycles in one period"
+    assert (np.diff(running.begun_s) >= robot.bus.period_s - 1e-9).all(), "never two cycles in one period"
+
+
+@pytest.mark.parametrize(
+    ("request_", "early"), [(BusRequest.ESTOP, True), (BusRequest.ESTOP_HOLD, False), (BusRequest.STOP, False)]
+)
+def test_an_e_stop_that_cuts_waits_for_no_cycle_and_what_brakes_keeps_the_rate(request_, early):
+    robot = load_robot("reference")
+    period_s = robot.bus.period_s
+    link = BusLink.create(robot.n_joints)
+
+    class Asking(VirtualClock):
+        def sleep_until(self, t_s: float) -> None:
+            if self.true_s < 10.3 * period_s <= t_s:
+                link.request(request_)
+            super().sleep_until(t_s)
+
+    try:
+        running = Running(robot, link, Asking(), n_cycles=20)
+        running.streamer.run()
+    finally:
+        link.close()
+    between = np.diff(running.begun_s) / period_s
+    assert np.allclose(np.delete(between, 10), 1.0)
+    assert between[10] == pytest.approx(LOOK_S / period_s * 2 if early else 1.0)
 
 
 def test_start_says_why_there_is_no_robot():
