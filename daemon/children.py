@@ -11,6 +11,8 @@ import time
 from collections import deque
 from collections.abc import Mapping, Sequence
 
+from daemon.driving.cores import on_all_cores
+
 log = logging.getLogger(__name__)
 
 
@@ -72,11 +74,12 @@ class Child:
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", **self._environment}
         self.said.clear()
         self._started_s = time.monotonic()
-        self._process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", self._module, *self._arguments,
-            stdin=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE if self._follow else None, env=environment,
-            start_new_session=True,
-        )  # fmt: skip
+        with on_all_cores():
+            self._process = await asyncio.create_subprocess_exec(
+                sys.executable, "-m", self._module, *self._arguments,
+                stdin=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE if self._follow else None, env=environment,
+                start_new_session=True,
+            )  # fmt: skip
         if self._follow:
             self._forward = asyncio.create_task(self._forward_stderr(self._process))
 

@@ -22,6 +22,8 @@ import zmq.asyncio
 
 from daemon.children import Child
 from daemon.config import DaemonConfig, config_error
+from daemon.driving.cores import CoreClaim
+from daemon.driving.realtime import BUS_PRIORITY, may_fifo
 from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
 from daemon.errors import DaemonError
 from daemon.front.front import Front
@@ -75,6 +77,10 @@ class Supervisor:
         self._notifier = Notifier()
         self._metrics: MetricsServer | None = None
         arguments = ["--robot", config.robot, "--bus", config.bus, "--link", str(self._link.path)]
+        # One core for a process at normal priority would keep it from going where there is room.
+        self._core = CoreClaim() if may_fifo(BUS_PRIORITY) else CoreClaim(frozenset())
+        if self._core.core is not None:
+            arguments += ["--core", str(self._core.core)]
         self._log_path = Path(self._folder.name) / "log"
         self._environment = {SOCKET_VARIABLE: str(self._log_path)}
         self._bus = Child("bus process", "daemon.driving.process", arguments, self._environment)
@@ -102,10 +108,12 @@ class Supervisor:
                 await child.end(BUS_END_TIMEOUT_S)
             self._context.destroy(linger=200)
             self._link.close()
+            self._core.close()
             self._folder.cleanup()
 
     async def _serve(self, front: Front, generator: GeneratorClient, endpoint: str) -> int:
         loop = asyncio.get_running_loop()
+        self._core.keep_off()
         logs = LogFeed(self._log_path, front.publish_log)
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self._end_asked)

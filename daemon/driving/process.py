@@ -13,6 +13,7 @@ from pathlib import Path
 
 from daemon.bus.multi import RobotBus, open_bus
 from daemon.clock import RealClock
+from daemon.driving.cores import keep_to
 from daemon.driving.realtime import BUS_PRIORITY, lock_memory, take_fifo
 from daemon.driving.shared import BusLink
 from daemon.driving.starting import start
@@ -36,6 +37,7 @@ def main() -> int:
     for name in ("--robot", "--bus", "--link"):
         parser.add_argument(name, required=True)
     parser.add_argument("--after-loss", action="store_true")
+    parser.add_argument("--core", type=int)
     arguments = parser.parse_args()
     start_logging("bus")
     send_logs("bus")
@@ -50,6 +52,8 @@ def main() -> int:
     if streamer is None:
         return 1
     link.set_realtime(*_take_rights())
+    if arguments.core is not None and keep_to(arguments.core):
+        log.info("keeps to core %d", arguments.core)
 
     def stop(_number: int, _frame: object) -> None:
         streamer.stopping = True
