@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
-from collections.abc import Iterator
+from collections.abc import Generator
 from pathlib import Path
 
 _FOLDER = Path("/dev/shm")
@@ -65,7 +65,7 @@ def keep_to(core: int) -> bool:
 
 
 @contextlib.contextmanager
-def on_all_cores() -> Iterator[None]:
+def on_all_cores() -> Generator[None]:
     """What the calling thread starts meanwhile may run wherever this process might when it began."""
     if not _ALL:
         yield
