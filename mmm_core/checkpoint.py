@@ -159,7 +159,10 @@ def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None,
     tensors, metadata = _load(path, "mmmd-text")
     if not word_pieces.is_file():
         raise CheckpointError(word_pieces, "", "no such file", "the word pieces that belong to the text encoder")
-    encoder = MiniLm(MiniLmConfig(**json.loads(metadata["config"])), WordPieces.from_file(str(word_pieces)), n_left_out)
+    pieces = WordPieces.from_file(str(word_pieces))
+    with torch.device("meta"):  # random numbers for weights that are overwritten take longer than reading those
+        encoder = MiniLm(MiniLmConfig(**json.loads(metadata["config"])), pieces, n_left_out)
+    encoder.to_empty(device="cpu")
     quantised = tensors.pop("word_embedding.bytes").float() * tensors.pop("word_embedding.scale").float()
     tensors["word_embedding.weight"] = quantised
     _fill(encoder, tensors, path, "")

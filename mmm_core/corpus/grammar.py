@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 from mmm_core.corpus.bending import (
@@ -304,7 +306,8 @@ def plain_phrases(family: str, direction: str = "") -> list[tuple[str, str]]:
     return [(row, plain(p)) for row, p in said]
 
 
-def known_commands(most_of_a_row: int = 12) -> set[str]:
+@functools.cache
+def known_commands(most_of_a_row: int = 12) -> frozenset[str]:
     """Plain commands of every family: each side and direction, without counts or with three.
 
     Of each row they are the shortest phrase, beside it about `most_of_a_row` others: its first ones, which are what people say
@@ -326,7 +329,7 @@ def known_commands(most_of_a_row: int = 12) -> set[str]:
                         for often, number in (("", "three"), ("three times", "3")) if "{" in phrase else (("", ""),):
                             text = phrase.replace("{S}", side).replace("{D}", direction)
                             found.add(" ".join(text.replace("{n}", often).replace("{N}", number).split()))
-    return {text for text in found if not is_withheld(text)}
+    return frozenset(text for text in found if not is_withheld(text))
 
 
 def usual_counts(family: str) -> tuple[int, ...]:
