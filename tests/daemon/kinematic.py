@@ -26,6 +26,9 @@ from daemon.generator.process import serve
 from mmm_core.motion import Motion
 from mmm_core.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
 
+LET_GO = threading.Event()
+"""A motion whose draft was played may come."""
+
 FPS = 20.0
 DOWN = {"hip": (1, -0.3, 0), "knee": (0, -1, 0), "ankle": (0, -1, 0), "foot": (0, -0.2, 1), "collar": (0.6, 0.8, 0),
         "shoulder": (1, 0, 0), "elbow": (0.1, -1, 0), "wrist": (0, -1, 0.1)}  # fmt: skip
@@ -89,7 +92,7 @@ class KinematicMaker:
         """What it is to go on from is told by `understood`: how long that is, and which wrist is higher at its end.
 
         Of a text with "drafted" in it there is a draft of half the way up and half the length, and half a second later the
-        motion; with "lost" the motion never comes.
+        motion; with "lost" the motion never comes, with "held" once `LET_GO` is set.
         """
         made = self._answer(request.text, request.seed, request.seconds)
         if request.before is not None:
@@ -103,7 +106,10 @@ class KinematicMaker:
             yield replace(made, motion=lower, draft_of=n_frames)
             if "lost" in request.text:
                 raise ValueError("lost after the draft")
-            time.sleep(0.5)
+            if "held" not in request.text:
+                time.sleep(0.5)
+            elif not LET_GO.wait(5.0):
+                raise ValueError("nobody let go")
         yield made
 
     def scene(self, request: SceneMessage) -> Generated:
