@@ -150,7 +150,8 @@ def test_the_bus_process_in_any_state_ends_in_a_fault_that_can_be_reset(servos, 
                 os.kill(bus, number)
                 began_s = time.monotonic()
                 within(FAULT_WITHIN_S, f"{state}: fault", lambda: client.status().state == "fault")
-                assert client.status().must_arm and client.status().command is None
+                within(FAULT_WITHIN_S, f"{state}: its command ends", lambda: client.status().command is None)
+                assert client.status().must_arm
                 within(FAULT_WITHIN_S, f"{state}: named", lambda: "reset" in client.status().reason)
                 with pytest.raises(RefusedError, match="mmmd reset"):
                     client.say("wave")
