@@ -110,3 +110,24 @@ def swing(robot: RobotModel, seconds: float, share: float = 0.4) -> np.ndarray:
     most = np.minimum(robot.velocity_limit_rad_s / w, robot.acceleration_limit_rad_s2 / (2 * w * w))
     amplitude = share * np.minimum(np.maximum(room, 0.0), most)
     return robot.rest_rad + np.outer((1 - np.cos(2 * np.pi * t)) / 2, amplitude)
+
+
+def assert_brakes_within_limits(records, robot) -> None:
+    """From the first record on the joints come to rest as fast as the acceleration allows, and no faster."""
+    velocity = np.array([r["velocity_rad_s"] for r in records])
+    change = np.abs(np.diff(velocity, axis=0))
+    assert (change <= robot.acceleration_limit_rad_s2 * robot.bus.period_s * (1 + 1e-6)).all()
+    assert (np.abs(velocity[1:]) <= np.abs(velocity[:-1]) + 1e-9).all()
+    longest_s = (robot.velocity_limit_rad_s / robot.acceleration_limit_rad_s2).max()
+    assert not velocity[int(longest_s * robot.bus.rate_hz) + 2 :].any()
+
+
+def lead_to(r: Rig, state: str, parking_cycles: int = 1) -> None:
+    """From limp to holding, playing, stopping or parking; the last two out of a motion."""
+    r.arm()
+    if state != "holding":
+        r.push(swing(r.robot, 2.0))
+        r.cycle(60)
+    if state in ("stopping", "parking"):
+        r.link.request(BusRequest.STOP if state == "stopping" else BusRequest.PARK)
+        r.cycle(1 if state == "stopping" else parking_cycles)
