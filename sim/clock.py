@@ -26,3 +26,18 @@ class VirtualClock:
     def jump(self, by_s: float) -> None:
         """From now on the clock shows `by_s` more."""
         self._ahead_s += by_s
+
+
+class TrueTime:
+    """The time that a virtual clock's servos have: what the clock shows may jump, time does not."""
+
+    def __init__(self, clock: VirtualClock) -> None:
+        self._clock = clock
+
+    def now_s(self) -> float:
+        """Seconds."""
+        return self._clock.true_s
+
+    def sleep_until(self, t_s: float) -> None:
+        """Let time go on to `t_s`."""
+        self._clock.sleep_until_true(t_s)

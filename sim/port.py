@@ -10,9 +10,10 @@ from daemon.bus.open import PortContext
 from daemon.clock import Clock
 from daemon.errors import CommandError, LinkLostError
 from sim.bus import SimBus
-from sim.clock import VirtualClock
+from sim.clock import TrueTime, VirtualClock
 from sim.errors import FaultFileError
 from sim.faults import FaultSchedule
+from sim.machine_time import machine_time
 from sim.options import wire_settings, world_of
 
 
@@ -22,8 +23,9 @@ class SimPort:
     def __init__(self, bus: SimBus, clock: Clock, baud: int | None = None, audit_file: Path | None = None) -> None:
         self.name, self.bus = "sim://", bus
         self.baud = baud or bus.robot.bus.baud
-        self._clock, self._audit_file = clock, audit_file
-        self._start_s = self._time_s()
+        self._audit_file = audit_file
+        self._time = TrueTime(clock) if isinstance(clock, VirtualClock) else machine_time()
+        self._start_s = self._time.now_s()
         self._closed = False
         if isinstance(clock, VirtualClock):
             bus.world.on_clock_jump = clock.jump
@@ -46,10 +48,10 @@ class SimPort:
         if ready_s is None or ready_s > until_s:
             if timeout_s <= 0:
                 return b""
-            self._sleep_until(until_s)
+            self._time.sleep_until(until_s + self._start_s)
             t_s = until_s
         else:
-            self._sleep_until(ready_s)
+            self._time.sleep_until(ready_s + self._start_s)
             t_s = max(t_s, ready_s)
         return wire.take(t_s, max_bytes)
 
@@ -59,23 +61,13 @@ class SimPort:
             self._audit_file.write_text(json.dumps(self.bus.audit.report(), indent=1))
         self._closed = True
 
-    def _time_s(self) -> float:
-        """The servos' time: what a clock shows may jump, time does not."""
-        return self._clock.true_s if isinstance(self._clock, VirtualClock) else self._clock.now_s()
-
-    def _sleep_until(self, t_s: float) -> None:
-        if isinstance(self._clock, VirtualClock):
-            self._clock.sleep_until_true(t_s + self._start_s)
-        else:
-            self._clock.sleep_until(t_s + self._start_s)
-
     def _present(self) -> float:
         """Seconds since the simulator started.
 
         Raises:
             LinkLostError: unplugged or closed.
         """
-        t_s = self._time_s() - self._start_s
+        t_s = self._time.now_s() - self._start_s
         if self.bus.faults.faults:
             with self.bus.world.lock:
                 self.bus.world.advance(t_s)

@@ -13,7 +13,6 @@ import os
 import pty
 import select
 import termios
-import time
 import tty
 from pathlib import Path
 
@@ -21,6 +20,7 @@ from daemon.errors import CommandError
 from sim.audit import TTY_GOALS
 from sim.bus import SimBus
 from sim.errors import FaultFileError
+from sim.machine_time import machine_time
 
 log = logging.getLogger(__name__)
 
@@ -47,7 +47,7 @@ class PtyServer:
         self._master, self._slave, self.device = -1, -1, ""
         self._linked: Path | None = None
         self._wake_r, self._wake_w = os.pipe()
-        self._start_s = time.monotonic()
+        self._start_s = machine_time().now_s()
         try:
             self._plug(link)
         except CommandError:
@@ -86,7 +86,7 @@ class PtyServer:
                 os.close(fd)
 
     def _now_s(self) -> float:
-        return time.monotonic() - self._start_s
+        return machine_time().now_s() - self._start_s
 
     def _pause_s(self, now_s: float) -> float:
         """Until the next bytes are due."""

@@ -1,0 +1,73 @@
+"""The time of a machine without what its host took from it: for simulated servos that time did not pass.
+
+A virtual machine stands still while its host runs others, for half a second on a busy one. Real servos go on meanwhile, their bus
+watchdogs run out, and the robot is in fault, rightly. Simulated ones stand still with the machine: that their watchdog ran out
+would say something of the host and nothing of the robot. A process that is stopped or starved on a machine that runs is another
+matter: nothing was taken from the machine, and the servos' time goes on.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+import threading
+from pathlib import Path
+
+from daemon.clock import Clock, RealClock
+
+STAT = Path("/proc/stat")
+"""Since the start of the machine and of each processor: what its host took, as eighth figure, in 1/100 s (proc_stat(5))."""
+_STOLEN = re.compile(r"^cpu\d+(?: +\d+){7} +(\d+)", re.MULTILINE)
+_STOLEN_UNIT_S = 0.01
+_TINY_S = 1e-6
+LEAST_PAUSE_S = 0.03
+"""Shorter ones hurt no watchdog."""
+LOOK_EVERY_S = 0.1
+"""What was taken before a pause began is at most that old."""
+
+
+class MachineTime:
+    """Seconds of a real clock less the pauses of the whole machine; to be asked often, by any thread.
+
+    Attributes:
+        taken_s: sum of those pauses.
+    """
+
+    def __init__(self, clock: Clock, stat: Path = STAT) -> None:
+        self.taken_s = 0.0
+        self._clock, self._stat = clock, stat
+        self._lock = threading.Lock()
+        self._asked_s = self._looked_s = clock.now_s()
+        self._stolen_s = self._look()
+
+    def now_s(self) -> float:
+        """Seconds; never goes back."""
+        with self._lock:
+            now_s = self._clock.now_s()
+            pause_s = now_s - self._asked_s
+            self._asked_s = now_s
+            if pause_s >= LEAST_PAUSE_S or now_s - self._looked_s >= LOOK_EVERY_S:
+                before_s, self._stolen_s, self._looked_s = self._stolen_s, self._look(), now_s
+                if pause_s >= LEAST_PAUSE_S:
+                    stolen_s = max((s - b for s, b in zip(self._stolen_s, before_s, strict=False)), default=0.0)
+                    self.taken_s += min(pause_s, stolen_s)
+            return now_s - self.taken_s
+
+    def sleep_until(self, t_s: float) -> None:
+        """Return when `now_s` shows `t_s`."""
+        while self.now_s() < t_s - _TINY_S:
+            self._clock.sleep_until(t_s + self.taken_s)
+
+    def _look(self) -> list[float]:
+        """What was taken from each processor since the start; nothing where no host is."""
+        try:
+            text = self._stat.read_text("ascii")
+        except OSError:
+            return []
+        return [int(ticks) * _STOLEN_UNIT_S for ticks in _STOLEN.findall(text)]
+
+
+@functools.cache
+def machine_time() -> MachineTime:
+    """The one of this process: servos on several ports have the same time."""
+    return MachineTime(RealClock())
