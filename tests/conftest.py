@@ -2,8 +2,57 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Generator
+
+import pytest
 from hypothesis import settings
+
+from tests.host_watch import HostWatch
 
 # No timed assertions: machines are shared and noisy; speed lives in `mmmd bench`.
 settings.register_profile("mmmd", deadline=None)
 settings.load_profile("mmmd")
+
+WATCH = pytest.StashKey[HostWatch]()
+BEGAN = pytest.StashKey[float]()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    text = "a realtime test that fails while the machine stands still is void: skipped, with the reason"
+    parser.addoption("--void-when-held-up", action="store_true", help=text)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--void-when-held-up"):
+        config.stash[WATCH] = HostWatch().start()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    watch = item.config.stash.get(WATCH, None)
+    if watch is not None and item.get_closest_marker("realtime"):
+        watch.wait_until_still()
+        item.stash[BEGAN] = time.monotonic()
+        module = item.getparent(pytest.Module)
+        assert module is not None
+        module.stash.setdefault(BEGAN, item.stash[BEGAN])
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    report = yield
+    watch = item.config.stash.get(WATCH, None)
+    if watch is not None and report.failed and call.excinfo is not None and BEGAN in item.stash:
+        module = item.getparent(pytest.Module)
+        # What a module shares is judged at its end, by all that happened to it.
+        since_s = module.stash[BEGAN] if report.when == "teardown" and module else item.stash[BEGAN]
+        pause_s = watch.longest_s(since_s)
+        if pause_s:
+            found = call.excinfo.exconly().partition("\n")[0]
+            reason = f"void: the machine stood still for {pause_s:.2f} s meanwhile; {found}"
+            report.outcome = "skipped"
+            report.longrepr = (str(item.path), item.location[1] or 0, reason)
+    return report

@@ -19,6 +19,8 @@ from sim.bus import SimBus
 from sim.pty import PtyServer
 from tests.end_to_end.harness import served
 
+pytestmark = pytest.mark.realtime
+
 ROBOT = load_robot("reference")
 
 

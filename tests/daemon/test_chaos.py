@@ -24,7 +24,7 @@ from sim.pty import PtyServer
 from tests.end_to_end.harness import RunningDaemon, mmmd, served
 from tests.end_to_end.test_start_and_end import child_pid
 
-pytestmark = pytest.mark.timeout(180)
+pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 ROBOT = load_robot("reference")
 STATES = ("limp", "arming", "idle", "moving", "holding", "parking", "estop")
 STAYS = {state: (state,) for state in (*STATES, "fault")} | {

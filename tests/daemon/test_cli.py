@@ -21,6 +21,8 @@ from daemon.cli import COMMANDS, _load, _run, main
 from mmm_core.checkpoint import MODEL_FILE
 from tests.end_to_end.harness import RunningDaemon, mmmd
 
+pytestmark = pytest.mark.realtime
+
 PRESENT = [n for n, c in COMMANDS.items() if importlib.util.find_spec(c.target.partition(":")[0]) is not None]
 NOWHERE = [
     "--cmd",

@@ -20,7 +20,7 @@ from daemon.client.mcp import TOOLS, McpServer
 from daemon.config import Endpoints
 from tests.end_to_end.harness import MMMD, RunningDaemon
 
-pytestmark = pytest.mark.timeout(90)
+pytestmark = [pytest.mark.timeout(90), pytest.mark.realtime]
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 
 

@@ -16,7 +16,7 @@ from daemon.wire import events as ev
 from daemon.wire.requests import Gesture, Say, tag_of
 from tests.end_to_end.harness import RunningDaemon
 
-pytestmark = pytest.mark.timeout(120)
+pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
 
 
 @pytest.fixture(scope="module")
@@ -32,9 +32,7 @@ def running(tmp_path_factory):
 
 @pytest.fixture
 def robot(running):
-    with running.client() as client:
-        client.arm()
-        client.wait_for("idle", "holding", timeout_s=10)
+    with running.armed() as client:
         yield client
 
 

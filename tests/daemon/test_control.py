@@ -18,7 +18,7 @@ from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire.requests import Estop, Stop
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = [pytest.mark.timeout(30), pytest.mark.realtime]
 
 
 class Robot:

@@ -13,7 +13,7 @@ from daemon.client import CancelledByError
 from daemon.wire.requests import Gesture
 from tests.end_to_end.harness import RunningDaemon
 
-pytestmark = pytest.mark.timeout(120)
+pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
 MESSAGES = 13_000
 CLIENTS = 4
 """So that each stays below the burst that one client may send, and every message is served."""

@@ -18,6 +18,8 @@ from daemon.wire import requests
 from tests.daemon.kinematic import LET_GO
 from tests.end_to_end.harness import RunningDaemon, plays_well
 
+pytestmark = pytest.mark.realtime
+
 OPEN: list[zmq.Socket] = []
 """Sockets of the running test: they must not be collected before their context closes them."""
 
@@ -33,10 +35,7 @@ def running():
 
 @pytest.fixture
 def robot(running):
-    """A client of a daemon that is armed and still."""
-    with running.client() as client:
-        client.arm()
-        client.wait_for("idle", "holding", timeout_s=10)
+    with running.armed() as client:
         yield client
 
 

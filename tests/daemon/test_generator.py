@@ -26,6 +26,8 @@ from mmm_core.engine import Engine
 from mmm_core.prefix import go_on
 from tests.daemon.kinematic import KinematicGenerator, KinematicMaker, raised_arm
 
+pytestmark = pytest.mark.realtime
+
 needs_model = pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout")
 
 

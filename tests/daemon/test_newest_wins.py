@@ -17,7 +17,7 @@ from daemon.wire import events as ev
 from daemon.wire.requests import Command, Gesture, Say, tag_of
 from tests.end_to_end.harness import RunningDaemon
 
-pytestmark = pytest.mark.timeout(180)
+pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 IDS = itertools.count()
 
 
@@ -36,9 +36,7 @@ def running():
 @pytest.fixture
 def talk(running):
     context = zmq.Context()
-    with running.client() as client:
-        client.arm()
-        client.wait_for("idle", "holding", timeout_s=20)
+    with running.armed() as client:
         yield Talk(context, running.endpoints.cmd)
         client.stop()
     context.destroy(linger=0)

@@ -25,6 +25,8 @@ from daemon.settings import DEFAULTS
 from retarget.robot import RobotModel, load_robot
 from tests.end_to_end.harness import RunningDaemon
 
+pytestmark = pytest.mark.realtime
+
 
 @pytest.fixture(scope="module")
 def run() -> tuple[RobotModel, list[np.void]]:

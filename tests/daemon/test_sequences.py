@@ -20,7 +20,7 @@ from daemon.wire.requests import Edit, Gesture, Inbetween, KeyPoseOf, Play, Repl
 from daemon.wire.status import StateEvent
 from tests.end_to_end.harness import RunningDaemon
 
-pytestmark = pytest.mark.timeout(150)
+pytestmark = [pytest.mark.timeout(150), pytest.mark.realtime]
 PLAYS = ("say", "gesture", "story", "edit", "inbetween", "replay")
 OTHERS = ("lease", "arm", "park", "stop", "torque_off", "estop", "reset", "look", "idle", "cancel", "record")
 AFTER = {

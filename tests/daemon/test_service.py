@@ -31,7 +31,7 @@ from daemon.supervisor import BUS_END_TIMEOUT_S
 from retarget.robot import load_robot
 from tests.end_to_end.harness import RunningDaemon, mmmd
 
-pytestmark = pytest.mark.timeout(90)
+pytestmark = [pytest.mark.timeout(90), pytest.mark.realtime]
 
 
 def test_later_sources_win_and_each_value_says_where_it_came_from(tmp_path):

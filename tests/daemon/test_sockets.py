@@ -12,7 +12,7 @@ import zmq.asyncio
 from daemon.recording.feed import RecorderFeed
 from daemon.sockets import publish_now, send_now
 
-pytestmark = pytest.mark.timeout(30)
+pytestmark = [pytest.mark.timeout(30), pytest.mark.realtime]
 N, HWM = 3000, 500
 KEPT = 2 * HWM
 """Over inproc the queues of both ends are one."""

@@ -11,6 +11,8 @@ from daemon.playing.waiting import CLOCKS_KEPT, SHADOW_S, Halts
 from daemon.state.ledger import Entry
 from daemon.wire.requests import Say, Stop
 
+pytestmark = pytest.mark.realtime
+
 HERE, THERE, ELSEWHERE = "clock of this machine", "clock of another", "clock of a third"
 LONG_AGO_S = 10 * SHADOW_S
 

@@ -66,6 +66,21 @@ class RunningDaemon:
     def client(self) -> Client:
         return Client(self.endpoints)
 
+    @contextlib.contextmanager
+    def armed(self) -> Iterator[Client]:
+        """A client of a robot that is armed and still, whatever the test before has left. A fault must not be left behind."""
+        with self.client() as client:
+            state = client.status().state
+            if state in ("fault", "estop"):
+                client.reset()
+            elif state == "parking":
+                client.wait_for("limp", timeout_s=20)
+            client.arm()
+            client.wait_for("idle", "holding", timeout_s=20)
+            yield client
+            status = client.status()
+            assert status.state != "fault", status.reason
+
     def until_ready(self) -> RunningDaemon:
         """Wait until it answers and its generator does."""
         end_s = time.monotonic() + START_TIMEOUT_S

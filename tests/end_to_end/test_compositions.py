@@ -19,6 +19,7 @@ from tests.end_to_end.test_start_and_end import child_pid
 pytestmark = [
     pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout"),
     pytest.mark.timeout(180),
+    pytest.mark.realtime,
 ]
 
 
@@ -37,9 +38,14 @@ def run(tmp_path_factory):
         daemon.close()
 
 
+@pytest.fixture(autouse=True)
+def armed(run):
+    with run.armed():
+        yield
+
+
 def test_a_story_moves_with_its_first_part_and_leaves_out_what_it_cannot_do(run):
     with run.client() as robot:
-        robot.arm()
         said = robot.story([("wave with your right hand", 1.6), "walk to the window", ("nod twice", 1.6), ("bow", 2.0)])
         done = said.done
         assert done is not None and plays_well(done)
@@ -90,7 +96,6 @@ def test_a_text_goes_on_from_what_is_played(run):
     generator's process (tests/daemon/test_generator.py).
     """
     with run.client() as robot, run.client() as other:
-        robot.arm()
         events = other.events_of(Say(id="up", text="raise both arms", seconds=3.0, seed=1))
         while getattr(next(events), "stage", "") != "moving":
             pass

@@ -15,7 +15,7 @@ from daemon.client import CancelledByError, RefusedError
 from tests.end_to_end.harness import RunningDaemon
 from tests.end_to_end.test_start_and_end import child_pid
 
-pytestmark = pytest.mark.timeout(180)
+pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
 
 def gone(pid: int) -> bool:

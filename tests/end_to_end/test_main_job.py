@@ -21,6 +21,7 @@ from tests.end_to_end.test_start_and_end import child_pid
 pytestmark = [
     pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout"),
     pytest.mark.timeout(240),
+    pytest.mark.realtime,
 ]
 
 

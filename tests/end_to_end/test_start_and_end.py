@@ -13,7 +13,7 @@ import pytest
 from daemon.supervisor import log_file, log_path_error
 from tests.end_to_end.harness import MMMD, RunningDaemon, go_first, mmmd
 
-pytestmark = pytest.mark.timeout(180)
+pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
 
 class SimulatedTty:

@@ -26,6 +26,8 @@ from daemon.wire.codec import decode_event, encode
 from daemon.wire.requests import Release, Say
 from tests.end_to_end.harness import MMMD, MOST_CLIPPED_IN_AN_UNDERRUN, RunningDaemon
 
+pytestmark = pytest.mark.realtime
+
 PARK_S, LIMP_S = 1.2, 0.4
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "stream_sine.py"
 PERIOD_S = 0.02
@@ -47,13 +49,7 @@ def running():
 
 @pytest.fixture
 def robot(running):
-    with running.client() as client:
-        if client.status().state in ("fault", "estop"):
-            client.reset()
-        if client.status().state == "parking":
-            client.wait_for("limp", timeout_s=10)
-        client.arm()
-        client.wait_for("idle", "holding", timeout_s=10)
+    with running.armed() as client:
         yield client
 
 

@@ -25,6 +25,8 @@ from sim.faults import Fault, FaultSchedule
 from sim.pty import PtyServer
 from sim.world import World
 
+pytestmark = pytest.mark.realtime
+
 ROBOT = load_robot("reference")
 BAUD = ROBOT.bus.baud
 

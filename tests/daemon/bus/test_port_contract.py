@@ -24,6 +24,8 @@ from sim.bus import SimBus
 from sim.port import SimPort
 from sim.pty import PtyServer
 
+pytestmark = pytest.mark.realtime
+
 ROBOT = load_robot("op3")
 BAUD = ROBOT.bus.baud
 

@@ -29,6 +29,8 @@ from sim.clock import VirtualClock
 from sim.port import SimPort
 from sim.pty import PtyServer
 
+pytestmark = pytest.mark.realtime
+
 ROBOT = load_robot("reference")
 
 
