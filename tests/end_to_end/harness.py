@@ -71,9 +71,11 @@ class RunningDaemon:
         """A client of a robot that is armed and still, whatever the test before has left. A fault must not be left behind."""
         with self.client() as client:
             state = client.status().state
-            if state in ("fault", "estop"):
+            if state == "moving":
+                client.stop()
+            elif state in ("fault", "estop"):
                 client.reset()
-            elif state == "parking":
+            if state in ("fault", "estop", "parking"):
                 client.wait_for("limp", timeout_s=20)
             client.arm()
             client.wait_for("idle", "holding", timeout_s=20)
