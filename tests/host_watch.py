@@ -22,8 +22,8 @@ LEAST_S = 0.1
 """As long may a robot's daemon be held up without harm: half of what a servo's watchdog allows."""
 _IN_ONE_PIECE = 0.8
 """Of the time since the last look, to be one hold-up and not many short ones."""
-STILL_S, WAIT_S = 3.0, 20.0
-"""So long without a hold-up is a still moment, and so long it is waited for."""
+STILL_S, WAIT_S, WAIT_IN_ALL_S = 3.0, 20.0, 300.0
+"""So long without a hold-up is a still moment; so long it is waited for, each time and in all."""
 
 
 class HostWatch:
@@ -32,6 +32,7 @@ class HostWatch:
     def __init__(self, stat: Path = STAT) -> None:
         self._stat = stat
         self._pauses: list[tuple[float, float]] = []
+        self._waited_s = 0.0
         self._looked_s, self._stolen = time.monotonic(), self._read()
 
     def start(self) -> HostWatch:
@@ -54,9 +55,12 @@ class HostWatch:
 
     def wait_until_still(self) -> None:
         """Return when there was no hold-up for a while, or when that does not come."""
-        end_s = time.monotonic() + WAIT_S
-        while (now_s := time.monotonic()) < end_s and self.longest_s(now_s - STILL_S):
+        began_s = now_s = time.monotonic()
+        longest_s = min(WAIT_S, WAIT_IN_ALL_S - self._waited_s)
+        while now_s < began_s + longest_s and self.longest_s(now_s - STILL_S):
             time.sleep(LOOK_S)
+            now_s = time.monotonic()
+        self._waited_s += now_s - began_s
 
     def _read(self) -> dict[str, int]:
         try:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.host_watch import LEAST_S, HostWatch
+from tests.host_watch import LEAST_S, STILL_S, WAIT_IN_ALL_S, HostWatch
 
 pytest_plugins = ["pytester"]
 ROOT = Path(__file__).parents[1]
@@ -51,6 +51,44 @@ def test_a_machine_without_a_host_is_never_held_up(tmp_path):
     assert watch.longest_s(0.0) == 0.0
 
 
+def test_it_waits_for_a_still_moment_but_not_for_ever(tmp_path, monkeypatch):
+    now_s = 100.0
+
+    def sleep(seconds: float) -> None:
+        nonlocal now_s
+        now_s += seconds
+
+    monkeypatch.setattr("tests.host_watch.time.monotonic", lambda: now_s)
+    monkeypatch.setattr("tests.host_watch.time.sleep", sleep)
+    stolen = Stolen(tmp_path)
+    watch = HostWatch(stolen.path)
+    now_s += 0.3
+    stolen.set(30, 0)
+    watch.look()
+    watch.wait_until_still()
+    assert now_s == pytest.approx(100.3 + STILL_S, abs=0.1)
+    monkeypatch.setattr(watch, "longest_s", lambda since_s: 0.5)
+    for _ in range(30):
+        watch.wait_until_still()
+    assert now_s == pytest.approx(100.3 + WAIT_IN_ALL_S, abs=0.1)
+
+
+def test_what_a_failed_test_leaves_open_does_not_fail_another(pytester, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    pytester.makepyprojecttoml("[tool.pytest.ini_options]\nmarkers = ['realtime']\nfilterwarnings = ['error']")
+    pytester.makeconftest("from tests.conftest import *")
+    leak = (
+        "import warnings, gc\nclass Open:\n    def __del__(self): warnings.warn('open', ResourceWarning, source=self)\n"
+    )
+    for name, fails in (("fails", True), ("passes", False)):
+        pytester.makepyfile(
+            **{f"test_{name}": f"{leak}KEPT = []\ndef test_one(): KEPT.append(Open()); assert {not fails}\n"
+               "def test_two(): KEPT.clear(); gc.collect()"}
+        )  # fmt: skip
+    pytester.runpytest_subprocess("test_fails.py").assert_outcomes(passed=1, failed=1)
+    pytester.runpytest_subprocess("test_passes.py").assert_outcomes(passed=1, failed=1)
+
+
 @pytest.mark.parametrize("option", [[], ["--void-when-held-up"]], ids=["first run", "second run"])
 @pytest.mark.parametrize("held_up", [True, False])
 def test_only_a_realtime_test_that_fails_while_the_machine_stands_still_is_void(pytester, monkeypatch, option, held_up):
@@ -76,4 +114,6 @@ def test_only_a_realtime_test_that_fails_while_the_machine_stands_still_is_void(
     void = bool(option) and held_up
     result.assert_outcomes(passed=1, failed=1 if void else 2, skipped=1 if void else 0)
     if void:
-        result.stdout.fnmatch_lines(["*void: the machine stood still for 0.30 s meanwhile; AssertionError: assert 1 == 2*"])
+        result.stdout.fnmatch_lines(
+            ["*void: the machine stood still for 0.30 s meanwhile; AssertionError: assert 1 == 2*"]
+        )
