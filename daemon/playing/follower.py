@@ -23,7 +23,7 @@ class Follower:
 
     Attributes:
         bus_alive: whether the bus process runs.
-        fault_reason: why the robot is in fault, else empty.
+        fault_reason: why the robot is in fault, or in an e-stop that nobody gave; else empty.
         stopped: whether a person stopped the robot since it was armed and the last motion began.
         idling: whether what is played are idle movements.
     """
@@ -32,6 +32,7 @@ class Follower:
         self._link, self._view, self._planner, self.machine = link, view, planner, machine
         self.bus_alive = True
         self.fault_reason = ""
+        self._own_estop = ""
         self.stopped = False
         self.idling = False
         self._epoch: int = planner.epoch
@@ -80,20 +81,26 @@ class Follower:
             changed = self.machine.report(report)
         except ImpossibleTransitionError as error:
             log.error("%s; e-stop is asked for", error)
+            self._own_estop = self._own_estop or f"the daemon gave this e-stop itself: {error}{self._was_in_fault()}"
             self._link.request(BusRequest.ESTOP)
             return None
         if not changed:
             return None
         state = self.machine.state
         log.info("state %s -> %s", before.value, state.value)
-        self.fault_reason = ""
-        if state is RobotState.FAULT:
+        self.fault_reason, own_estop, self._own_estop = "", self._own_estop, ""
+        if state is RobotState.ESTOP:
+            self.fault_reason = own_estop
+        elif state is RobotState.FAULT:
             self.fault_reason = self._reason(report)
             log.error("fault: %s", self.fault_reason)
         elif state in (RobotState.LIMP, RobotState.ARMING):
             self._planner.stand()
             self.stopped = False  # a stop of the limp robot is over once it is armed
         return state
+
+    def _was_in_fault(self) -> str:
+        return f", which was there because {self.fault_reason}" if self.fault_reason else ""
 
     def _reason(self, report: Trigger) -> str:
         if report is not Trigger.BUS_LOST:
