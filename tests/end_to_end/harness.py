@@ -23,7 +23,7 @@ from tests.daemon.kinematic import KinematicGenerator, generate
 
 Answer = Callable[[str, int, float | None], Generated]
 MMMD = [sys.executable, "-m", "daemon.cli"]
-START_TIMEOUT_S = 40.0
+START_TIMEOUT_S = 80.0
 MOST_CLIPPED_IN_AN_UNDERRUN = 4
 """Where the machine is held up the bus process brakes; frames that were on their way meanwhile, up to 4 of the 10 that are
 queued, are limited until it goes on."""
