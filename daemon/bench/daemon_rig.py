@@ -17,6 +17,8 @@ from daemon.client import Client
 from daemon.demo import child, free_endpoints, wait_until_ready
 from daemon.errors import DaemonError
 
+HALTED = ("fault", "estop")
+"""Where hold-ups of the machine lead: servos stopped by watchdogs; a bus process that was silent for a second and came back."""
 ARM_TRIES = 5
 ARM_PAUSE_S = 1.0
 
@@ -36,17 +38,17 @@ def running_daemon(robot: str, *options: str, audit: Path | None = None) -> Gene
             Client(replace(endpoints, keys=_keys_among(options))) as client,
         ):
             wait_until_ready(client, process, log)
-            client.arm()
+            arm_again(client)
             yield client, log
-            if client.status().state not in ("fault", "estop", "limp"):
+            if client.status().state not in (*HALTED, "limp"):
                 client.park()
 
 
 def arm_again(client: Client) -> None:
-    """Out of a fault, as a person would: reset, arm, and once more where the machine's next hold-up comes while it arms.
+    """From limp or `HALTED`, as a person would: reset, arm, and once more where the machine's next hold-up comes meanwhile.
 
     Raises:
-        DaemonError: the robot is still in fault after the last try.
+        DaemonError: the robot is still not armed after the last try.
     """
     for tries_left in reversed(range(ARM_TRIES)):
         try:
@@ -54,7 +56,7 @@ def arm_again(client: Client) -> None:
             client.arm()
             return
         except DaemonError:
-            if not tries_left or client.status().state != "fault":
+            if not tries_left or client.status().state not in HALTED:
                 raise
             time.sleep(ARM_PAUSE_S)
 

@@ -11,7 +11,7 @@ from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Any
 
-from daemon.bench.daemon_rig import arm_again, busy_cores, running_daemon
+from daemon.bench.daemon_rig import HALTED, arm_again, busy_cores, running_daemon
 from daemon.bench.report import context, percentiles_ms
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
@@ -46,7 +46,7 @@ def bench_first_motion(n: int = 50, seed: int = 0, robot: str = "reference") -> 
         client.stop()
         story = _times(client, texts[N_WARM:], seed, "story", stop=False, before=_STORY)
         client.stop()
-        if client.status().state == "fault":
+        if client.status().state in HALTED:
             arm_again(client)
         client.idle(True, "lively")
         idle = _times(client, texts[N_WARM:], seed, "idle", cancel=False)
@@ -87,7 +87,7 @@ def _times(
     refused: dict[str, str] = {}
     faults: list[str] = []
     for i, text in enumerate(texts):
-        if client.status().state == "fault":  # it came while the text before was being played
+        if client.status().state in HALTED:  # it came while the text before was being played
             faults.append(f"after text {i}")
             arm_again(client)
         try:
@@ -111,7 +111,7 @@ def _times(
             else:
                 time.sleep(REST_S)
         except DaemonError as error:
-            if client.status().state != "fault":
+            if client.status().state not in HALTED:
                 raise
             faults.append(str(error))
             arm_again(client)
