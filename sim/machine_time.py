@@ -59,12 +59,16 @@ class MachineTime:
             self._clock.sleep_until(t_s + self.taken_s)
 
     def _look(self) -> list[float]:
-        """What was taken from each processor since the start; nothing where no host is."""
-        try:
-            text = self._stat.read_text("ascii")
-        except OSError:
-            return []
-        return [int(ticks) * _STOLEN_UNIT_S for ticks in _STOLEN.findall(text)]
+        return stolen_s(self._stat)
+
+
+def stolen_s(stat: Path = STAT) -> list[float]:
+    """Seconds that the host took from each processor since the machine's start; none where no file tells."""
+    try:
+        text = stat.read_text("ascii")
+    except OSError:
+        return []
+    return [int(ticks) * _STOLEN_UNIT_S for ticks in _STOLEN.findall(text)]
 
 
 @functools.cache

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -20,6 +21,7 @@ from daemon.errors import DaemonError
 from daemon.keys import KeyFolder
 from daemon.wire.events import Cancelled, Done, Failed, Progress, Rejected
 from daemon.wire.requests import Say
+from sim.machine_time import stolen_s
 
 N_WARM = 5
 REST_S = 0.3
@@ -27,12 +29,13 @@ STORY_S = 1.0
 """A story is told so long before a text interrupts it."""
 _STORY = ("wave with your right hand", "clap your hands", "nod twice", "bow")
 _METHOD = (
-    "mmmd run --bus sim:// with all its processes; the clock starts when the front receives the text and ends at the first"
-    " bus cycle whose goal tick of any servo differs; from rest: the robot stands still; idle: idle movements are going on;"
-    " during: a motion is being played; story: a story"
-    " without end is being told; loaded: from rest, while one busy process for each core runs at normal priority;"
+    "mmmd run --bus sim:// with all its processes; the clock starts when the front receives the text and ends when the"
+    " goals of the first bus cycle in which the goal tick of any servo differs are given to the port; from rest: the robot stands"
+    " still; idle: idle movements are going on; during: a motion is being played; story: a story without end is being told;"
+    " loaded: from rest, while one busy process for each core runs at normal priority;"
     " remote: from rest, generator in another process over loopback TCP with CURVE; {} texts before to warm up; faults, where the"
-    " machine holds the bus process up, are told, reset and armed again"
+    " machine holds the bus process up, are told, reset and armed again; host_took: the share of the processors' time that a virtual"
+    " machine's host took meanwhile"
 )
 
 
@@ -86,6 +89,7 @@ def _times(
     generate_s: list[float] = []
     refused: dict[str, str] = {}
     faults: list[str] = []
+    began_s, taken_s = time.monotonic(), stolen_s()
     for i, text in enumerate(texts):
         if client.status().state in HALTED:  # it came while the text before was being played
             faults.append(f"after text {i}")
@@ -118,6 +122,8 @@ def _times(
     if not first_s:
         raise RuntimeError(f"no text moved the robot ({name}): {refused}")
     figures: dict[str, Any] = percentiles_ms(first_s) | {"n": len(first_s), "generate": percentiles_ms(generate_s)}
+    shares = [(now - then) / (time.monotonic() - began_s) for now, then in zip(stolen_s(), taken_s, strict=True)]
+    figures |= {"host_took": round(statistics.fmean(shares), 3)} if shares else {}
     figures |= {"faults": faults} if faults else {}
     return figures | ({"without_motion": refused} if refused else {})
 

@@ -116,7 +116,10 @@ def setpoint_dtype(n_joints: int) -> np.dtype[np.void]:
 
 
 def cycle_dtype(n_joints: int, n_servos: int) -> np.dtype[np.void]:
-    """One bus cycle: what was wanted, what the gate let through, what was written and what was measured."""
+    """One bus cycle: what was wanted, what the gate let through, what was written and what was measured.
+
+    `t_mono_ns` is when the goals were given to the ports, before the answers were waited for.
+    """
     return np.dtype([
         ("cycle", "u8"), ("t_mono_ns", "i8"), ("plan_id", "u8"), ("frame", "u4"), ("state", "u1"), ("last", "u1"),
         ("underrun", "u1"), ("torque", "u1"), ("late_cycles", "u4"),

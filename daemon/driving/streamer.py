@@ -76,7 +76,7 @@ class Streamer:
         self._setpoint_rad = robot.park_rad.copy()
         self._plan_id, self._frame, self._last = 0, 0, True
         self._underrun = False
-        self._cycle, self._late_cycles = 0, 0
+        self._cycle, self._told_s, self._late_cycles = 0, clock.now_s(), 0
         self._pwm: int | None = None
         self._front_lost_s: float | None = None
         self._torque_off_left = 0
@@ -115,6 +115,7 @@ class Streamer:
 
     def cycle(self) -> None:
         """One bus period."""
+        self._told_s = self._clock.now_s()
         try:
             self._asked = valid_requests([*self._asked, *self._link.take_requests()])
             if self._asked:  # one a cycle, so that the front sees each state; an e-stop is always the first
@@ -127,6 +128,7 @@ class Streamer:
             goal_rad = self._next_goal()
             if goal_rad is not None and self._goal_tick is not None:
                 self._goal_tick = np.rint(self._ticks.to_ticks(goal_rad)).astype(np.int32)
+            self._told_s = self._clock.now_s()
             reading = self._bus.exchange(self._goal_tick if self._torque else None)
             if self._torque and self.state in (BusState.FAULT, BusState.ESTOP):
                 self._judge.withhold_tripped(reading)
@@ -397,7 +399,7 @@ class Streamer:
 
     def _publish(self, reading: BusReading) -> None:
         record = self._link.next_record()
-        record["cycle"], record["t_mono_ns"] = self._cycle, int(self._clock.now_s() * 1e9)
+        record["cycle"], record["t_mono_ns"] = self._cycle, int(self._told_s * 1e9)
         record["plan_id"], record["frame"], record["last"] = self._plan_id, self._frame, self._last
         record["state"], record["underrun"], record["torque"] = self.state, self._underrun, self._torque
         record["late_cycles"] = self._late_cycles

@@ -32,8 +32,8 @@ from retarget.robot import RobotModel
 
 FIRST_RETARGET_S = 0.03
 """Assumed time until the first piece of the first path is there; later ones are measured."""
-RETRY_MARGIN, SPARE_FRAMES = 1.2, 1
-"""The hand-over frame is so much later than an attempt took that came too late, and always so many frames more."""
+RETRY_MARGIN = 1.2
+"""The hand-over frame is so much later than an attempt took that came too late."""
 FADE_FRAMES = 8
 """Frames of posture (0.4 s) over which a motion grows out of what came before it."""
 
@@ -104,7 +104,7 @@ class Planner:
         ahead_s = max(self._lead.seconds, RETRY_MARGIN * took_s)
         waiting = sum(p.limit - p.pushed for p in self._plans[:-1])  # of plans before, and what the bus has of them
         before = waiting + max(0, self._link.queued_frames - plan.pushed)
-        frame = self._next_frame(plan) + max(0, int(ahead_s * self._rate_hz) + SPARE_FRAMES - before)
+        frame = self._next_frame(plan) - 1 + max(0, self._cycles_within(ahead_s) - before)
         if isinstance(plan, StreamPlan):
             plan.extend(frame + 1)
         frame = max(0, min(frame, plan.n_frames - 1))
@@ -146,13 +146,13 @@ class Planner:
 
     @property
     def hand_over_missed(self) -> bool:
-        """Whether the bus process has come to the frame of the hand-over, or ran dry, before the new path was ready."""
+        """Whether the bus process has come beyond the frame of the hand-over, or ran dry, before the new path was ready."""
         plan, frame = self.current, self._handing_over
         if plan is None or self._from_rest or frame is None or plan.epoch != self.epoch:
             return False
         if self._ran_dry(plan):
             return True
-        return self._next_frame(plan) > frame and not (plan.complete and frame == plan.n_frames - 1)
+        return self._next_frame(plan) > frame + 1 and not (plan.complete and frame == plan.n_frames - 1)
 
     def new_plan_id(self) -> int:
         """The number of a plan to come."""
@@ -291,6 +291,11 @@ class Planner:
     def _next_frame(self, plan: Plan) -> int:
         """The frame of the newest plan that the bus process takes next."""
         return plan.pushed - min(self._link.queued_frames, plan.pushed)
+
+    def _cycles_within(self, ahead_s: float) -> int:
+        """How many setpoints the bus process takes until `ahead_s` from now, by when it took the last one."""
+        since_s = (time.monotonic() - self._view.goals_s) % (1.0 / self._rate_hz)
+        return math.floor((since_s + ahead_s) * self._rate_hz)
 
     def _end_at_hand_over(self) -> int:
         """Take back what of the running plan comes after the frame of the hand-over; how much of it is played already."""

@@ -24,6 +24,7 @@ class BusView:
     Attributes:
         state: what the bus process is doing; limp before its first cycle.
         goal_rad: (J,) what the servos were last told.
+        goals_s: when they were told it, on the monotonic clock; 0 before the first cycle.
         present_rad: (J,) what they last measured.
         valid: (S,) whether each servo's last reading is from the newest cycle.
         error: (S,) error bits of the last replies.
@@ -40,7 +41,7 @@ class BusView:
         self._servo_map = JointServoMap(robot)
         self.index = 0
         self.at_rest = True
-        self.silent_s = 0.0
+        self.goals_s = self.silent_s = 0.0
         self._last_cycle_s: float | None = None
         self.state = BusState.LIMP
         self.passed: list[BusState] = []
@@ -61,7 +62,7 @@ class BusView:
         self.silent_s = max(0.0, looked_s - self._last_cycle_s)
         if len(records):
             last = records[-1]
-            self.goal_rad = np.array(last["goal_rad"])
+            self.goal_rad, self.goals_s = np.array(last["goal_rad"]), int(last["t_mono_ns"]) * 1e-9
             self.present_rad = self._servo_map.tick_to_rad(last["present_tick"])
             self.valid, self.error = last["valid"] != 0, np.array(last["error"])
             self.underruns += int((records["underrun"] != 0).sum())
