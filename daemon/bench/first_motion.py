@@ -34,7 +34,7 @@ _METHOD = (
     " still; idle: idle movements are going on; during: a motion is being played; story: a story without end is being told;"
     " loaded: from rest, while one busy process for each core runs at normal priority;"
     " remote: from rest, generator in another process over loopback TCP with CURVE; {} texts before to warm up; faults, where the"
-    " machine holds the bus process up, are told, reset and armed again; host_took: the share of the processors' time that a virtual"
+    " machine holds the bus process up, are told, reset and armed again; host_took: the share of processor time that a virtual"
     " machine's host took meanwhile"
 )
 
