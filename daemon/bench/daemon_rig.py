@@ -19,6 +19,7 @@ from daemon.errors import DaemonError
 
 HALTED = ("fault", "estop")
 """Where hold-ups of the machine lead: servos stopped by watchdogs; a bus process that was silent for a second and came back."""
+_NOT_ARMED = (*HALTED, "limp")
 ARM_TRIES = 5
 ARM_PAUSE_S = 1.0
 
@@ -40,7 +41,7 @@ def running_daemon(robot: str, *options: str, audit: Path | None = None) -> Gene
             wait_until_ready(client, process, log)
             arm_again(client)
             yield client, log
-            if client.status().state not in (*HALTED, "limp"):
+            if client.status().state not in _NOT_ARMED:
                 client.park()
 
 
@@ -54,11 +55,14 @@ def arm_again(client: Client) -> None:
         try:
             client.reset()
             client.arm()
-            return
         except DaemonError:
-            if not tries_left or client.status().state not in HALTED:
+            if not tries_left or client.status().state not in _NOT_ARMED:
                 raise
-            time.sleep(ARM_PAUSE_S)
+        status = client.status()
+        if status.state not in _NOT_ARMED:
+            return
+        time.sleep(ARM_PAUSE_S)
+    raise DaemonError(f"not armed after {ARM_TRIES} tries: the robot is in {status.state}: {status.reason}")
 
 
 def _keys_among(options: Sequence[str]) -> Path | None:

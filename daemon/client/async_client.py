@@ -25,7 +25,15 @@ from daemon.client.compositions import (
     CompositionCalls,
     patience_s,
 )
-from daemon.client.errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected, waited_in_vain
+from daemon.client.errors import (
+    ARMING_ENDS,
+    CancelledByError,
+    NoAnswerError,
+    RefusedError,
+    Said,
+    unexpected,
+    waited_in_vain,
+)
 from daemon.client.lines import Line, within
 from daemon.client.streams import AsyncStream, LeaseNews, begun
 from daemon.config import Endpoints
@@ -223,10 +231,13 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         return ack
 
     async def arm(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
-        """Torque on over a pinned goal, slow move to the rest pose."""
+        """Torque on over a pinned goal, slow move to the rest pose; limp again where that was broken off (`status` tells)."""
         ack = await self._acknowledged(Arm(id=uuid.uuid4().hex), self.endpoints.ctl)
         if wait:
-            await self.wait_for("idle", "moving", "holding", "fault", "estop", timeout_s=timeout_s)
+            began_s = time.monotonic()
+            if (await self.wait_for("arming", *ARMING_ENDS, timeout_s=timeout_s)).state == "arming":
+                left_s = timeout_s - (time.monotonic() - began_s)
+                await self.wait_for("limp", *ARMING_ENDS, timeout_s=left_s)
         return ack
 
     async def torque_off(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:

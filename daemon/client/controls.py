@@ -7,7 +7,7 @@ import uuid
 
 from daemon.client.compositions import NOT_MOVING
 from daemon.client.connection import Connection
-from daemon.client.errors import unexpected, waited_in_vain
+from daemon.client.errors import ARMING_ENDS, unexpected, waited_in_vain
 from daemon.wire.events import Ack
 from daemon.wire.requests import Arm, Estop, Park, Reset, Status, Stop, Torque
 from daemon.wire.status import StateEvent
@@ -51,7 +51,7 @@ class ControlCalls(Connection):
         return ack
 
     def arm(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
-        """Torque on over a pinned goal, slow move to the rest pose.
+        """Torque on over a pinned goal, slow move to the rest pose; limp again where that was broken off (`status` tells).
 
         Raises:
             RefusedError: the state does not allow it.
@@ -59,7 +59,10 @@ class ControlCalls(Connection):
         """
         ack = self._control(Arm(id=uuid.uuid4().hex))
         if wait:
-            self.wait_for("idle", "moving", "holding", "fault", "estop", timeout_s=timeout_s)
+            began_s = time.monotonic()
+            if self.wait_for("arming", *ARMING_ENDS, timeout_s=timeout_s).state == "arming":
+                left_s = timeout_s - (time.monotonic() - began_s)
+                self.wait_for("limp", *ARMING_ENDS, timeout_s=left_s)
         return ack
 
     def torque_off(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:

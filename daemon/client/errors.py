@@ -12,6 +12,9 @@ from daemon.wire.events import AnyEvent, Done, Refusal
 from daemon.wire.requests import Request, tag_of
 from daemon.wire.status import StateEvent
 
+ARMING_ENDS = ("idle", "moving", "holding", "fault", "estop")
+"""States in which arming has come to an end; once it has begun it may end in limp as well, when something breaks it off."""
+
 
 class NoAnswerError(DaemonError, TimeoutError):
     """The daemon did not answer."""

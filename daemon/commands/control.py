@@ -100,13 +100,14 @@ def torque(
 
 
 def _tell(robot: Client, ack: Ack, json: bool) -> int:
-    """Print what the verb led to; 3 when the robot is in fault."""
+    """Print what the verb led to; 3 when the robot is in fault, 1 when it was to be armed and is limp again."""
     after = robot.status()
+    broken_off = ack.verb == "arm" and after.state == "limp"
     if json:
         from daemon.wire.codec import encode
 
         sys.stdout.write(encode(after).decode() + "\n")
     else:
-        reason = f": {after.reason}" if after.reason else ""
-        sys.stdout.write(f"{ack.verb}: {ack.state} -> {after.state}{reason}\n")
-    return 3 if after.state == "fault" else 0
+        reason = after.reason or ("arming was broken off, see the daemon's log; `mmmd arm` again" if broken_off else "")
+        sys.stdout.write(f"{ack.verb}: {ack.state} -> {after.state}{f': {reason}' if reason else ''}\n")
+    return 3 if after.state == "fault" else int(broken_off)

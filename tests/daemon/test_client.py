@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import threading
 import time
 
+import msgspec
 import pytest
 import zmq
 
-from daemon.client import Client, NoAnswerError, RefusedError
+from daemon.client import AsyncClient, Client, NoAnswerError, RefusedError
 from daemon.config import Endpoints
 from daemon.errors import ConfigError
 from daemon.settings import config_of, resolve
 from daemon.wire import codec as wire
-from daemon.wire import events
+from daemon.wire import events, requests
+from tests.daemon.test_health import STATE
 
 
 class Peer:
@@ -95,6 +98,37 @@ def test_a_refusal_is_an_error_with_its_event(endpoints):
         with pytest.raises(RefusedError, match="reset first") as caught:
             client.arm()
     assert caught.value.code == "wrong_state"
+
+
+@pytest.mark.parametrize(
+    "states",
+    [
+        ["limp", "limp", "arming", "arming", "idle"],
+        ["limp", "arming", "limp"],  # a stop, or a front that was held up, broke it off
+        ["limp", "moving"],  # it was over between two looks
+        ["arming", "fault"],
+    ],
+)
+def test_arming_is_waited_for_to_its_end_whatever_that_is(endpoints, states):
+    left = list(states)
+
+    def answer(frame):
+        request = wire.decode_ctl(frame)
+        if isinstance(request, requests.Arm):
+            return [wire.encode(events.Ack(id=request.id, verb="arm", state="limp"))]
+        return [wire.encode(msgspec.structs.replace(STATE, id=request.id, state=left.pop(0)))]
+
+    async def arm():
+        async with AsyncClient(endpoints) as robot:
+            await robot.arm(timeout_s=5)
+
+    with talking(endpoints.ctl, answer):
+        with Client(endpoints) as robot:
+            robot.arm(timeout_s=5)
+        assert not left
+        left += states
+        asyncio.run(arm())
+        assert not left
 
 
 def test_watching_a_silent_publisher_is_a_time_out(endpoints):
