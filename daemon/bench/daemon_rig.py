@@ -58,10 +58,10 @@ def arm_again(client: Client) -> None:
         except DaemonError:
             if not tries_left or client.status().state not in _NOT_ARMED:
                 raise
-        status = client.status()
-        if status.state not in _NOT_ARMED:
+        if client.status().state not in _NOT_ARMED:
             return
         time.sleep(ARM_PAUSE_S)
+    status = client.status()
     raise DaemonError(f"not armed after {ARM_TRIES} tries: the robot is in {status.state}: {status.reason}")
 
 
