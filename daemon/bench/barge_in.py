@@ -13,7 +13,7 @@ import numpy as np
 import zmq
 
 from daemon.bench.daemon_rig import arm_again, percentile, running_daemon
-from daemon.bench.report import context
+from daemon.bench.report import HostShare, context
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
 from daemon.client.errors import stamp
@@ -26,13 +26,16 @@ from retarget.robot import load_robot
 SHORTEST_GAP_S, LONGEST_GAP_S = 0.03, 0.6
 STOP_EVERY = 10
 STOP_WATCHED_S = 0.6
+SEEN_OUT = 0.5
+"""Of the cycles of that time."""
 SETTLED_S = 12.0
 STILL_RAD_S = np.deg2rad(2.0)
 _METHOD = (
     "mmmd run --bus sim:// with all its processes; texts at random gaps of {:g} to {:g} s, every {}th followed by a stop;"
     " takeover: text received to first changed servo goal of its own plan, of those not overtaken before; stop: ctl request"
     " sent to the cycle from which no joint's goal is faster than 2 deg/s; concurrent: cycles of an older plan after a newer"
-    " one; lost stop: a joint still faster than that {:g} s after it"
+    " one; lost stop: a joint still faster than that {:g} s after it; unseen: the bus process made less than half of its cycles in"
+    " that time, for the machine stood still"
 )
 
 
@@ -56,19 +59,23 @@ class _Heard:
 def bench_barge_in(n: int = 1000, seed: int = 0, robot: str = "reference") -> dict[str, Any]:
     """`takeover_p95_ms`, `stop_p95_ms`, `concurrent`, `lost_stops`, `ended_once` (share of the commands).
 
-    A machine that holds the bus process up leads to faults, which are counted in `faults`, each reset and armed again.
+    A machine that holds the bus process up leads to faults, which are counted in `faults`, each reset and armed again. A stop
+    after which it let the bus process make less than half of its cycles is none that was seen out: `unseen_stops`.
     """
     rng = np.random.default_rng(seed)
     texts = draw_texts(n, seed)
     heard = _Heard()
     stops_s: list[float] = []
+    host = HostShare()
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "run.mcap"
         with running_daemon(robot, "--log", str(log)) as (client, _):
             faults = _talk(client, texts, rng, heard, stops_s)
         cycles = read_log(log).cycles
     rate_hz = load_robot(robot).bus.rate_hz
-    stop_s = [_still_after_s(cycles, t_s, rate_hz) for t_s in stops_s]
+    windows = [[c for c in cycles if t_s - 0.02 <= c.t_mono_ns * 1e-9 <= t_s + STOP_WATCHED_S] for t_s in stops_s]
+    seen = [len(window) >= SEEN_OUT * STOP_WATCHED_S * rate_hz for window in windows]
+    stop_s = [_still_after_s(w, t_s, rate_hz) for w, t_s, full in zip(windows, stops_s, seen, strict=True) if full]
     plans = np.array([c.plan_id for c in cycles])
     played = plans[plans > 0]
     concurrent = int((played < np.maximum.accumulate(played)).sum()) if len(played) else 0
@@ -78,12 +85,14 @@ def bench_barge_in(n: int = 1000, seed: int = 0, robot: str = "reference") -> di
         "stop_p95_ms": percentile([1e3 * s for s in stop_s if s is not None], 95),
         "concurrent": concurrent,
         "lost_stops": sum(s is None for s in stop_s),
+        "unseen_stops": seen.count(False),
         "ended_once": round(sum(heard.ends[f"b{i}"] == 1 for i in range(n)) / n, 6),
         "ended_more_than_once": sum(k > 1 for k in heard.ends.values()),
         "n": n,
         "stops": len(stops_s),
         "moved": len(heard.takeover_ms),
         "faults": faults,
+        **host.figures(),
         "robot": robot,
         **context(seed, _METHOD.format(SHORTEST_GAP_S, LONGEST_GAP_S, STOP_EVERY, STOP_WATCHED_S)),
     }
@@ -124,11 +133,8 @@ def _talk(client: Client, texts: list[str], rng: np.random.Generator, heard: _He
     return faults
 
 
-def _still_after_s(cycles: list[LoggedCycle], t_s: float, rate_hz: float) -> float | None:
+def _still_after_s(window: list[LoggedCycle], t_s: float, rate_hz: float) -> float | None:
     """Seconds from `t_s` until no joint is faster than 2 deg/s, for the rest of the watched time; None when one is."""
-    window: list[LoggedCycle] = [c for c in cycles if t_s - 0.02 <= c.t_mono_ns * 1e-9 <= t_s + STOP_WATCHED_S]
-    if len(window) < 3:
-        return None
     goals_rad = np.array([c.goal_rad for c in window], np.float64)
     speed = np.abs(np.diff(goals_rad, axis=0)).max(1) * rate_hz
     fast = np.flatnonzero(speed > STILL_RAD_S)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -13,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from daemon.bench.daemon_rig import HALTED, arm_again, busy_cores, running_daemon
-from daemon.bench.report import context, percentiles_ms
+from daemon.bench.report import HostShare, context, percentiles_ms
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
 from daemon.demo import free_endpoints
@@ -21,7 +20,6 @@ from daemon.errors import DaemonError
 from daemon.keys import KeyFolder
 from daemon.wire.events import Cancelled, Done, Failed, Progress, Rejected
 from daemon.wire.requests import Say
-from sim.machine_time import stolen_s
 
 N_WARM = 5
 REST_S = 0.3
@@ -89,7 +87,7 @@ def _times(
     generate_s: list[float] = []
     refused: dict[str, str] = {}
     faults: list[str] = []
-    began_s, taken_s = time.monotonic(), stolen_s()
+    host = HostShare()
     for i, text in enumerate(texts):
         if client.status().state in HALTED:  # it came while the text before was being played
             faults.append(f"after text {i}")
@@ -122,9 +120,7 @@ def _times(
     if not first_s:
         raise RuntimeError(f"no text moved the robot ({name}): {refused}")
     figures: dict[str, Any] = percentiles_ms(first_s) | {"n": len(first_s), "generate": percentiles_ms(generate_s)}
-    shares = [(now - then) / (time.monotonic() - began_s) for now, then in zip(stolen_s(), taken_s, strict=True)]
-    figures |= {"host_took": round(statistics.fmean(shares), 3)} if shares else {}
-    figures |= {"faults": faults} if faults else {}
+    figures |= host.figures() | ({"faults": faults} if faults else {})
     return figures | ({"without_motion": refused} if refused else {})
 
 

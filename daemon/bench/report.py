@@ -5,11 +5,15 @@ from __future__ import annotations
 import importlib.metadata
 import os
 import platform
+import statistics
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from sim.machine_time import stolen_s
 
 _PACKAGES = ("mmmd", "torch", "numpy", "mujoco", "pyzmq")
 
@@ -23,6 +27,19 @@ def percentiles_ms(seconds: Sequence[float]) -> dict[str, float]:
     """`p50_ms` and `p95_ms` of times given in seconds."""
     p50, p95 = np.percentile(np.asarray(seconds) * 1e3, [50, 95])
     return {"p50_ms": round(float(p50), 2), "p95_ms": round(float(p95), 2)}
+
+
+class HostShare:
+    """What the host of a virtual machine takes of its processors, from now on."""
+
+    def __init__(self) -> None:
+        self._began_s, self._taken_s = time.monotonic(), stolen_s()
+
+    def figures(self) -> dict[str, float]:
+        """`host_took`, a share of their time; nothing where that cannot be known."""
+        past_s = time.monotonic() - self._began_s
+        shares = [(now_s - then_s) / past_s for now_s, then_s in zip(stolen_s(), self._taken_s, strict=True)]
+        return {"host_took": round(statistics.fmean(shares), 3)} if shares else {}
 
 
 def _machine() -> str:
