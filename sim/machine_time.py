@@ -38,7 +38,7 @@ class MachineTime:
         self._clock, self._stat = clock, stat
         self._lock = threading.Lock()
         self._asked_s = self._looked_s = clock.now_s()
-        self._stolen_s = self._look()
+        self._stolen_s = stolen_s(self._stat)
 
     def now_s(self) -> float:
         """Seconds; never goes back."""
@@ -47,19 +47,16 @@ class MachineTime:
             pause_s = now_s - self._asked_s
             self._asked_s = now_s
             if pause_s >= LEAST_PAUSE_S or now_s - self._looked_s >= LOOK_EVERY_S:
-                before_s, self._stolen_s, self._looked_s = self._stolen_s, self._look(), now_s
+                before_s, self._stolen_s, self._looked_s = self._stolen_s, stolen_s(self._stat), now_s
                 if pause_s >= LEAST_PAUSE_S:
-                    stolen_s = max((s - b for s, b in zip(self._stolen_s, before_s, strict=False)), default=0.0)
-                    self.taken_s += min(pause_s, stolen_s)
+                    most_s = max((s - b for s, b in zip(self._stolen_s, before_s, strict=False)), default=0.0)
+                    self.taken_s += min(pause_s, most_s)
             return now_s - self.taken_s
 
     def sleep_until(self, t_s: float) -> None:
         """Return when `now_s` shows `t_s`."""
         while self.now_s() < t_s - _TINY_S:
             self._clock.sleep_until(t_s + self.taken_s)
-
-    def _look(self) -> list[float]:
-        return stolen_s(self._stat)
 
 
 def stolen_s(stat: Path = STAT) -> list[float]:

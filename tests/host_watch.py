@@ -8,15 +8,12 @@ stood still meanwhile it is void: skipped, with the reason. Where the machine ra
 
 from __future__ import annotations
 
-import re
 import threading
 import time
 from pathlib import Path
 
-STAT = Path("/proc/stat")
-_STOLEN = re.compile(r"^cpu(\d+)(?: +\d+){7} +(\d+)", re.MULTILINE)
-"""Of each processor, what the host took from it since the start, in 1/100 s (proc_stat(5))."""
-_UNIT_S = 0.01
+from sim.machine_time import STAT, stolen_s
+
 LOOK_S = 0.02
 LEAST_S = 0.1
 """As long may a robot's daemon be held up without harm: half of what a servo's watchdog allows."""
@@ -33,7 +30,7 @@ class HostWatch:
         self._stat = stat
         self._pauses: list[tuple[float, float]] = []
         self._waited_s = 0.0
-        self._looked_s, self._stolen = time.monotonic(), self._read()
+        self._looked_s, self._stolen = time.monotonic(), stolen_s(self._stat)
 
     def start(self) -> HostWatch:
         """Look from a thread of its own until the process ends."""
@@ -42,9 +39,9 @@ class HostWatch:
 
     def look(self) -> None:
         """Note what was taken since the last look."""
-        now_s, stolen = time.monotonic(), self._read()
+        now_s, stolen = time.monotonic(), stolen_s(self._stat)
         since_s = now_s - self._looked_s
-        taken_s = _UNIT_S * max((ticks - self._stolen.get(core, ticks) for core, ticks in stolen.items()), default=0)
+        taken_s = max((now - then for now, then in zip(stolen, self._stolen, strict=False)), default=0.0)
         if taken_s >= max(LEAST_S, _IN_ONE_PIECE * since_s):
             self._pauses.append((now_s, taken_s))
         self._looked_s, self._stolen = now_s, stolen
@@ -61,12 +58,6 @@ class HostWatch:
             time.sleep(LOOK_S)
             now_s = time.monotonic()
         self._waited_s += now_s - began_s
-
-    def _read(self) -> dict[str, int]:
-        try:
-            return {core: int(ticks) for core, ticks in _STOLEN.findall(self._stat.read_text("ascii"))}
-        except OSError:
-            return {}
 
     def _watch(self) -> None:
         while True:

@@ -27,7 +27,7 @@ SHORTEST_GAP_S, LONGEST_GAP_S = 0.03, 0.6
 STOP_EVERY = 10
 STOP_WATCHED_S = 0.6
 SEEN_OUT = 0.5
-"""Of the cycles of that time."""
+"""A stop is judged where the bus process made at least this share of its cycles in that time."""
 SETTLED_S = 12.0
 STILL_RAD_S = np.deg2rad(2.0)
 _METHOD = (
@@ -35,7 +35,7 @@ _METHOD = (
     " takeover: text received to first changed servo goal of its own plan, of those not overtaken before; stop: ctl request"
     " sent to the cycle from which no joint's goal is faster than 2 deg/s; concurrent: cycles of an older plan after a newer"
     " one; lost stop: a joint still faster than that {:g} s after it; unseen: the bus process made less than half of its cycles in"
-    " that time, for the machine stood still"
+    " that time, as where the machine stands still, and whether the robot came to rest is not known"
 )
 
 
@@ -60,7 +60,7 @@ def bench_barge_in(n: int = 1000, seed: int = 0, robot: str = "reference") -> di
     """`takeover_p95_ms`, `stop_p95_ms`, `concurrent`, `lost_stops`, `ended_once` (share of the commands).
 
     A machine that holds the bus process up leads to faults, which are counted in `faults`, each reset and armed again. A stop
-    after which it let the bus process make less than half of its cycles is none that was seen out: `unseen_stops`.
+    after which the bus process made less than half of its cycles cannot be judged: `unseen_stops`.
     """
     rng = np.random.default_rng(seed)
     texts = draw_texts(n, seed)

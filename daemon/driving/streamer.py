@@ -115,7 +115,7 @@ class Streamer:
 
     def cycle(self) -> None:
         """One bus period."""
-        self._told_s = self._clock.now_s()
+        self._told_s = self._clock.now_s()  # of a cycle in which no goals go out
         try:
             self._asked = valid_requests([*self._asked, *self._link.take_requests()])
             if self._asked:  # one a cycle, so that the front sees each state; an e-stop is always the first

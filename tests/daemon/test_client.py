@@ -12,6 +12,7 @@ import pytest
 import zmq
 
 from daemon.client import AsyncClient, Client, NoAnswerError, RefusedError
+from daemon.commands.control import _tell
 from daemon.config import Endpoints
 from daemon.errors import ConfigError
 from daemon.settings import config_of, resolve
@@ -129,6 +130,16 @@ def test_arming_is_waited_for_to_its_end_whatever_that_is(endpoints, states):
         left += states
         asyncio.run(arm())
         assert not left
+
+
+@pytest.mark.parametrize(("state", "status"), [("idle", 0), ("limp", 1), ("fault", 3)])
+def test_the_command_says_by_its_exit_status_whether_the_robot_is_armed(endpoints, capsys, state, status):
+    def answer(frame):
+        return [wire.encode(msgspec.structs.replace(STATE, id=wire.decode_ctl(frame).id, state=state))]
+
+    with talking(endpoints.ctl, answer), Client(endpoints) as robot:
+        assert _tell(robot, events.Ack(verb="arm", state="limp"), json=False) == status
+    assert ("broken off" in capsys.readouterr().out) == (state == "limp")
 
 
 def test_watching_a_silent_publisher_is_a_time_out(endpoints):

@@ -23,7 +23,7 @@ from daemon.keys import ZAP, Doorkeeper, KeyFolder, checked_key
 from tests.daemon.kinematic import generate
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 
-pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
+pytestmark = pytest.mark.realtime
 
 
 def pair_of_folders(tmp_path) -> tuple[KeyFolder, KeyFolder]:
