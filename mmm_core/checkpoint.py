@@ -19,6 +19,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 from tokenizers import Tokenizer as WordPieces
 from torch import Tensor, nn
+from torch.overrides import TorchFunctionMode
 
 from mmm_core.clip import ClipConfig, ClipText
 from mmm_core.errors import CheckpointError
@@ -102,15 +103,16 @@ def load_model(path: Path | None = None) -> Model:
     try:
         config = json.loads(metadata["config"])
         word_pieces = WordPieces.from_str(metadata["word_pieces"]) if "word_pieces" in metadata else None
-        model = Model(
-            tokenizer=_tokenizer(config["tokenizer"]),
-            transformer=MotionTransformer(TransformerConfig(**config["transformer"])),
-            length=LengthPredictor(config["transformer"]["text_dim"]) if config.get("length", True) else None,
-            scope=None,
-            provenance=json.loads(metadata["provenance"]),
-            text=ClipText(ClipConfig(**config["text"]), word_pieces) if "text" in config else None,
-            rest_pose=config.get("rest_pose", "mmmd"),
-        )
+        with _Uninitialised():
+            model = Model(
+                tokenizer=_tokenizer(config["tokenizer"]),
+                transformer=MotionTransformer(TransformerConfig(**config["transformer"])),
+                length=LengthPredictor(config["transformer"]["text_dim"]) if config.get("length", True) else None,
+                scope=None,
+                provenance=json.loads(metadata["provenance"]),
+                text=ClipText(ClipConfig(**config["text"]), word_pieces) if "text" in config else None,
+                rest_pose=config.get("rest_pose", "mmmd"),
+            )
         if "scope" in metadata:
             names = json.loads(metadata["scope"])
             vectors, weights = tensors.pop("scope.commands").float(), _with_prefix(tensors, "scope.classifier.")
@@ -123,6 +125,20 @@ def load_model(path: Path | None = None) -> Model:
     if model.scope is not None and model.scope.classifier is not None:
         _fill(model.scope.classifier, _with_prefix(tensors, "scope.classifier."), path, "scope.classifier.")
     return model
+
+
+class _Uninitialised(TorchFunctionMode):
+    """Modules made in it get no first weights: drawing those takes longer than reading the ones that take their place.
+
+    PyTorch's own ways do not serve: on the meta device an embedding's first weights bring in its compiler (1.4 s).
+    """
+
+    def __torch_function__(
+        self, func: Any, types: Any, args: tuple[Any, ...] = (), kwargs: dict[str, Any] | None = None
+    ) -> Any:
+        if getattr(func, "__module__", "") == nn.init.__name__:
+            return kwargs["tensor"] if kwargs and "tensor" in kwargs else args[0]
+        return func(*args, **(kwargs or {}))
 
 
 def _tokenizer(config: dict[str, Any]) -> Tokenizer | VqVae:
@@ -160,9 +176,8 @@ def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None,
     if not word_pieces.is_file():
         raise CheckpointError(word_pieces, "", "no such file", "the word pieces that belong to the text encoder")
     pieces = WordPieces.from_file(str(word_pieces))
-    with torch.device("meta"):  # random numbers for weights that are overwritten take longer than reading those
+    with _Uninitialised():
         encoder = MiniLm(MiniLmConfig(**json.loads(metadata["config"])), pieces, n_left_out)
-    encoder.to_empty(device="cpu")
     quantised = tensors.pop("word_embedding.bytes").float() * tensors.pop("word_embedding.scale").float()
     tensors["word_embedding.weight"] = quantised
     _fill(encoder, tensors, path, "")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -90,6 +92,22 @@ def test_seeds_and_lengths_out_of_range_are_refused(engine: Engine, bad: dict[st
 def test_the_understood_side_is_the_side_of_the_words(engine: Engine) -> None:
     assert "right" in engine.generate("wave with your right hand").understood
     assert "left" in engine.generate("wave with your left hand").understood
+
+
+def test_to_load_and_ask_it_brings_in_no_compiler() -> None:
+    """A generator that is started again is waited for; PyTorch's compiler alone takes longer to import than the model to load."""
+    asks = "import sys; from mmm_core.engine import Engine; Engine.load().generate('nod'); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", asks], capture_output=True, text=True, check=True)
+    modules = set(done.stdout.split())
+    assert "torch" in modules
+    assert not modules & {"torch._dynamo", "torch._inductor", "sympy"}
+
+
+def test_every_weight_is_the_files() -> None:
+    model, kept = load_model(), load_file(MODEL_FILE)
+    for prefix, module in model.modules.items():
+        for name, weight in module.state_dict().items():
+            assert torch.equal(weight, kept[f"{prefix}.{name}"].to(weight.dtype)), name
 
 
 def test_a_missing_checkpoint_is_named(tmp_path: Path) -> None:
