@@ -14,7 +14,7 @@ from pathlib import Path
 from daemon.bus.multi import RobotBus, open_bus
 from daemon.clock import RealClock
 from daemon.driving.cores import keep_to
-from daemon.driving.realtime import BUS_PRIORITY, lock_memory, take_fifo
+from daemon.driving.realtime import BUS_PRIORITY, give_back_fifo, lock_memory, take_fifo
 from daemon.driving.shared import BusLink
 from daemon.driving.starting import start
 from daemon.driving.streamer import Streamer
@@ -65,6 +65,7 @@ def main() -> int:
     try:
         streamer.run()
     finally:
+        give_back_fifo()  # what is left takes as long as it takes: no other robot's bus process shall wait for it
         streamer.close()
     return 0
 
@@ -82,7 +83,7 @@ def _end_with_parent(streamer: Streamer, parent_pid: int) -> None:
 
 def _take_rights() -> tuple[bool, bool]:
     """FIFO priority and locked memory, as far as this user may; what was granted."""
-    fifo, locked = take_fifo(BUS_PRIORITY), lock_memory()
+    locked, fifo = lock_memory(), take_fifo(BUS_PRIORITY)  # bringing all pages in takes long: not before others' cycles
     log.info(
         "FIFO priority %s, locked memory %s",
         "granted" if fifo else "not granted",

@@ -17,6 +17,7 @@ from daemon.client import Client, NoAnswerError
 from daemon.config import Endpoints
 from daemon.driving.realtime import BUS_PRIORITY, give_back_fifo
 from daemon.generator.messages import Generated
+from daemon.playing.waiting import SHADOW_S
 from daemon.wire.events import Done
 from sim.pty import PtyServer
 from tests.daemon.kinematic import KinematicGenerator, generate
@@ -73,6 +74,7 @@ class RunningDaemon:
             state = client.status().state
             if state == "moving":
                 client.stop()
+                time.sleep(2 * SHADOW_S)  # a text that cannot say when it was sent would count as one from before it
             elif state in ("fault", "estop"):
                 client.reset()
             if state in ("fault", "estop", "parking"):
