@@ -102,9 +102,7 @@ class Planner:
             at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
             return HandOver(at_rest, self._posture, None)
         ahead_s = max(self._lead.seconds, RETRY_MARGIN * took_s)
-        waiting = sum(p.limit - p.pushed for p in self._plans[:-1])  # of plans before, and what the bus has of them
-        before = waiting + max(0, self._link.queued_frames - plan.pushed)
-        frame = self._next_frame(plan) - 1 + max(0, self._cycles_within(ahead_s) - before)
+        frame = self._frame_within(plan, ahead_s)
         if isinstance(plan, StreamPlan):
             plan.extend(frame + 1)
         frame = max(0, min(frame, plan.n_frames - 1))
@@ -240,8 +238,7 @@ class Planner:
         plan = self.current
         if plan is None or not self.running:
             return replace(self.posture_now.at(np.zeros(n, np.intp)), fps=FPS)
-        ahead_s += self._lead.seconds
-        last = min(self._next_frame(plan) + round(ahead_s * self._rate_hz), plan.n_frames - 1)
+        last = min(self._frame_within(plan, ahead_s + self._lead.seconds), plan.n_frames - 1)
         places = [last - round(k * self._rate_hz / FPS) for k in reversed(range(n))]
         return replace(joined([plan.posture_from(place, 1) for place in places]), fps=FPS)
 
@@ -292,10 +289,13 @@ class Planner:
         """The frame of the newest plan that the bus process takes next."""
         return plan.pushed - min(self._link.queued_frames, plan.pushed)
 
-    def _cycles_within(self, ahead_s: float) -> int:
-        """How many setpoints the bus process takes until `ahead_s` from now, by when it took the last one."""
-        since_s = (time.monotonic() - self._view.goals_s) % (1.0 / self._rate_hz)
-        return math.floor((since_s + ahead_s) * self._rate_hz)
+    def _frame_within(self, plan: Plan, ahead_s: float) -> int:
+        """The last frame of the newest plan that the bus process takes until `ahead_s` from now; -1: none yet."""
+        since_s = (time.monotonic() - self._view.goals_s) % (1.0 / self._rate_hz)  # since it took the last one
+        cycles = math.floor((since_s + ahead_s) * self._rate_hz)
+        waiting = sum(p.limit - p.pushed for p in self._plans[:-1])  # of plans before, and what the bus has of them
+        before = waiting + max(0, self._link.queued_frames - plan.pushed)
+        return self._next_frame(plan) - 1 + max(0, cycles - before)
 
     def _end_at_hand_over(self) -> int:
         """Take back what of the running plan comes after the frame of the hand-over; how much of it is played already."""
