@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 
@@ -21,8 +22,9 @@ def take_fifo(priority: int) -> bool:
 
 
 def give_back_fifo() -> None:
-    """Normal priority for the calling thread."""
-    os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    """Normal priority for the calling thread, where it may ever have had another."""
+    with contextlib.suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 
 def may_fifo(priority: int) -> bool:
