@@ -146,6 +146,12 @@ def go_first(pid: int, flags: int = 0) -> None:
         os.sched_setscheduler(pid, os.SCHED_FIFO | flags, os.sched_param(BUS_PRIORITY))
 
 
+def go_last(pid: int) -> None:
+    """Normal priority again."""
+    with contextlib.suppress(OSError):
+        os.sched_setscheduler(pid, os.SCHED_OTHER, os.sched_param(0))
+
+
 @contextlib.contextmanager
 def served(server: PtyServer) -> Iterator[PtyServer]:
     """Simulated servos behind a tty, in a thread that goes first where that is allowed: late, they would be silent ones.

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from daemon.supervisor import log_file, log_path_error
-from tests.end_to_end.harness import MMMD, RunningDaemon, go_first, mmmd
+from tests.end_to_end.harness import MMMD, RunningDaemon, go_first, go_last, mmmd
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
@@ -26,16 +26,17 @@ class SimulatedTty:
             [*MMMD, "sim", "--robot", robot, "--link", str(self.link), "--audit", str(self.audit), "--baud", str(baud_of(robot))],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
-        go_first(self.process.pid)
         end_s = time.monotonic() + 20
         while not self.link.exists():
             assert time.monotonic() < end_s and self.process.poll() is None, "mmmd sim did not start"
             time.sleep(0.02)
+        go_first(self.process.pid)  # not while it starts: the bus processes of other tests would wait for it
 
     def url(self, baud: int) -> str:
         return f"dxl://{self.link}?baud={baud}"
 
     def close(self) -> int:
+        go_last(self.process.pid)  # it is about to count contacts
         self.process.send_signal(signal.SIGTERM)
         return self.process.wait(20)
 
