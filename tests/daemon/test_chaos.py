@@ -77,7 +77,7 @@ def within(seconds: float, what: str, condition: Callable[[], bool]) -> None:
 def bring_to(client: Client, state: str) -> None:
     """Lead the robot from anywhere to a state."""
     now = client.status().state
-    if now == "moving":  # which nothing else ends
+    if now in ("moving", "holding"):  # what moves without end, or is held up in it and about to go on
         client.stop()
     if now in ("fault", "estop"):
         client.reset()
