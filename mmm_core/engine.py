@@ -156,7 +156,7 @@ class Engine:
 
     def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
         """The same of several texts, read together; of a text that is kept in part the states are those of that part."""
-        states = self._read(texts)
+        states = self.read(texts)
         scope = self.model.scope
         if scope is None:
             return [(states.row(i), _without_scope(text)) for i, text in enumerate(texts)]
@@ -164,18 +164,18 @@ class Engine:
         clauses = [clauses_of(text) if scope.classifier is not None else [] for text in texts]
         read = [clause for several in clauses for clause in several]
         if read:
-            parts = map(scope.judge, read, self._read(read).sentence)
+            parts = map(scope.judge, read, self.read(read).sentence)
             verdicts = [
                 with_clauses(whole, several, list(islice(parts, len(several))))
                 for whole, several in zip(verdicts, clauses, strict=True)
             ]
         return [
-            (self._read([verdict.kept]) if verdict.kept else states.row(i), verdict)
+            (self.read([verdict.kept]) if verdict.kept else states.row(i), verdict)
             for i, verdict in enumerate(verdicts)
         ]
 
-    def _read(self, texts: list[str]) -> TextStates:
-        """States of the words of texts; of what has none, those of a full stop."""
+    def read(self, texts: list[str]) -> TextStates:
+        """States of texts as they stand, in scope or not; of one without words, those of a full stop."""
         return self.encoder.encode([without_pictures(text) or "." for text in texts])
 
     def predicted_frames(self, states: TextStates) -> int:

@@ -35,8 +35,8 @@ Row = dict[str, Interval]
 
 
 def text_states(engine: Engine, pairs: Sequence[Pair]) -> TextStates:
-    """States of the pairs' captions. Out of scope or not: a text of the split is measured as it is."""
-    return TextStates.stacked([states for states, _ in engine.understand_all([p.text for p in pairs])])
+    """States of the pairs' captions, as they stand: what a user would be refused, or get in part, is measured whole."""
+    return engine.read([p.text for p in pairs])
 
 
 def seeds_of(pairs: Sequence[Pair], first: int, seed: int) -> list[int]:

@@ -26,7 +26,7 @@ from mmm_core.evaluation.extractors import (
     save_evaluator,
 )
 from mmm_core.evaluation.pairs import Pair, pairs_for, read_pairs, to_our_rest_pose
-from mmm_core.evaluation.protocol import measure, measure_same, one_caption_each
+from mmm_core.evaluation.protocol import measure, measure_same, one_caption_each, text_states
 from mmm_core.evaluation.reader import Reader
 from mmm_core.evaluation.words import PARTS_OF_SPEECH, WordVectors, read_vectors
 from mmm_core.features import features_from_joints
@@ -232,6 +232,12 @@ class TestWhatFits:
         drawn = [one_caption_each(pairs, np.random.default_rng(seed)) for seed in range(40)]
         assert all([pairs[row].motion for row in rows] == [0, 1, 2, 3, 4] for rows in drawn)
         assert {row for rows in drawn for row in rows} == set(range(15))
+
+    def test_a_caption_is_measured_whole_though_a_part_of_it_would_be_done(self) -> None:
+        engine, text = Engine.load(threads=None), "clap your hands, then run away"
+        assert engine.understand(text)[1].kept == "clap your hands"
+        states = text_states(engine, [Pair(np.zeros((40, 263), np.float32), text, (), 0)])
+        assert torch.equal(states.words, engine.encoder.encode([text]).words)
 
     def test_motions_that_nothing_changes_are_measured_as_if_made_each_time(self) -> None:
         rng = np.random.default_rng(0)
