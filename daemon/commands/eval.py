@@ -16,7 +16,6 @@ from daemon.errors import CommandError
 if TYPE_CHECKING:
     from mmm_core.motion import Motion
 
-PROBE_ROBOTS = ("reference", "op3")
 EvalName = Literal["probes", "scope", "tokenizer", "real", "paper"]
 MIRRORED_SEEDS = 2
 """Seeds with which each probe that names a side is compared with its mirror image."""
@@ -29,6 +28,7 @@ def eval(
     name: Annotated[EvalName, tyro.conf.Positional],
     json: bool = False,
     seeds: int = 5,
+    robots: tuple[str, ...] = ("reference", "op3"),
     repeats: int = 20,
     data: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None,
     split: tuple[Literal["train", "val", "test"], ...] = (),
@@ -44,7 +44,7 @@ def eval(
     """Measure the model.
 
     probes: side, limb, count (within one) and direction of motions for commands in words it was not trained on, as
-    generated and as two robots' paths show them; and how far the mirrored text's motion is from the mirrored motion.
+    generated and as the paths of robots show them; and how far the mirrored text's motion is from the mirrored motion.
 
     scope: refusals on 487 prompts kept apart, half of which the model can do: AUROC of the score, false refusals, false
     acceptances by kind, milliseconds a decision (docs/scope.md).
@@ -60,6 +60,8 @@ def eval(
 
     Example: mmmd eval probes --json
 
+    Example: mmmd eval probes --seeds 1 --robots poppy_torso my_robot.toml
+
     Example: mmmd eval scope --json
 
     Example: mmmd eval real --data ../shared/data --json
@@ -71,6 +73,7 @@ def eval(
         name: what to evaluate.
         json: print one JSON object instead of lines.
         seeds: motions for each probe.
+        robots: names or robot files, each of which shows the probes' motions as well.
         repeats: of the whole measurement, for 95 % intervals.
         data: data folder (real, paper).
         split: splits to take; val and test of a clips.jsonl folder, else test.
@@ -86,7 +89,7 @@ def eval(
     from rich.console import Console
 
     if name == "probes":
-        figures, shown = _probes(model[0] if model else None, seeds)
+        figures, shown = _probes(model[0] if model else None, seeds, robots)
     elif name == "tokenizer":
         figures = shown = _tokenizer(model[0] if model else None)
     elif name == "scope":
@@ -108,7 +111,7 @@ def eval(
     return 0
 
 
-def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, Any]]:
+def _probes(model: Path | None, seeds: int, robots: Sequence[str]) -> tuple[dict[str, Any], dict[str, Any]]:
     """Every probe generated once for each seed; the same motions are then checked on each robot."""
     from rich.console import Console
     from rich.progress import Progress
@@ -122,6 +125,7 @@ def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, A
     from retarget.pipeline import Retargeter
     from retarget.robot import load_robot
 
+    retargeters = {name: Retargeter(load_robot(name)) for name in robots}
     engine = Engine.load(model)
     motions: dict[tuple[str, int], Motion] = {}
 
@@ -133,8 +137,7 @@ def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, A
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("generated", total=len(PROBES) * seeds)
         figures["generated"] = evaluate(generated, range(seeds), lambda n: bar.update(task, completed=n))
-        for name in PROBE_ROBOTS:
-            retargeter = Retargeter(load_robot(name))
+        for name, retargeter in retargeters.items():
 
             def on_robot(text: str, seed: int, retargeter: Retargeter = retargeter) -> Motion:
                 return shown_on_a_person(retargeter, motions[text, seed])
@@ -152,7 +155,7 @@ def _probes(model: Path | None, seeds: int) -> tuple[dict[str, Any], dict[str, A
         "path shows (retarget/as_human.py); refused counts as wrong"
     )
     figures |= {"n": figures["generated"]["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
-    return figures, {"generated": figures["generated"], **figures["retargeted"], "mirrored": figures["mirrored"]}
+    return figures, {"generated": figures["generated"], **figures.get("retargeted", {}), "mirrored": figures["mirrored"]}
 
 
 def _scope(model: Path | None) -> dict[str, Any]:

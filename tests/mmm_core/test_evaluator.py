@@ -390,3 +390,8 @@ class TestCommand:
     def test_bad_use_is_told(self, options: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
         assert main(["eval", "real", *options]) == 2
         assert message in capsys.readouterr().err
+
+    def test_the_probes_are_shown_by_robots_that_there_are(self, capfd: pytest.CaptureFixture[str]) -> None:
+        assert main(["eval", "probes", "--robots", "op3", "op9"]) == 2
+        told = capfd.readouterr().err
+        assert "op9" in told and "poppy_torso" in told
