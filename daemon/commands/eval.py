@@ -155,7 +155,11 @@ def _probes(model: Path | None, seeds: int, robots: Sequence[str]) -> tuple[dict
         "path shows (retarget/as_human.py); refused counts as wrong"
     )
     figures |= {"n": figures["generated"]["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
-    return figures, {"generated": figures["generated"], **figures.get("retargeted", {}), "mirrored": figures["mirrored"]}
+    return figures, {
+        "generated": figures["generated"],
+        **figures.get("retargeted", {}),
+        "mirrored": figures["mirrored"],
+    }
 
 
 def _scope(model: Path | None) -> dict[str, Any]:
