@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import Motion
-from mmm_core.skeleton import JOINT_NAMES, PARENTS, matrix_from_quat
+from mmm_core.skeleton import JOINT_NAMES, PARENTS, forward_kinematics, matrix_from_quat
 from retarget.errors import MotionError
 from retarget.kinematics import cross
 
@@ -42,7 +42,7 @@ class HumanPose:
         upper: (2, T, 3) unit directions of left and right upper arm in the chest frame.
         fore: (2, T, 3) of the forearms.
         forearm_twist_rad: (2, T).
-        chest_rotation: (T, 3, 3) chest against where the pelvis faces, upright.
+        chest_rotation: (T, 3, 3) chest against where the pelvis faces, upright; the identity for a person who stands upright.
         head_rotation: (T, 3, 3) head against the same.
     """
 
@@ -69,8 +69,8 @@ def read_human(motion: Motion) -> HumanPose:
         _refuse_bones(length)
     _refuse_another_order(every_m.mean(0).tolist())
     pelvis = _frame(joints[:, _L_HIP] - joints[:, _R_HIP], np.array([[0.0, 1, 0]]), "hips")
-    across = joints[:, _L_COLLAR] - joints[:, _R_COLLAR] + 0.5 * (joints[:, _L_SHOULDER] - joints[:, _R_SHOULDER])
-    chest = _frame(across, joints[:, _NECK] - joints[:, _SPINE1], "shoulders and spine")
+    across = _across(joints)
+    chest = _frame(across, joints[:, _NECK] - joints[:, _SPINE1], "shoulders and spine") @ _FROM_UPRIGHT
     to_pelvis = np.swapaxes(pelvis, -1, -2)
     relative = to_pelvis @ chest
     head = to_pelvis @ matrix_from_quat(motion.head_quat_wxyz.astype(np.float64))
@@ -118,3 +118,17 @@ def _frame(left: Array, up: Array, key: str) -> Array:
     x = left / np.linalg.norm(left, axis=-1, keepdims=True)
     z = z / np.linalg.norm(z, axis=-1, keepdims=True)
     return np.stack([x, cross(z, x), z], -1)
+
+
+def _across(joints: Array) -> Array:
+    """(T, 3) from right to left through the collar bones, which shoulders pull along by half."""
+    return joints[:, _L_COLLAR] - joints[:, _R_COLLAR] + 0.5 * (joints[:, _L_SHOULDER] - joints[:, _R_SHOULDER])
+
+
+def _from_upright() -> Array:
+    """(3, 3) that takes the spine's lean of a person who stands upright out of a chest frame: the neck is 3.4 degrees before it."""
+    joints, _ = forward_kinematics(np.broadcast_to(np.eye(3), (1, 22, 3, 3)), np.zeros((1, 3)))
+    return np.ascontiguousarray(_frame(_across(joints), joints[:, _NECK] - joints[:, _SPINE1], "")[0].T)
+
+
+_FROM_UPRIGHT = _from_upright()

@@ -6,12 +6,19 @@ import numpy as np
 import pytest
 
 from mmm_core.motion import Motion
-from mmm_core.skeleton import matrix_from_quat
+from mmm_core.skeleton import forward_kinematics, matrix_from_quat, quat_wxyz
 from retarget.as_human import joints_of_path
 from retarget.human import read_human
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
 from tests.retarget.random_motions import random_motion
+
+
+def trunk_joints(retargeter: Retargeter) -> list[int]:
+    """Where waist and neck stand among a robot's joints."""
+    found = [i for i, joint in enumerate(retargeter.robot.joints) if joint.role.startswith(("waist", "head", "neck"))]
+    assert found, retargeter.robot.name
+    return found
 
 
 @pytest.mark.parametrize("robot", ["reference", "op3"])
@@ -46,4 +53,21 @@ def test_reading_it_again_gives_the_path_again() -> None:
     for a, b in ((16, 18), (18, 20), (17, 19), (19, 21)):
         first, second = joints[:, b] - joints[:, a], joints_again[:, b] - joints_again[:, a]
         cosine = (first * second).sum(-1) / np.linalg.norm(first, axis=-1) / np.linalg.norm(second, axis=-1)
-        assert np.rad2deg(np.arccos(np.clip(cosine, -1, 1))).mean() < 6.0
+        assert np.rad2deg(np.arccos(np.clip(cosine, -1, 1))).mean() < 2.0
+    trunk = trunk_joints(retargeter)
+    np.testing.assert_allclose(np.rad2deg(again[:, trunk]), np.rad2deg(path.q_rad[:, trunk]), atol=0.5)
+
+
+@pytest.mark.parametrize("robot", ["reference", "poppy_torso", "toddlerbot", "op3"])
+def test_a_person_who_stands_upright_makes_an_upright_robot(robot: str) -> None:
+    """The neck of the skeleton stands before its spine; no waist is to bend for that, and no head to be lifted."""
+    retargeter = Retargeter(load_robot(robot))
+    standing, head = forward_kinematics(np.broadcast_to(np.eye(3), (5, 22, 3, 3)), np.zeros((5, 3)))
+    motion = Motion(
+        standing.astype(np.float32), 20.0, quat_wxyz(head[:, 15]).astype(np.float32), np.zeros((5, 2), np.float32),
+        np.zeros((5, 263), np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0,
+    )  # fmt: skip
+    human = read_human(motion)
+    np.testing.assert_allclose(human.chest_rotation, np.broadcast_to(np.eye(3), (5, 3, 3)), atol=1e-6)
+    q = retargeter.solve(human, None)
+    np.testing.assert_allclose(np.rad2deg(q[:, trunk_joints(retargeter)]), 0.0, atol=0.5)
