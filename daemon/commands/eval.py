@@ -6,6 +6,7 @@ import json as json_module
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -44,7 +45,8 @@ def eval(
     """Measure the model.
 
     probes: side, limb, count (within one) and direction of motions for commands in words it was not trained on, as
-    generated and as the paths of robots show them; and how far the mirrored text's motion is from the mirrored motion.
+    generated and as the paths of robots show them, of all and of what the robot has joints for (of_showable: what is seen on it
+    when the corpus itself performs the probe); and how far the mirrored text's motion is from the mirrored motion.
 
     scope: refusals on 487 prompts kept apart, half of which the model can do: AUROC of the score, false refusals, false
     acceptances by kind, milliseconds a decision (docs/scope.md).
@@ -121,6 +123,7 @@ def _probes(model: Path | None, seeds: int, robots: Sequence[str]) -> tuple[dict
     from mmm_core.engine import Engine
     from mmm_core.evaluation.mirrored import mirrored_figures
     from mmm_core.evaluation.probes import evaluate
+    from mmm_core.evaluation.showable import showable
     from retarget.as_human import shown_on_a_person
     from retarget.pipeline import Retargeter
     from retarget.robot import load_robot
@@ -142,8 +145,10 @@ def _probes(model: Path | None, seeds: int, robots: Sequence[str]) -> tuple[dict
             def on_robot(text: str, seed: int, retargeter: Retargeter = retargeter) -> Motion:
                 return shown_on_a_person(retargeter, motions[text, seed])
 
+            bar.reset(task, description=f"what {name} can show", total=len(PROBES))
+            can = showable(partial(shown_on_a_person, retargeter), lambda n: bar.update(task, completed=n))
             bar.reset(task, description=name, total=len(PROBES) * seeds)
-            found = evaluate(on_robot, range(seeds), lambda n: bar.update(task, completed=n))
+            found = evaluate(on_robot, range(seeds), lambda n: bar.update(task, completed=n), can)
             figures.setdefault("retargeted", {})[name] = found
 
     def again(text: str, seed: int) -> Motion:

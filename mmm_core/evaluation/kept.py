@@ -32,6 +32,7 @@ LEAST_HEAD_YAW = 0.9
 LEAST_COUNTS = 0.97
 """Share of counted motions whose strokes are the same within one."""
 N_EACH = 8
+_MOST_DRAWS = 100
 
 
 def shown(features: Features) -> Shown:
@@ -51,10 +52,10 @@ def performed(probe: Probe, seed: int) -> Features:
         tempo = {"slow": 0.65, "fast": 1.4}.get(p.tempo, 1.0)
         return Gesture(p.family, side, count, where, tempo=tempo, hold_s=p.hold_s)
 
-    asked = (probe, probe.then) if probe.then else (probe,)
-    clip = synthesise_spec(ClipSpec(tuple(gesture(p) for p in asked)), np.random.default_rng(seed))
-    assert clip is not None, probe.text
-    return clip.features
+    spec = ClipSpec(tuple(gesture(p) for p in ((probe, probe.then) if probe.then else (probe,))))
+    rng = np.random.default_rng(seed)
+    drawn = (synthesise_spec(spec, rng) for _ in range(_MOST_DRAWS))  # a slow one is longer than a clip may be
+    return next(clip for clip in drawn if clip is not None).features
 
 
 def tokenizer_figures(tokenizer: Tokenizer) -> dict[str, Any]:

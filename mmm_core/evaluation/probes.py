@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from mmm_core.corpus.heldout import PROBES, Probe
@@ -61,10 +61,17 @@ def _is_seen(probe: Probe, shown: Shown) -> bool:
 
 
 def evaluate(
-    generate: Generate, seeds: Sequence[int], progress: Callable[[int], None] = lambda _n: None
+    generate: Generate,
+    seeds: Sequence[int],
+    progress: Callable[[int], None] = lambda _n: None,
+    showable: Mapping[str, frozenset[str]] | None = None,
 ) -> dict[str, Any]:
-    """Shares of expectations met over all probes and seeds, refused ones counted as not met, and the worst texts."""
+    """Shares of expectations met over all probes and seeds, refused ones counted as not met, and the worst texts.
+
+    With `showable` (`showable.py`) the same for those expectations alone that a robot can meet, as "of_showable".
+    """
     met: dict[str, list[bool]] = defaultdict(list)
+    could: dict[str, list[bool]] = defaultdict(list)
     misses: dict[str, int] = defaultdict(int)
     refused = done = 0
     for probe in PROBES:
@@ -79,13 +86,23 @@ def evaluate(
                 verdict = dict.fromkeys(_expectations(probe), False)
             for key, ok in verdict.items():
                 met[key].append(ok)
+                if showable is not None and key in showable[probe.text]:
+                    could[key].append(ok)
                 misses[probe.text] += not ok and key != "count_exact"
             done += 1
             progress(done)
-    shares = {key: round(sum(values) / len(values), 4) for key, values in sorted(met.items())}
     worst = sorted(((n, text) for text, n in misses.items() if n), reverse=True)[:12]
-    sizes = {key: len(values) for key, values in sorted(met.items())}
-    return {**shares, "n": len(PROBES) * len(seeds), "n_each": sizes, "refused": refused, "most_missed": worst}
+    of_showable = {"of_showable": {**_shares(could), "n_each": _sizes(could)}} if showable is not None else {}
+    counts = {"n": len(PROBES) * len(seeds), "n_each": _sizes(met), "refused": refused}
+    return {**_shares(met), **of_showable, **counts, "most_missed": worst}
+
+
+def _shares(met: Mapping[str, Sequence[bool]]) -> dict[str, float]:
+    return {key: round(sum(values) / len(values), 4) for key, values in sorted(met.items())}
+
+
+def _sizes(met: Mapping[str, Sequence[bool]]) -> dict[str, int]:
+    return {key: len(values) for key, values in sorted(met.items())}
 
 
 def _expectations(probe: Probe) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,10 +15,14 @@ from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthe
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.evaluation import checks
 from mmm_core.evaluation.kept import performed, shown
-from mmm_core.evaluation.probes import judge
+from mmm_core.evaluation.probes import evaluate, judge
+from mmm_core.evaluation.showable import as_motion, showable
 from mmm_core.evaluation.signs import shows
 from mmm_core.features import mirror
 from mmm_core.shown import Shown
+from retarget.as_human import shown_on_a_person
+from retarget.pipeline import Retargeter
+from retarget.robot import load_robot
 
 LIMB_FAMILIES = (
     "wave", "raise", "point", "clap", "bow", "nod", "shake_head", "look", "tilt_head", "lean",
@@ -245,3 +250,25 @@ def test_standing_still_and_the_mirror_image_fail_the_suite() -> None:
     assert not any(all(judge(p, still, with_pose=True).values()) for p in PROBES)
     one_sided = [p for p in PROBES if p.side in ("left", "right") and p.then is None]
     assert not any(judge(p, shown(mirror(performed(p, i))))["side"] for i, p in enumerate(one_sided))
+
+
+def test_what_a_robot_can_show_is_told_apart_from_what_was_understood() -> None:
+    texts = ("bow deeply before the queen", "do two bows", "left arm up", "wag your head no")
+    some = [p for p in PROBES if p.text in texts]
+    on_a_person = showable(lambda motion: motion, probes=some)
+    assert on_a_person["do two bows"] == {"limb", "pose", "count", "count_exact"}
+    assert on_a_person["left arm up"] == {"limb", "pose", "side"}
+    without_a_waist = showable(partial(shown_on_a_person, Retargeter(load_robot("op3"))), probes=some)
+    assert not without_a_waist["bow deeply before the queen"], "OP3 has no waist"
+    assert without_a_waist["left arm up"] >= {"limb", "side"} and "limb" in without_a_waist["wag your head no"]
+
+
+def test_an_expectation_that_cannot_be_shown_is_counted_in_all_and_not_in_what_can() -> None:
+    standing = synthesise_spec(ClipSpec((Gesture("stand"),)), np.random.default_rng(0))
+    assert standing is not None
+    still = as_motion(standing.features)
+    limbs = {p.text: frozenset({"limb"} if p.then is None and p.limb == "arm" else ()) for p in PROBES}
+    figures = evaluate(lambda _text, _seed: still, (0,), showable=limbs)
+    assert figures["limb"] == figures["of_showable"]["limb"] == 0, "a person who stands shows no limb"
+    assert figures["of_showable"]["n_each"] == {"limb": sum("limb" in keys for keys in limbs.values())}
+    assert figures["n_each"]["limb"] > figures["of_showable"]["n_each"]["limb"]
