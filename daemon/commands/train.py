@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from mmm_core.training.recipe import Recipe
     from mmm_core.training.run import Run
 
-Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator", "scope", "ablation"]
+Stage = Literal["all", "tokenizer", "transformer", "length", "evaluator", "scope", "average", "ablation"]
 
 
 def train(
@@ -27,12 +27,14 @@ def train(
     data: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None,
     run_dir: Annotated[Path | None, tyro.conf.arg(aliases=["--run"])] = None,
     out: Path | None = None,
+    seed: int | None = None,
     device: str = "cpu",
     precision: Literal["fp32", "bf16"] = "fp32",
     threads: int = 1,
     sample_every: int = 500,
     tensorboard: bool = False,
     variant: tuple[str, ...] = (),
+    models: tuple[Path, ...] = (),
 ) -> int:
     """Train a model, or one stage of it with what it needs, from one TOML recipe.
 
@@ -49,28 +51,34 @@ def train(
 
     Example, only the scope of a finished run anew: mmmd train scope --run runs/compact --out model.safetensors
 
+    Example, the mean of models with one start: mmmd train average --models a.safetensors b.safetensors --out c.safetensors
+
     Example, one choice of the recipe changed at a time: mmmd train ablation --data DIR --precision bf16 --run runs/ablation
 
     Example, two processes: torchrun --nproc-per-node 2 -m daemon.cli train --config my.toml --run-dir runs/my
 
     Args:
         stage: all of them and a checkpoint, or one; scope builds what refusals rest on again for the run's checkpoint;
-            ablation trains variants of a recipe and prints what the probes and real captions say of each.
+            average writes the mean of --models; ablation trains variants of a recipe and prints what the probes and real
+            captions say of each.
         config: name of a recipe that ships, or a TOML file (docs/training.md); compact, or ablation for that stage.
         data: folder with clips.jsonl, or a HumanML3D or KIT-ML folder; stands for the recipe's data.folder.
         run_dir: folder of the run: corpus, states, CSV logs, samples; runs/NAME when it is not given.
         out: checkpoint to write after all stages; model.safetensors in the run's folder when it is not given.
+        seed: of clips and draws, instead of the recipe's; another needs a run folder of its own.
         device: cpu, cuda or cuda:N.
         precision: of matrix products.
         threads: CPU threads.
         sample_every: steps between pictures in the run's samples/; 0 for none.
         tensorboard: write TensorBoard events as well (extra `train`).
         variant: names of variants (ablation); all when none is given.
+        models: checkpoints, two or more, of which the mean is taken (average).
     """
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     import torch
 
     from mmm_core import distributed
+    from mmm_core.training.averaging import average_models
     from mmm_core.training.recipe import read_recipe
     from mmm_core.training.run import Run
     from mmm_core.training.stages import Stages, make_model, renew_scope
@@ -78,9 +86,19 @@ def train(
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     torch.set_num_threads(threads)
     config = config or ("ablation" if stage == "ablation" else "compact")
-    recipe = read_recipe(config)
+    recipe = read_recipe(config, seed)
     if variant and stage != "ablation":
         raise CommandError(f"train {stage}: --variant is for `mmmd train ablation`")
+    if (stage == "average") != bool(models):
+        raise CommandError(f"train {stage}: --models is for `mmmd train average`, which needs two of them or more")
+    if stage == "average":
+        if len(models) < 2 or out is None:
+            raise CommandError(
+                "train average: --models A B ... --out F: two checkpoints or more, and where the mean goes"
+            )
+        average_models(models, out)
+        sys.stdout.write(f"{out}\n")
+        return 0
     if stage == "tokenizer" and recipe.start:
         raise CommandError(
             f"train tokenizer: {config} goes on from {recipe.start}, whose tokenizer stays; train another stage"

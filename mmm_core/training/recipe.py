@@ -175,8 +175,8 @@ def known_recipes() -> list[str]:
     return sorted(p.stem for p in RECIPES.glob("*.toml"))
 
 
-def read_recipe(name_or_path: str) -> Recipe:
-    """A recipe by its name, or from a TOML file.
+def read_recipe(name_or_path: str, seed: int | None = None) -> Recipe:
+    """A recipe by its name, or from a TOML file; `seed`, where given, stands for the recipe's.
 
     Raises:
         TrainingDataError: no such recipe, not TOML, an unknown key or a value of another kind; each is named.
@@ -191,7 +191,7 @@ def read_recipe(name_or_path: str) -> Recipe:
         raise TrainingDataError(path, "", "no such recipe", expected) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise TrainingDataError(path, "", f"not TOML ({error})", "a recipe, see docs/training.md") from None
-    return _build(Recipe(), table, path, "").seeded()
+    return _build(Recipe(), table if seed is None else {**table, "seed": seed}, path, "").seeded()
 
 
 def _build(default: Any, table: dict[str, Any], path: Path, prefix: str) -> Any:

@@ -156,6 +156,55 @@ def test_a_recipe_goes_on_from_a_finished_model(tmp_path: Path, capsys: pytest.C
     assert "whose tokenizer stays" in capsys.readouterr().err
 
 
+def test_the_mean_of_models_that_went_on_from_one_start(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first = small(tmp_path / "first.toml")
+    assert main(["train", "--config", str(first), "--run", str(tmp_path / "first"), "--sample-every", "0"]) == 0
+    start, made = tmp_path / "first" / "model.safetensors", []
+    for seed in (4, 5):
+        config = tmp_path / "on.toml"
+        config.write_text(f'start = "{start}"\n{first.read_text()}')
+        made.append(tmp_path / f"{seed}.safetensors")
+        command = [
+            "train",
+            "--config",
+            str(config),
+            "--seed",
+            str(seed),
+            "--run",
+            str(tmp_path / f"{seed}"),
+            "--sample-every",
+            "0",
+        ]
+        assert main([*command, "--out", str(made[-1])]) == 0
+    out = tmp_path / "mean.safetensors"
+    assert main(["train", "average", "--models", *map(str, made), "--out", str(out)]) == 0
+    a, b, mean = (load_model(p) for p in (*made, out))
+    assert not torch.equal(a.transformer.head.weight, b.transformer.head.weight)
+    for part in ("transformer", "length", "tokenizer"):
+        states = [m.modules[part].state_dict() for m in (a, b, mean)]
+        for name, tensor in states[2].items():
+            torch.testing.assert_close(
+                tensor, ((states[0][name] + states[1][name]) / 2).to(tensor.dtype), atol=1e-3, rtol=1e-3
+            )
+    assert a.scope is not None and mean.scope is not None and torch.equal(a.scope.vectors, mean.scope.vectors)
+    assert [m["seed"] for m in mean.provenance["average_of"]] == [4, 5]
+    assert mean.provenance["data"] == a.provenance["data"], "named once"
+    assert len(Engine.load(out).generate("wave with your right hand", seed=1, seconds=1).motion.joints_m) == 20
+
+    other = tmp_path / "other.safetensors"
+    save_model(other, load_model())
+    assert main(["train", "average", "--models", str(out), str(other), "--out", str(tmp_path / "no")]) == 1
+    assert f"{other}: key 'transformer'" in capsys.readouterr().err
+    elsewhere = ["train", "--config", str(first), "--seed", "6", "--run", str(tmp_path / "elsewhere")]
+    assert main([*elsewhere, "--sample-every", "0"]) == 0
+    made_elsewhere = tmp_path / "elsewhere" / "model.safetensors"
+    assert main(["train", "average", "--models", str(out), str(made_elsewhere), "--out", str(tmp_path / "no")]) == 1
+    assert f"{made_elsewhere}: key 'tokenizer'" in capsys.readouterr().err
+    for wrong in (["average"], ["average", "--models", str(out)], ["scope", "--models", str(out)]):
+        assert main(["train", *wrong]) == 2
+    assert not (tmp_path / "no").exists()
+
+
 def test_the_last_layers_of_the_text_encoder_become_the_models_own(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
