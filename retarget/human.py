@@ -127,7 +127,8 @@ def _across(joints: Array) -> Array:
 
 def _from_upright() -> Array:
     """(3, 3) that takes the spine's lean of a person who stands upright out of a chest frame: the neck is 3.4 degrees before it."""
-    joints, _ = forward_kinematics(np.broadcast_to(np.eye(3), (1, 22, 3, 3)), np.zeros((1, 3)))
+    standing, _ = forward_kinematics(np.broadcast_to(np.eye(3), (1, 22, 3, 3)), np.zeros((1, 3)))
+    joints = standing.astype(np.float64)
     return np.ascontiguousarray(_frame(_across(joints), joints[:, _NECK] - joints[:, _SPINE1], "")[0].T)
 
 
