@@ -58,6 +58,12 @@ def normalise(v: Array) -> Array:
     return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)
 
 
+def across_shoulders(joints_m: Array) -> Array:
+    """(..., 3) from right to left of (..., 22, 3) joints, through the collar bones, which shoulders pull along by half."""
+    collars = joints_m[..., 13, :] - joints_m[..., 14, :]
+    return collars + 0.5 * (joints_m[..., 16, :] - joints_m[..., 17, :])
+
+
 def rotation_y(angle_rad: Array) -> Array:
     """(..., 3, 3) rotations about the vertical by `angle_rad` (...); positive turns z towards x, the person's left."""
     c, s, o = np.cos(angle_rad), np.sin(angle_rad), np.zeros_like(angle_rad)

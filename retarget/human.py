@@ -11,14 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import Motion
-from mmm_core.skeleton import JOINT_NAMES, PARENTS, forward_kinematics, matrix_from_quat
+from mmm_core.skeleton import JOINT_NAMES, PARENTS, across_shoulders, forward_kinematics, matrix_from_quat
 from retarget.errors import MotionError
 from retarget.kinematics import cross
 
 Array = NDArray[np.float64]
 _TO_ROBOT = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])
 _L_HIP, _R_HIP, _SPINE1, _NECK = 1, 2, 3, 12
-_L_COLLAR, _R_COLLAR, _L_SHOULDER, _R_SHOULDER = 13, 14, 16, 17
 SIDES = ("left", "right")
 _ABOVE = np.array(PARENTS[1:], np.int64)
 _ARMS = slice(17, 21)
@@ -69,7 +68,7 @@ def read_human(motion: Motion) -> HumanPose:
         _refuse_bones(length)
     _refuse_another_order(every_m.mean(0).tolist())
     pelvis = _frame(joints[:, _L_HIP] - joints[:, _R_HIP], np.array([[0.0, 1, 0]]), "hips")
-    across = _across(joints)
+    across = across_shoulders(joints)
     chest = _frame(across, joints[:, _NECK] - joints[:, _SPINE1], "shoulders and spine") @ _FROM_UPRIGHT
     to_pelvis = np.swapaxes(pelvis, -1, -2)
     relative = to_pelvis @ chest
@@ -120,16 +119,11 @@ def _frame(left: Array, up: Array, key: str) -> Array:
     return np.stack([x, cross(z, x), z], -1)
 
 
-def _across(joints: Array) -> Array:
-    """(T, 3) from right to left through the collar bones, which shoulders pull along by half."""
-    return joints[:, _L_COLLAR] - joints[:, _R_COLLAR] + 0.5 * (joints[:, _L_SHOULDER] - joints[:, _R_SHOULDER])
-
-
 def _from_upright() -> Array:
     """(3, 3) that takes the spine's lean of a person who stands upright out of a chest frame: the neck is 3.4 degrees before it."""
     standing, _ = forward_kinematics(np.broadcast_to(np.eye(3), (1, 22, 3, 3)), np.zeros((1, 3)))
     joints = standing.astype(np.float64)
-    return np.ascontiguousarray(_frame(_across(joints), joints[:, _NECK] - joints[:, _SPINE1], "")[0].T)
+    return np.ascontiguousarray(_frame(across_shoulders(joints), joints[:, _NECK] - joints[:, _SPINE1], "")[0].T)
 
 
 _FROM_UPRIGHT = _from_upright()

@@ -51,9 +51,12 @@ def read_amc(path: Path, fps: float | None = None) -> Motion:
         raise MotionFileError(asf, ", ".join(missing), "no such bones", "the bones of CMU's skeletons")
     places, turns = _pose(bones, parents, frames)
     rest, _ = _pose(bones, parents, {"root": np.zeros((1, 6))})
-    joints = {ours: places[bone] for ours, bone in _ENDS.items()} | {"pelvis": places["root"]}
-    facing = rest_frame({ours: rest[bone][0] for ours, bone in _ENDS.items()} | {"pelvis": rest["root"][0]})
-    return motion_of(path, joints, turns["head" if "head" in bones else "upperneck"] @ facing, fps or CMU_FPS)
+    joints, standing = (
+        {ours: pose[bone] for ours, bone in _ENDS.items()} | {"pelvis": pose["root"]} for pose in (places, rest)
+    )
+    facing = rest_frame({ours: place[0] for ours, place in standing.items()})
+    head = turns["head" if "head" in bones else "upperneck"] @ facing
+    return motion_of(path, joints, head, fps or CMU_FPS, rest=standing)
 
 
 def skeleton_of(path: Path) -> Path:

@@ -58,7 +58,7 @@ def read_bvh(path: Path, fps: float | None = None) -> Motion:
     head = turns[found["head"]] @ facing if "head" in found else None
     return motion_of(
         path, {name: places[j] @ upright.T for name, j in found.items()}, None if head is None else upright @ head,
-        1 / frame_time_s if fps is None else fps,
+        1 / frame_time_s if fps is None else fps, rest={name: rest[j] @ upright.T for name, j in found.items()},
     )  # fmt: skip
 
 

@@ -14,13 +14,18 @@ from mmm_core.motion import FPS, N_FEATURES, Motion
 from mmm_core.skeleton import (
     BONE_LENGTHS_M,
     JOINT_NAMES,
+    across_shoulders,
     facing_yaw_rad,
     forward_kinematics,
     local_rotations,
+    normalise,
     quat_wxyz,
 )
 
 Array = NDArray[np.float64]
+_SPINE1, _NECK, _HEAD = 3, 12, 15
+_MOST_LEAN_RAD = 0.5
+"""More is not the shape of a spine but a rest pose that bends."""
 _ARM_M = float(BONE_LENGTHS_M[18] + BONE_LENGTHS_M[20])
 
 # Names as CMU's BVH conversions, Mixamo, DAZ and SMPL write them, without signs; the earlier in a row the better. A row
@@ -79,17 +84,26 @@ def find_joints(path: Path, names: Sequence[str], parents: Sequence[int]) -> dic
 
 
 def motion_of(
-    path: Path, places: Mapping[str, Array], head_rotation: Array | None, fps: float, *, unit_known: bool = False
+    path: Path,
+    places: Mapping[str, Array],
+    head_rotation: Array | None,
+    fps: float,
+    *,
+    rest: Mapping[str, Array] | None = None,
+    unit_known: bool = False,
 ) -> Motion:
     """A motion of 20 fps from places (T, 3) of our joints by name, y up.
 
-    Joints left out are put where a person's would be. Without `unit_known`, lengths are scaled to a person's arms. Without
+    Joints left out are put where a person's would be. `rest` is (1, 3) places of the same joints in the skeleton's rest pose,
+    upright; without it the skeleton is ours. Without `unit_known`, lengths are scaled to a person's arms. Without
     `head_rotation` (T, 3, 3) the head follows the neck.
 
     Raises:
         MotionFileError: values that are not finite, arms without length, or no frames; the first frame is named.
     """
     joints = _all_joints(places)
+    if rest is not None:
+        joints = _leaning_as_ours(joints, _all_joints(rest))
     if len(joints) == 0:
         raise MotionFileError(path, "frames", "none", "at least one frame")
     bad = ~np.isfinite(joints).all((1, 2))
@@ -133,6 +147,31 @@ def _all_joints(places: Mapping[str, Array]) -> Array:
     return np.stack([np.asarray(p[name], np.float64) for name in JOINT_NAMES], 1)
 
 
+def _leaning_as_ours(joints: Array, rest: Array) -> Array:
+    """Neck and head of (T, 22, 3) joints turned about the first joint of the spine, so that upright is upright.
+
+    A chest is read off its spine and neck. Our skeleton's neck stands 3.4 degrees before its spine when the person is upright;
+    theirs stands as (1, 22, 3) `rest` says, unless that is no standing person.
+    """
+    turn_rad = _LEAN_RAD - _lean_rad(rest)
+    if abs(turn_rad) > _MOST_LEAN_RAD:
+        return joints
+    left = normalise(across_shoulders(joints))
+    up = joints[:, _NECK] - joints[:, _SPINE1]
+    along = left * (left * up).sum(-1, keepdims=True)
+    turned = along + np.cos(turn_rad) * (up - along) + np.sin(turn_rad) * np.cross(left, up)
+    moved = joints.copy()
+    moved[:, (_NECK, _HEAD)] += (turned - up)[:, None]
+    return moved
+
+
+def _lean_rad(standing: Array) -> float:
+    """How far before its spine the neck of (1, 22, 3) upright joints is."""
+    left, up = across_shoulders(standing)[0], standing[0, _NECK] - standing[0, _SPINE1]
+    forward = normalise(np.cross(left, [0.0, 1, 0]))
+    return float(np.arctan2(up @ forward, up[1]))
+
+
 def _at_our_rate(joints: Array, head: Array | None, fps: float) -> tuple[Array, Array | None]:
     """The motion at 20 fps: positions between frames by lines, the head's orientation from the nearest frame."""
     if fps == FPS or len(joints) == 1:
@@ -153,3 +192,8 @@ def rest_frame(places: Mapping[str, Array]) -> Array:
     z = np.cross(x, up)
     z = z / np.linalg.norm(z)
     return np.stack([x, np.cross(z, x), z], -1)
+
+
+_LEAN_RAD = _lean_rad(
+    np.asarray(forward_kinematics(np.eye(3)[None, None].repeat(22, 1), np.zeros((1, 3)))[0], np.float64)
+)

@@ -122,6 +122,23 @@ def test_a_bvh_with_cmus_names_points_where_its_angles_say(tmp_path: Path, facin
     np.testing.assert_allclose(human.head_rotation[0], np.eye(3), atol=1e-6)
 
 
+@pytest.mark.parametrize("neck_before_spine", [-2.0, 0.0, 1.0, 3.0])
+@pytest.mark.parametrize("bow_deg", [0.0, 30.0])
+def test_whoever_stands_upright_is_upright_however_the_neck_is_set(
+    tmp_path: Path, neck_before_spine: float, bow_deg: float
+) -> None:
+    """The neck of a skeleton stands before or behind its spine; only what the person bends is a bend."""
+    text = bvh_frames(0, 0).replace("JOINT Neck { OFFSET 0 6 0", f"JOINT Neck {{ OFFSET 0 6 {neck_before_spine}")
+    values = text.splitlines()[-1].split()
+    names = [w for before, w in zip(["", *text.split()], text.split(), strict=False) if before in ("ROOT", "JOINT")]
+    values[3 + 3 * names.index("Spine") + 2] = str(bow_deg)
+    (tmp_path / "t.bvh").write_text(text.replace(text.splitlines()[-1], " ".join(values)))
+    chest = read_human(read_motion(tmp_path / "t.bvh")).chest_rotation[0]
+    bow = np.deg2rad(bow_deg)
+    forward_up = [[np.cos(bow), 0, np.sin(bow)], [0, 1, 0], [-np.sin(bow), 0, np.cos(bow)]]  # about y, the left
+    np.testing.assert_allclose(chest, forward_up, atol=1e-6)
+
+
 ASF = """:version 1.10
 :units
  mass 1.0
