@@ -27,8 +27,8 @@ from mmm_core.tokens import FRAMES_PER_TOKEN
 if TYPE_CHECKING:
     from mmm_core.engine import Engine
 
-OPENING_TOKENS = 3
-"""0.6 s: longer than a motion usually takes to be made and gone over to; what it does to the probes: docs/model.md."""
+OPENING_TOKENS = 2
+"""0.4 s: longer than a motion usually takes to be made and gone over to; what it does to the probes: docs/model.md."""
 CANDIDATES_TO_COUNT = 2
 """More take longer and keep a number within one no more often (docs/model.md)."""
 CANDIDATE_STRIDE = 7_919_999
@@ -71,7 +71,7 @@ class Making:
     def draft(self) -> Generation | None:
         """What can be played at once: the first command after a single step; None where there is no motion or no opening.
 
-        Its first 0.6 s are those of the motion, but for what the tokens after them change in their last frames.
+        Its first 0.4 s are those of the motion, but for what the tokens after them change in their last frames.
         """
         if not self.settings.opening or not self._commands:
             return None
@@ -95,7 +95,7 @@ class Making:
     @cached_property
     def _draft_ids(self) -> Tensor:
         """(n_tokens, C) ids of the first command after one step."""
-        command, one_step = self._commands[0], replace(self.settings, fewest_steps=1, most_steps=1)
+        command, one_step = self._commands[0], replace(self.settings, steps=1)
         return self._fill(
             command, [empty_row(self._engine.model.transformer, command.n_tokens)], [self._seed], one_step
         )[0]

@@ -44,7 +44,7 @@ def ids_of_count(engine: Engine, command: Command, made: Sequence[Tensor], count
     ]
     ids, strokes = min(zip(made, map(strokes_of, motions), strict=True), key=lambda pair: _far_from(count, pair[1]))
     row = None if strokes is None else with_count(ids, strokes, count, transformer.ids.mask)
-    at_once = replace(engine.settings, fewest_steps=1, most_steps=1)
+    at_once = replace(engine.settings, steps=1)
     return ids if row is None else fill(transformer, command.states, [row], [seed], at_once)[0]
 
 

@@ -25,31 +25,23 @@ class SamplingSettings:
     """How the model is asked.
 
     Attributes:
-        fewest_steps: decoding steps at least.
-        most_steps: decoding steps at most.
-        steps_per_token: decoding steps for each token of the motion, between the two.
+        steps: decoding steps, fewer where there are fewer tokens to fill.
         temperature: randomness; 0 always takes the likeliest id.
         guidance: how much the text is stressed; 1 is the plain model, above it a second pass without text is subtracted.
         schedule: how the masked share falls.
         opening: tokens at the beginning that stay as the first step gives them, so that playing may begin (`mmm_core.making`).
-        official: the released sampler's steps (`schedule.official_counts`) instead of the three numbers above.
+        official: the released sampler's steps (`schedule.official_counts`) with `steps` for the longest motion.
     """
 
-    fewest_steps: int = 3
-    most_steps: int = 6
-    steps_per_token: float = 0.08
+    steps: int = 4
     temperature: float = 0.5
     guidance: float = 1.0
     schedule: Schedule = "cosine"
     opening: int = 0
     official: bool = False
 
-    def n_steps(self, n_tokens: int) -> int:
-        """Decoding steps for a motion of `n_tokens`."""
-        return min(self.most_steps, max(self.fewest_steps, round(self.steps_per_token * n_tokens)))
 
-
-OFFICIAL_SAMPLING = SamplingSettings(fewest_steps=10, most_steps=10, temperature=0.0, official=True)
+OFFICIAL_SAMPLING = SamplingSettings(steps=10, temperature=0.0, official=True)
 """The released generator: ten steps, arg-max. Its evaluation takes temperature 1; its upper-body editor twenty steps."""
 
 
@@ -110,7 +102,7 @@ def fill(
     n_open = [int((row[:, :n_predicted] == ids.mask).any(-1).sum()) for row in rows]
     counts = [_counts(n, len(row), settings, early_exit=len(rows) == 1 and n_predicted == transformer.config.n_codebooks)
               for n, row in zip(n_open, rows, strict=True)]  # fmt: skip
-    how = DecodeSettings(settings.most_steps, settings.schedule, settings.temperature, settings.opening)
+    how = DecodeSettings(settings.steps, settings.schedule, settings.temperature, settings.opening)
     filled = decode(batch, logits_fn, ids.mask, how, list(seeds), n_predicted=n_predicted, counts=counts, noise=noise)
     return [filled[i, : len(row)] for i, row in enumerate(rows)]
 
@@ -118,10 +110,10 @@ def fill(
 def _counts(n_open: int, n_tokens: int, settings: SamplingSettings, *, early_exit: bool) -> list[int]:
     """Masked positions before each step of a row, whatever its neighbours are."""
     if not settings.official:
-        return masked_counts(n_open, settings.n_steps(n_open), settings.schedule)
+        return masked_counts(n_open, settings.steps, settings.schedule)
     if not n_open:
         return []
-    return official_counts(n_open, n_tokens, max_steps=settings.most_steps, early_exit=early_exit)
+    return official_counts(n_open, n_tokens, max_steps=settings.steps, early_exit=early_exit)
 
 
 def pseudo_log_likelihood(transformer: MotionTransformer, text: TextStates, rows: Sequence[Tensor]) -> Tensor:

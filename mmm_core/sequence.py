@@ -96,7 +96,7 @@ def transitions(engine: Engine, rows: Sequence[Tensor], texts: Sequence[TextStat
         return []
     transformer = engine.model.transformer
     holes = [transition_row(a, b, transformer.ids.mask) for a, b in pairwise(rows)]
-    settings = replace(engine.settings, fewest_steps=1, most_steps=1)
+    settings = replace(engine.settings, steps=1)
     filled = fill(transformer, TextStates.stacked(list(texts[:-1])), holes, [seed] * len(holes), settings)
     return [new[(row == transformer.ids.mask).any(-1)] for new, row in zip(filled, holes, strict=True)]
 
@@ -109,7 +109,7 @@ def transition_row(left: Tensor, right: Tensor, mask_id: int) -> Tensor:
 
 def official_transition_settings(settings: SamplingSettings) -> SamplingSettings:
     """As the released code fills transitions: one step at temperature 1."""
-    return replace(settings, official=True, most_steps=1, fewest_steps=1, temperature=1.0)
+    return replace(settings, official=True, steps=1, temperature=1.0)
 
 
 def _half(ids: Tensor) -> int:

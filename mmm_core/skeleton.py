@@ -58,7 +58,7 @@ def normalise(v: Array) -> Array:
     return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)
 
 
-def across_shoulders(joints_m: Array) -> Array:
+def across_shoulders(joints_m: NDArray[np.float64]) -> NDArray[np.float64]:
     """(..., 3) from right to left of (..., 22, 3) joints, through the collar bones, which shoulders pull along by half."""
     collars = joints_m[..., 13, :] - joints_m[..., 14, :]
     return collars + 0.5 * (joints_m[..., 16, :] - joints_m[..., 17, :])

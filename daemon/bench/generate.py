@@ -57,7 +57,6 @@ def bench_generate(seed: int = 0) -> dict[str, Any]:
         for function in timed:
             function()
     forward_s, motion_s, in_turn_s, counted_s, uncounted_s = alternate(*timed)
-    n_tokens = 49
     return {
         "motion_ms": round(1e3 * motion_s, 1),
         "in_turn_ms": round(1e3 * in_turn_s, 1),
@@ -66,7 +65,7 @@ def bench_generate(seed: int = 0) -> dict[str, Any]:
         "reference_forward_ms": round(1e3 * forward_s, 1),
         "ratio": round(motion_s / forward_s, 3),
         "precision": engine.precision,
-        "steps": engine.settings.n_steps(n_tokens),
+        "steps": engine.settings.steps,
         "guidance": engine.settings.guidance,
         "n": REPEATS,
         **context(seed, f"median of {REPEATS} alternating runs, one thread, text encoding and decoding included"),

@@ -139,7 +139,7 @@ def _generate(engine: Engine) -> Make:
 
 def _with_steps(engine: Engine) -> list[tuple[int, Engine]]:
     """The engine with other numbers of steps."""
-    return [(n, _with_settings(engine, fewest_steps=n, most_steps=n, official=False)) for n in STEPS]
+    return [(n, _with_settings(engine, steps=n, official=False)) for n in STEPS]
 
 
 def _with_settings(engine: Engine, **changes: Any) -> Engine:

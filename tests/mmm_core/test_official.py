@@ -146,7 +146,7 @@ class TestHalves:
         torch.testing.assert_close(logits[seen], io["uplow.out.logits"][:, 1:][seen], **TOLERANCE)
         row = ids[0, :25].clone()
         row[:, 0] = model.ids.mask
-        settings = dataclasses.replace(OFFICIAL_SAMPLING, temperature=1.0, most_steps=20)
+        settings = dataclasses.replace(OFFICIAL_SAMPLING, temperature=1.0, steps=20)
         filled = fill(model, text, [row], [0], settings, recorded_noise(io["uplow.in.uniform_noise"]))[0]
         assert torch.equal(filled[:, 0], io["uplow.out.sample_f100"][0, :25])
         assert torch.equal(filled[:, 1], row[:, 1]), "the lower body stays"
@@ -198,7 +198,7 @@ class TestSampling:
         rows = [empty_row(transformer, f // 4) for f in frames] if given is None else [given[0, : frames[0] // 4, None]]
         temperature = 0.0 if name.startswith("argmax") else 1.0
         max_steps = 1 if name == "transition" else 10
-        settings = dataclasses.replace(OFFICIAL_SAMPLING, temperature=temperature, most_steps=max_steps)
+        settings = dataclasses.replace(OFFICIAL_SAMPLING, temperature=temperature, steps=max_steps)
         inputs: list[Tensor] = []
         transformer.register_forward_pre_hook(lambda _m, args: inputs.append(args[0].clone()))
         text, noise = text_of(io, len(frames)), recorded_noise(io["smp.in.uniform_noise"])
