@@ -189,6 +189,12 @@ def forward_kinematics(local: Array, root_m: Array) -> tuple[Array, Array]:
     return joints, world
 
 
+def standing_joints(pelvis_m: float = 0.92) -> NDArray[np.float64]:
+    """(1, 22, 3) joints of a person who stands upright on the common body, every bone along its rest direction, facing +z."""
+    upright = np.broadcast_to(np.eye(3), (1, len(PARENTS), 3, 3))
+    return np.asarray(forward_kinematics(upright, np.array([[0.0, pelvis_m, 0.0]]))[0], np.float64)
+
+
 def twist_about_bone_rad(local: Array, joint: int) -> Array:
     """(T,) twist of `local` (T, 3, 3) about the rest direction of `joint`."""
     rest = REST_DIRECTIONS[joint]

@@ -12,14 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import N_FEATURES, Motion
-from mmm_core.skeleton import BONE_LENGTHS_M, REST_DIRECTIONS, forward_kinematics, quat_wxyz
+from mmm_core.skeleton import BONE_LENGTHS_M, REST_DIRECTIONS, quat_wxyz, standing_joints
 from retarget.kinematics import Kinematics
 from retarget.pipeline import Retargeter
 
 Array = NDArray[np.float64]
 _TO_HUMAN = np.array([[0.0, 1, 0], [0, 0, 1], [1, 0, 0]])
 """Robot axes (forward, left, up) to a person's (left, up, forward)."""
-_PELVIS_M = 0.92
 _ARMS = {"left": (16, 18, 20), "right": (17, 19, 21)}
 _ABOVE_CHEST = (6, 9, 12, 13, 14, 15, 16, 17)
 """Joints that turn with the chest, about the first joint of the spine."""
@@ -28,8 +27,7 @@ _ABOVE_CHEST = (6, 9, 12, 13, 14, 15, 16, 17)
 def joints_of_path(kinematics: Kinematics, q_rad: Array) -> tuple[Array, Array]:
     """Joints (T, 22, 3) in metres, y up, and head orientation (T, 4) of a robot's path (T, J)."""
     T = len(q_rad)
-    standing, _ = forward_kinematics(np.broadcast_to(np.eye(3), (1, 22, 3, 3)), np.array([[0.0, _PELVIS_M, 0.0]]))
-    joints = np.repeat(standing, T, 0)
+    joints = np.repeat(standing_joints(), T, 0)
     points = {p.name: p for p in kinematics.key_points}
     chest = _orientation(kinematics, points["chest"].chain if "chest" in points else (), q_rad)
     base = joints[:, 3:4]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import Motion
-from mmm_core.skeleton import JOINT_NAMES, PARENTS, across_shoulders, forward_kinematics, matrix_from_quat
+from mmm_core.skeleton import JOINT_NAMES, PARENTS, across_shoulders, matrix_from_quat, standing_joints
 from retarget.errors import MotionError
 from retarget.kinematics import cross
 
@@ -121,8 +121,7 @@ def _frame(left: Array, up: Array, key: str) -> Array:
 
 def _from_upright() -> Array:
     """(3, 3) that takes the spine's lean of a person who stands upright out of a chest frame: the neck is 3.4 degrees before it."""
-    standing, _ = forward_kinematics(np.broadcast_to(np.eye(3), (1, 22, 3, 3)), np.zeros((1, 3)))
-    joints = standing.astype(np.float64)
+    joints = standing_joints()
     return np.ascontiguousarray(_frame(across_shoulders(joints), joints[:, _NECK] - joints[:, _SPINE1], "")[0].T)
 
 

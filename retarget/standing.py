@@ -6,12 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion import FPS, N_FEATURES, Motion
-from mmm_core.skeleton import BONE_LENGTHS_M, forward_kinematics
+from mmm_core.skeleton import BONE_LENGTHS_M, standing_joints
 from retarget.pipeline import Retargeter
 
 Array = NDArray[np.float64]
 Direction = tuple[float, float, float]
-_PELVIS_M = 0.92
 _ARMS = ((1.0, (16, 18, 20)), (-1.0, (17, 19, 21)))
 _FRAMES = 2
 
@@ -23,7 +22,7 @@ def standing_motion(upper: Direction, fore: Direction) -> Motion:
         upper: direction of the upper arms, (forward, outward, up) of any length.
         fore: direction of the forearms.
     """
-    joints, _ = forward_kinematics(np.broadcast_to(np.eye(3), (1, 22, 3, 3)), np.array([[0.0, _PELVIS_M, 0.0]]))
+    joints = standing_joints()
     for side, (shoulder, elbow, wrist) in _ARMS:
         for start, end, (forward, outward, up) in ((shoulder, elbow, upper), (elbow, wrist, fore)):
             bone = np.array([side * outward, up, forward])

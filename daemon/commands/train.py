@@ -78,27 +78,20 @@ def train(
     import torch
 
     from mmm_core import distributed
-    from mmm_core.training.averaging import average_models
     from mmm_core.training.recipe import read_recipe
     from mmm_core.training.run import Run
     from mmm_core.training.stages import Stages, make_model, renew_scope
 
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     torch.set_num_threads(threads)
-    config = config or ("ablation" if stage == "ablation" else "compact")
-    recipe = read_recipe(config, seed)
     if variant and stage != "ablation":
         raise CommandError(f"train {stage}: --variant is for `mmmd train ablation`")
     if (stage == "average") != bool(models):
         raise CommandError(f"train {stage}: --models is for `mmmd train average`, which needs two of them or more")
     if stage == "average":
-        if len(models) < 2 or out is None:
-            raise CommandError(
-                "train average: --models A B ... --out F: two checkpoints or more, and where the mean goes"
-            )
-        average_models(models, out)
-        sys.stdout.write(f"{out}\n")
-        return 0
+        return _average(models, out)
+    config = config or ("ablation" if stage == "ablation" else "compact")
+    recipe = read_recipe(config, seed)
     if stage == "tokenizer" and recipe.start:
         raise CommandError(
             f"train tokenizer: {config} goes on from {recipe.start}, whose tokenizer stays; train another stage"
@@ -121,6 +114,17 @@ def train(
         written = folder / ("evaluator.safetensors" if stage == "evaluator" else f"{stage}.pt")
     if distributed.rank() == 0:
         sys.stdout.write(f"{written}\n")
+    return 0
+
+
+def _average(models: Sequence[Path], out: Path | None) -> int:
+    """Write the mean of checkpoints."""
+    from mmm_core.training.averaging import average_models
+
+    if len(models) < 2 or out is None:
+        raise CommandError("train average: --models A B ... --out F: two checkpoints or more, and where the mean goes")
+    average_models(models, out)
+    sys.stdout.write(f"{out}\n")
     return 0
 
 

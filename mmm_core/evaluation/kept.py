@@ -55,7 +55,9 @@ def performed(probe: Probe, seed: int) -> Features:
     spec = ClipSpec(tuple(gesture(p) for p in ((probe, probe.then) if probe.then else (probe,))))
     rng = np.random.default_rng(seed)
     drawn = (synthesise_spec(spec, rng) for _ in range(_MOST_DRAWS))  # a slow one is longer than a clip may be
-    return next(clip for clip in drawn if clip is not None).features
+    clip = next((clip for clip in drawn if clip is not None), None)
+    assert clip is not None, f"{probe.text}: longer than a clip may be in each of {_MOST_DRAWS} draws"
+    return clip.features
 
 
 def tokenizer_figures(tokenizer: Tokenizer) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from mmm_core.skeleton import (
     local_rotations,
     normalise,
     quat_wxyz,
+    standing_joints,
 )
 
 Array = NDArray[np.float64]
@@ -194,6 +195,4 @@ def rest_frame(places: Mapping[str, Array]) -> Array:
     return np.stack([x, np.cross(z, x), z], -1)
 
 
-_LEAN_RAD = _lean_rad(
-    np.asarray(forward_kinematics(np.eye(3)[None, None].repeat(22, 1), np.zeros((1, 3)))[0], np.float64)
-)
+_LEAN_RAD = _lean_rad(standing_joints())

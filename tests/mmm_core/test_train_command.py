@@ -164,18 +164,8 @@ def test_the_mean_of_models_that_went_on_from_one_start(tmp_path: Path, capsys: 
         config = tmp_path / "on.toml"
         config.write_text(f'start = "{start}"\n{first.read_text()}')
         made.append(tmp_path / f"{seed}.safetensors")
-        command = [
-            "train",
-            "--config",
-            str(config),
-            "--seed",
-            str(seed),
-            "--run",
-            str(tmp_path / f"{seed}"),
-            "--sample-every",
-            "0",
-        ]
-        assert main([*command, "--out", str(made[-1])]) == 0
+        options = {"config": config, "seed": seed, "run": tmp_path / f"{seed}", "sample-every": 0, "out": made[-1]}
+        assert main(["train", *(word for key, value in options.items() for word in (f"--{key}", str(value)))]) == 0
     out = tmp_path / "mean.safetensors"
     assert main(["train", "average", "--models", *map(str, made), "--out", str(out)]) == 0
     a, b, mean = (load_model(p) for p in (*made, out))
