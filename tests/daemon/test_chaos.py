@@ -225,11 +225,11 @@ def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands_and_goes_on_w
 
 @pytest.mark.parametrize(
     "states",
-    [("idle", "moving", "holding", "parking"), ("limp", "arming", "estop", "fault")],
+    [("idle", "moving", "holding", "parking"), ("fault", "limp", "arming", "estop")],
     ids=["moving on", "other"],
 )
 def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_path, states):
-    """Several daemons at once: hold after 0.5 s, park after 5 s, then the port is given back."""
+    """Several daemons at once: hold after 0.5 s, park after 5 s, then the port is given back: of one that is limp after 5 s too."""
     rigs: list[tuple[Servos, RunningDaemon, int]] = []
     try:
         for state in states:
@@ -243,7 +243,7 @@ def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_p
             daemon.process.kill()
         for servos, daemon, bus in rigs:
             within(25, "limp", lambda servos=servos: not servos.torque)
-            within(5, "bus process gone", lambda bus=bus: _gone(bus))
+            within(15, "bus process gone", lambda bus=bus: _gone(bus))
             daemon.process.wait(5)
             servos.assert_kept()
     finally:
