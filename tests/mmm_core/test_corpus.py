@@ -15,6 +15,8 @@ from hypothesis import strategies as st
 from mmm_core.bvh import save_bvh
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.corpus.families import FAMILIES, Gesture
+from mmm_core.corpus.families.gesture import Words
+from mmm_core.corpus.families.phrases import parse_phrases
 from mmm_core.corpus.grammar import caption, known_commands, plain_phrases
 from mmm_core.corpus.mirroring import mirror_words
 from mmm_core.corpus.score import REST_ARM, Score
@@ -102,6 +104,25 @@ def test_each_family_can_be_said_in_twenty_ways_and_for_every_side(name: str) ->
     rows = {row for row, _ in phrases}
     wanted = {"both": "both", "left": "one", "right": "one", "alternating": "alternating", "": "none"}
     assert {wanted[s] for s in family.sides or ("",)} <= rows
+
+
+def test_phrases_are_read_by_section_and_direction() -> None:
+    words, directed = parse_phrases("[bare]\nnod {n}\n\n[one]\nnod left\n[up: bare]\nlook up\n", "nod.txt")
+    assert words == Words(("nod {n}",), one=("nod left",))
+    assert directed == {"up": Words(("look up",))}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"), [("[bear]\nnod\n", "nod.txt:1: section '[bear]'"), ("\nnod\n[bare]\n", "nod.txt:2: a phrase")]
+)
+def test_a_phrase_without_a_known_section_is_named(text: str, message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)):
+        parse_phrases(text, "nod.txt")
+
+
+def test_each_family_has_its_phrase_file_and_no_file_is_left_over() -> None:
+    folder = Path(__file__).parents[2] / "mmm_core" / "corpus" / "phrases"
+    assert {path.stem for path in folder.glob("*.txt")} == set(FAMILIES)
 
 
 def test_known_commands_are_plain() -> None:
