@@ -170,7 +170,7 @@ def _probes(model: Path | None, seeds: int, robots: Sequence[str]) -> tuple[dict
 def _scope(model: Path | None) -> dict[str, Any]:
     """Held-out prompts, one at a time, as a command comes in."""
     from daemon.bench.report import context
-    from mmm_core.corpus.scope_prompts import IN_SCOPE, MIXED, OUT_OF_SCOPE
+    from mmm_core.corpus.scope_prompts import SCOPE_TEST
     from mmm_core.engine import Engine
     from mmm_core.evaluation.scope import scope_figures
 
@@ -178,7 +178,7 @@ def _scope(model: Path | None) -> dict[str, Any]:
     if engine.model.scope is None:
         raise CommandError("eval scope: the model has no scope (imported ones have none); take one of mmmd train")
     method = "held-out prompts (mmm_core/corpus/scope_prompts.py), read one at a time; docs/scope.md"
-    figures = scope_figures(engine, IN_SCOPE, OUT_OF_SCOPE, list(MIXED))
+    figures = scope_figures(engine, SCOPE_TEST.in_scope, SCOPE_TEST.out_of_scope, list(SCOPE_TEST.mixed))
     return {**figures, "checkpoint": engine.checkpoint_hash, **context(0, method)}
 
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import re
 
-from mmm_core.corpus import scope_development, scope_prompts
 from mmm_core.corpus.bending import NUMBERS
 from mmm_core.corpus.heldout import PROBES
+from mmm_core.corpus.scope_prompts import SCOPE_DEVELOPMENT, SCOPE_TEST
 
 _EMPTY_WORDS = frozenset((
     "a", "an", "the", "your", "you", "me", "i", "for", "with", "using", "please", "now", "just", "and", "next", "ok", "hey", "um",
@@ -26,11 +26,7 @@ def _key(text: str) -> str:
     return " ".join(w for w in re.sub(r"[^a-z0-9]", " ", text.lower()).split() if w not in _EMPTY_WORDS)
 
 
-_PROMPTS = tuple(
-    text
-    for prompts in (scope_prompts, scope_development)
-    for text in (*prompts.IN_SCOPE, *(t for kind in prompts.OUT_OF_SCOPE.values() for t in kind))
-)
+_PROMPTS = (*SCOPE_TEST.all_texts(), *SCOPE_DEVELOPMENT.all_texts())
 _WITHHELD = frozenset(_key(text) for text in (*(p.text for p in PROBES), *_PROMPTS)) - {""}
 
 

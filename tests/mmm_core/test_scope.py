@@ -12,10 +12,10 @@ from scipy.stats import mannwhitneyu
 
 from mmm_core import checkpoint
 from mmm_core.checkpoint import Model, load_model, load_text_encoder, save_model
-from mmm_core.corpus import scope_development, scope_prompts
 from mmm_core.corpus.grammar import known_commands
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.corpus.outside import OUTSIDE, outside_texts
+from mmm_core.corpus.scope_prompts import SCOPE_DEVELOPMENT, SCOPE_TEST
 from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError
 from mmm_core.evaluation.scope import auroc, scope_figures
@@ -32,8 +32,8 @@ def out_of(prompts: dict[str, tuple[str, ...]]) -> list[str]:
     return [text for texts in prompts.values() for text in texts]
 
 
-HELD_OUT = [*scope_prompts.IN_SCOPE, *out_of(scope_prompts.OUT_OF_SCOPE), *scope_prompts.MIXED]
-DEVELOPMENT = [*scope_development.IN_SCOPE, *out_of(scope_development.OUT_OF_SCOPE), *(p.text for p in PROBES)]
+HELD_OUT = [*SCOPE_TEST.all_texts(), *SCOPE_TEST.mixed]
+DEVELOPMENT = [*SCOPE_DEVELOPMENT.all_texts(), *(p.text for p in PROBES)]
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def with_scope(scope: ScopeIndex | None) -> Model:
 
 class TestPrompts:
     def test_there_are_enough_of_each(self) -> None:
-        assert len(scope_prompts.IN_SCOPE) >= 200 and len(out_of(scope_prompts.OUT_OF_SCOPE)) >= 200
+        assert len(SCOPE_TEST.in_scope) >= 200 and len(out_of(SCOPE_TEST.out_of_scope)) >= 200
         assert len(DEVELOPMENT) >= 400
 
     def test_none_is_said_by_the_grammar_or_stands_outside_in_training(self) -> None:
@@ -68,7 +68,7 @@ class TestPrompts:
 
     def test_those_that_choose_thresholds_do_not_measure_them(self) -> None:
         assert not {plain(t) for t in DEVELOPMENT} & {plain(t) for t in HELD_OUT} - {""}
-        assert len({plain(t) for t in scope_prompts.IN_SCOPE}) == len(scope_prompts.IN_SCOPE)
+        assert len({plain(t) for t in SCOPE_TEST.in_scope}) == len(SCOPE_TEST.in_scope)
 
 
 class TestAuroc:
@@ -85,12 +85,12 @@ class TestAuroc:
 
 
 def test_the_score_parts_the_development_prompts(engine: Engine) -> None:
-    inside = [*scope_development.IN_SCOPE, *(p.text for p in PROBES)]
-    found = scope_figures(engine, inside, scope_development.OUT_OF_SCOPE)
+    inside = [*SCOPE_DEVELOPMENT.in_scope, *(p.text for p in PROBES)]
+    found = scope_figures(engine, inside, SCOPE_DEVELOPMENT.out_of_scope)
     assert found["auroc"] >= 0.97
     assert found["false_refusals"] <= 0.04 and found["false_acceptances"] <= 0.12
     assert found["decision_processor_ms"]["p50"] < 30
-    assert found["n"] == len(inside) + len(out_of(scope_development.OUT_OF_SCOPE))
+    assert found["n"] == len(inside) + len(out_of(SCOPE_DEVELOPMENT.out_of_scope))
 
 
 def test_another_side_of_the_same_texts_is_seen(engine: Engine) -> None:
