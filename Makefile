@@ -4,6 +4,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PIP_FLAGS ?=
+TORCH ?= cpu
 export OMP_NUM_THREADS ?= 1
 export OMP_WAIT_POLICY ?= passive
 
@@ -19,11 +20,12 @@ help:
 
 setup: $(VENV)/.ready
 
-# The pin of torch comes first and alone: with it in place nothing else can pull in another build.
+# torch comes first and alone, in its CPU build (daemon/cpu_torch.py): with it in place nothing else can pull in another one.
+# `make setup TORCH=gpu` takes the build of the configured index, on Linux about 6 GB with its GPU libraries.
 $(VENV)/.ready: pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "mmmd needs Python 3.11 or newer, found " + sys.version)'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install $(PIP_FLAGS) --quiet --disable-pip-version-check -c constraints.txt torch
+	$(BIN)/python -m daemon.cpu_torch --constraint constraints.txt --build $(TORCH) --pip-flags='$(PIP_FLAGS)'
 	$(BIN)/python -m pip install $(PIP_FLAGS) --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	@touch $@
 

@@ -31,6 +31,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "run": CommandEntry("daemon.commands.run:run", "the daemon: text over ZeroMQ in, servo motion out"),
     "config": CommandEntry("daemon.commands.run:config", "the settings of `run` and where each comes from"),
     "install-service": CommandEntry("daemon.commands.service:install_service", "systemd unit and udev rule"),
+    "install-torch": CommandEntry(
+        "daemon.commands.install_torch:install_torch", "PyTorch for the CPU, which the motion model needs"
+    ),
     "say": CommandEntry("daemon.commands.say:say", "tell the robot what to do"),
     "story": CommandEntry("daemon.commands.story:story", "several things in one motion, for as long as you like"),
     "inbetween": CommandEntry("daemon.commands.story:inbetween", "poses at given times; the middle is generated"),

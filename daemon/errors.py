@@ -15,6 +15,7 @@ DaemonError
 │   └── PacketError                bytes that are no whole packet                    (ValueError)
 ├── LogError(path)                 a log that cannot be read                         (ValueError)
 ├── ConfigError(key)               a setting outside what is allowed                 (ValueError)
+├── NoCpuBuildError                no PyTorch without GPU libraries to install
 ├── ClipError                      a gesture that cannot be read or kept             (ValueError)
 │   └── UnknownGestureError(name)  no gesture of that name
 └── RequestError(code)             a message that cannot be carried out              (ValueError)
@@ -120,6 +121,10 @@ class RequestError(DaemonError, ValueError):
     def __init__(self, code: str, message: str) -> None:
         self.code = code
         super().__init__(message)
+
+
+class NoCpuBuildError(DaemonError):
+    """No package index has a PyTorch without GPU libraries for this machine."""
 
 
 class ClipError(DaemonError, ValueError):

@@ -62,7 +62,7 @@ class Supervisor:
 
     def __init__(self, config: DaemonConfig) -> None:
         if config.generator is None and importlib.util.find_spec("torch") is None:
-            do = "install with `pip install '.[generate]'`, or name a generator elsewhere with --generator"
+            do = "install it with `mmmd install-torch`, or name a generator elsewhere with --generator"
             raise config_error("generator", "none, and torch is not installed", "one of the two", do)
         check_scheme(config.bus)
         self._config = config
