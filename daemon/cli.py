@@ -140,6 +140,10 @@ def _explain(error: Exception) -> int:
     """Say what went wrong in one message; the exit status."""
     if os.environ.get("MMMD_DEBUG"):
         traceback.print_exception(error)
+    from daemon.missing_parts import about_missing
+
+    if missing := about_missing(error):
+        return _failed(missing, FAILED)
     from daemon.errors import CommandError, ConfigError, DaemonError
     from mmm_core.errors import MmmError
     from retarget.errors import RetargetError, RobotFileError, UnknownRobotError

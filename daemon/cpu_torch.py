@@ -3,7 +3,8 @@
 The plain `torch` of the public package index requires CUDA on x86_64 and on arm64 Linux. This module tries, in this order, the
 index that pip is configured for, then PyTorch's own CPU index, and takes the first build without GPU libraries. When neither has
 one it stops and says what would be fetched. The standard library and pip are enough to run it: `make setup` does so before
-anything else is installed (`python -m daemon.cpu_torch --constraint constraints.txt`); `mmmd install-torch` is the same for an installed mmmd.
+anything else is installed (`python -m daemon.cpu_torch --constraint constraints.txt`); `mmmd install-torch` is the same
+for an installed mmmd.
 """
 
 from __future__ import annotations

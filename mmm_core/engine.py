@@ -12,12 +12,12 @@ import torch
 from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
-from mmm_core.corpus.mirroring import canonical, mirror_words
 from mmm_core.eight_bit import can_eight_bit, to_eight_bit
 from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.features import Root, mirror, recover, recover_from_positions
 from mmm_core.generation import Generation
 from mmm_core.making import Making
+from mmm_core.mirroring import canonical, mirror_words
 from mmm_core.motion import FPS, Motion
 from mmm_core.packed import fastest_precision, pack
 from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings
@@ -144,7 +144,7 @@ class Engine:
     def understand_fresh(self, text: str) -> tuple[TextStates, ScopeVerdict, bool]:
         """The same for a motion that is made from nothing, and whether that motion is to be mirrored.
 
-        Of a text and its mirror image only one is ever read (`corpus.mirroring.canonical`), so that the mirrored text gives
+        Of a text and its mirror image only one is ever read (`mmm_core.mirroring.canonical`), so that the mirrored text gives
         the mirrored motion. Where a motion goes on from another, the other decides what is left and right.
         """
         read, is_mirrored = canonical(text) if self.model.rest_pose == "mmmd" else (text, False)

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 import torch
 from torch import Tensor
 
-from mmm_core.corpus.mirroring import mirror_words
 from mmm_core.count_words import count_asked
 from mmm_core.generation import Clock, Generation, no_motion, understood
+from mmm_core.mirroring import mirror_words
 from mmm_core.repeats import ids_of_count
 from mmm_core.sampling import SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.sequence import COMMAND_STRIDE, TRANSITION_TOKENS, Command, commands_of, joined

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.corpus.mirroring import mirror_words
 from mmm_core.errors import TrainingDataError
 from mmm_core.features import features_from_joints, mirror
+from mmm_core.mirroring import mirror_words
 from mmm_core.recordings.common_body import on_common_body
 from mmm_core.recordings.files import read_motion
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS

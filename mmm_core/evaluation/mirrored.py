@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mmm_core.corpus.mirroring import mirror_words
+from mmm_core.mirroring import mirror_words
 from mmm_core.motion import Motion
 from mmm_core.skeleton import MIRROR, PARENTS, Array, matrix_from_quat
 

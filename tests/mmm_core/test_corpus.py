@@ -18,12 +18,12 @@ from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.families.gesture import Words
 from mmm_core.corpus.families.phrases import parse_phrases
 from mmm_core.corpus.grammar import caption, known_commands, plain_phrases
-from mmm_core.corpus.mirroring import mirror_words
 from mmm_core.corpus.score import REST_ARM, Score
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.corpus.synthesis import ClipSpec, draw_spec, synthesise, synthesise_spec
 from mmm_core.errors import MotionFileError, TrainingDataError
 from mmm_core.features import recover
+from mmm_core.mirroring import mirror_words
 from mmm_core.motion import Motion
 
 SHARED = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared"))
