@@ -23,7 +23,9 @@ from daemon.errors import ConfigError
 log = logging.getLogger(__name__)
 
 KEY_LENGTH = 40
-"""A CURVE key in Z85."""
+"""Characters of a CURVE key in Z85, as ZeroMQ writes it; among them are many that a shell reads as its own."""
+HEX_LENGTH = 64
+"""Digits of a CURVE key in hexadecimal, as people paste it."""
 ZAP = "inproc://zeromq.zap.01"
 _POLL_MS = 100
 _NAME = re.compile(r"[A-Za-z0-9_.-]{1,64}")
@@ -149,14 +151,21 @@ class KeyFolder:
         return found
 
 
+def as_hex(key: bytes) -> str:
+    """A key in hexadecimal: letters and digits alone, which every shell takes as they are."""
+    return zmq.utils.z85.decode(key).hex()
+
+
 def checked_key(text: str) -> bytes:
-    """A key in Z85.
+    """A key in Z85, of one in hexadecimal or in Z85.
 
     Raises:
         ConfigError: it is none.
     """
     key = text.strip()
-    allowed = f"allowed: {KEY_LENGTH} of Z85, as `mmmd keys list` prints them"
+    allowed = f"allowed: {HEX_LENGTH} hexadecimal digits, as `mmmd keys list` prints them, or {KEY_LENGTH} of Z85"
+    if len(key) == HEX_LENGTH and re.fullmatch(r"[0-9a-fA-F]+", key):
+        return zmq.utils.z85.encode(bytes.fromhex(key))
     if len(key) != KEY_LENGTH or not key.isascii():
         raise ConfigError(f"key of {len(key)} characters; {allowed}")
     try:

@@ -22,6 +22,8 @@ class NoAnswerError(DaemonError, TimeoutError):
     def __init__(self, endpoint: str, asked: str, timeout_s: float) -> None:
         self.endpoint, self.asked, self.timeout_s = endpoint, asked, timeout_s
         do = "is `mmmd run` running there? Start it, or name its port with --cmd, --ctl, --pub"
+        if endpoint.startswith("tcp://"):
+            do += "; a daemon with keys answers nobody without an allowed one (--keys, `mmmd keys --help`)"
         super().__init__(f"{asked}: no answer from {endpoint} in {timeout_s:g} s; {do}")
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -13,13 +16,14 @@ import zmq.utils.z85
 from hypothesis import given
 from hypothesis import strategies as st
 
+from daemon.cli import main
 from daemon.client import Client, NoAnswerError, RefusedError
 from daemon.config import Endpoints
 from daemon.demo import free_endpoints
 from daemon.errors import ConfigError
 from daemon.front.rates import BURST, RATE_HZ, Rates
 from daemon.generator.messages import Generated
-from daemon.keys import ZAP, Doorkeeper, KeyFolder, checked_key
+from daemon.keys import ZAP, Doorkeeper, KeyFolder, as_hex, checked_key
 from tests.daemon.kinematic import generate
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 
@@ -213,8 +217,8 @@ def test_a_folder_that_cannot_be_read_keeps_clients_out_and_the_door_goes_on(tmp
 def test_keys_by_command(tmp_path):
     folder = str(tmp_path / "k")
     made = mmmd("keys", "new", "--keys", folder)
-    assert made.returncode == 0 and len(made.stdout.strip()) == 40
-    other = zmq.curve_keypair()[0].decode()
+    assert made.returncode == 0 and len(made.stdout.strip()) == 64
+    other = as_hex(zmq.curve_keypair()[0])
     assert mmmd("keys", "allow", "laptop", other, "--keys", folder).returncode == 0
     assert mmmd("keys", "trust", "generator", other, "--keys", folder).returncode == 0
     listed = mmmd("keys", "list", "--keys", folder).stdout
@@ -222,6 +226,37 @@ def test_keys_by_command(tmp_path):
     assert mmmd("keys", "new", "--keys", folder).returncode == 2
     assert mmmd("keys", "allow", "laptop", "--keys", folder).returncode == 2
     assert mmmd("keys", "trust", "cat", other, "--keys", folder).returncode == 2
+
+
+def test_keys_are_exchanged_by_pasting_what_is_printed(tmp_path):
+    """Z85 keys hold `<>*?$(){}!#&`: of three that were pasted as the page showed, bash took none."""
+    robot, laptop = tmp_path / "robot", tmp_path / "laptop"
+    for _ in range(20):
+        for folder in (robot, laptop):
+            shutil.rmtree(folder, ignore_errors=True)
+        printed = {f: keys_here("new", f) for f in (robot, laptop)}
+        for here, other, part in ((robot, laptop, "client"), (laptop, robot, "daemon")):
+            line = next(row for row in printed[other][1].splitlines() if part in row).partition("mmmd keys ")[2]
+            typed = subprocess.run(["bash", "-c", f"printf '%s\\n' {line}"], capture_output=True, text=True, check=True)
+            assert keys_here(*typed.stdout.split("\n")[:-1], here)[2] == 0
+        assert list(KeyFolder(robot).allowed().values()) == [KeyFolder(laptop).own().public]
+        assert KeyFolder(laptop).server_of("daemon") == KeyFolder(robot).own().public
+
+
+def keys_here(*arguments: object) -> tuple[str, str, int]:
+    """`mmmd keys` with a folder (the last argument) in this process: what it printed, and its status."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        status = main(["keys", *map(str, arguments[:-1]), "--keys", str(arguments[-1])])
+    return out.getvalue(), err.getvalue(), status
+
+
+def test_a_key_may_be_given_in_hexadecimal_or_in_z85():
+    public = zmq.curve_keypair()[0]
+    assert checked_key(as_hex(public)) == checked_key(as_hex(public).upper()) == checked_key(public.decode()) == public
+    for bad in ("", "0" * 63, "g" * 64, "0" * 41):
+        with pytest.raises(ConfigError, match="64 hexadecimal digits"):
+            checked_key(bad)
 
 
 def test_a_daemon_without_torch_uses_a_generator_over_curve_and_notices_its_loss(tmp_path):
@@ -277,7 +312,7 @@ def test_without_torch_and_generator_the_daemon_says_what_to_install(tmp_path):
         "from daemon.cli import main; sys.exit(main(['run']))"
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30, check=False)
-    assert result.returncode == 2 and ".[generate]" in result.stderr
+    assert result.returncode == 2 and "mmmd install-torch" in result.stderr
 
 
 def test_another_checkpoint_than_agreed_is_not_used():
