@@ -212,6 +212,16 @@ class Retargeter:
         assert len(errors) == len(BONES)
         return errors
 
+    def missed(self, poses: Poses, q_rad: Array) -> Array:
+        """(4, T, 3) human less robot bone in poses (T, J), in the order of `report.BONES`."""
+        return np.concatenate([poses.upper, poses.fore])[:, : len(q_rad)] - np.concatenate(
+            self._poser.directions(q_rad)
+        )
+
+    def shown(self, poses: Poses, q_rad: Array) -> tuple[Array, Array]:
+        """Half the squared error of all bones linearised at poses (T, J): its hessian (T, J, J) and how fast it falls (T, J)."""
+        return self._poser.shown(poses, q_rad)
+
     def _begin(self, wanted: Array, start: JointState | None) -> JointState:
         """The given start, or at rest in the first frame's pose, led round contacts."""
         if start is not None:

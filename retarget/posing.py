@@ -132,6 +132,18 @@ class Poser:
                 every[:, of[:, None], of] += hessian[g]
         return every
 
+    def shown(self, poses: Poses, q_rad: Array) -> tuple[Array, Array]:
+        """(T, J, J), (T, J): see `Retargeter.shown`."""
+        T, J = q_rad.shape
+        every, falls = np.zeros((T, J, J)), np.zeros((T, J))
+        for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
+            bones = arms.bones(q_rad[:, joints].transpose(1, 0, 2))
+            hessian, fall = bones.hessian(), bones.towards(poses.upper[sides][:, :T], poses.fore[sides][:, :T])
+            for g, of in enumerate(joints):
+                every[:, of[:, None], of] += hessian[g]
+                falls[:, of] += fall[g]
+        return every, falls
+
     def matters(self, q_rad: Array, led_rad: Array) -> PoseMatters:
         """What matters of the wish to show poses (T, J): directions for arms, angles for the rest.
 

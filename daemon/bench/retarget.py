@@ -17,6 +17,7 @@ from daemon.bench.contacts import ContactCheck
 from daemon.bench.motions import bench_motions, cut, glued
 from daemon.bench.report import context
 from daemon.bench.retarget_peers import mink_figures
+from daemon.bench.whole_clip import best_of_clip
 from mmm_core.motion import FPS, Motion
 from retarget.human import read_human
 from retarget.limits import limit_step
@@ -38,7 +39,9 @@ _METHOD = (
     " a new retargeter; direction error is the angle between human and robot bone, both bones of both arms, in every frame"
     " of every clip, after limits and self-contact; violations are samples at 20 and 200 Hz outside a position, velocity or"
     " acceleration bound; collisions are frames at 100 Hz in which MuJoCo finds bodies in contact; causal is the same poses under"
-    " the same bounds one frame after another without a look ahead and without self-contact"
+    " the same bounds one frame after another without a look ahead and without self-contact; whole_clip is the least squared"
+    " direction error found by one program over all frames of a clip, with the same start, bounds and margins, of which"
+    " share_of_optimum is the multiple of its mean that the path has; share_of_optimum_rms the same of the root mean square"
 )
 
 
@@ -57,7 +60,9 @@ def bench_retarget(n: int | None = None, seed: int = 0, robots: tuple[str, ...] 
 
 def _robot_figures(robot: RobotModel, motions: list[Motion], console: Console) -> dict[str, Any]:
     own = _fidelity(Retargeter(robot), track(motions, robot.name, console=console))
-    common = _fidelity(Retargeter(with_common_limits(robot)), motions)
+    common = _fidelity(
+        Retargeter(with_common_limits(robot)), track(motions, "whole clips", console=console), whole=True
+    )
     figures = {**common, "own_limits": own}
     for key in ("violations", "collisions"):
         figures[key] = common[key] + own[key]
@@ -73,12 +78,16 @@ def with_common_limits(robot: RobotModel) -> RobotModel:
     return dataclasses.replace(robot, joints=joints)
 
 
-def _fidelity(retargeter: Retargeter, motions: Iterable[Motion]) -> dict[str, Any]:
-    """Direction error, its share that no limit in time and no contact can explain, violations, collisions."""
+def _fidelity(retargeter: Retargeter, motions: Iterable[Motion], *, whole: bool = False) -> dict[str, Any]:
+    """Direction error, its share that no limit in time and no contact can explain, violations, collisions.
+
+    With `whole` also the least error that whole clips allow, which takes a second or more of each.
+    """
     check = ContactCheck(retargeter.robot)
     errors: list[Array] = []
     reach: list[Array] = []
     causal: list[Array] = []
+    best: list[Array] = []
     speeds_m_s: list[float] = []
     violations = collisions = interventions = 0
     for motion in motions:
@@ -87,6 +96,8 @@ def _fidelity(retargeter: Retargeter, motions: Iterable[Motion]) -> dict[str, An
         errors.append(retargeter.direction_errors_deg(poses, path.q_rad[: len(motion.joints_m)]))
         reach.append(retargeter.direction_errors_deg(poses, poses.q_rad))
         causal.append(retargeter.direction_errors_deg(poses, causal_path(poses.q_rad, retargeter)))
+        if whole:
+            best.append(best_of_clip(retargeter, poses, path).errors_deg)
         speeds_m_s.append(wrist_speed_m_s(motion))
         violations += sum(_violations(path, retargeter, rate_hz) for rate_hz in _CHECKED_HZ)
         collisions += check.frames(path.at_rate(_CONTACT_HZ))
@@ -101,7 +112,7 @@ def _fidelity(retargeter: Retargeter, motions: Iterable[Motion]) -> dict[str, An
                 | _angles(some)
             )
     return {
-        **_angles(errors), "by_wrist_speed": by_speed, "causal": _angles(causal),
+        **_angles(errors), **(_of_optimum(errors, best) if whole else {}), "by_wrist_speed": by_speed, "causal": _angles(causal),
         "direction_median_deg": round(float(np.median(every)), 3),
         "clip_mean_median_deg": round(float(np.median([e.mean() for e in errors])), 3),
         "reach_mean_deg": round(float(np.concatenate([e.ravel() for e in reach]).mean()), 3),
@@ -114,6 +125,18 @@ def _angles(errors_deg: list[Array]) -> dict[str, float]:
     return {
         "direction_mean_deg": round(float(every.mean()), 3),
         "direction_p95_deg": round(float(np.percentile(every, 95)), 3),
+    }
+
+
+def _of_optimum(errors_deg: list[Array], best_deg: list[Array]) -> dict[str, Any]:
+    """The least that whole clips allow, and how many times as much the path has."""
+    ours, best = (np.concatenate([e.ravel() for e in errors]) for errors in (errors_deg, best_deg))
+    rms = [float(np.sqrt((e**2).mean())) for e in (ours, best)]
+    return {
+        "whole_clip": {**_angles(best_deg), "direction_rms_deg": round(rms[1], 3)},
+        "direction_rms_deg": round(rms[0], 3),
+        "share_of_optimum": round(float(ours.mean() / best.mean()), 3),
+        "share_of_optimum_rms": round(rms[0] / rms[1], 3),
     }
 
 
