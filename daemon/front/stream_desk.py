@@ -44,7 +44,10 @@ class TargetDesk:
         except WireError as error:
             self._tell(error)
             return
-        self._performer.target(q_rad)
+        try:
+            self._performer.target(q_rad)
+        except Exception:  # one target must not end the daemon
+            log.exception("a target failed")
 
     def info(self, endpoint: str) -> StreamInfo:
         """What `status` tells."""

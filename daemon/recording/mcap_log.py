@@ -112,7 +112,7 @@ class LogWriter:
         """Write one message of the front, JSON as published; what is no JSON (a plain text for `say`) as a string."""
         try:
             msgspec.json.decode(payload)
-        except (msgspec.DecodeError, UnicodeDecodeError):
+        except Exception:  # RecursionError of a deep one among them: a frame of `stream` is written as it came
             payload = msgspec.json.encode({"text": payload.decode("utf-8", "replace")})
         if topic not in self._channels:
             schema = self._writer.register_schema(f"mmmd.{topic}", "jsonschema", schema_of(topic))

@@ -8,7 +8,8 @@ and what to do, so that it becomes exactly one `error` event. An accepted comman
 
 from __future__ import annotations
 
-from typing import Any, cast
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
 
 import msgspec
 
@@ -29,8 +30,11 @@ from daemon.wire.requests import (
     Target,
     tag_of,
 )
+from daemon.wire.showing import shortened, shown
 
 MAX_FRAME_BYTES = 64 * 1024
+MOST_NAMED = 5
+"""Unknown fields that an error names."""
 
 
 class WireError(DaemonError, ValueError):
@@ -44,6 +48,8 @@ class WireError(DaemonError, ValueError):
 
 _ENCODER = msgspec.json.Encoder()
 _EVENT_DECODER = msgspec.json.Decoder(AnyEvent)
+_Decoded = TypeVar("_Decoded")
+_PLAIN = "close every brace, or send plain text that does not begin with { or ["
 
 
 def encode(message: Request | Event) -> bytes:
@@ -59,8 +65,10 @@ def decode_event(frame: bytes) -> AnyEvent:
     """
     try:
         return _EVENT_DECODER.decode(frame)
-    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-        raise WireError("not_an_event", "read an event", str(error), _names(EVENTS), "is this mmmd's port?") from error
+    except Exception as error:  # RecursionError, MemoryError, ...: whatever a peer can make a decoder raise
+        raise WireError(
+            "not_an_event", "read an event", shortened(error), _names(EVENTS), "is this mmmd's port?"
+        ) from None
 
 
 def decode_cmd(frame: bytes) -> CmdRequest:
@@ -69,11 +77,7 @@ def decode_cmd(frame: bytes) -> CmdRequest:
     Raises:
         WireError: the frame cannot be taken.
     """
-    text = _checked_text(frame)
-    if text.lstrip()[:1] in ("{", "["):
-        return _decode_json(text, CMD_TYPES, CmdRequest, "cmd")
-    check_text(text)
-    return Say(text=text.strip())
+    return _or_refused(_read_cmd, frame)
 
 
 def decode_ctl(frame: bytes) -> CtlRequest:
@@ -82,10 +86,7 @@ def decode_ctl(frame: bytes) -> CtlRequest:
     Raises:
         WireError: the frame cannot be taken.
     """
-    text = _checked_text(frame).strip()
-    if text[:1] not in ("{", "["):
-        text = _ENCODER.encode({"type": text}).decode()
-    return _decode_json(text, CTL_TYPES, CtlRequest, "ctl")
+    return _or_refused(_read_ctl, frame)
 
 
 def decode_target(frame: bytes) -> Target:
@@ -94,7 +95,7 @@ def decode_target(frame: bytes) -> Target:
     Raises:
         WireError: the frame cannot be taken.
     """
-    return _decode_json(_checked_text(frame), STREAM_TYPES, Target, "stream")
+    return _or_refused(_read_target, frame)
 
 
 def error_event(error: WireError) -> ErrorEvent:
@@ -102,6 +103,41 @@ def error_event(error: WireError) -> ErrorEvent:
     return ErrorEvent(
         id=error.request_id, code=error.code, asked=error.asked, found=error.found, allowed=error.allowed, do=error.do
     )
+
+
+def _or_refused(read: Callable[[bytes], _Decoded], frame: bytes) -> _Decoded:
+    """What `read` makes of a frame.
+
+    Raises:
+        WireError: the frame cannot be taken. Nothing else leaves here, whatever the frame made a decoder raise: who reads a
+            socket must outlive every frame, and the thread that stops the robot is one of them.
+    """
+    try:
+        return read(frame)
+    except WireError:
+        raise
+    except Exception as error:
+        found = "too deeply nested" if isinstance(error, RecursionError) else shortened(error)
+        raise WireError("bad_json", "read a request", found, "one JSON object", _PLAIN) from None
+
+
+def _read_cmd(frame: bytes) -> CmdRequest:
+    text = _checked_text(frame)
+    if text.lstrip()[:1] in ("{", "["):
+        return _decode_json(text, CMD_TYPES, CmdRequest, "cmd")
+    check_text(text)
+    return Say(text=text.strip())
+
+
+def _read_ctl(frame: bytes) -> CtlRequest:
+    text = _checked_text(frame).strip()
+    if text[:1] not in ("{", "["):
+        text = _ENCODER.encode({"type": text}).decode()
+    return _decode_json(text, CTL_TYPES, CtlRequest, "ctl")
+
+
+def _read_target(frame: bytes) -> Target:
+    return _decode_json(_checked_text(frame), STREAM_TYPES, Target, "stream")
 
 
 def _checked_text(frame: bytes) -> str:
@@ -120,9 +156,8 @@ def _decode_json(text: str, types: tuple[type[Request], ...], union: Any, socket
     try:
         raw = msgspec.json.decode(text)
     except (msgspec.DecodeError, RecursionError) as error:
-        found = "too deeply nested" if isinstance(error, RecursionError) else str(error)
-        do = "close every brace, or send plain text that does not begin with { or ["
-        raise WireError("bad_json", "read a JSON request", found, "one JSON object", do) from None
+        found = "too deeply nested" if isinstance(error, RecursionError) else shortened(error)
+        raise WireError("bad_json", "read a JSON request", found, "one JSON object", _PLAIN) from None
     if not isinstance(raw, dict):
         do = 'send {"type": "say", "text": "..."} or plain text'
         raise WireError("bad_json", "read a JSON request", f"a JSON {type(raw).__name__}", "one JSON object", do)
@@ -139,17 +174,21 @@ def _decode_json(text: str, types: tuple[type[Request], ...], union: Any, socket
         name, known = str(asked["type"]), ["type", *(f.name for f in msgspec.structs.fields(kind))]
         unknown = [key for key in asked if key not in known]
         if unknown:
-            found = f"unknown field {', '.join(map(repr, unknown))}"
+            more = f" and {len(unknown) - MOST_NAMED} more" if len(unknown) > MOST_NAMED else ""
+            found = f"unknown field {', '.join(map(shown, unknown[:MOST_NAMED]))}{more}"
             allowed, do = f"fields {', '.join(known)}", "remove it; see docs/wire"
             raise WireError("unknown_field", f"'{name}' request", found, allowed, do, request_id) from None
         allowed = f"what docs/wire/{name}.schema.json says"
-        raise WireError("bad_value", f"'{name}' request", str(error), allowed, "correct it", request_id) from None
+        raise WireError("bad_value", f"'{name}' request", shortened(error), allowed, "correct it", request_id) from None
 
 
 def _check_version(raw: dict[str, Any], request_id: str) -> None:
     version = raw.get("v", PROTOCOL_VERSION)
     if type(version) is not int or version != PROTOCOL_VERSION:
-        found, allowed = f"version {version!r} of the protocol", f"version {PROTOCOL_VERSION}, which this daemon speaks"
+        found, allowed = (
+            f"version {shown(version)} of the protocol",
+            f"version {PROTOCOL_VERSION}, which this daemon speaks",
+        )
         raise WireError("version", "read a request", found, allowed, "use a client of the same version", request_id)
 
 
@@ -158,7 +197,7 @@ def _check_type(raw: dict[str, Any], types: tuple[type[Request], ...], socket: s
     name = raw.get("type")
     if isinstance(name, str) and name in by_name:
         return by_name[name]
-    found = "no 'type'" if name is None else f"type {name!r}"
+    found = "no 'type'" if name is None else f"type {shown(name)}"
     do = "name one of these types"
     for its_socket, its_types in (("cmd", CMD_TYPES), ("ctl", CTL_TYPES), ("stream", STREAM_TYPES)):
         if isinstance(name, str) and name in {tag_of(t) for t in its_types}:

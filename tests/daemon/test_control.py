@@ -73,10 +73,14 @@ class Ctl:
             self._client.send(f'{{"type": "{verb}", "id": "{verb}"}}'.encode())
         self._thread.start()
         found: dict[str, list[ev.Event]] = {verb: [] for verb in verbs}
-        for _ in verbs:
+        while not all(found.values()):
             event = wire.decode_event(self._client.recv())
-            found[event.id].append(event)
+            found.get(event.id, []).append(event)  # a frame that was none is answered without an id
         return found
+
+    def send(self, frame: bytes) -> None:
+        """One more frame, whatever it is."""
+        self._client.send(frame)
 
     def close(self) -> None:
         self._thread.close()
