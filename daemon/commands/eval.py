@@ -5,7 +5,7 @@ from __future__ import annotations
 import json as json_module
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -17,10 +17,11 @@ from daemon.errors import CommandError
 if TYPE_CHECKING:
     from mmm_core.motion import Motion
 
-EvalName = Literal["probes", "scope", "tokenizer", "real", "paper"]
+EvalName = Literal["probes", "fidelity", "scope", "tokenizer", "real", "paper"]
 MIRRORED_SEEDS = 2
 """Seeds with which each probe that names a side is compared with its mirror image."""
 MOST_REPEATS = 1000
+MOST_STEPS = 49
 TABLE_WIDTH = 150
 """Characters a line, where no terminal says otherwise: a table in a file is not cut."""
 
@@ -30,7 +31,8 @@ def eval(
     json: bool = False,
     seeds: int = 5,
     robots: tuple[str, ...] = ("reference", "op3"),
-    executed: int = 1,
+    families: tuple[str, ...] = (),
+    steps: int | None = None,
     repeats: int = 20,
     data: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None,
     split: tuple[Literal["train", "val", "test"], ...] = (),
@@ -47,9 +49,11 @@ def eval(
 
     probes: side, limb, count (within one) and direction of motions for commands in words it was not trained on, as
     generated and as the paths of robots show them, of all and of what the robot has joints for (of_showable: what is seen on it
-    when the corpus itself performs the probe), and as simulated servos execute those paths under load (executed: judged on the
-    positions that they measure; kept: the share of what the path shows). How far the mirrored text's motion is from the
-    mirrored motion.
+    when the corpus itself performs the probe); and how far the mirrored text's motion is from the mirrored motion.
+
+    fidelity: whether each gesture of the corpus is made as well as the corpus makes it, from the corpus's own sentences and
+    held-out seeds: sign, arms, way, pose, number, pace and size of strokes, round paths, arms in step, hands that meet. A check
+    counts for a family when the corpus itself passes it in 9 of 10; share is the model's part of what the corpus passes.
 
     scope: refusals on 487 prompts kept apart, half of which the model can do: AUROC of the score, false refusals, false
     acceptances by kind, milliseconds a decision (docs/scope.md).
@@ -67,6 +71,10 @@ def eval(
 
     Example: mmmd eval probes --seeds 1 --robots poppy_torso my_robot.toml
 
+    Example: mmmd eval fidelity --seeds 10 --json
+
+    Example: mmmd eval fidelity --families row flap march_arms --steps 8
+
     Example: mmmd eval scope --json
 
     Example: mmmd eval real --data ../shared/data --json
@@ -77,9 +85,10 @@ def eval(
     Args:
         name: what to evaluate.
         json: print one JSON object instead of lines.
-        seeds: motions for each probe.
+        seeds: motions for each probe, or each family (fidelity).
         robots: names or robot files, each of which shows the probes' motions as well.
-        executed: seeds of each probe that the simulated robots execute too; 0: none.
+        families: families of the corpus (fidelity); all when none is given.
+        steps: decoding steps of every motion (fidelity); the model's own when it is not given.
         repeats: of the whole measurement, for 95 % intervals.
         data: data folder (real, paper).
         split: splits to take; val and test of a clips.jsonl folder, else test.
@@ -95,7 +104,9 @@ def eval(
     from rich.console import Console
 
     if name == "probes":
-        figures, shown = _probes(model[0] if model else None, seeds, robots, _seeds_executed(executed, seeds))
+        figures, shown = _probes(model[0] if model else None, seeds, robots)
+    elif name == "fidelity":
+        figures, shown = _fidelity(model[0] if model else None, seeds, families, steps)
     elif name == "tokenizer":
         figures = shown = _tokenizer(model[0] if model else None)
     elif name == "scope":
@@ -117,20 +128,11 @@ def eval(
     return 0
 
 
-def _seeds_executed(executed: int, seeds: int) -> int:
-    if not 0 <= executed <= seeds:
-        raise CommandError(f"eval probes: --executed {executed}; allowed: 0 to --seeds ({seeds})")
-    return executed
-
-
-def _probes(
-    model: Path | None, seeds: int, robots: Sequence[str], executed: int
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Every probe generated once for each seed; the same motions checked on each robot, `executed` seeds as its servos do them."""
+def _probes(model: Path | None, seeds: int, robots: Sequence[str]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Every probe generated once for each seed; the same motions are then checked on each robot."""
     from rich.console import Console
     from rich.progress import Progress
 
-    from daemon.bench.executed import Executed
     from daemon.bench.report import context
     from mmm_core.corpus.heldout import PROBES
     from mmm_core.engine import Engine
@@ -163,14 +165,6 @@ def _probes(
             bar.reset(task, description=name, total=len(PROBES) * seeds)
             found = evaluate(on_robot, range(seeds), lambda n: bar.update(task, completed=n), can)
             figures.setdefault("retargeted", {})[name] = found
-            if executed:
-                bar.reset(task, description=f"{name} executes", total=len(PROBES) * executed)
-                robot = Executed(retargeter)
-                done = evaluate(
-                    lambda text, seed, robot=robot: robot.shown(motions[text, seed]),
-                    range(executed), lambda n: bar.update(task, completed=n), can,
-                )  # fmt: skip
-                figures.setdefault("executed", {})[name] = {**done, **robot.figures()}
 
     def again(text: str, seed: int) -> Motion:
         return motions[text, seed] if (text, seed) in motions else engine.generate(text, seed=seed).motion
@@ -178,16 +172,48 @@ def _probes(
     figures["mirrored"] = mirrored_figures(again, [p.text for p in PROBES], range(min(seeds, MIRRORED_SEEDS)))
     method = (
         "held-out probes (mmm_core/corpus/heldout.py), kinematic checks on generated joints, and on the joints that a robot's "
-        "path shows (retarget/as_human.py); refused counts as wrong; executed: on positions measured by simulated servos with the "
-        "robot's body in MuJoCo behind them (daemon/bench/executed.py)"
+        "path shows (retarget/as_human.py); refused counts as wrong"
     )
     figures |= {"n": figures["generated"]["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
     return figures, {
         "generated": figures["generated"],
         **figures.get("retargeted", {}),
-        **{f"{name}, executed": found for name, found in figures.get("executed", {}).items()},
         "mirrored": figures["mirrored"],
     }
+
+
+def _fidelity(
+    model: Path | None, seeds: int, families: Sequence[str], steps: int | None
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The corpus's own sentences, each generated once."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from daemon.bench.report import context
+    from mmm_core.corpus.families import FAMILIES
+    from mmm_core.engine import Engine
+    from mmm_core.evaluation.fidelity import fidelity
+
+    if unknown := [name for name in families if name not in FAMILIES]:
+        raise CommandError(f"eval fidelity: no family {unknown[0]!r}; allowed: {', '.join(FAMILIES)}")
+    if not 1 <= seeds <= MOST_REPEATS or (steps is not None and not 1 <= steps <= MOST_STEPS):
+        found = f"--seeds {seeds}" + ("" if steps is None else f" --steps {steps}")
+        raise CommandError(f"eval fidelity: {found}; allowed: 1 to {MOST_REPEATS} motions, 1 to {MOST_STEPS} steps")
+    engine = Engine.load(model)
+    if steps is not None:
+        engine.settings = replace(engine.settings, steps=steps)
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("fidelity", total=len(families or FAMILIES) * seeds)
+        figures = fidelity(
+            lambda text, seed: engine.generate(text, seed=seed).motion,
+            families, seeds, lambda n: bar.update(task, completed=n),
+        )  # fmt: skip
+    method = (
+        "the corpus's own sentences, held-out seeds, strict checks against the corpus's clean performance "
+        "(mmm_core/evaluation/likeness.py) in so far as the corpus passes them itself"
+    )
+    figures |= {"steps": steps, "checkpoint": engine.checkpoint_hash, **context(0, method)}
+    return figures, {key: figures[key] for key in ("share", "least", "worst", "n")}
 
 
 def _scope(model: Path | None) -> dict[str, Any]:

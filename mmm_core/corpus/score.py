@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from mmm_core.corpus.beat import Calm
 from mmm_core.skeleton import Array, normalise
 
 Vector = tuple[float, float, float]
@@ -25,6 +26,8 @@ _FORE_VIA = np.array([0.12, 0.05, 1.0])
 _NEAR_RAD, _FAR_RAD = np.deg2rad(75.0), np.deg2rad(150.0)
 """Below the first the great circle is used, above the second the via point alone bends the way."""
 TRACE_STEP_S = 0.05
+TRACE_EASE_BEATS = 2
+"""Beats: how long starting and ending a path take together."""
 At = tuple[NDArray[np.intp], Array]
 """Segment (T,) and share of it (T,)."""
 
@@ -67,17 +70,31 @@ class Score:
     """Ways in time; `move`, `trace` and `hold` write it from left to right.
 
     Attributes:
+        rng: chance in poses, strokes and paces; on a beat it is calm (`beat.Calm`).
+        chance: of pauses, on a beat too.
+        otherwise: on a beat, of two ways to make the gesture take the other one.
+        strokes_s: on a beat, when strokes begin.
+        is_traced: whether a path was traced.
         follow_through: share of a way by which a stopping limb runs past its end before it settles.
+        beat_s: seconds; above 0 each way and pause lasts a whole number of half beats and strokes begin on a beat.
     """
 
     rng: np.random.Generator
     rest: dict[str, Array]
     time_s: float = 0.0
     follow_through: float = 0.0
+    beat_s: float = 0.0
+    otherwise: bool = False
     ways: dict[str, list[Segment]] = field(default_factory=dict)
+    chance: np.random.Generator = field(init=False)
+    strokes_s: list[float] = field(default_factory=list)
+    is_traced: bool = False
 
     def __post_init__(self) -> None:
         """Every channel starts at rest."""
+        self.chance = self.rng
+        if self.beat_s:
+            self.rng = Calm(self.rng, self.otherwise)
         for name, value in self.rest.items():
             self.start_at(name, value)
 
@@ -93,6 +110,8 @@ class Score:
         self, duration_s: float, via: Vector = FRONT, /, **targets: Array | ArmPose | Vector | float | list[float]
     ) -> None:
         """Move the named channels to their targets; others hold. Long ways of an arm pass `via`. Time advances."""
+        if self.beat_s:
+            duration_s = max(self.beat_s, self._in_half_beats(duration_s))
         for name, target in targets.items():
             value = target.vector() if isinstance(target, ArmPose) else np.atleast_1d(np.asarray(target, float))
             end_s = self.time_s + duration_s
@@ -102,10 +121,17 @@ class Score:
     def trace(self, duration_s: float, **paths: Callable[[float], ArmPose | Array]) -> None:
         """Lead the named channels along paths of a phase from 0 to 1, started and ended gently. Time advances.
 
-        A path should start where its channel is.
+        A path should start where its channel is. On a beat the way takes `TRACE_EASE_BEATS` longer, so that what lies between
+        start and end runs as evenly as if it had neither.
         """
-        n = max(4, int(np.ceil(duration_s / TRACE_STEP_S)))
         ease = min(0.3, 0.35 / duration_s)
+        self.is_traced = True
+        if self.beat_s:
+            self.strokes_s.append(self.time_s)
+            gently_s = TRACE_EASE_BEATS * self.beat_s
+            duration_s = duration_s + gently_s
+            ease = gently_s / duration_s
+        n = max(4, int(np.ceil(duration_s / TRACE_STEP_S - 1e-6)))
         u = np.linspace(0, 1, n + 1)[1:]
         phase = _trapezoid(u, ease)
         for name, path in paths.items():
@@ -120,7 +146,23 @@ class Score:
 
     def hold(self, duration_s: float) -> None:
         """Keep everything where it is."""
-        self.time_s += duration_s
+        self.time_s += self._in_half_beats(duration_s) if self.beat_s else duration_s
+
+    def pause_s(self, least_s: float, most_s: float) -> float:
+        """How long a pause is that may be short or long; by chance, on a beat too."""
+        if not self.beat_s:
+            return float(self.rng.uniform(least_s, most_s))
+        drawn = self.chance.uniform(least_s, most_s)
+        return self.beat_s * max(1, round(drawn / self.beat_s))
+
+    def to_beat(self) -> None:
+        """Wait for the next beat, where there is one: what comes next is a stroke."""
+        if self.beat_s:
+            self.time_s = self.beat_s * float(np.ceil(self.time_s / self.beat_s - 1e-6))
+            self.strokes_s.append(self.time_s)
+
+    def _in_half_beats(self, duration_s: float) -> float:
+        return self.beat_s / 2 * float(np.floor(2 * duration_s / self.beat_s + 0.5))
 
     def relax(self, duration_s: float) -> None:
         """Bring every channel back to rest."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mmm_core.corpus.beat import Calm
 from mmm_core.corpus.body import Body, perform
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.grammar import caption, usual_counts
@@ -65,13 +67,19 @@ class SynthClip:
     body: Body
 
 
-def draw_gesture(rng: np.random.Generator, names: tuple[str, ...] = (), side: str = "") -> Gesture:
-    """One gesture, of the families in `names` and with `side` where given."""
-    name = names[int(rng.integers(len(names)))] if names else _NAMES[int(rng.choice(len(_NAMES), p=_P))]
+def draw_gesture(
+    rng: np.random.Generator, names: tuple[str, ...] = (), side: str = "", weights: Mapping[str, float] | None = None
+) -> Gesture:
+    """One gesture, of the families in `names` and with `side` where given; `weights` say how often each family is drawn."""
+    if names:
+        name = names[int(rng.integers(len(names)))]
+    else:
+        p = _P if weights is None else np.array([weights.get(n, 0.0) for n in _NAMES])
+        name = _NAMES[int(rng.choice(len(_NAMES), p=p / p.sum()))]
     family = FAMILIES[name]
     if family.sides and not side:
-        weights = np.array([{"both": 0.4, "alternating": 0.3}.get(s, 1.0) for s in family.sides])
-        side = str(rng.choice(family.sides, p=weights / weights.sum()))
+        often = np.array([{"both": 0.4, "alternating": 0.3}.get(s, 1.0) for s in family.sides])
+        side = str(rng.choice(family.sides, p=often / often.sum()))
     direction = str(rng.choice(family.directions)) if family.directions else ""
     if name in ("clap", "hug") and rng.random() < 0.4:
         direction = ""
@@ -101,14 +109,14 @@ def _in_a_manner(g: Gesture, rng: np.random.Generator) -> Gesture:
     return g
 
 
-def draw_spec(rng: np.random.Generator) -> ClipSpec:
-    """One gesture, two or three in a row, or two at once where the limbs are free."""
+def draw_spec(rng: np.random.Generator, weights: Mapping[str, float] | None = None) -> ClipSpec:
+    """One gesture, two or three in a row, or two at once where the limbs are free; `weights` as of `draw_gesture`."""
     kind = rng.random()
     if kind < 0.62:
-        return ClipSpec((draw_gesture(rng),))
+        return ClipSpec((draw_gesture(rng, weights=weights),))
     if kind < 0.74:
         return ClipSpec(_pair_at_once(rng), parallel=True)
-    gestures = [draw_gesture(rng)]
+    gestures = [draw_gesture(rng, weights=weights)]
     while len(gestures) < (2 if kind < 0.95 else 3):
         following = draw_gesture(rng)
         family = FAMILIES[following.family]
@@ -133,26 +141,18 @@ def _pair_at_once(rng: np.random.Generator) -> tuple[Gesture, Gesture]:
     return replace(pair[0], style=""), replace(pair[1], style="")
 
 
-def synthesise(rng: np.random.Generator) -> SynthClip:
-    """A clip drawn at random, at most 9.8 s long."""
+def synthesise(rng: np.random.Generator, beat_s: float = 0.0, weights: Mapping[str, float] | None = None) -> SynthClip:
+    """A clip drawn at random, at most 9.8 s long; `beat_s` as of `synthesise_spec`, `weights` as of `draw_gesture`."""
     while True:
-        clip = synthesise_spec(draw_spec(rng), rng)
+        clip = synthesise_spec(draw_spec(rng, weights), rng, beat_s)
         if clip is not None:
             return clip
 
 
-def synthesise_spec(spec: ClipSpec, rng: np.random.Generator) -> SynthClip | None:
-    """A clip that shows `spec`; None when it would be longer than 9.8 s."""
-    score = Score(rng, rest_pose(rng), follow_through=float(rng.uniform(0.0, 0.05)))
-    if rng.random() < 0.45:
-        score.hold(rng.choice([rng.uniform(0.05, 0.35), rng.uniform(0.3, 1.5)]))
-    _write(score, spec)
-    last = FAMILIES[spec.gestures[-1].family]
-    says_how_long = spec.gestures[-1].hold_s > 0  # then the pose ends when the words say so
-    if says_how_long or rng.random() < (0.55 if last.holds else 0.93):
-        score.relax(rng.uniform(0.65, 0.95))
-    score.hold(rng.choice([0.1, rng.uniform(0.1, 0.6), rng.uniform(0.3, 2.0)]))
-    n_tokens = int(np.ceil(score.time_s * FPS / FRAMES_PER_TOKEN))
+def synthesise_spec(spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.0) -> SynthClip | None:
+    """A clip that shows `spec`; None when it would be longer than 9.8 s. With a beat it is clean: see `beat.py`."""
+    score = _on_beat(spec, rng, beat_s) if beat_s else _freely(spec, rng)
+    n_tokens = int(np.ceil(score.time_s * FPS / FRAMES_PER_TOKEN - 1e-6))
     if n_tokens > MAX_TOKENS:
         return None
     style = STYLES.get(spec.gestures[0].style)
@@ -162,12 +162,38 @@ def synthesise_spec(spec: ClipSpec, rng: np.random.Generator) -> SynthClip | Non
     return SynthClip(body.features(), captions, spec, body)
 
 
+def _freely(spec: ClipSpec, rng: np.random.Generator) -> Score:
+    score = Score(rng, rest_pose(rng), follow_through=float(rng.uniform(0.0, 0.05)))
+    if rng.random() < 0.45:
+        score.hold(rng.choice([rng.uniform(0.05, 0.35), rng.uniform(0.3, 1.5)]))
+    _write(score, spec)
+    last = FAMILIES[spec.gestures[-1].family]
+    says_how_long = spec.gestures[-1].hold_s > 0  # then the pose ends when the words say so
+    if says_how_long or rng.random() < (0.55 if last.holds else 0.93):
+        score.relax(rng.uniform(0.65, 0.95))
+    score.hold(rng.choice([0.1, rng.uniform(0.1, 0.6), rng.uniform(0.3, 2.0)]))
+    return score
+
+
+def _on_beat(spec: ClipSpec, rng: np.random.Generator, beat_s: float) -> Score:
+    """Begins at once, and only pauses are longer or shorter by chance."""
+    score = Score(rng, rest_pose(Calm(rng)), follow_through=0.02, beat_s=beat_s)
+    _write(score, spec)
+    last = FAMILIES[spec.gestures[-1].family]
+    if spec.gestures[-1].hold_s > 0 or not last.holds or rng.random() < 0.75:
+        score.to_beat()
+        score.relax(0.8)
+    score.hold(beat_s if rng.random() < 0.5 else beat_s * rng.integers(2, 11))
+    return score
+
+
 def _write(score: Score, spec: ClipSpec) -> None:
     start_s, ends = score.time_s, [score.time_s]
     for i, gesture in enumerate(spec.gestures):
         if i and spec.parallel:
-            score.time_s = start_s + score.rng.uniform(0.0, 0.3)
+            score.time_s = start_s + (0.0 if score.beat_s else score.rng.uniform(0.0, 0.3))
         elif i and not (score.rng.random() < 0.3 and gesture.side and gesture.side == spec.gestures[i - 1].side):
+            score.to_beat()
             score.relax(score.rng.uniform(0.5, 0.75))
         FAMILIES[gesture.family].perform(score, gesture)
         ends.append(score.time_s)

@@ -85,7 +85,7 @@ class CaptionStates:
         return TextStates(words, mask, self.sentences[list(indices)].float())
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TokenCorpus:
     """What the transformer trains on.
 

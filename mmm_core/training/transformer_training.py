@@ -7,6 +7,7 @@ the cross-entropy at every motion position. Text dropout (ours) makes guidance p
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import torch
@@ -18,6 +19,7 @@ from mmm_core.length import LengthPredictor
 from mmm_core.text import TextStates
 from mmm_core.tokenizer import Tokenizer
 from mmm_core.training.batches import TokenCorpus, length_buckets
+from mmm_core.training.fresh import FreshClips
 from mmm_core.training.run import Run, Schedule, train
 from mmm_core.transformer import MotionTransformer, TransformerConfig
 from mmm_core.vqvae import VqVae
@@ -88,8 +90,35 @@ def corrupt(
     return torch.where(masked, torch.full_like(ids, n_codes + 2), ids)
 
 
+class Batches:
+    """Draws the rows of a step from a corpus: clips of like length together, people's as often as asked."""
+
+    def __init__(self, corpus: TokenCorpus, tokens_per_batch: int, real_share: float) -> None:
+        self._corpus, self._tokens, self._real_share = corpus, tokens_per_batch, real_share
+        self._buckets = length_buckets(corpus.ids)
+        weight = np.array([_drawing_weight(rows, corpus.is_real, real_share) for rows in self._buckets.values()])
+        self._lengths, self._p = list(self._buckets), weight / weight.sum()
+
+    def draw(self, generator: torch.Generator, config: TransformerConfig) -> tuple[Tensor, Tensor, TextStates]:
+        """Ids (B, L, C) with [END] and [PAD], lengths (B,) and a caption of each."""
+        corpus, K = self._corpus, config.n_codes
+        rng = np.random.default_rng(int(torch.randint(2**62, (1,), generator=generator)))
+        length = self._lengths[rng.choice(len(self._lengths), p=self._p)]
+        rows, B = self._buckets[length], max(8, self._tokens // length)
+        p = np.where(corpus.is_real[rows], *_shares(corpus.is_real[rows], self._real_share))
+        picked = rng.choice(rows, B, p=p / p.sum())
+        ids = torch.full((B, length + 1, config.n_codebooks), K + 1)
+        n_tokens = torch.tensor([len(corpus.ids[i]) for i in picked])
+        for row, i in enumerate(picked):
+            n = len(corpus.ids[i])
+            ids[row, :n] = corpus.ids[i]
+            ids[row, n] = K
+        captions = [int(rng.choice(corpus.caption_rows[i])) for i in picked]
+        return ids, n_tokens, corpus.captions.gather(captions)
+
+
 def train_transformer(
-    corpus: TokenCorpus,
+    corpus: TokenCorpus | FreshClips,
     tokenizer: Tokenizer | VqVae,
     config: TransformerConfig,
     schedule: Schedule,
@@ -100,7 +129,7 @@ def train_transformer(
     words: nn.ModuleList | None = None,
     words_rate: float = 1.0,
 ) -> MotionTransformer:
-    """A transformer trained on `corpus`: eq. 2, or eq. 3 where `config` predicts the first codebooks only.
+    """A transformer trained on `corpus`, fixed or made anew: eq. 2, or eq. 3 where `config` predicts the first codebooks only.
 
     It begins with the weights of `start`, which has the sizes of `config`, or from nothing. The layers of words that `config` may
     have begin as the last of the text encoder's, `words`, where `start` has none, and learn at `words_rate` of the learning rate.
@@ -114,28 +143,16 @@ def train_transformer(
     if start is not None:
         mine = model.state_dict()
         model.load_state_dict(mine | {name: t for name, t in start.state_dict().items() if name in mine})
-    buckets = length_buckets(corpus.ids)
-    weight = np.array([_drawing_weight(rows, corpus.is_real, how.real_share) for rows in buckets.values()])
-    lengths, K, P = list(buckets), config.n_codes, config.n_out
+    K, P = config.n_codes, config.n_out
     device = run.torch_device
 
-    def batch(generator: torch.Generator) -> tuple[Tensor, Tensor, TextStates]:
-        rng = np.random.default_rng(int(torch.randint(2**62, (1,), generator=generator)))
-        length = lengths[rng.choice(len(lengths), p=weight / weight.sum())]
-        rows, B = buckets[length], max(8, tokens_per_batch // length)
-        p = np.where(corpus.is_real[rows], *_shares(corpus.is_real[rows], how.real_share))
-        picked = rng.choice(rows, B, p=p / p.sum())
-        ids = torch.full((B, length + 1, config.n_codebooks), K + 1)
-        n_tokens = torch.tensor([len(corpus.ids[i]) for i in picked])
-        for row, i in enumerate(picked):
-            n = len(corpus.ids[i])
-            ids[row, :n] = corpus.ids[i]
-            ids[row, n] = K
-        captions = [int(rng.choice(corpus.caption_rows[i])) for i in picked]
-        return ids, n_tokens, corpus.captions.gather(captions)
+    @lru_cache(maxsize=1)
+    def batches(corpus: TokenCorpus) -> Batches:
+        return Batches(corpus, tokens_per_batch, how.real_share)
 
-    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
-        ids, n_tokens, text = batch(generator)
+    def loss_fn(step: int, generator: torch.Generator) -> dict[str, Tensor]:
+        now = corpus if isinstance(corpus, TokenCorpus) else corpus.corpus(step)
+        ids, n_tokens, text = batches(now).draw(generator, config)
         dropped = torch.rand(len(ids), generator=generator) < how.no_text_share
         seen = corrupt(ids, n_tokens, K, how, generator, P)
         mine = distributed.share(len(ids))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mmm_core.corpus.families.gesture import LEFT_RIGHT, Family, Gesture
-from mmm_core.corpus.families.strokes import SIGN, keep, turn_s
+from mmm_core.corpus.families.strokes import SIGN, cycle_s, keep, turn_s
 from mmm_core.corpus.score import Score
 
 _HEAD_STROKE_S = 0.32
@@ -14,6 +14,7 @@ _AIM_DEG = {"left": (1, 0), "right": (-1, 0), "up": (0, -1), "down": (0, 1), "up
 
 def _nod(score: Score, g: Gesture) -> None:
     for _ in range(g.count):
+        score.to_beat()
         depth = np.deg2rad(23) * g.size * score.rng.uniform(0.9, 1.15)
         half = max(0.25, _HEAD_STROKE_S / g.tempo)
         score.move(half, head=(0.0, depth, 0.0))
@@ -26,6 +27,7 @@ def _shake(score: Score, g: Gesture) -> None:
     half = max(0.26, _HEAD_STROKE_S / g.tempo)
     score.move(half * 0.7, head=(first * angle * score.rng.uniform(0.9, 1.1), 0.0, 0.0))
     for _ in range(g.count):
+        score.to_beat()
         score.move(half, head=(-first * angle * score.rng.uniform(0.9, 1.1), 0.0, 0.0))
         score.move(half, head=(first * angle * score.rng.uniform(0.9, 1.1), 0.0, 0.0))
     score.move(half * 0.7, head=(0.0, 0.0, 0.0))
@@ -41,6 +43,8 @@ def _wobble(score: Score, g: Gesture) -> None:
     first = 1 if score.rng.random() < 0.5 else -1
     half = max(0.28, 0.36 / g.tempo)
     for i in range(2 * g.count):
+        if i % 2:
+            score.to_beat()
         roll = first * (1 - 2 * (i % 2)) * np.deg2rad(20) * g.size * score.rng.uniform(0.9, 1.1)
         score.move(half, head=(0.0, 0.0, roll))
     score.move(half * 0.7, head=(0.0, 0.0, 0.0))
@@ -74,7 +78,7 @@ def _roll(score: Score, g: Gesture) -> None:
     turn = -1 if score.rng.random() < 0.5 else 1
     wide = np.deg2rad(20) * g.size
     score.move(turn_s(score, g, 0.45), head=(0.0, wide, 0.0))
-    duration = g.count * max(0.9, 1.5 / g.tempo)
+    duration = g.count * (cycle_s(score, g, 1.5, 0.9) if score.beat_s else max(0.9, 1.5 / g.tempo))
     score.trace(
         duration,
         head=lambda u: np.array([

@@ -60,7 +60,7 @@ def _arm_circle(score: Score, g: Gesture) -> None:
         return ArmPose(v, v)
 
     arms_to(score, g, pose(0.0), amount=0.0, via=SIDE)
-    duration = g.count * max(0.9, 1.25 / g.tempo * score.rng.uniform(0.93, 1.08))
+    duration = g.count * cycle_s(score, g, 1.25, 0.9)
     score.trace(duration, **dict.fromkeys(g.arms, lambda u: pose(g.count * u)))
 
 
@@ -84,6 +84,7 @@ def _robot(score: Score, g: Gesture) -> None:
     score.hold(0.2)
     first = "left" if score.rng.random() < 0.5 else "right"
     for i in range(g.count):
+        score.to_beat()
         a = first if i % 2 == 0 else _OTHER[first]
         score.move(0.3 / g.tempo**0.5, **{a: up, _OTHER[a]: down}, head=((0.35 if a == "left" else -0.35), 0.0, 0.0))
         score.hold(0.26 / g.tempo)
@@ -103,6 +104,8 @@ def _sway_arms(score: Score, g: Gesture) -> None:
     first = 1.0 if score.rng.random() < 0.5 else -1.0
     half = cycle_s(score, g, 1.25) / 2
     for i in range(2 * g.count + 1):
+        if i % 2:
+            score.to_beat()
         side = first * (1 if i % 2 == 0 else -1) * g.size * score.rng.uniform(0.92, 1.08)
         pose = {"left": (0.2 + 0.45 * side, 0.9, 0.15), "right": (0.2 - 0.45 * side, 0.9, 0.15)}
         arms = {k: ArmPose(v, v) for k, v in pose.items()}
@@ -116,6 +119,7 @@ def _arm_wave(score: Score, g: Gesture) -> None:
     step = max(0.22, 0.27 / g.tempo)
     bump, dip = ArmPose((1, 0.4, 0.1), (0.9, -0.45, 0.1)), ArmPose((1, -0.12, 0.1), (0.9, 0.5, 0.1))
     for _ in range(g.count):
+        score.to_beat()
         a = "left" if score.rng.random() < 0.5 else "right"
         for arm, pose in ((a, dip), (a, bump), (_OTHER[a], bump), (_OTHER[a], dip)):
             score.move(step, **{arm: pose, _OTHER[arm]: flat[arm]})

@@ -30,6 +30,7 @@ def _wave(score: Score, g: Gesture) -> None:
     cycle = cycle_s(score, g, 0.62)
     first = int(rng.integers(2))
     for i in range(g.count):
+        score.to_beat()
         arms = (("left", "right")[(first + i) % 2],) if g.side == "alternating" else g.arms
         for swing in (0.14 + 0.58 * s, 0.14 - 0.45 * s):
             pose = vary(score, ArmPose(upper, (swing, 0.87, 0.22), -0.5), 0.03)
@@ -51,6 +52,7 @@ def _clap(score: Score, g: Gesture) -> None:
     arms_to(score, g, apart, amount=0.02)
     cycle = cycle_s(score, g, 0.56)
     for _ in range(g.count):
+        score.to_beat()
         close = cycle * score.rng.uniform(0.42, 0.5)
         wide = g.size * score.rng.uniform(0.92, 1.08)
         away = ArmPose(apart.upper, (apart.fore[0] + 0.3 * (wide - 1), apart.fore[1], apart.fore[2]))
@@ -61,6 +63,7 @@ def _clap(score: Score, g: Gesture) -> None:
 def _shrug(score: Score, g: Gesture) -> None:
     palms = vary(score, ArmPose((0.3, -0.85, 0.25), (0.65, 0.15, 0.7), 1.1), 0.04)
     for _ in range(g.count):
+        score.to_beat()
         tilt = score.rng.uniform(-0.15, 0.15)
         up = turn_s(score, g, 0.45)
         score.move(up, shrug=1.0 * g.size, left=palms, right=palms, head=(0.0, 0.0, tilt))
@@ -90,6 +93,7 @@ def _fist_pump(score: Score, g: Gesture) -> None:
     low = ArmPose((0.45, -0.8, 0.15), (0.02, 0.9, 0.45))
     arms_to(score, g, high)
     for i in range(g.count):
+        score.to_beat()
         arms_to(score, g, low, 0.3 / g.tempo**0.5, 0.02)
         if i < g.count - 1:
             arms_to(score, g, high, 0.34 / g.tempo**0.5, 0.02)

@@ -39,6 +39,7 @@ def _strike(kind: str) -> Perform:
         arms_to(score, g, _GUARD if both else ready, amount=0.03)
         first = int(score.rng.integers(2))
         for i in range(g.count):
+            score.to_beat()
             arms = (("left", "right")[(first + i) % 2],) if both else g.arms
             if both and kind != "punch":
                 score.move(0.24 / g.tempo**0.5, **dict.fromkeys(arms, vary(score, ready, 0.02)))
@@ -56,6 +57,7 @@ def _throw(wind_up: ArmPose, release: ArmPose, after: ArmPose) -> Perform:
         """Wind up with the shoulder back, release, follow through."""
         side = 0.0 if g.side == "both" else 1.0 if g.lead == "right" else -1.0
         for _ in range(g.count):
+            score.to_beat()
             posed = vary(score, wind_up, 0.03)
             score.move(
                 1.05 * reach_s(score, g, posed), SIDE, **dict.fromkeys(g.arms, posed), trunk=(-0.22 * side, -0.05, 0.0)
@@ -70,6 +72,7 @@ def _throw(wind_up: ArmPose, release: ArmPose, after: ArmPose) -> Perform:
 
 def _catch(score: Score, g: Gesture) -> None:
     for _ in range(g.count):
+        score.to_beat()
         arms_to(score, g, ArmPose((0.15, -0.25, 0.95), (-0.1, 0.12, 1.0), 0.6), 0.36 / g.tempo**0.5, 0.03)
         arms_to(score, g, reach((0.02, -0.24, 0.24), (0.7, -0.7, 0.0), 0.6), 0.4 / g.tempo**0.5, 0.03)
         score.hold(score.rng.uniform(0.25, 0.7))
@@ -80,6 +83,7 @@ def _archery(score: Score, g: Gesture) -> None:
     bow = ArmPose((0.85, 0.05, 0.5), (0.85, 0.05, 0.5), -0.6)
     yaw = -0.35 if g.lead == "right" else 0.35
     for _ in range(g.count):
+        score.to_beat()
         pair_to(score, g, reach((-0.3, 0.02, 0.42), ELBOW_OUT), bow)
         draw = vary(score, ArmPose((0.95, 0.1, -0.05), (-0.85, 0.15, 0.5)), 0.02)
         score.move(0.75 / g.tempo, **{g.lead: draw}, head=(-yaw, 0.0, 0.0))
@@ -95,6 +99,7 @@ def _golf(score: Score, g: Gesture) -> None:
         return {"left": reach((left, up, forward)), "right": reach((-left + 0.04, up - 0.04, forward))}
 
     for _ in range(g.count):
+        score.to_beat()
         score.move(0.85 / g.tempo, **grip(0.0, -0.45, 0.32), trunk=(0.0, 0.15, 0.0))
         score.move(0.8 / g.tempo, **grip(-0.27, 0.1, 0.25), trunk=(-0.4, 0.1, 0.0), head=(0.35, 0.15, 0.0))
         score.hold(score.rng.uniform(0.05, 0.25))
@@ -109,6 +114,8 @@ def _swing_arms(high: ArmPose, low: ArmPose, usual_s: float) -> Perform:
         half = cycle_s(score, g, usual_s) / 2
         first = int(score.rng.integers(2))
         for i in range(2 * g.count):
+            if i % 2:
+                score.to_beat()
             share = g.size * score.rng.uniform(0.93, 1.07)
             pose = {
                 ("left", "right")[(first + i) % 2]: vary(score, high, 0.02 * share),

@@ -42,12 +42,19 @@ def reach_s(score: Score, g: Gesture, *poses: ArmPose | Array) -> float:
             now = score.now(arm)
             far = max(far, 1 - now[:3] @ to[:3], 1 - now[3:6] @ to[3:6])
     angle = np.arccos(1 - min(far, 2.0))
-    return float((0.36 + 0.2 * angle) * score.rng.uniform(0.88, 1.2) / g.tempo)
+    return in_beats(score, float((0.36 + 0.2 * angle) * score.rng.uniform(0.88, 1.2) / g.tempo))
 
 
 def turn_s(score: Score, g: Gesture, usual_s: float = 0.6) -> float:
     """How long head or trunk take to turn."""
-    return usual_s * score.rng.uniform(0.85, 1.2) / g.tempo
+    return in_beats(score, usual_s * score.rng.uniform(0.85, 1.2) / g.tempo)
+
+
+def in_beats(score: Score, duration_s: float) -> float:
+    """The next longer whole number of beats, at least two, where the score has a beat."""
+    if not score.beat_s:
+        return duration_s
+    return score.beat_s * max(2, int(np.ceil(duration_s / score.beat_s - 0.25)))
 
 
 def arms_to(
@@ -67,12 +74,14 @@ def pair_to(score: Score, g: Gesture, lead: ArmPose, other: ArmPose, duration_s:
 
 def keep(score: Score, g: Gesture, usual_s: tuple[float, float] = (0.7, 2.0)) -> None:
     """Hold as long as is asked, or a while."""
-    score.hold(g.hold_s or score.rng.uniform(*usual_s))
+    score.hold(g.hold_s or score.pause_s(*usual_s))
 
 
-def cycle_s(score: Score, g: Gesture, usual_s: float) -> float:
-    """Length of one cycle at the gesture's tempo."""
-    return max(SHORTEST_CYCLE_S, usual_s / g.tempo * score.rng.uniform(0.93, 1.08))
+def cycle_s(score: Score, g: Gesture, usual_s: float, least_s: float = SHORTEST_CYCLE_S) -> float:
+    """Length of one cycle at the gesture's tempo, at least `least_s`; on a beat a whole number of beats, at least three."""
+    if score.beat_s:
+        return score.beat_s * max(3, int(np.ceil(max(least_s, usual_s / g.tempo) / score.beat_s - 0.05)))
+    return max(least_s, usual_s / g.tempo * score.rng.uniform(0.93, 1.08))
 
 
 def still(pose: ArmPose, usual_s: tuple[float, float] = (0.7, 2.0), via: Vector = FRONT, **also: Vector) -> Perform:
@@ -96,6 +105,7 @@ def repeat(
     cycle = cycle_s(score, g, usual_s)
     first = int(rng.integers(2))
     for i in range(g.count):
+        score.to_beat()
         arms = (("left", "right")[(first + i) % 2],) if g.side == "alternating" else g.arms
         this = cycle * rng.uniform(0.95, 1.06)
         there = this * out_share * rng.uniform(0.94, 1.06)
@@ -134,7 +144,7 @@ def loops(
 
         start = {arm: shift if arm != g.arms[0] else 0.0 for arm in g.arms}
         score.move(reach_s(score, g, pose(0.0)), **{arm: pose(p) for arm, p in start.items()})
-        duration = g.count * max(0.6, usual_s / g.tempo * score.rng.uniform(0.93, 1.08))
+        duration = g.count * cycle_s(score, g, usual_s, 0.6)
         score.trace(
             duration,
             **{arm: (lambda u, p=p: pose(p + g.count * u)) for arm, p in start.items()},

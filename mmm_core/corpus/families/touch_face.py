@@ -19,6 +19,7 @@ _KISS_OUT = ArmPose((0.2, -0.35, 0.9), (0.12, 0.15, 1.0), 1.0)
 
 def _kiss(score: Score, g: Gesture) -> None:
     for _ in range(g.count):
+        score.to_beat()
         arms_to(score, g, reach(MOUTH), amount=0.03)
         score.hold(score.rng.uniform(0.1, 0.3))
         arms_to(score, g, _KISS_OUT, amount=0.04)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from mmm_core.corpus.families.gesture import LEFT_RIGHT, Family, Gesture, Perform
-from mmm_core.corpus.families.strokes import SIGN, keep, turn_s
+from mmm_core.corpus.families.strokes import SIGN, cycle_s, keep, turn_s
 from mmm_core.corpus.score import Score
 
 
 def _bow(score: Score, g: Gesture) -> None:
     for _ in range(g.count):
+        score.to_beat()
         depth = np.deg2rad(38) * g.size * score.rng.uniform(0.85, 1.15)
         score.move(turn_s(score, g, 0.85), trunk=(0.0, depth, 0.0), head=(0.0, 0.3 * depth, 0.0))
         score.hold(g.hold_s or score.rng.uniform(0.15, 0.7))
@@ -40,6 +41,8 @@ def _side_to_side(axis: int, angle_deg: float, half_s: float) -> Perform:
         first = 1 if score.rng.random() < 0.5 else -1
         half = max(0.35, half_s / g.tempo)
         for i in range(2 * g.count):
+            if i % 2:
+                score.to_beat()
             angles = [0.0, 0.0, 0.0]
             angles[axis] = first * (1 - 2 * (i % 2)) * np.deg2rad(angle_deg) * g.size * score.rng.uniform(0.92, 1.08)
             score.move(half * (0.75 if i == 0 else 1.0), trunk=angles, head=[-0.5 * a for a in angles])
@@ -53,7 +56,7 @@ def _circle(score: Score, g: Gesture) -> None:
     wide = np.deg2rad(15) * g.size
     score.move(turn_s(score, g, 0.5), trunk=(0.0, wide, 0.0))
     score.trace(
-        g.count * max(1.0, 1.7 / g.tempo),
+        g.count * (cycle_s(score, g, 1.7, 1.0) if score.beat_s else max(1.0, 1.7 / g.tempo)),
         trunk=lambda u: np.array([
             0.0, wide * np.cos(2 * np.pi * g.count * u), turn * wide * np.sin(2 * np.pi * g.count * u)
         ]),
@@ -63,6 +66,7 @@ def _circle(score: Score, g: Gesture) -> None:
 
 def _breathe(score: Score, g: Gesture) -> None:
     for _ in range(g.count):
+        score.to_beat()
         depth = g.size * score.rng.uniform(0.9, 1.1)
         half = max(0.7, 1.0 / g.tempo * score.rng.uniform(0.9, 1.1))
         score.move(half, trunk=(0.0, -0.12 * depth, 0.0), shrug=0.75 * depth, head=(0.0, -0.08 * depth, 0.0))
@@ -76,7 +80,7 @@ def _slump(score: Score, g: Gesture) -> None:
 
 
 def _stand(score: Score, g: Gesture) -> None:
-    score.hold(g.hold_s or score.rng.uniform(1.2, 3.0))
+    score.hold(g.hold_s or score.pause_s(1.2, 3.0))
 
 
 def _shift(score: Score, g: Gesture) -> None:

@@ -37,6 +37,7 @@ def taps(up: ArmPose, down: ArmPose, beat_s: float, spread: float = 0.0) -> Perf
         first = int(score.rng.integers(2))
         beat = max(0.26, beat_s / g.tempo)
         for i in range(2 * g.count):
+            score.to_beat()
             arm = ("left", "right")[(first + i) % 2] if len(g.arms) == 2 else g.arms[0]
             if len(g.arms) == 1 and i % 2:
                 continue
@@ -55,6 +56,7 @@ def _lift(score: Score, g: Gesture) -> None:
         ArmPose((0.15, 0.3, 0.95), (-0.05, 0.55, 0.85), 0.4),
     )
     for _ in range(g.count):
+        score.to_beat()
         posed = vary(score, low, 0.02)
         duration = reach_s(score, g, posed)
         score.move(duration, **dict.fromkeys(g.arms, posed), trunk=(0.0, 0.3 * g.size, 0.0), head=(0.0, 0.1, 0.0))
@@ -69,6 +71,7 @@ def _lift(score: Score, g: Gesture) -> None:
 def _pick(score: Score, g: Gesture) -> None:
     """Reach up, close the hand, bring it down to a basket."""
     for _ in range(g.count):
+        score.to_beat()
         arms_to(score, g, ArmPose((0.25, 0.72, 0.6), (0.1, 0.9, 0.4)), amount=0.06)
         score.hold(0.12)
         arms_to(score, g, ArmPose((0.3, -0.8, 0.45), (-0.1, -0.1, 0.95)), amount=0.03)
@@ -81,6 +84,7 @@ def _climb(score: Score, g: Gesture) -> None:
     half = max(0.42, 0.62 / g.tempo)
     first = int(score.rng.integers(2))
     for i in range(g.count + 1):
+        score.to_beat()
         up = ("left", "right")[(first + i) % 2]
         down = "left" if up == "right" else "right"
         score.move(half * (1.5 if i == 0 else 1), **{up: vary(score, high, 0.03), down: vary(score, low, 0.03)})
@@ -94,6 +98,7 @@ def _twist_forearm(pose: ArmPose, from_rad: float, to_rad: float, usual_s: float
         arms_to(score, g, back, amount=0.02)
         cycle = cycle_s(score, g, usual_s)
         for _ in range(g.count):
+            score.to_beat()
             score.move(cycle / 2, **dict.fromkeys(g.arms, vary(score, there, 0.008)))
             score.move(cycle / 2, **dict.fromkeys(g.arms, vary(score, back, 0.008)))
 
@@ -109,6 +114,7 @@ def _steer(score: Score, g: Gesture) -> None:
     score.move(reach_s(score, g, hold(0)["left"]), **hold(0.0))
     first = 1 if score.rng.random() < 0.5 else -1
     for i in range(2 * g.count):
+        score.to_beat()
         score.move(max(0.4, 0.55 / g.tempo), **hold(first * (1 - 2 * (i % 2)) * 0.13 * g.size))
     score.move(0.4 / g.tempo, **hold(0.0))
 

@@ -1,0 +1,136 @@
+"""Whether the model makes each gesture as well as its corpus does: `mmmd eval fidelity`.
+
+For every family gestures and their captions are drawn as the corpus draws them, with seeds that no training uses. The corpus
+performs each in its free manner, and the model makes a motion for the caption alone. Both are judged by `likeness`. A check
+counts for a family when the corpus passes it nearly always, and the figure is the model's share of the motions in which the corpus
+passes all that count.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mmm_core.corpus.body import Body
+from mmm_core.corpus.families import FAMILIES, Gesture
+from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise_spec
+from mmm_core.count_words import count_asked
+from mmm_core.evaluation.likeness import Checks, judge
+from mmm_core.evaluation.reference import reference
+from mmm_core.features import recover
+from mmm_core.motion import Motion
+from mmm_core.shown import Shown, look_at
+
+HELD_OUT_SEED = 23_000_001
+CORPUS_DRAWS = 10
+COUNTS_FROM = 0.9
+"""Share of the corpus's own motions that pass a check which counts."""
+N_WORST = 10
+Generate = Callable[[str, int], Motion]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A gesture that is asked for, the sentence that asks, and how the corpus's own motion is judged."""
+
+    gesture: Gesture
+    text: str
+    corpus: Checks
+
+
+def cases_of(family: str, n: int = CORPUS_DRAWS) -> list[Case]:
+    """The first `n` cases of a family; they are the same every time."""
+    cases: list[Case] = []
+    seed = (HELD_OUT_SEED, zlib.crc32(family.encode()))
+    draw = 0
+    while len(cases) < n:
+        rng = np.random.default_rng((*seed, draw))
+        draw += 1
+        gesture = draw_gesture(rng, (family,))
+        clip = synthesise_spec(ClipSpec((gesture,)), rng)
+        if clip is not None:
+            text = clip.captions[0]
+            cases.append(Case(gesture, text, judged(seen(clip.body), gesture, text)))
+    return cases
+
+
+def seen(body: Body) -> Shown:
+    """What a motion of the corpus shows."""
+    motion = recover(body.features())
+    return look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+
+
+def judged(s: Shown, gesture: Gesture, text: str) -> Checks:
+    """The checks of a motion for a sentence; what the sentence leaves open may be done in any of its ways."""
+    counts = {gesture.count}
+    if count_asked(text) is None:
+        counts |= set(FAMILIES[gesture.family].counts)
+        counts -= {1} if gesture.side == "alternating" else set()
+    ways = [
+        reference(replace(gesture, count=count), otherwise) for count in sorted(counts) for otherwise in (False, True)
+    ]
+    verdicts = [judge(s, ref) for ref in ways]
+    return min(verdicts, key=lambda v: (sum(not ok for ok in v[0].values()), v[1]))[0]
+
+
+def fidelity(
+    generate: Generate,
+    families: Sequence[str] = (),
+    n_each: int = CORPUS_DRAWS,
+    progress: Callable[[int], None] = lambda _n: None,
+) -> dict[str, Any]:
+    """The share of the corpus's gestures that the model makes as well, over all and for each family, and the worst families.
+
+    Args:
+        generate: (sentence, seed) -> motion.
+        families: of the corpus; all when none is given.
+        n_each: motions of each family.
+        progress: told how many motions are done.
+    """
+    table: dict[str, dict[str, Any]] = {}
+    made = shown = done = 0
+    for name in families or tuple(FAMILIES):
+        cases = cases_of(name, max(n_each, CORPUS_DRAWS))
+        counting = counting_checks(cases)
+        missed: Counter[str] = Counter()
+        passed = of = 0
+        for i, case in enumerate(cases[:n_each]):
+            done += 1
+            progress(done)
+            if not all(case.corpus.get(check, True) for check in counting):
+                continue
+            motion = generate(case.text, i)
+            of += 1
+            found = _faults(motion, case, counting)
+            passed += not found
+            missed.update(found)
+        made, shown = made + passed, shown + of
+        table[name] = {"share": round(passed / of, 3) if of else None, "n": of, "missed": dict(missed.most_common())}
+    ranked = sorted((t["share"], name) for name, t in table.items() if t["share"] is not None)
+    return {
+        "share": round(made / max(shown, 1), 4),
+        "least": ranked[0][0] if ranked else None,
+        "worst": [[name, share] for share, name in ranked[:N_WORST]],
+        "families": table,
+        "n": shown,
+    }
+
+
+def counting_checks(cases: Sequence[Case]) -> list[str]:
+    """The checks that the corpus itself passes often enough to be asked of a model."""
+    names = {check for case in cases for check in case.corpus}
+    share = {check: np.mean([case.corpus.get(check, True) for case in cases]) for check in names}
+    return sorted(check for check, passed in share.items() if passed >= COUNTS_FROM)
+
+
+def _faults(motion: Motion, case: Case, counting: Sequence[str]) -> list[str]:
+    if not len(motion.joints_m):
+        return ["refused"]
+    s = look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    checks = judged(s, case.gesture, case.text)
+    return [check for check in counting if not checks.get(check, True)]

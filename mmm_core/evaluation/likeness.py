@@ -1,0 +1,249 @@
+"""Strict checks of a motion against the corpus's own: not only which gesture, but that it is made well.
+
+A gesture may be told by its sign and still be broken: a circle that is an ellipse, strokes that come when they like, arms that
+fall out of step, hands that pass each other. Each check here asks one such question, by what the clean performance of the
+same gesture does, so that no table of families is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.corpus.families import FAMILIES
+from mmm_core.evaluation.reference import Reference, channels, palms
+from mmm_core.evaluation.signs import shows
+from mmm_core.shown import Shown
+from mmm_core.strokes import peaks_beyond
+
+Array = NDArray[np.floating]
+Checks = dict[str, bool]
+TURN_SHARE = 0.4
+"""A stroke rises and falls by so much of the gesture's range."""
+PACE_RATIO = 1.42
+"""Of the times from stroke to stroke, the longest over the shortest against the clean ones'."""
+HALF_PACE_RATIO = 2.0
+"""The same of the times from turn to turn, out and back."""
+TEMPO_RATIO = 1.8
+"""How much faster or slower than the clean ones the strokes may be."""
+SIZE_RATIO, LEAST_SIZE = 1.75, 0.55
+EVEN_SHARE = 0.5
+"""The smallest stroke of the largest, against the clean ones'."""
+ROUND_SHARE = 0.62
+"""Narrow over wide of a closed path, against the clean one's."""
+TURNS_OFF = 0.4
+MARGIN_FRAMES = 2
+PHASE_OFF = 0.2
+"""Of a cycle: how far the arms may be out of step."""
+TOUCH_M, TOUCH_OFF_M = 0.15, 0.06
+"""Palms nearer than the first meet; a motion's palms come as near within the second."""
+POSE_OFF_M, POSE_OFF_DEG, POSE_FRAMES = 0.15, 14.0, 4
+WAY_OFF_SHARE = 0.36
+"""Mean distance from the clean motion, time warped, as a share of its range."""
+_DTW_EVERY = 2
+
+
+def judge(s: Shown, ref: Reference) -> tuple[Checks, float]:
+    """Which checks a motion passes, only those that the gesture has, and how far it is from the reference (0 is the same)."""
+    g = ref.gesture
+    off, pairs = _warped(s, ref.shown)
+    checks = {
+        "sign": shows(s, g.family, g.side, g.direction),
+        "way": off < WAY_OFF_SHARE,
+        "arms": s.arms == ref.shown.arms,
+    }
+    core = _matched(pairs, ref.core, len(s.lift_m))
+    if repeats(ref):
+        checks |= _strokes(s, ref, core)
+        if len(ref.acting) == 2:
+            checks["phase"] = _in_step(s, ref, core)
+    else:
+        checks["pose"] = _takes_pose(s, ref)
+    if ref.is_path and ref.acting and ref.acting[0] in ("left", "right"):
+        checks["round"] = all(
+            _goes_round(palms(s)[side][core], palms(ref.shown)[side][ref.core]) for side in ref.acting
+        )
+    meets = _apart(ref.shown)[ref.core]
+    if meets.min() < TOUCH_M and ref.shown.arms == "both":
+        checks["touch"] = _touches(_apart(s), _apart(ref.shown), ref)
+    return checks, off
+
+
+def repeats(ref: Reference) -> bool:
+    """Whether the gesture is one that has strokes."""
+    return bool(FAMILIES[ref.gesture.family].counts) and bool(ref.acting)
+
+
+def _strokes(s: Shown, ref: Reference, core: slice) -> Checks:
+    """Count, pace and size along the axis of each acting channel."""
+    wide = slice(max(0, core.start - MARGIN_FRAMES), core.stop + MARGIN_FRAMES)
+    made, meant = [], []
+    checks = {"count": True, "pace": True, "size": True}
+    for name in ref.acting:
+        signal, clean = ref.along(s, name)[wide], ref.along(ref.shown, name)[ref.core]
+        turn = TURN_SHARE * float(np.ptp(clean))
+        far = np.flatnonzero(np.abs(clean - clean[0]) > 0.5 * turn)
+        out = 1.0 if not len(far) or clean[far[0]] > clean[0] else -1.0  # where the first stroke goes
+        made.append(_turning(out * signal, turn))
+        meant.append(_turning(out * clean, turn))
+        if len(made[-1]) == len(meant[-1]) > 1:
+            checks["pace"] &= _steady(made[-1], meant[-1], PACE_RATIO)
+            turns = [
+                sorted([*peaks, *_turning(-out * x, turn)]) for peaks, x in ((made[-1], signal), (meant[-1], clean))
+            ]
+            checks["pace"] &= len(turns[0]) != len(turns[1]) or _steady(turns[0], turns[1], HALF_PACE_RATIO)
+        checks["size"] &= _sized(out * signal, out * clean, turn)
+    counts, clean_counts = [len(m) for m in made], [len(m) for m in meant]
+    if ref.gesture.side == "alternating":  # either arm may have begun
+        counts, clean_counts = sorted(counts), sorted(clean_counts)
+    checks["count"] = counts == clean_counts
+    return checks
+
+
+def _sized(made: Array, meant: Array, turn: float) -> bool:
+    """Whether the ways from turn to turn are as long as the clean ones, and alike."""
+    ways = []
+    for signal in (made, meant):
+        turns = sorted([0, *_turning(signal, turn), *_turning(-signal, turn), len(signal) - 1])
+        way = np.abs(np.diff(signal[turns])) if len(signal) else np.zeros(1)
+        ways.append(way[way > 0.5 * turn])
+    if not len(ways[0]) or not len(ways[1]):
+        return len(ways[0]) == len(ways[1])
+    ratio = float(np.median(ways[0]) / np.median(ways[1]))
+    even = [float(w.min() / w.max()) for w in ways]
+    return LEAST_SIZE < ratio < SIZE_RATIO and even[0] > EVEN_SHARE * even[1]
+
+
+def _turning(signal: Array, turn: float) -> list[int]:
+    """Frames of the peaks, without one that the motion ends on: where nothing moves any more a peak may be anywhere."""
+    found = peaks_beyond(signal, turn)
+    return found[:-1] if found and signal[found[-1]] - signal[found[-1] :].min() < turn else found
+
+
+def _steady(made: list[int], meant: list[int], most: float) -> bool:
+    """Whether the times from stroke to stroke are as even as they should be, and of about the same length."""
+    ratio = np.diff(made) / np.diff(meant)
+    return bool(ratio.max() / ratio.min() < most and 1 / TEMPO_RATIO < np.median(ratio) < TEMPO_RATIO)
+
+
+def _in_step(s: Shown, ref: Reference, core: slice) -> bool:
+    """Whether the two arms go together, against each other or one after the other as they should."""
+    a, b = ref.acting
+    meant = _lag(ref.along(ref.shown, a)[ref.core], ref.along(ref.shown, b)[ref.core])
+    made = _lag(ref.along(s, a)[core], ref.along(s, b)[core])
+    if meant is None or made is None:
+        return meant is None
+    return abs((made - meant + 0.5) % 1.0 - 0.5) < PHASE_OFF
+
+
+def _lag(a: Array, b: Array) -> float | None:
+    """By how much of its cycle `b` comes after `a`, by the strongest common frequency; None where nothing is common."""
+    n = min(len(a), len(b))
+    if n < 6:
+        return None
+    window = np.hanning(n + 2)[1:-1]
+    x, y = (np.fft.rfft((v[:n] - v[:n].mean()) * window, 8 * n) for v in (a, b))
+    first = 8  # one cycle in the whole stretch
+    k = first + int(np.argmax((np.abs(x) * np.abs(y))[first:]))
+    return float(np.angle(x[k] * np.conj(y[k])) / (2 * np.pi))
+
+
+def _goes_round(made: Array, meant: Array) -> bool:
+    """Whether a palm's path is as round as the clean one, and goes round as often the same way."""
+    if len(made) < 5:
+        return False
+    plane = np.linalg.svd(meant - meant.mean(0), full_matrices=False)[2][:2]
+    a, b = (made - made.mean(0)) @ plane.T, (meant - meant.mean(0)) @ plane.T
+    narrow = [s[1] / max(float(s[0]), 1e-6) for s in (np.linalg.svd(v, compute_uv=False) for v in (a, b))]
+    return bool(
+        narrow[0] > ROUND_SHARE * narrow[1] and abs(_turns(a) - _turns(b)) < TURNS_OFF * max(1.0, abs(_turns(b)) / 2)
+    )
+
+
+def _turns(path: Array) -> float:
+    around = np.unwrap(np.arctan2(path[:, 1], path[:, 0]))
+    return float((around[-1] - around[0]) / (2 * np.pi))
+
+
+def _apart(s: Shown) -> Array:
+    both = palms(s)
+    return np.linalg.norm(both["left"] - both["right"], axis=-1)
+
+
+def _touches(made: Array, meant: Array, ref: Reference) -> bool:
+    """Whether the palms meet, and again as often as they should."""
+    near = float(meant[ref.core].min())
+    if made.min() > near + TOUCH_OFF_M:
+        return False
+    turn = TURN_SHARE * float(np.ptp(meant[ref.core]))
+    if not repeats(ref) or turn < TOUCH_OFF_M / 2:
+        return True
+    again, clean = _turning(-made, turn), _turning(-meant, turn)
+    return len(again) == len(clean) and float(made[again].max()) < near + 2 * TOUCH_OFF_M
+
+
+def _takes_pose(s: Shown, ref: Reference) -> bool:
+    """Whether palms, head and trunk come to where they rest in the clean motion, and stay a moment."""
+    meant = channels(ref.shown)
+    body = np.concatenate(list(meant.values()), -1)
+    away = np.linalg.norm(body - body[0], axis=-1)
+    speed = np.linalg.norm(np.gradient(body, axis=0), axis=-1)
+    inside = np.zeros(len(body), bool)
+    inside[ref.core] = True
+    held = inside & (away > 0.6 * away[ref.core].max())
+    if not held.any():
+        return True
+    at = int(np.flatnonzero(held)[speed[held].argmin()])
+    near = np.ones(len(s.lift_m), bool)
+    hands, there = palms(s), palms(ref.shown)
+    for side in ("left", "right"):
+        if ref.shown.arms in (side, "both"):
+            near &= np.linalg.norm(hands[side] - there[side][at], axis=-1) < POSE_OFF_M
+    for made, clean in _angles(s, ref.shown):
+        near &= np.abs(made - clean[at]) < POSE_OFF_DEG
+    return _longest(near) >= POSE_FRAMES
+
+
+def _angles(s: Shown, t: Shown) -> Iterable[tuple[Array, Array]]:
+    names = ("head_yaw_deg", "head_pitch_deg", "head_roll_deg", "trunk_yaw_deg", "trunk_pitch_deg", "trunk_roll_deg")
+    return ((getattr(s, name), getattr(t, name)) for name in names)
+
+
+def _longest(yes: NDArray[np.bool_]) -> int:
+    longest = run = 0
+    for one in yes.tolist():
+        run = run + 1 if one else 0
+        longest = max(longest, run)
+    return longest
+
+
+def _warped(s: Shown, t: Shown) -> tuple[float, list[tuple[int, int]]]:
+    """Mean distance of two motions with time warped to fit best, as a share of the second's range; and the matched frames."""
+    a, b = (np.concatenate(list(channels(x).values()), -1)[::_DTW_EVERY] for x in (s, t))
+    apart = np.linalg.norm(a[:, None] - b[None], axis=-1)
+    n, m = apart.shape
+    total = np.full((n + 1, m + 1), np.inf)
+    total[0, 0] = 0.0
+    for i in range(n):
+        row, above, costs = total[i + 1], total[i], apart[i].tolist()
+        best = np.minimum(above[1:], above[:-1]).tolist()
+        left = float("inf")
+        for j, cost in enumerate(costs):
+            left = cost + (best[j] if best[j] < left else left)
+            row[j + 1] = left
+    pairs, i, j = [], n, m
+    while i > 0 and j > 0:
+        pairs.append((i - 1, j - 1))
+        step = int(np.argmin((total[i - 1, j - 1], total[i - 1, j], total[i, j - 1])))
+        i, j = (i - 1, j - 1) if step == 0 else (i - 1, j) if step == 1 else (i, j - 1)
+    reach = float(np.linalg.norm(b - b[0], axis=-1).max())
+    off = float(np.mean([apart[p] for p in pairs])) / max(reach, 0.3)
+    return off, [(_DTW_EVERY * x, _DTW_EVERY * y) for x, y in reversed(pairs)]
+
+
+def _matched(pairs: list[tuple[int, int]], core: slice, n_frames: int) -> slice:
+    """Frames of a motion that match the core of the clean one."""
+    frames = [x for x, y in pairs if core.start <= y < core.stop]
+    return slice(frames[0], min(n_frames, frames[-1] + 1)) if frames else slice(0, 0)

@@ -1,0 +1,185 @@
+"""Clips made anew while a transformer trains: every so many steps a round of them, seen beside those of the rounds before.
+
+22,000 fixed clips hold some ninety of a rare family; the synthesiser makes hundreds in a second, and reading captions takes longer
+than training on them. So a round's clips are made, encoded and kept in the run's folder when its first step comes, and the
+newest rounds are trained on together. Families are drawn by the weights of `families.json` in the run's folder, where there is one.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmm_core.corpus.beat import BEAT_S
+from mmm_core.corpus.families import FAMILIES
+from mmm_core.corpus.synthesis import synthesise
+from mmm_core.errors import TrainingDataError
+from mmm_core.features import mirror
+from mmm_core.mirroring import canonical
+from mmm_core.text import TextEncoder
+from mmm_core.tokenizer import Tokenizer
+from mmm_core.training.batches import CaptionStates, Clip, TokenCorpus, encode_clips
+from mmm_core.training.run import written_whole
+from mmm_core.vqvae import VqVae
+
+log = logging.getLogger(__name__)
+WEIGHTS_FILE = "families.json"
+REPEATED, OTHERS = 2.5, 1.0
+"""How often a family is drawn that repeats something, and any other, where nothing is known of how badly it does."""
+
+
+@dataclass(frozen=True)
+class FreshRecipe:
+    """How clips are made while the transformer trains.
+
+    Attributes:
+        clips: of a round; 0 makes none while it trains.
+        first: clips of the first round.
+        every: steps between rounds.
+        rounds: how many of the newest are trained on.
+        captions: of each clip that are read.
+        free_share: share of clips that keep no beat: performed as by a person, with sway, breath and uneven strokes.
+        canonical_share: share of clips whose sentence is the one of it and its mirror image that the engine reads.
+    """
+
+    clips: int = 0
+    first: int = 6000
+    every: int = 500
+    rounds: int = 16
+    captions: int = 2
+    free_share: float = 0.12
+    canonical_share: float = 0.8
+
+
+def usual_weights() -> dict[str, float]:
+    """How often each family is drawn at first."""
+    return {name: REPEATED if family.counts else OTHERS for name, family in FAMILIES.items()}
+
+
+def weights_of(fidelity: Mapping[str, Mapping[str, object]], most: float = 6.0) -> dict[str, float]:
+    """How often to draw families of which `mmmd eval fidelity` found these figures: the worse, the more often.
+
+    Few motions tell little, so a family is taken to have passed one motion of two more than it was asked for.
+    """
+    found: dict[str, float] = {}
+    for name, usual in usual_weights().items():
+        n, share = float(str(fidelity.get(name, {}).get("n") or 0)), fidelity.get(name, {}).get("share")
+        passed = (float(str(share or 0.0)) * n + 1) / (n + 2)
+        found[name] = round(usual * (0.4 + most * (1 - passed) ** 2), 3)
+    return found
+
+
+def read_weights(path: Path) -> dict[str, float]:
+    """Weights of the families from a file `{"family": weight}`; those that it does not name have their usual weight.
+
+    Raises:
+        TrainingDataError: the file names no known family, or a weight is none.
+    """
+    if not path.is_file():
+        return usual_weights()
+    table = json.loads(path.read_text("utf-8"))
+    for name, weight in table.items():
+        if name not in FAMILIES:
+            raise TrainingDataError(path, name, "no such family", "families of the corpus (docs/corpus.md)")
+        if not isinstance(weight, (int, float)) or weight < 0:
+            raise TrainingDataError(path, name, repr(weight), "a weight, 0 or more")
+    return usual_weights() | table
+
+
+@dataclass(frozen=True)
+class Round:
+    """What a round's clips are trained by: ids of each, rows of its captions, the captions."""
+
+    ids: list[Tensor]
+    caption_rows: list[list[int]]
+    captions: list[str]
+    states: CaptionStates
+
+
+class FreshClips:
+    """The rounds of a run, made when they are asked for and read again when the run goes on."""
+
+    def __init__(
+        self,
+        how: FreshRecipe,
+        folder: Path,
+        tokenizer: Tokenizer | VqVae,
+        encoder: TextEncoder,
+        seed: int,
+        people: TokenCorpus | None = None,
+    ) -> None:
+        """`people`: clips of people that every round has beside its own."""
+        self._how, self._folder, self._tokenizer, self._encoder = how, folder, tokenizer, encoder
+        self._seed, self._people = seed, people
+        self._rounds: dict[int, Round] = {}
+        self._corpus: tuple[int, TokenCorpus] | None = None
+
+    def corpus(self, step: int) -> TokenCorpus:
+        """What is trained on at `step`."""
+        newest = step // self._how.every
+        if self._corpus is None or self._corpus[0] != newest:
+            kept = range(max(0, newest - self._how.rounds + 1), newest + 1)
+            with torch.autocast("cpu", enabled=False):  # captions are read in full precision, as the engine reads
+                self._rounds = {k: self._rounds.get(k) or self._round(k) for k in kept}
+                self._corpus = newest, self._together([self._rounds[k] for k in kept])
+        return self._corpus[1]
+
+    def _round(self, k: int) -> Round:
+        path = self._folder / f"round_{k:04d}.pt"
+        if not path.is_file():
+            made = self._made(k)
+            with written_whole(path) as partial:
+                torch.save({"ids": made.ids, "caption_rows": made.caption_rows, "captions": made.captions,
+                            "words": made.states.words, "n_words": torch.from_numpy(made.states.n_words),
+                            "sentences": made.states.sentences}, partial)  # fmt: skip
+            return made
+        kept = torch.load(path, weights_only=True)
+        states = CaptionStates(kept["words"], kept["n_words"].numpy(), kept["sentences"])
+        return Round(kept["ids"], kept["caption_rows"], kept["captions"], states)
+
+    def _made(self, k: int) -> Round:
+        how, weights = self._how, read_weights(self._folder / WEIGHTS_FILE)
+        clips = [self._clip(k, i, weights) for i in range(how.clips if k else how.first)]
+        captions = sorted({c for clip in clips for c in clip.captions})
+        row = {caption: i for i, caption in enumerate(captions)}
+        rows = [[row[c] for c in clip.captions] for clip in clips]
+        log.info("round %d: %d clips, %d captions", k, len(clips), len(captions))
+        return Round(
+            encode_clips(clips, self._tokenizer), rows, captions, CaptionStates.encode(captions, self._encoder)
+        )
+
+    def _clip(self, k: int, i: int, weights: Mapping[str, float]) -> Clip:
+        rng = np.random.default_rng((self._seed, 77, k, i))
+        free = rng.random() < self._how.free_share
+        made = synthesise(rng, 0.0 if free else BEAT_S, weights)
+        n = self._how.captions
+        if rng.random() >= self._how.canonical_share:
+            return Clip(made.features, made.captions[:n], False)
+        read = [canonical(c) for c in made.captions]
+        turned = read[0][1]  # the others only where they are read from the same side
+        captions = [text for text, is_image in read if is_image == turned][:n]
+        return Clip(mirror(made.features) if turned else made.features, captions, False)
+
+    def _together(self, rounds: Sequence[Round]) -> TokenCorpus:
+        """One corpus of the rounds and of people's clips."""
+        parts = [(r.ids, r.caption_rows, r.states) for r in rounds]
+        if self._people is not None:
+            parts.append((self._people.ids, self._people.caption_rows, self._people.captions))
+        ids, rows, first = [], [], 0
+        for part_ids, part_rows, states in parts:
+            ids += part_ids
+            rows += [[first + r for r in clip] for clip in part_rows]
+            first += len(states.n_words)
+        states = CaptionStates(
+            torch.cat([s.words for *_, s in parts]), np.concatenate([s.n_words for *_, s in parts]),
+            torch.cat([s.sentences for *_, s in parts]),
+        )  # fmt: skip
+        n_people = 0 if self._people is None else len(self._people.ids)
+        return TokenCorpus(ids, rows, states, np.arange(len(ids)) >= len(ids) - n_people)
