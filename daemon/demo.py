@@ -13,7 +13,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,9 +26,14 @@ from daemon.wire.requests import Say
 from retarget.robot import RobotModel
 from sim.audit import Audit
 
+if TYPE_CHECKING:
+    from daemon.pictures.performance import Performance
+
 START_TIMEOUT_S = 60.0
 STOP_TIMEOUT_S = 40.0
 INTERRUPT_AFTER_S = 1.3
+FILM_PX, FILM_FPS = (480, 360), 10.0
+"""Width and height of the film in pixels, and its frames a second."""
 
 
 @dataclass
@@ -196,33 +201,47 @@ def describe(one: Shown, audited: dict[int, tuple[int, int]]) -> list[str]:
     return lines
 
 
-def draw(shown: list[Shown], log: Log, robot: RobotModel, out: Path) -> list[Path]:
-    """The contact sheet and the joint plot of a run; motions are generated again from text and seed."""
-    from daemon.render import Shown as Row
-    from daemon.render import contact_sheet, joint_plot
+def draw(shown: list[Shown], log: Log, robot: RobotModel, out: Path) -> tuple[list[Path], str]:
+    """A plot of the joints, a film and a contact sheet of a run; and why the last two are missing, empty when they are not.
+
+    The persons beside the robot are generated again from text and seed.
+    """
+    from daemon.pictures.drawing import contact_sheet, frames
+    from daemon.pictures.errors import NoOpenGLError
+    from daemon.pictures.film import write_film
+    from daemon.pictures.joints import joint_plot
+    from daemon.pictures.performance import cut, of_run
+
+    sheet, film, plot = out / "contact_sheet.png", out / "film.gif", out / "joints.png"
+    joint_plot(log, robot, plot)
+    performances = _performances(shown, log, robot)
+    if not performances:
+        return [plot], ""
+    try:
+        contact_sheet(performances).save(sheet)
+        run = of_run(log, robot, FILM_FPS)
+        moves = next(i for i, caption in enumerate(run.captions) if caption == performances[0].captions[0])
+        write_film(frames(cut(run, moves), "robot", "half", FILM_PX), film, FILM_FPS)
+    except NoOpenGLError as error:
+        return [plot], f"no contact sheet and no film: {error}"
+    return [film, sheet, plot], ""
+
+
+def _performances(shown: list[Shown], log: Log, robot: RobotModel) -> list[Performance]:
+    """The part of each text's motion that was played, the person beside the robot's goals."""
+    from daemon.pictures.performance import of_motion
     from mmm_core.engine import Engine
-    from retarget.ticks import JointServoMap
 
     engine = Engine.load(threads=1)
-    rows: list[Row] = []
+    found: list[Performance] = []
     for one in shown:
-        if one.accepted is None:
-            continue
-        plan_id = one.accepted.plan_id
-        goals = [c.goal_rad for c in log.cycles if c.plan_id == plan_id]
+        goals = [c.goal_rad for c in log.cycles if one.accepted is not None and c.plan_id == one.accepted.plan_id]
         if goals:
             motion = engine.generate(one.text, seed=one.seed).motion
-            n = max(1, round(len(goals) / robot.bus.rate_hz * motion.fps))
-            rows.append(Row(one.text, motion.joints_m[:n].astype(float), np.array(goals)))
-    if not rows:
-        return []
-    sheet, plot = out / "contact_sheet.png", out / "joints.png"
-    contact_sheet(rows, robot, sheet)
-    armed = [c for c in log.cycles if c.torque]
-    times = np.array([c.t_mono_ns for c in armed]) * 1e-9
-    present = JointServoMap(robot).tick_to_rad(np.array([c.present_tick for c in armed]))
-    joint_plot(times - times[0], np.array([c.goal_rad for c in armed]), present, robot, plot)
-    return [sheet, plot]
+            frame_s = np.arange(0.0, len(goals) / robot.bus.rate_hz, 1.0 / motion.fps)
+            cycles = np.minimum((frame_s * robot.bus.rate_hz).astype(int), len(goals) - 1)
+            found.append(of_motion(motion, robot, one.text, np.array(goals)[cycles]))
+    return found
 
 
 def replayed(log_file: Path) -> dict[str, Any]:

@@ -49,10 +49,15 @@ def shown_on_a_person(retargeter: Retargeter, motion: Motion) -> Motion:
     if not len(motion.joints_m):
         return motion
     path = retargeter.retarget(motion)
-    joints, head = joints_of_path(retargeter.kinematics, path.q_rad)
+    return as_motion(retargeter.kinematics, path.q_rad, path.rate_hz, motion)
+
+
+def as_motion(kinematics: Kinematics, q_rad: Array, fps: float, motion: Motion) -> Motion:
+    """`motion` with the joints and the head of a robot's poses (T, J)."""
+    joints, head = joints_of_path(kinematics, q_rad)
     T = len(joints)
     return replace(
-        motion, joints_m=joints.astype(np.float32), fps=path.rate_hz, head_quat_wxyz=head.astype(np.float32),
+        motion, joints_m=joints.astype(np.float32), fps=fps, head_quat_wxyz=head.astype(np.float32),
         forearm_twist_rad=np.zeros((T, 2), np.float32), features=np.zeros((T, N_FEATURES), np.float32),
         tokens=np.zeros(0, np.int32),
     )  # fmt: skip

@@ -16,10 +16,13 @@ from retarget.robot import RobotModel
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
+from sim.options import world_of
 from sim.port import SimPort
 
 Array = NDArray[np.float64]
 _QUEUE = 10
+_RECORDED = 100
+"""Setpoints at a time while cycles are recorded: fewer than the rings of shared memory hold."""
 _REQUESTS = (BusRequest.STOP, BusRequest.PARK, BusRequest.ESTOP, BusRequest.RESET, BusRequest.ARM)
 _COOL_C = 30.0
 _REPAIR_CYCLES, _REBOOT_CYCLES = 100, 60
@@ -36,13 +39,16 @@ class AuditRig:
         robot: which one.
         faults: what happens to its servos and its wire.
         seed: of the faults' probabilities.
+        body: what the servos turn, "plain" or "mujoco" (`sim.options.BODIES`).
     """
 
-    def __init__(self, robot: RobotModel, faults: tuple[Fault, ...] = (), seed: int = 0) -> None:
+    def __init__(
+        self, robot: RobotModel, faults: tuple[Fault, ...] = (), seed: int = 0, *, body: str = "plain"
+    ) -> None:
         self.robot = robot
         self.repairs = 0
         self._clock = VirtualClock()
-        self._bus = SimBus(robot, FaultSchedule(faults, seed))
+        self._bus = SimBus(robot, world=world_of(robot, FaultSchedule(faults, seed), body))
         self._port = SimPort(self._bus, self._clock)
         self._link = BusLink.create(robot.n_joints, robot.n_servos)
         servo_bus = ServoBus(self._port, robot.servos, self._clock)
@@ -54,6 +60,11 @@ class AuditRig:
     def state(self) -> JointState:
         """What was pushed last, with the velocity of the last step."""
         return JointState(self._last, self._velocity)
+
+    @property
+    def fault(self) -> str:
+        """Why the robot is in fault, "" when it is not."""
+        return self._link.text if self._streamer.state is BusState.FAULT else ""
 
     def play(self, path: Array, share: float = 1.0, *, stop: bool = False) -> None:
         """Play a share of a path (N, J) at bus rate from `state()` on, then stop when asked to."""
@@ -70,6 +81,27 @@ class AuditRig:
             self._request(BusRequest.STOP)
             self._until(BusState.HOLDING)
             self._take_state()
+
+    def recorded(self, path: Array, after_s: float) -> NDArray[np.void]:
+        """The bus cycles of playing a path (N, J) at bus rate from `state()` on, and of holding its end for `after_s`.
+
+        A fault ends them; `fault` then names it, and `make_ready` is what a person does next.
+        """
+        first, rows = self._link.n_cycles, [self._link.cycles_since(self._link.n_cycles)[0]]
+        for k in range(0, len(path), _RECORDED):
+            if self.fault:
+                break
+            part = path[k : k + _RECORDED]
+            self._link.push(part, 1, k, self._link.epoch, last=k + len(part) == len(path))
+            self._cycles(len(part))
+            rows.append(self._link.cycles_since(first)[0])
+            first += len(rows[-1])
+        if not self.fault:
+            self._until(BusState.HOLDING, BusState.FAULT)
+            self._cycles(round(after_s / self._period_s))
+        self._take_state()
+        rows.append(self._link.cycles_since(first)[0])
+        return np.concatenate(rows)
 
     def play_disturbed(self, path: Array, draw: np.random.Generator) -> None:
         """Play a path while requests and frames come that make no sense, and repair what broke."""
@@ -152,12 +184,13 @@ class AuditRig:
                 return
             self._cycles(1)
 
-    def _until(self, state: BusState) -> None:
+    def _until(self, *states: BusState) -> None:
         for _ in range(round(60 / self._period_s)):
-            if self._streamer.state is state:
+            if self._streamer.state in states:
                 return
             self._cycles(1)
-        raise RuntimeError(f"still {self._streamer.state.name} after a minute, not {state.name}: {self._link.text}")
+        names = " or ".join(s.name for s in states)
+        raise RuntimeError(f"still {self._streamer.state.name} after a minute, not {names}: {self._link.text}")
 
     def _cycles(self, n: int) -> None:
         for _ in range(n):

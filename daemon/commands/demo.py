@@ -18,7 +18,7 @@ def demo(
 ) -> int:
     """Start simulated servos on a tty and the daemon on them, send three texts, draw and replay what happened.
 
-    The third text is sent while the robot still moves for the second. Writes run.mcap, contact_sheet.png, joints.png,
+    The third text is sent while the robot still moves for the second. Writes run.mcap, film.gif, contact_sheet.png, joints.png,
     audit.json and the logs of both processes. Takes under a minute.
 
     Example: mmmd demo "clap three times" "cross your arms" "look to the left" --robot op3
@@ -78,7 +78,7 @@ def demo(
         bar.update(task, description="drawing and replaying")
         log = read_run(log_file)
         audited = audited_plans(log, model)
-        pictures = draw(shown, log, model, out)
+        pictures, undrawn = draw(shown, log, model, out)
         replay = replayed(log_file)
     for one in shown:
         for line in describe(one, audited):
@@ -90,6 +90,7 @@ def demo(
         f"whole run: {audit['violations']} limit violations and {audit['self_contacts']} self-contacts in {audit['goals']} goals"
     )
     console.print(f"replay: {replay['same']} of {replay['goals']} goal sets: {same}")
+    console.print(undrawn, end="\n" if undrawn else "")
     console.print("written: " + ", ".join(str(p) for p in (log_file, *pictures, audit_file)))
     good = daemon_status == 0 and replay["identical"] and not audit["violations"] and not audit["self_contacts"]
     good = good and not any(violations for _, violations in audited.values())

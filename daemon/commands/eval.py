@@ -31,6 +31,7 @@ def eval(
     json: bool = False,
     seeds: int = 5,
     robots: tuple[str, ...] = ("reference", "op3"),
+    executed: int = 1,
     families: tuple[str, ...] = (),
     steps: int | None = None,
     repeats: int = 20,
@@ -49,7 +50,9 @@ def eval(
 
     probes: side, limb, count (within one) and direction of motions for commands in words it was not trained on, as
     generated and as the paths of robots show them, of all and of what the robot has joints for (of_showable: what is seen on it
-    when the corpus itself performs the probe); and how far the mirrored text's motion is from the mirrored motion.
+    when the corpus itself performs the probe), and as simulated servos execute those paths under load (executed: judged on the
+    positions that they measure; kept: the share of what the path shows). How far the mirrored text's motion is from the
+    mirrored motion.
 
     fidelity: whether each gesture of the corpus is made as well as the corpus makes it, from the corpus's own sentences and
     held-out seeds: sign, arms, way, pose, number, pace and size of strokes, round paths, arms in step, hands that meet. A check
@@ -87,6 +90,7 @@ def eval(
         json: print one JSON object instead of lines.
         seeds: motions for each probe, or each family (fidelity).
         robots: names or robot files, each of which shows the probes' motions as well.
+        executed: seeds of each probe that the simulated robots execute too; 0: none.
         families: families of the corpus (fidelity); all when none is given.
         steps: decoding steps of every motion (fidelity); the model's own when it is not given.
         repeats: of the whole measurement, for 95 % intervals.
@@ -104,7 +108,7 @@ def eval(
     from rich.console import Console
 
     if name == "probes":
-        figures, shown = _probes(model[0] if model else None, seeds, robots)
+        figures, shown = _probes(model[0] if model else None, seeds, robots, _seeds_executed(executed, seeds))
     elif name == "fidelity":
         figures, shown = _fidelity(model[0] if model else None, seeds, families, steps)
     elif name == "tokenizer":
@@ -128,11 +132,20 @@ def eval(
     return 0
 
 
-def _probes(model: Path | None, seeds: int, robots: Sequence[str]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Every probe generated once for each seed; the same motions are then checked on each robot."""
+def _seeds_executed(executed: int, seeds: int) -> int:
+    if not 0 <= executed <= seeds:
+        raise CommandError(f"eval probes: --executed {executed}; allowed: 0 to --seeds ({seeds})")
+    return executed
+
+
+def _probes(
+    model: Path | None, seeds: int, robots: Sequence[str], executed: int
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Every probe generated once for each seed; the same motions checked on each robot, `executed` seeds as its servos do them."""
     from rich.console import Console
     from rich.progress import Progress
 
+    from daemon.bench.executed import Executed
     from daemon.bench.report import context
     from mmm_core.corpus.heldout import PROBES
     from mmm_core.engine import Engine
@@ -165,6 +178,14 @@ def _probes(model: Path | None, seeds: int, robots: Sequence[str]) -> tuple[dict
             bar.reset(task, description=name, total=len(PROBES) * seeds)
             found = evaluate(on_robot, range(seeds), lambda n: bar.update(task, completed=n), can)
             figures.setdefault("retargeted", {})[name] = found
+            if executed:
+                bar.reset(task, description=f"{name} executes", total=len(PROBES) * executed)
+                robot = Executed(retargeter)
+                done = evaluate(
+                    lambda text, seed, robot=robot: robot.shown(motions[text, seed]),
+                    range(executed), lambda n: bar.update(task, completed=n), can,
+                )  # fmt: skip
+                figures.setdefault("executed", {})[name] = {**done, **robot.figures()}
 
     def again(text: str, seed: int) -> Motion:
         return motions[text, seed] if (text, seed) in motions else engine.generate(text, seed=seed).motion
@@ -172,12 +193,14 @@ def _probes(model: Path | None, seeds: int, robots: Sequence[str]) -> tuple[dict
     figures["mirrored"] = mirrored_figures(again, [p.text for p in PROBES], range(min(seeds, MIRRORED_SEEDS)))
     method = (
         "held-out probes (mmm_core/corpus/heldout.py), kinematic checks on generated joints, and on the joints that a robot's "
-        "path shows (retarget/as_human.py); refused counts as wrong"
+        "path shows (retarget/as_human.py); refused counts as wrong; executed: on positions measured by simulated servos with the "
+        "robot's body in MuJoCo behind them (daemon/bench/executed.py)"
     )
     figures |= {"n": figures["generated"]["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
     return figures, {
         "generated": figures["generated"],
         **figures.get("retargeted", {}),
+        **{f"{name}, executed": found for name, found in figures.get("executed", {}).items()},
         "mirrored": figures["mirrored"],
     }
 

@@ -1,45 +1,97 @@
-"""`mmmd render`: pictures of a motion or a run."""
+"""`mmmd render` and `mmmd plot`: pictures and films of a motion or a run."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
+_SIZES = {".png": "a contact sheet of eight instants", ".gif": "a film", ".mp4": "a film"}
 
-def render(file: Annotated[Path, tyro.conf.Positional], out: Path, robot: str | None = None) -> int:
-    """Draw an .npz motion as a contact sheet of human and robot, or an .mcap run as joint angles over time.
 
-    Example: mmmd render wave.npz --robot op3 --out wave.png
-    or: mmmd render run.mcap --out joints.png
+def render(
+    file: Annotated[Path, tyro.conf.Positional],
+    out: Path,
+    robot: str | None = None,
+    show: Literal["both", "robot", "person"] = "both",
+    view: Literal["front", "half", "side"] = "half",
+    width: int = 640,
+    height: int = 480,
+    from_s: float = 0.0,
+    to_s: float | None = None,
+) -> int:
+    """Draw a motion or a recorded run in three dimensions: a contact sheet (.png) or a film (.gif, .mp4).
+
+    A motion (.npz of `mmmd generate`) shows the person and the robot that follows. A run (.mcap of `mmmd run --log`) shows the
+    robot as it was measured, with the goals that were sent as a transparent second robot. An .mp4 needs `pip install mmmd[film]`.
+
+    Example: mmmd render wave.npz --robot op3 --out wave.gif
+    or: mmmd render run.mcap --from-s 3 --to-s 8 --out run.mp4
 
     Args:
         file: an .npz of `mmmd generate`, or an .mcap of `mmmd run --log`.
-        out: the PNG to write.
-        robot: name or robot.toml; reference for motions and the log's own robot for runs when not given.
+        out: the picture or film to write; its suffix says which: .png, .gif or .mp4.
+        robot: name or robot.toml; reference for a motion and the run's own robot when not given.
+        show: the robot, the person, or both side by side (a run has no person).
+        view: from the front, from the front a little to the robot's left, or from its left side.
+        width: pixels of a film; a contact sheet has its own size.
+        height: pixels of a film.
+        from_s: second to begin at.
+        to_s: second to end at; the end when not given.
     """
-    import numpy as np
+    from rich.console import Console
+    from rich.progress import track
+
+    from daemon.errors import DaemonError
+    from daemon.pictures.drawing import contact_sheet, frames
+    from daemon.pictures.film import write_film
+    from daemon.pictures.performance import RUN_FPS, read_performance
+
+    if out.suffix not in _SIZES:
+        raise DaemonError(
+            f"--out {out}: {out.suffix or 'no suffix'}; allowed are .png (contact sheet), .gif and .mp4 (film)"
+        )
+    if not (_even(width) and _even(height)):
+        raise DaemonError(f"--width {width} --height {height}: allowed are even numbers from 160 to 3840")
+    performance = read_performance(file, robot, fps=RUN_FPS, from_s=from_s, to_s=to_s)
+    if show == "person" and performance.person_m is None:
+        raise DaemonError(
+            f"--show person: {file} is a recorded run, which holds the robot alone; allowed are robot and both"
+        )
+    console = Console(stderr=True)
+    if out.suffix == ".png":
+        out.parent.mkdir(parents=True, exist_ok=True)
+        contact_sheet([performance], show, view).save(out)
+    else:
+        pictures = frames(performance, show, view, (width, height))
+        drawn = track(pictures, "drawing", total=len(performance), console=console, disable=not console.is_terminal)
+        write_film(drawn, out, performance.fps)
+    Console(soft_wrap=True).print(f"{out}: {_SIZES[out.suffix]}, {performance.duration_s:.1f} s", highlight=False)
+    return 0
+
+
+def _even(pixels: int) -> bool:
+    return 160 <= pixels <= 3840 and pixels % 2 == 0
+
+
+def plot(file: Annotated[Path, tyro.conf.Positional], out: Path, robot: str | None = None) -> int:
+    """Draw the joints of a recorded run over time: goal, measured angle, limits, headroom, commands and seams.
+
+    Example: mmmd plot run.mcap --out joints.png
+
+    Args:
+        file: an .mcap of `mmmd run --log`.
+        out: the PNG to write.
+        robot: name or robot.toml; the run's own robot when not given.
+    """
     from rich.console import Console
 
+    from daemon.pictures.joints import joint_plot
     from daemon.recording.mcap_log import read_log
-    from daemon.render import Shown, contact_sheet, joint_plot
-    from mmm_core.motion import load_npz
-    from retarget.pipeline import Retargeter
     from retarget.robot import load_robot
-    from retarget.ticks import JointServoMap
 
-    if file.suffix == ".mcap":
-        log = read_log(file)
-        model = load_robot(robot or log.metadata["robot"])
-        times_s = np.array([c.t_mono_ns for c in log.cycles]) * 1e-9
-        present_rad = JointServoMap(model).tick_to_rad(np.array([c.present_tick for c in log.cycles]))
-        goal_rad = np.array([c.goal_rad for c in log.cycles])
-        joint_plot(times_s - times_s[0], goal_rad, present_rad, model, out)
-    else:
-        model = load_robot(robot or "reference")
-        motion = load_npz(file)
-        path = Retargeter(model).retarget(motion)
-        contact_sheet([Shown(motion.text or file.name, motion.joints_m.astype(np.float64), path.q_rad)], model, out)
+    log = read_log(file)
+    joint_plot(log, load_robot(robot or log.metadata["robot"]), out)
     Console(soft_wrap=True).print(f"{out}: drawn", highlight=False)
     return 0

@@ -154,7 +154,7 @@ def _turns(ratio: float, linkage: bool) -> str:
 
 
 def _show(console: Any, model: RobotModel, out: Path, text: str, seed: int) -> int:
-    from daemon.robot_picture import Pose, robot_picture
+    from daemon.pictures.robot_picture import Pose, robot_picture
     from mmm_core.engine import Engine
     from retarget.pipeline import Retargeter
     from retarget.standing import standing_pose

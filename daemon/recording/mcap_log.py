@@ -33,6 +33,7 @@ from retarget.robot import RobotModel
 FORMAT = 1
 """Grows when an older reader would misread the log; new channels and fields do not count."""
 CYCLE_TOPIC = "v1/cycle"
+_EVENT_TOPIC = "v1/event"
 CHUNK_BYTES = 256 * 1024
 _LARGEST_RECORD_BYTES = 64 * 1024 * 1024
 """A longer record is damage, not data: it is not even allocated."""
@@ -58,6 +59,14 @@ class LoggedCycle:
     goal_rad: np.ndarray[Any, np.dtype[np.float64]]
     goal_tick: tuple[int, ...]
     present_tick: tuple[int, ...]
+
+
+class _LoggedEvent(msgspec.Struct):
+    """What is read of an event of the front."""
+
+    type: str | None = None
+    plan_id: int | None = None
+    text: str | None = None
 
 
 def _cycle_schema() -> bytes:
@@ -150,12 +159,14 @@ class Log:
         metadata: of the recorder; with `cycles_dropped` and `messages_dropped` when it came to the end.
         cycles: bus cycles in order.
         n_events: messages on other topics.
+        plan_texts: text of each plan, by the id that its cycles carry.
         problem: what is wrong with the file and how far it was read; empty for a whole one.
     """
 
     metadata: dict[str, str] = field(default_factory=dict[str, str])
     cycles: list[LoggedCycle] = field(default_factory=list[LoggedCycle])
     n_events: int = 0
+    plan_texts: dict[int, str] = field(default_factory=dict[int, str])
     problem: str = ""
 
     @property
@@ -230,7 +241,7 @@ def _check_magic(path: Path, f: IO[bytes]) -> None:
 def _take(path: Path, records: list[McapRecord], topics: dict[int, str], log: Log) -> None:
     """Add the records of one chunk, all of them or none."""
     cycles: list[LoggedCycle] = []
-    n_events = 0
+    n_events, texts = 0, dict[int, str]()
     for record in records:
         if isinstance(record, Metadata) and record.name == _METADATA_AT_END:
             log.metadata |= record.metadata
@@ -248,8 +259,17 @@ def _take(path: Path, records: list[McapRecord], topics: dict[int, str], log: Lo
                 cycles.append(_cycle(record.data))
             else:
                 n_events += 1
+                if topics[record.channel_id] == _EVENT_TOPIC:
+                    texts |= _plan_text(record.data)
     log.cycles += cycles
     log.n_events += n_events
+    log.plan_texts |= texts
+
+
+def _plan_text(data: bytes) -> dict[int, str]:
+    """The text of a plan that an event names, by the plan's id; nothing where it names none."""
+    event = msgspec.json.decode(data, type=_LoggedEvent)
+    return {event.plan_id: event.text} if event.type == "accepted" and event.plan_id and event.text else {}
 
 
 def _cycle(data: bytes) -> LoggedCycle:
