@@ -7,8 +7,6 @@ sentence vector as it comes out of the projection, not normalised. No weights sh
 
 from __future__ import annotations
 
-import gzip
-import json
 import pickle
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,15 +15,12 @@ import torch
 import torch.nn.functional as F
 from safetensors import SafetensorError
 from safetensors.torch import load_file
-from tokenizers import Regex, Tokenizer, decoders, models, normalizers, pre_tokenizers
+from tokenizers import Tokenizer
 from torch import Tensor, nn
 
+from mmm_core.clip_pieces import clean_text, read_vocabulary
 from mmm_core.errors import CheckpointError
 from mmm_core.text import TextStates
-
-N_MERGES = 49152 - 256 - 2
-"""Byte pairs the published vocabulary file is read up to."""
-_PIECES = r"<\|startoftext\|>|<\|endoftext\|>|'s|'t|'re|'ve|'m|'ll|'d|[\p{L}]+|[\p{N}]|[^\s\p{L}\p{N}]+"
 
 
 @dataclass(frozen=True)
@@ -80,7 +75,8 @@ class ClipText(nn.Module):
             raise CheckpointError(Path("vocabulary"), "", "not in the checkpoint", "one imported with --vocabulary")
         start, end = self.config.vocabulary - 2, self.config.vocabulary - 1
         ids = torch.zeros(len(texts), self.config.context, dtype=torch.int64)
-        for row, encoded in enumerate(self.word_pieces.encode_batch(texts, add_special_tokens=False)):
+        cleaned = [clean_text(text) for text in texts]
+        for row, encoded in enumerate(self.word_pieces.encode_batch(cleaned, add_special_tokens=False)):
             pieces = [start, *encoded.ids[: self.config.context - 2], end]
             ids[row, : len(pieces)] = torch.tensor(pieces)
         return ids
@@ -159,49 +155,3 @@ def clip_from_openai(state: dict[str, Tensor], path: Path, n_heads: int | None =
     tower = ClipText(config)
     tower.load_state_dict(out)
     return tower.eval().requires_grad_(False)
-
-
-def read_vocabulary(path: Path) -> Tokenizer:
-    """CLIP's byte-pair tokenizer from `bpe_simple_vocab_16e6.txt.gz` (or unpacked), or a `tokenizer.json`.
-
-    Raises:
-        CheckpointError: the file is missing or neither of the two.
-    """
-    if not path.is_file():
-        raise CheckpointError(path, "", "no such file", "bpe_simple_vocab_16e6.txt.gz or tokenizer.json")
-    try:
-        if path.suffix == ".json":
-            json.loads(path.read_text())
-            return Tokenizer.from_file(str(path))
-        raw = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
-        lines = raw.decode("utf-8").split("\n")[1 : N_MERGES + 1]
-        return byte_pairs([(a, b) for a, b in (line.split() for line in lines if line.strip())])
-    except (OSError, ValueError) as error:
-        expected = "bpe_simple_vocab_16e6.txt.gz or tokenizer.json"
-        raise CheckpointError(path, "", f"not a vocabulary ({error})", expected) from error
-
-
-def byte_pairs(merges: list[tuple[str, str]]) -> Tokenizer:
-    """Tokenizer over bytes with `merges`; lower case, one space between words, `</w>` at a word's end."""
-    letters = _byte_letters()
-    vocabulary = [*letters, *(letter + "</w>" for letter in letters), *(a + b for a, b in merges)]
-    ids = {piece: i for i, piece in enumerate([*vocabulary, "<|startoftext|>", "<|endoftext|>"])}
-    pieces = Tokenizer(models.BPE(ids, merges, end_of_word_suffix="</w>"))
-    pieces.normalizer = normalizers.Sequence(
-        [normalizers.NFC(), normalizers.Replace(Regex(r"\s+"), " "), normalizers.Lowercase()]
-    )
-    pieces.pre_tokenizer = pre_tokenizers.Sequence(
-        [
-            pre_tokenizers.Split(Regex(_PIECES), behavior="removed", invert=True),
-            pre_tokenizers.ByteLevel(add_prefix_space=False, use_regex=False),
-        ]
-    )
-    pieces.decoder = decoders.ByteLevel()
-    return pieces
-
-
-def _byte_letters() -> list[str]:
-    """A printable letter for each byte, GPT-2's order: printable bytes first, the others from U+0100 on."""
-    printable = [*range(ord("!"), ord("~") + 1), *range(ord("¡"), ord("¬") + 1), *range(ord("®"), ord("ÿ") + 1)]
-    others = [b for b in range(256) if b not in printable]
-    return [chr(b) for b in printable] + [chr(256 + n) for n in range(len(others))]

@@ -12,6 +12,7 @@ import torch
 from torch import Tensor
 
 from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
+from mmm_core.clip import ClipText
 from mmm_core.eight_bit import can_eight_bit, to_eight_bit
 from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.features import Root, mirror, recover, recover_from_positions
@@ -20,7 +21,7 @@ from mmm_core.making import Making
 from mmm_core.mirroring import canonical, mirror_words
 from mmm_core.motion import FPS, Motion
 from mmm_core.packed import fastest_precision, pack
-from mmm_core.sampling import OFFICIAL_SAMPLING, SamplingSettings
+from mmm_core.sampling import OFFICIAL_SAMPLING, OFFICIAL_UPPER_BODY, SamplingSettings
 from mmm_core.scope import ScopeVerdict, clauses_of, with_clauses
 from mmm_core.text import TextEncoder, TextStates, without_pictures
 from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
@@ -79,7 +80,8 @@ class Engine:
             torch.set_num_threads(threads)
         path = path or MODEL_FILE
         model = load_model(path)
-        plain = SamplingSettings() if model.rest_pose == "mmmd" else OFFICIAL_SAMPLING
+        imported = OFFICIAL_UPPER_BODY if model.tokenizer.part_names == ("upper", "lower") else OFFICIAL_SAMPLING
+        plain = SamplingSettings() if model.rest_pose == "mmmd" else imported
         encoder = model.text or load_text_encoder(n_left_out=model.transformer.config.n_words)
         if getattr(encoder.config, "embedding", encoder.config.width) != model.transformer.config.text_dim:
             expected = "one with CLIP's text tower in it: import it with --clip and --vocabulary"
@@ -175,7 +177,12 @@ class Engine:
         ]
 
     def read(self, texts: list[str]) -> TextStates:
-        """States of texts as they stand, in scope or not; of one without words, those of a full stop."""
+        """States of texts as they stand, in scope or not; of one without words, those of a full stop.
+
+        CLIP knows emoji and gets them; the compact encoder does not (`without_pictures`).
+        """
+        if isinstance(self.encoder, ClipText):
+            return self.encoder.encode(texts)
         return self.encoder.encode([without_pictures(text) or "." for text in texts])
 
     def predicted_frames(self, states: TextStates) -> int:

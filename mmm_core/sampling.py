@@ -42,7 +42,9 @@ class SamplingSettings:
 
 
 OFFICIAL_SAMPLING = SamplingSettings(steps=10, temperature=0.0, official=True)
-"""The released generator: ten steps, arg-max. Its evaluation takes temperature 1; its upper-body editor twenty steps."""
+"""The released generator: ten steps, arg-max. Its evaluation takes temperature 1."""
+OFFICIAL_UPPER_BODY = SamplingSettings(steps=20, temperature=1.0, official=True)
+"""The released upper-body editor: twenty steps at temperature 1."""
 
 
 def empty_row(transformer: MotionTransformer, n_tokens: int) -> Tensor:

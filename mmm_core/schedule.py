@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Literal
 
+import numpy as np
+
 Schedule = Literal["cosine", "linear"]
 
 
@@ -41,7 +43,9 @@ def official_counts(
 
     Differs from `masked_counts`: the number of steps S shrinks with the motion's length, yet `max_steps` passes are
     made, the surplus re-sampling one position each; with `early_exit`, which the released code takes for a batch of
-    one only, and by a slip of parentheses, it ends after S passes, and after a single one for 8 to 12 tokens.
+    one only, and by a slip of parentheses, it ends after S passes, and after a single one for 8 to 12 tokens. The counts
+    are computed in single precision there, and so they are here: in double precision 201 of the 1,225 pairs of
+    `n_open` and `n_tokens` would differ by one position in a step.
 
     Args:
         n_open: positions to fill; fewer than `n_tokens` in an edit.
@@ -50,11 +54,20 @@ def official_counts(
         longest: tokens of the longest motion.
         early_exit: as a batch of one.
     """
-    steps = round(max_steps * n_tokens / longest) + 1e-8
+    steps = np.float32(round(max_steps * n_tokens / longest) + 1e-8)
     counts: list[int] = []
     for k in range(max_steps):
-        progress = min(k / steps, 1.0)
-        if early_exit and abs(min(k - 1 / steps, 1.0) - progress) < 1e-6:
+        progress = min(np.float32(k) / steps, np.float32(1))
+        if early_exit and abs(min(k - 1 / float(steps), 1.0) - float(progress)) < 1e-6:
             break
-        counts.append(max(1, math.floor(masked_share(progress) * n_open)))
+        counts.append(max(1, math.floor(_single_precision_cosine(progress) * np.float32(n_open))))
     return counts
+
+
+def _single_precision_cosine(progress: np.float32) -> np.float32:
+    """cos(pi/2 * progress), each operation rounded to 24 bits as a float32 tensor rounds it.
+
+    At progress 2/3 the result is 0.49999997, not 0.5, so that of L positions L/2 - 1 stay masked instead of L/2.
+    """
+    angle = progress * np.float32(math.pi / 2)
+    return np.float32(math.cos(float(angle)))

@@ -14,7 +14,8 @@ import pytest
 import torch
 from torch import Tensor
 
-from mmm_core.clip import byte_pairs, clip_from_openai, read_vocabulary
+from mmm_core.clip import clip_from_openai
+from mmm_core.clip_pieces import byte_pairs, clean_text, read_vocabulary
 from mmm_core.decode import NoiseFn
 from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.features import joints_from_positions, root_path
@@ -411,6 +412,8 @@ class TestImport:
         save_model(path, Model(tokenizer, transformer, None, None, {}, text, "humanml3d"), half=False)
         engine = Engine.load(path, threads=None)
         motion = engine.generate("a man waves", seed=3, seconds=2.3).motion
+        both = engine.read(["wave 👋", "wave"])
+        assert not torch.equal(both.sentence[0], both.sentence[1]), "emoji are words to CLIP"
         assert motion.joints_m.shape == (46, 22, 3), "any length, not only whole tokens"
         with pytest.raises(GenerationError, match="not trained to choose a length"):
             engine.generate("a man waves")
@@ -427,6 +430,28 @@ def _few_pieces() -> object:
     return pieces
 
 
+class TestClipIds:
+    """Ids of CLIP's own tokenizer, cut with a part of its byte pairs, for texts that it mends before it cuts them.
+
+    Curly quotes and apostrophes, HTML's signs, wrongly decoded bytes, full-width letters and the like gave other ids.
+    """
+
+    DATA = Path(__file__).parent / "clip_ids.json"
+
+    def test_ids_of_texts_that_are_mended(self) -> None:
+        content = json.loads(self.DATA.read_text())
+        pieces = byte_pairs([(a, b) for a, b in (merge.split() for merge in content["merges"])])
+        assert len(content["texts"]) >= 40
+        for text, ids in content["texts"].items():
+            assert pieces.encode(clean_text(text), add_special_tokens=False).ids == ids, repr(text)
+
+    def test_everyday_quotes_and_apostrophes(self) -> None:
+        assert (
+            clean_text("\u201cwave\u201d, she\u2019s   ready &amp; waiting\u2026")
+            == '"wave", she\'s ready & waiting\u2026'
+        )
+
+
 class TestClipVocabulary:
     MERGES = (("w", "a"), ("v", "e</w>"), ("wa", "ve</w>"), ("t", "h"), ("th", "e</w>"))
 
@@ -434,7 +459,7 @@ class TestClipVocabulary:
         """Ids: 256 bytes, the same at a word's end, then the merges; case and spaces do not matter."""
         pieces = byte_pairs(list(self.MERGES))
         wave, the = 512 + 2, 512 + 4
-        assert pieces.encode("The   WAVE", add_special_tokens=False).ids == [the, wave]
+        assert pieces.encode(clean_text("The   WAVE"), add_special_tokens=False).ids == [the, wave]
         comma = 256 + (ord(",") - ord("!"))
         assert pieces.encode("wave, the", add_special_tokens=False).ids == [wave, comma, the]
         assert pieces.get_vocab_size() == 512 + 5 + 2
