@@ -140,7 +140,7 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
                 if not wait:
                     break
         last = heard[-1]
-        if wait and not isinstance(last, Done):
+        if wait and not isinstance(last, Done | Ack):  # an `ack` answers a text that means to stop
             raise CancelledByError(str(getattr(last, "by", "the daemon")))
         return Said(request.id, tuple(heard))
 

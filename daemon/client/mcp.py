@@ -21,6 +21,7 @@ from daemon.client.async_client import AsyncClient
 from daemon.client.errors import CancelledByError, Said
 from daemon.errors import DaemonError
 from daemon.wire.requests import LEAST_AMPLITUDE, LEAST_TEMPO, LONGEST_S, MOST_AMPLITUDE, MOST_TEMPO, SHORTEST_S
+from mmm_core.language.stop_words import means_stop
 
 log = logging.getLogger(__name__)
 
@@ -151,6 +152,8 @@ class McpServer:
 
     async def _say(self, arguments: dict[str, Any]) -> str:
         text, wait = str(arguments.pop("text")), bool(arguments.pop("wait", True))
+        if means_stop(text):  # waits for no motion that is being played
+            return await self._stop({})
         return await self._play(lambda: self._client.say(text, wait=wait, **arguments))
 
     async def _gesture(self, arguments: dict[str, Any]) -> str:

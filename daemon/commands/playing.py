@@ -50,6 +50,9 @@ class PlayFlags:
         }  # fmt: skip
 
 
+INTERRUPTED = 130
+"""Exit status after Ctrl-C, as shells expect it."""
+
 P = TypeVar("P", bound="Play")
 
 
@@ -71,16 +74,26 @@ def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
 
 
 def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
-    """Send a request and print its events; the exit status."""
-    from daemon.client.compositions import FIRST_REPLY_TIMEOUT_S, patience_s
-    from daemon.wire.codec import WireError, check_request, encode
-    from daemon.wire.events import Accepted, Cancelled, Failed, Refusal
+    """Send a request and print its events; the exit status. Ctrl-C cancels the command."""
+    from daemon.wire.codec import WireError, check_request
 
     try:
         check_request(request)
     except WireError as error:
         sys.stderr.write(f"mmmd: {error}\n")
         return 2
+    try:
+        return _watched(request, at, wait=wait, json=json)
+    except KeyboardInterrupt:
+        return _interrupted(request, at)
+
+
+def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
+    """Send a request and print its events; the exit status."""
+    from daemon.client.compositions import FIRST_REPLY_TIMEOUT_S, patience_s
+    from daemon.wire.codec import encode
+    from daemon.wire.events import Accepted, Cancelled, Failed, Refusal
+
     status = 0
     timeout_s = patience_s(request) if wait else FIRST_REPLY_TIMEOUT_S
     with at.client() as robot:
@@ -99,6 +112,29 @@ def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
             if not wait and isinstance(event, Accepted):
                 break
     return status
+
+
+def _interrupted(request: Play, at: Connection) -> int:
+    """Cancel a command after Ctrl-C and say what came of it; a second Ctrl-C leaves at once and says what goes on."""
+    from daemon.client.errors import NoAnswerError, RefusedError
+
+    what = f"{request.words[:60]!r}"
+    try:
+        sys.stderr.write(f"\nmmmd: cancelling {what}: the robot brakes and holds; Ctrl-C again leaves at once\n")
+        with at.client() as robot:
+            try:
+                robot.cancel(request.id)
+                sys.stderr.write(f"mmmd: cancelled {what}\n")
+            except RefusedError:
+                sys.stderr.write(f"mmmd: {what} had ended, or had not begun\n")
+            except NoAnswerError:
+                robot.stop()  # on `ctl`, which answers where `cmd` does not
+                sys.stderr.write("mmmd: stopped: no answer on `cmd`, so everything was stopped on `ctl`\n")
+    except NoAnswerError as error:
+        sys.stderr.write(f"mmmd: NOT CANCELLED, {what} may go on: {error}\n")
+    except KeyboardInterrupt:
+        sys.stderr.write(f"\nmmmd: left; {what} may go on: `mmmd stop` brakes and holds, `mmmd estop` cuts torque\n")
+    return INTERRUPTED
 
 
 def describe(event: object) -> str:

@@ -21,7 +21,7 @@ def say(
     json: bool = False,
     at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
 ) -> int:
-    """Tell the robot what to do, and how it went.
+    """Tell the robot what to do, and how it went. Ctrl-C cancels it: the robot brakes and holds.
 
     Example: mmmd say "wave with your right hand" --seed 3
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from daemon.config import DaemonConfig
 from daemon.errors import ClipError
+from daemon.front.stop_texts import asks_to_stop
 from daemon.generator.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
 from daemon.playing.layers import gaze_note
@@ -84,7 +85,9 @@ class Desk:
         """
         if isinstance(request, Command):
             entry = self._ledger.open(request, route, t_received_ns)
-            if entry is not None:
+            if entry is not None and asks_to_stop(request):
+                self._performer.stop_for(entry)
+            elif entry is not None:
                 self._performer.play(entry)
             return
         event = self._answer(request)

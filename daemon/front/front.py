@@ -25,6 +25,7 @@ from daemon.front.control import ControlThread
 from daemon.front.controls import FrontControls
 from daemon.front.desk import Desk
 from daemon.front.rates import RATE_HZ, Rates
+from daemon.front.stop_texts import stops
 from daemon.front.stream_desk import TargetDesk
 from daemon.generator.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
@@ -212,7 +213,7 @@ class Front:
     def _take_frames(self, frames: list[bytes]) -> None:
         t_received_ns = time.monotonic_ns()
         route, parts = split_route(frames)
-        if not self._rates.allows(route.frames[0], t_received_ns * 1e-9):
+        if not self._rates.allows(route.frames[0], t_received_ns * 1e-9) and not stops(parts):
             self._refuse_rate(route)
             return
         try:

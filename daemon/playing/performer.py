@@ -37,7 +37,7 @@ from daemon.state.replies import (
     refused_later,
     too_late,
 )
-from daemon.wire.events import Cancelled, Failed, Progress, Rejected
+from daemon.wire.events import Ack, Cancelled, Failed, Progress, Rejected
 from daemon.wire.requests import Lease, tag_of
 from daemon.wire.status import CurrentCommand
 from retarget.errors import RetargetError
@@ -105,6 +105,22 @@ class Performer:
             return
         self._waiting.add(pending)
         pending.task = asyncio.create_task(self._perform(pending))
+
+    def stop_for(self, entry: Entry) -> None:
+        """Brake within the limits and hold because a command's text means that, and end all other commands."""
+        state, n_ended = self.machine.state, len(self.running_ids())
+        try:
+            self.machine.check(Trigger.STOP)
+        except CommandRefusedError as error:
+            self._ledger.emit(entry, refusal(entry.id, error))
+            return
+        self.halts.note(Trigger.STOP.value, entry.request)
+        self.follower.stopped = True
+        self._link.request(BusRequest.STOP)
+        self.end_halted()
+        self.halts.served()
+        note = f"{entry.request.words[:60]!r} means to stop: the robot brakes and holds; commands ended: {n_ended}"
+        self._ledger.emit(entry, Ack(verb="stop", state=state.value, note=note))
 
     def running_ids(self) -> list[str]:
         """Ids of the commands that have not ended."""

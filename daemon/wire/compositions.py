@@ -58,7 +58,12 @@ class Story(Play, tag="story", kw_only=True):
     @property
     def words(self) -> str:
         """All texts."""
-        return "; ".join(scene.text for scene in self.scenes)[:MAX_TEXT_CHARS]
+        return "; ".join(self.texts)[:MAX_TEXT_CHARS]
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The text of each scene."""
+        return tuple(scene.text for scene in self.scenes)
 
 
 class KeyPoseOf(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
@@ -122,6 +127,11 @@ class Inbetween(Play, tag="inbetween", kw_only=True):
         """The text, or how many poses."""
         return self.text or f"{len(self.poses)} poses"
 
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The text."""
+        return (self.text,)
+
 
 class Edit(Play, tag="edit", kw_only=True):
     """Play a motion of which a part was made again. One of `gesture`, `command`, `plan` and `file` says which.
@@ -169,6 +179,11 @@ class Edit(Play, tag="edit", kw_only=True):
     def words(self) -> str:
         """The text."""
         return self.text
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The text."""
+        return (self.text,)
 
 
 class Replay(Play, tag="replay", kw_only=True):

@@ -160,7 +160,7 @@ class Failed(Refusal, tag="failed"):
 
 
 class Ack(Event, tag="ack"):
-    """A ctl verb was handed to the bus; or a request that is no motion was carried out.
+    """A ctl verb was handed to the bus; or a request that is no motion was carried out, such as a text that means to stop.
 
     Attributes:
         verb: the verb.
@@ -168,6 +168,7 @@ class Ack(Event, tag="ack"):
         note: what was changed about it, else empty.
     """
 
+    terminal: ClassVar[bool] = True
     verb: str
     state: str
     note: str = ""

@@ -71,6 +71,11 @@ class Command(Request, kw_only=True):
         """What it is, in a word or a sentence."""
         raise NotImplementedError
 
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """What it asks for in a person's words; none where it names something that is kept."""
+        return ()
+
 
 class Play(Command, kw_only=True):
     """How a motion is to be played, whatever it comes from.

@@ -139,6 +139,11 @@ class Say(Play, tag="say", kw_only=True):
         """The text."""
         return self.text
 
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The text."""
+        return (self.text,)
+
 
 class Gesture(Play, tag="gesture", kw_only=True):
     """Play a named clip of the library; needs no generator.

@@ -8,6 +8,7 @@ import inspect
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -198,6 +199,67 @@ def test_a_halt_does_not_wait_for_what_is_said_and_ends_what_has_not_begun(runni
             await client.arm()
 
     asyncio.run(main())
+
+
+def test_the_word_stop_in_a_tool_call_waits_for_no_motion(running):
+    """A voice assistant forwards it as a text: it waited for its turn, then the hand rose for a stop sign."""
+
+    async def main() -> None:
+        async with AsyncClient(running.endpoints) as client:
+            server = McpServer(client)
+            await client.reset()
+            await client.arm()
+            waving = asyncio.create_task(server.answer(calling(1, "say", text="wave", seconds=9.0)))
+            while (now := await client.status()).command is None or now.state != "moving":
+                await asyncio.sleep(0.01)
+            assert "stopped" in result_of(await server.answer(calling(2, "say", text="please stop now")))
+            assert "cancelled by stop" in result_of(await waving)
+            assert (await client.status()).command is None
+
+    asyncio.run(main())
+
+
+def interrupted(running, n_signals: int) -> tuple[int, str]:
+    """Exit status and errors of `mmmd say` after Ctrl-C in the middle of the motion."""
+    say = [*MMMD, "say", "wave", "--seconds", "9", *running.at]
+    process = subprocess.Popen(say, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None and process.stderr is not None
+    while "first servo frame" not in (line := process.stdout.readline()):
+        assert line, process.stderr.read()
+    errors = ""
+    for _ in range(n_signals):
+        process.send_signal(signal.SIGINT)
+        if not errors:
+            errors += process.stderr.readline() + process.stderr.readline()
+    errors += process.communicate(timeout=20)[1]
+    return process.returncode, errors
+
+
+def test_ctrl_c_cancels_what_was_said(running):
+    """It ended the command line alone: the robot went on moving."""
+    with running.armed() as robot:
+        status, errors = interrupted(running, 1)
+        assert status == 130 and "cancelling 'wave'" in errors and "mmmd: cancelled 'wave'" in errors
+        assert robot.wait_for("holding", timeout_s=3).command is None
+
+
+def test_a_second_ctrl_c_says_what_goes_on(running):
+    """With a front that does not answer, the first one waits; the second one leaves."""
+    with running.armed():
+        say = [*MMMD, "say", "wave", "--seconds", "9", *running.at]
+        process = subprocess.Popen(say, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        assert process.stdout is not None and process.stderr is not None
+        while "first servo frame" not in (line := process.stdout.readline()):
+            assert line, process.stderr.read()
+        os.kill(running.process.pid, signal.SIGSTOP)
+        try:
+            process.send_signal(signal.SIGINT)
+            assert process.stderr.readline() == "\n" and "cancelling" in process.stderr.readline()
+            process.send_signal(signal.SIGINT)
+            errors = process.communicate(timeout=20)[1]
+        finally:
+            os.kill(running.process.pid, signal.SIGCONT)
+        assert process.returncode == 130 and "mmmd stop" in errors and "may go on" in errors
 
 
 @pytest.mark.parametrize(

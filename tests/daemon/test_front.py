@@ -354,3 +354,36 @@ def test_a_client_that_never_reads_slows_nobody(robot, running, context):
     robot.stop()
     assert time.monotonic() - began_s < 1.0
     assert robot.say("wave", timeout_s=30).done
+
+
+def test_the_word_stop_brakes_and_is_no_gesture(robot, running):
+    """As text it was taken for the gesture of a stop sign: the hand rose 0.7 m, and the voice assistant was told `done`."""
+    thread, outcome = say_in_thread(robot, running, "wave", 4.0)
+    with running.client() as other:
+        said = other.say("please stop waving")
+    thread.join(5)
+    assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "stop"
+    assert [type(e) for e in said.events] == [ev.Ack]
+    assert (
+        said.events[0].verb == "stop" and "means to stop" in said.events[0].note and "ended: 1" in said.events[0].note
+    )
+    assert robot.wait_for("holding", timeout_s=3).command is None
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        b"Stop!!!",
+        b'{"type": "say", "text": "don\'t move", "when": "after"}',
+        b'{"type": "story", "scenes": [{"text": "wave"}, {"text": "emergency stop"}]}',
+        b'{"type": "edit", "text": "halt", "gesture": "wave_left"}',
+    ],
+)
+def test_a_stop_in_any_frame_of_cmd_brakes(robot, running, context, frame):
+    thread, outcome = say_in_thread(robot, running, "wave", 4.0)
+    socket = dealer(context, running.endpoints.cmd)
+    socket.send(frame)
+    assert isinstance(wire.decode_event(socket.recv()), ev.Ack)
+    thread.join(5)
+    assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "stop"
+    assert robot.wait_for("holding", timeout_s=3).command is None

@@ -1,0 +1,31 @@
+"""Requests whose text means to stop: they brake the robot, and no rate limit holds them up."""
+
+from __future__ import annotations
+
+import re
+
+from daemon.wire.codec import WireError, decode_cmd
+from daemon.wire.requests import Command
+from mmm_core.language.stop_words import means_stop
+
+_LONGEST_FRAME_BYTES = 600
+_HINT = re.compile(
+    rb"stop|stp|halt|freez|cancel|abort|still|mov|pause|quit|wait|enough|emergency|cease|arr|alt|basta", re.IGNORECASE
+)
+"""A short frame without any of these is not looked at more closely: a flood must cost little."""
+
+
+def asks_to_stop(request: Command) -> bool:
+    """Whether any text of a request means to stop."""
+    return any(means_stop(text) for text in request.texts)
+
+
+def stops(frames: list[bytes]) -> bool:
+    """Whether the frames of a client that asks too much are one request that means to stop."""
+    if len(frames) != 1 or len(frames[0]) > _LONGEST_FRAME_BYTES or not _HINT.search(frames[0]):
+        return False
+    try:
+        request = decode_cmd(frames[0])
+    except WireError:
+        return False
+    return isinstance(request, Command) and asks_to_stop(request)

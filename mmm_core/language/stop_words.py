@@ -1,0 +1,94 @@
+"""Texts that mean stopping: they brake the robot at once and never reach the motion model, which would show a stop sign.
+
+The rule errs on the side of braking. A text means stopping when it consists of words that stop, of courtesy, and of what is
+to stop ("please stop waving your hand now"). A text that asks for anything else ("make a stop sign", "stop the traffic",
+"stop waving and clap") is a command like any other. docs/wire/stop_words.md lists both kinds; a test reads that page.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+_COURTESY = frozenset(
+    """
+    a ah again all alright and already at away can could dear ever everybody everyone everything for goodness heavens
+    hello here hey i immediately instantly it just kindly listen minute moment must need no now of oh ok okay once
+    please pls plz quick quickly right robot said sake sec second should sir so thank thanks that the there this to told
+    uh um want will with would you your yourself s is are re am m ll d
+    """.split()
+)
+"""Words that change nothing about a text that means stopping; alone they mean nothing."""
+
+_STOP_WORDS = frozenset(
+    """
+    stop halt freeze cancel abort cease desist pause quit whoa woah enough wait estop emergency stopp stpo sotp stp tsop
+    hlat anhalten arrete alto basta fermati stoj stoi
+    """.split()
+)
+"""Words that stop: the usual ones, their commonest slips, and what people of other languages call out."""
+
+_STOP_PHRASES = tuple(
+    " ".join(phrase.split())
+    for phrase in """
+    emergency stop, e stop, full stop, hold it, hold still, stand still, stay still, keep still, be still, sit still,
+    stay put, stay where you are, where you are, what you are doing, what you re doing, whatever you are doing, whatever
+    you re doing, what you do, do not move a muscle, dont move a muscle, do not move, dont move, never move, no more
+    moving, no moving, no more movement, not another move, not a move, no further, knock it off, cut it out, give it a
+    rest, do not do anything, dont do anything, do nothing
+    """.split(",")
+)
+"""Phrases that stop, or that say no more than what is to stop."""
+
+_PHRASE = re.compile(rf"\b({'|'.join(sorted(_STOP_PHRASES, key=len, reverse=True))})\b")
+
+_MOTIONS = frozenset(
+    """
+    action actions arm arms body both command commands current dance demo gesture gestures hand hands head left machine
+    motion motions motor motors move movement movements moves moving playback program servo servos show
+    """.split()
+)
+"""What may be told to stop."""
+
+_ACTIVITY = re.compile(
+    r"\b(stop|stopp|cease|quit|halt|pause|cancel|enough|no more|dont keep|not keep) "
+    r"(?:(?:it|with|of|the|that|all|your|now|please) )*([a-z]+ing)\b((?: (?!(?:stop|please|now|halt)\b)\w+)*)"
+)
+"""A word that stops, an activity, and what belongs to it: "stop waving your hand"."""
+_NO_ACTIVITIES = frozenset(
+    ("anything", "everything", "king", "nothing", "ring", "something", "string", "thing", "wing", "sling")
+)
+_MOST_WORDS, _MOST_WORDS_OF_ACTIVITY = 14, 5
+_GOES_ON = re.compile(r"\b(and|then|but|instead|start|begin|rather|let|while|before|after|until)\b")
+
+
+def means_stop(text: str) -> bool:
+    """Whether a text asks for nothing but to stop.
+
+    >>> means_stop("Stop!!!"), means_stop("could you stop waving, please"), means_stop("make a stop sign")
+    (True, True, False)
+    """
+    words = _words(text)
+    if not 0 < len(words) <= _MOST_WORDS:
+        return False
+    said = _PHRASE.sub("stop", " ".join(words))
+    rest = _ACTIVITY.sub(_stop_of, said).split()
+    return any(word in _STOP_WORDS for word in rest) and all(
+        word in _STOP_WORDS or word in _COURTESY or word in _MOTIONS for word in rest
+    )
+
+
+def _stop_of(found: re.Match[str]) -> str:
+    """The word "stop" for a stop with its activity; the text itself where it goes on to something else."""
+    activity, rest = found[2], found[3]
+    if activity in _NO_ACTIVITIES or len(rest.split()) > _MOST_WORDS_OF_ACTIVITY or _GOES_ON.search(rest):
+        return found[0]
+    return "stop"
+
+
+def _words(text: str) -> list[str]:
+    """Lower-case words without accents and punctuation; letters that are drawn out ("stooop") are kept once."""
+    plain = unicodedata.normalize("NFKD", text.replace("’", "'")).casefold()  # noqa: RUF001
+    plain = "".join(c for c in plain if not unicodedata.combining(c))
+    plain = re.sub(r"([a-z])\1{2,}", r"\1", plain).replace("don't", "dont").replace("don t", "dont")
+    return re.sub(r"[^\w]+|_", " ", plain).split()
