@@ -20,6 +20,10 @@ from retarget.robot import RobotModel, ServoSpec, load_robot
 _TRIES = 30
 MOVED_TICKS = 100
 """A joint moved by less than this (9 degrees) was not moved on purpose: its range in the file stays."""
+SUSPECT_DEG = 15.0
+"""Degrees by which a zero may differ from the robot file's before a person is asked: a horn set one tooth off is 15 at most."""
+MARGIN_S = 0.03
+"""Seconds that an answer may be late while a person calibrates: nothing waits for it, and a busy machine is no brown-out."""
 
 
 class Ranges:
@@ -60,6 +64,8 @@ class Calibrated:
         zero_tick: its position in the zero pose.
         low_deg, high_deg: range in joint angles; None when the joint was not moved, or is moved by several servos.
         problem: why what was found cannot be used as it is; empty when it can.
+        off_deg: how far the zero lies from the robot file's, in degrees of the joint.
+        moved: whether the servo turned while every joint was to be moved to its ends.
     """
 
     servo_id: int
@@ -68,6 +74,16 @@ class Calibrated:
     low_deg: float | None
     high_deg: float | None
     problem: str = ""
+    off_deg: float = 0.0
+    moved: bool = True
+
+    @property
+    def doubt(self) -> str:
+        """Why a person should look at it again before it is written; empty when there is no reason."""
+        if abs(self.off_deg) > SUSPECT_DEG:
+            was = f"its zero is {abs(self.off_deg):.0f} deg from the robot file's"
+            return f"{was}, and it was not moved to its ends" if not self.moved else was
+        return "" if self.moved else "it was not moved to its ends: its range stays"
 
 
 def calibrate(
@@ -135,8 +151,10 @@ def _of_servo(robot: RobotModel, i: int, zero: int, ranges: Ranges, margin_deg: 
     low, high, zero = int(ranges.low[i]) - offset, int(ranges.high[i]) - offset, zero - offset
     if servo.linkage is not None:
         return Calibrated(servo.servo_id, name, servo.zero_tick, None, None, "moved through rods: set its zero by hand")
-    if high - low < MOVED_TICKS or not _alone(robot, servo):
-        return Calibrated(servo.servo_id, name, zero, None, None)
+    moved = high - low >= MOVED_TICKS
+    off_deg = math.degrees(_shortest(zero - servo.zero_tick, wrap) / servo.ticks_per_rad)
+    if not moved or not _alone(robot, servo):
+        return Calibrated(servo.servo_id, name, zero, None, None, "", off_deg, moved)
     deg_per_tick = math.degrees(1 / servo.ticks_per_rad) / servo.couplings[0][1]
     ends = sorted(((low - zero) * deg_per_tick, (high - zero) * deg_per_tick))
     first, last = servo.model.tick_range(servo.extended)
@@ -148,7 +166,12 @@ def _of_servo(robot: RobotModel, i: int, zero: int, ranges: Ranges, margin_deg: 
             f" mmmd servo set {servo.servo_id} homing_offset {shift:+d} added to what is there, and calibrate again"
         )
     low_deg, high_deg = round(ends[0] + margin_deg, 1), round(ends[1] - margin_deg, 1)
-    return Calibrated(servo.servo_id, name, zero, low_deg, high_deg, problem)
+    return Calibrated(servo.servo_id, name, zero, low_deg, high_deg, problem, off_deg)
+
+
+def _shortest(ticks: int, turn: int) -> int:
+    """A difference of ticks, the shorter way round."""
+    return (ticks + turn // 2) % turn - turn // 2
 
 
 def _alone(robot: RobotModel, servo: ServoSpec) -> bool:
@@ -157,8 +180,21 @@ def _alone(robot: RobotModel, servo: ServoSpec) -> bool:
     return len(joints) == 1 and sum(bool(joints & {j for j, _ in s.couplings}) for s in robot.servos) == 1
 
 
-def write_robot_file(robot: RobotModel, found: list[Calibrated], out: Path) -> None:
+def copy_of(file: Path) -> Path | None:
+    """Where a file that is about to be written over is kept: beside it, with the first number that is free; None without one."""
+    if not file.exists():
+        return None
+    number = 1
+    while (copy := file.with_name(f"{file.stem}.before-{number}{file.suffix}")).exists():
+        number += 1
+    return copy
+
+
+def write_robot_file(robot: RobotModel, found: list[Calibrated], out: Path) -> Path | None:
     """The robot's file with the zero ticks and ranges that were found; comments and order stay.
+
+    Returns:
+        The copy of the file that was there; None when there was none.
 
     Raises:
         CommandError: the result is no valid robot file (it is not kept).
@@ -172,17 +208,20 @@ def write_robot_file(robot: RobotModel, found: list[Calibrated], out: Path) -> N
         name = re.search(r'(?m)^name\s*=\s*"([^"]*)"', block)
         if block.startswith("[[joint]]") and name is not None and name[1] in ranges:
             blocks[i] = _with_range(block, ranges[name[1]])
-    existed = out.exists()
-    before = out.read_text("utf-8") if existed else ""
+    before = out.read_text("utf-8") if out.exists() else ""
+    copy = copy_of(out)
+    if copy is not None:
+        copy.write_text(before, "utf-8")
     out.write_text("".join(blocks), "utf-8")
     try:
         load_robot(str(out))
     except RobotFileError as error:
-        if existed:
-            out.write_text(before, "utf-8")
+        if copy is not None:
+            copy.replace(out)
         else:
             out.unlink()
         raise CommandError(f"{out} would be no valid robot file: {error}") from error
+    return copy
 
 
 def _with_zero(text: str, c: Calibrated) -> str:

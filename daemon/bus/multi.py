@@ -15,6 +15,7 @@ from daemon.bus.rate_plan import RatePlan
 from daemon.bus.reading import BusReading
 from daemon.bus.scan import Found
 from daemon.bus.servo_bus import ServoBus
+from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
 from daemon.errors import BusMismatchError, CommandError, DaemonError, LinkTimeoutError, MismatchRow
 from retarget.robot import RobotModel, ServoSpec
@@ -202,7 +203,9 @@ RobotBus = ServoBus | MultiBus
 """The servos of a robot, on one port or on several."""
 
 
-def open_bus(url: str, robot: RobotModel, clock: Clock, *, slow_every: int = 0) -> RobotBus:
+def open_bus(
+    url: str, robot: RobotModel, clock: Clock, *, slow_every: int = 0, margin_s: float = MARGIN_S
+) -> RobotBus:
     """The bus behind a URL, or behind several with commas between them: `dxl:///dev/ttyUSB0,dxl:///dev/ttyUSB1`.
 
     On several ports every servo is looked for on each.
@@ -213,7 +216,7 @@ def open_bus(url: str, robot: RobotModel, clock: Clock, *, slow_every: int = 0) 
     """
     ports = open_ports(url, PortContext(robot, clock))
     try:
-        return bus_on(ports, robot, clock, slow_every=slow_every)
+        return bus_on(ports, robot, clock, slow_every=slow_every, margin_s=margin_s)
     except BaseException:
         _close(ports)
         raise
@@ -240,14 +243,23 @@ def _close(ports: Sequence[Port]) -> None:
         port.close()
 
 
-def bus_on(ports: Sequence[Port], robot: RobotModel, clock: Clock, *, slow_every: int = 0) -> RobotBus:
+def bus_on(
+    ports: Sequence[Port], robot: RobotModel, clock: Clock, *, slow_every: int = 0, margin_s: float = MARGIN_S
+) -> RobotBus:
     """The bus on these open ports; a servo that answers on none is expected on the first.
+
+    Args:
+        ports: open ones.
+        robot: whose servos they are.
+        clock: of the deadlines.
+        slow_every: see `ServoBus`.
+        margin_s: how long an answer may be late before a servo counts as silent.
 
     Raises:
         BusMismatchError: a servo answers on two ports.
     """
     if len(ports) == 1:
-        return ServoBus(ports[0], robot.servos, clock, slow_every=slow_every)
+        return ServoBus(ports[0], robot.servos, clock, slow_every=slow_every, margin_s=margin_s)
     answers = [ServoBus(port, robot.servos, clock).ping_all(patient=True) for port in ports]
     where: dict[int, int] = {}
     doubled: list[MismatchRow] = []
@@ -265,7 +277,7 @@ def bus_on(ports: Sequence[Port], robot: RobotModel, clock: Clock, *, slow_every
             raise LinkTimeoutError(
                 f"no servo of '{robot.name}' answers on {port.name}; check power and cable, or leave it out"
             )
-    buses = [ServoBus(p, s, clock, slow_every=slow_every) for p, s in zip(ports, parts, strict=True)]
+    buses = [ServoBus(p, s, clock, slow_every=slow_every, margin_s=margin_s) for p, s in zip(ports, parts, strict=True)]
     return MultiBus(buses, robot.servos)
 
 
