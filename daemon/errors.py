@@ -4,7 +4,8 @@ DaemonError
 ├── PortError(url)                 the port cannot be opened                         (OSError)
 │   ├── PortMissingError           no such device
 │   ├── PortBusyError(owner)       somebody else holds it
-│   └── PortPermissionError        the user may not open it
+│   ├── PortPermissionError        the user may not open it
+│   └── PortBaudError              it does not take this speed
 ├── CommandError                   ours: refused before any byte was sent            (ValueError)
 ├── ServoFaultError(servo_id)      it answered, and said no
 ├── BusMismatchError(rows)         other servos than the robot file says
@@ -49,6 +50,10 @@ class PortBusyError(PortError):
 
 class PortPermissionError(PortError):
     """The user may not open the port."""
+
+
+class PortBaudError(PortError):
+    """The port does not take this speed."""
 
 
 class CommandError(DaemonError, ValueError):

@@ -12,10 +12,10 @@ import logging
 import os
 import pty
 import select
-import termios
 import tty
 from pathlib import Path
 
+from daemon.bus.tty_speed import tty_speed
 from daemon.errors import CommandError
 from sim.audit import TTY_GOALS
 from sim.bus import SimBus
@@ -24,8 +24,6 @@ from sim.machine_time import machine_time
 
 log = logging.getLogger(__name__)
 
-_SPEEDS = {getattr(termios, name): int(name[1:]) for name in dir(termios) if name[0] == "B" and name[1:].isdigit()}
-_OTHER_SPEED = getattr(termios, "BOTHER", 0o010000)
 _IDLE_S = 0.05
 """The servos' time goes on at least so often, so that watchdogs run out when nobody talks."""
 
@@ -146,5 +144,5 @@ class PtyServer:
 
     def _client_baud(self) -> int:
         """Speed that the client has set; the servos' own where the system cannot tell."""
-        speed = termios.tcgetattr(self._slave)[5]
-        return _SPEEDS.get(speed, self.baud) if speed != _OTHER_SPEED else self.baud
+        speed = tty_speed(self._slave)
+        return self.baud if speed is None else speed

@@ -8,7 +8,7 @@ wire and the servos fail on a schedule, requests come at random and frames are n
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from daemon.bench.audit_rig import AuditRig
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
 from daemon.bus.models import MODELS
+from daemon.errors import CommandError
 from retarget.pipeline import Retargeter
 from retarget.robot import RobotModel, list_robots, load_robot
 from sim.faults import PACKET_KINDS, Fault
@@ -50,23 +51,35 @@ _METHOD = (
 )
 
 
-def bench_audit(prompts: int = 200, seed: int = 0) -> dict[str, Any]:
+def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -> dict[str, Any]:
     """`prompts`, `robots`, `goals`, `violations`, contacts, `repairs`, and the same for each robot.
 
     Each robot's are told on stderr as soon as they are known.
+
+    Args:
+        prompts: number of texts.
+        seed: of the texts, the motions and the faults.
+        robots: names of packaged robots or paths of robot files; every packaged one when empty.
+
+    Raises:
+        CommandError: a robot that was asked for has servos without a control table here.
     """
     from mmm_core.engine import Engine
 
     stderr = Console(stderr=True)
-    robots = [name for name in list_robots() if _has_tables(load_robot(name))]
+    asked = {name: load_robot(name) for name in robots or list_robots()}
+    without = sorted(name for name, robot in asked.items() if not _has_tables(robot))
+    if robots and without:
+        raise CommandError(f"--robot {' '.join(without)}: its servos' control tables are not known here: it cannot be simulated")
+    models = {name: robot for name, robot in asked.items() if name not in without}
     engine = Engine.load(threads=1)
     texts = draw_texts(prompts, seed, outside_share=_OUTSIDE_SHARE)
     motions = [
         engine.generate(t, seed=seed + i).motion for i, t in enumerate(track(texts, "generating", console=stderr))
     ]
     per_robot: dict[str, Any] = {}
-    for r, name in enumerate(robots):
-        robot, own = load_robot(name), [m for m in motions[r :: len(robots)] if len(m.joints_m)]
+    for r, (name, robot) in enumerate(models.items()):
+        own = [m for m in motions[r :: len(models)] if len(m.joints_m)]
         calm = _play_calm(AuditRig(robot), track(own, name, console=stderr), np.random.default_rng((seed, r)))
         some = own[: max(1, round(_DISTURBED_SHARE * len(own)))]
         rough = _play_disturbed(robot, track(some, f"{name}, disturbed", console=stderr), seed + r)
@@ -75,8 +88,8 @@ def bench_audit(prompts: int = 200, seed: int = 0) -> dict[str, Any]:
     both = [part for parts in per_robot.values() for part in parts.values()]
     return {
         "prompts": prompts,
-        "robots": robots,
-        "robots_without_control_table": sorted(set(list_robots()) - set(robots)),
+        "robots": list(models),
+        "robots_without_control_table": without,
         **{key: sum(p[key] for p in both) for key in _SUMMED},
         "refused_texts": sum(not len(m.joints_m) for m in motions),
         "per_robot": per_robot,

@@ -14,6 +14,7 @@ from daemon.bus.packet import BROADCAST_ID, Packet
 from daemon.bus.port import Port
 from daemon.bus.timing import BITS_PER_BYTE
 from daemon.clock import Clock
+from daemon.errors import PortBaudError
 
 BAUDS = (57_600, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 115_200, 9_600, 4_500_000)
 """In the order in which robots use them: factory, Poppy and OP2, OP3, and the rest."""
@@ -48,10 +49,12 @@ class ScanResult:
         found: the servos.
         garbled_bauds: bauds at which something answered that could not be read: two servos of one id, or servos of the
             other protocol.
+        impossible_bauds: bauds that the port does not take.
     """
 
     found: tuple[Found, ...]
     garbled_bauds: tuple[int, ...]
+    impossible_bauds: tuple[int, ...] = ()
 
 
 def scan(
@@ -75,8 +78,14 @@ def scan(
     """
     found: list[Found] = []
     garbled: list[int] = []
+    impossible: list[int] = []
     for baud in bauds:
-        with contextlib.closing(open_at(baud)) as port:
+        try:
+            opened = open_at(baud)
+        except PortBaudError:
+            impossible.append(baud)
+            continue
+        with contextlib.closing(opened) as port:
             for protocol in protocols:
                 on_progress(baud, protocol, 0.0)
                 if protocol == 2.0:
@@ -89,7 +98,7 @@ def scan(
                         on_progress(baud, protocol, i / len(ids))
                         found += [Found(baud, 1.0, *answer) for answer in _single(port, clock, servo_id)]
                 on_progress(baud, protocol, 1.0)
-    return ScanResult(tuple(found), tuple(garbled))
+    return ScanResult(tuple(found), tuple(garbled), tuple(impossible))
 
 
 def answering(port: Port, clock: Clock) -> list[Found]:

@@ -13,7 +13,16 @@ import serial
 from daemon.bus.adapter import adapter_at, device_of
 from daemon.bus.lock import PortLock, process_holding
 from daemon.bus.open import PortContext
-from daemon.errors import CommandError, LinkLostError, PortBusyError, PortError, PortMissingError, PortPermissionError
+from daemon.bus.tty_speed import tty_speed
+from daemon.errors import (
+    CommandError,
+    LinkLostError,
+    PortBaudError,
+    PortBusyError,
+    PortError,
+    PortMissingError,
+    PortPermissionError,
+)
 
 
 class SerialPort:
@@ -107,9 +116,14 @@ class SerialPort:
         self._lock.release()
 
 
+_MOST_OFF_SHARE = 0.03
+"""Share by which a port's speed may differ from the one asked for: servos and adapters still understand each other."""
+_USUAL = "57600, 115200, 1000000, 2000000, 3000000 or 4000000"
+
+
 def _open(device: str, baud: int, url: str) -> serial.Serial:
     try:
-        return serial.Serial(device, baud, timeout=0, write_timeout=1.0, exclusive=True)
+        port = serial.Serial(device, baud, timeout=0, write_timeout=1.0, exclusive=True)
     except serial.SerialException as error:
         if error.errno == errno.EACCES:
             user = getpass.getuser()
@@ -118,10 +132,13 @@ def _open(device: str, baud: int, url: str) -> serial.Serial:
         if error.errno in (errno.EBUSY, errno.EAGAIN) or "exclusively lock" in str(error):
             raise PortBusyError(url, f"in use by {process_holding(device)}", "stop that process") from error
         raise PortError(url, str(error), "check cable and path: ls -l /dev/serial/by-id/") from error
-    except ValueError as error:
-        raise PortError(
-            url, f"baud {baud} is not possible ({error})", "57600, 115200, 1000000, 2000000, 3000000 or 4000000"
-        ) from error
+    except (ValueError, OverflowError) as error:
+        raise PortBaudError(url, f"baud {baud} is not possible ({error})", f"allowed: {_USUAL}") from error
+    speed = tty_speed(port.fileno())
+    if speed is not None and abs(speed - baud) > _MOST_OFF_SHARE * baud:
+        port.close()
+        raise PortBaudError(url, f"baud {baud} is not possible (the port went to {speed})", f"allowed: {_USUAL}")
+    return port
 
 
 def open_dxl(url: SplitResult, context: PortContext) -> SerialPort:

@@ -18,10 +18,14 @@ _WITH_N: dict[str, int | None] = {
 }  # fmt: skip
 """Figures that take a number of texts, clips or trials, and how many it is when none is given (None: all)."""
 
+_WITH_ROBOT = ("audit",)
+"""Figures that can be had of robots of one's own."""
+
 
 def bench(
-    name: Annotated[BenchName, tyro.conf.Positional], json: bool = False, seed: int = 0, n: int | None = None
-) -> int:
+    name: Annotated[BenchName, tyro.conf.Positional], json: bool = False, seed: int = 0, n: int | None = None,
+    robot: tuple[str, ...] = (),
+) -> int:  # fmt: skip
     """Measure one figure and print it.
 
     generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten
@@ -34,18 +38,26 @@ def bench(
     kept on a pty, beside other drivers where they are installed. stream: joint target of another program to first moved goal.
 
     Example: mmmd bench first-motion --json
+    or, for a robot of your own: mmmd bench audit --robot my_robot --n 30
 
     Args:
         name: what to measure.
         json: print one JSON object instead of lines.
         seed: seed of the texts and of generation.
         n: number of texts, clips or trials, where the figure has any.
+        robot: for audit: packaged robots, or paths of robot files or their folders; every packaged robot when not given.
     """
     from rich.console import Console
 
+    from daemon.errors import CommandError
+
+    if robot and name not in _WITH_ROBOT:
+        raise CommandError(f"bench {name}: --robot is for {', '.join(_WITH_ROBOT)}")
+    chosen = {"robots": robot} if name in _WITH_ROBOT else {}
+
     file = name.replace("-", "_")
     measure: Callable[..., dict[str, Any]] = getattr(importlib.import_module(f"daemon.bench.{file}"), f"bench_{file}")
-    figures = measure(n or _WITH_N[name], seed=seed) if name in _WITH_N else measure(seed=seed)
+    figures = measure(n or _WITH_N[name], seed=seed, **chosen) if name in _WITH_N else measure(seed=seed)
     console = Console()
     if json:
         console.out(json_module.dumps(figures))

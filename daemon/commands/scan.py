@@ -57,7 +57,8 @@ def scan(
     console = Console()
     if json:
         rows = [dataclasses.asdict(f) | {"model": f.model_name} for f in result.found]
-        console.out(json_module.dumps({"device": device, "found": rows, "garbled_bauds": result.garbled_bauds}))
+        others = {"garbled_bauds": result.garbled_bauds, "impossible_bauds": result.impossible_bauds}
+        console.out(json_module.dumps({"device": device, "found": rows, **others}))
         return 0 if rows else 1
     table = Table(title=f"{len(result.found)} servos on {device}")
     for column in ("id", "model", "firmware", "protocol", "baud"):
@@ -69,6 +70,8 @@ def scan(
         console.print(
             f"{b} baud: something answered that cannot be read: two servos with the same id? Connect one alone"
         )
+    if result.impossible_bauds:
+        console.print(f"not looked for: the port does not take {', '.join(map(str, result.impossible_bauds))} baud")
     if len({f.baud for f in result.found} | {f.protocol for f in result.found}) > 2:
         console.print("servos at different bauds or protocols cannot share one bus: mmmd servo baud")
     if not result.found:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import shutil
+
 import numpy as np
 import pytest
 from rig import swing
 
 from daemon.bench.audit_rig import AuditRig
+from daemon.cli import main
 from daemon.driving.shared import BusRequest, BusState
 from retarget.robot import load_robot
 from sim.faults import Fault
@@ -90,3 +94,20 @@ def test_contacts_that_are_commanded_are_reported(monkeypatch):
     report = rig._bus.audit.report()
     assert report["self_contacts"] > 10 and "deep" in report["contact_details"][0]
     assert report["measured_contacts"] > 10
+
+
+def test_a_robot_of_ones_own_can_be_audited(tmp_path, capsys):
+    """`--robot` was unknown: the one thing a builder wants after `robot new` could not be had of the own robot file."""
+    mine = tmp_path / "mine"
+    shutil.copytree(ROBOT.path.parent, mine)
+    text = (mine / "robot.toml").read_text()
+    (mine / "robot.toml").write_text(text.replace('name = "op3"', 'name = "mine"').replace("rate_hz = 125", "rate_hz = 40"))
+    assert main(["bench", "audit", "--robot", str(mine), "--n", "1", "--json"]) == 0
+    figures = json.loads(capsys.readouterr().out)
+    assert figures["robots"] == [str(mine)] and figures["goals"] > 0 and figures["violations"] == 0
+
+
+def test_an_audit_of_what_cannot_be_simulated_is_refused(tmp_path, capsys):
+    assert main(["bench", "audit", "--robot", str(tmp_path / "none")]) == 2
+    assert main(["bench", "story", "--robot", "op3"]) == 2
+    assert "--robot is for audit" in capsys.readouterr().err

@@ -17,11 +17,17 @@ import pytest
 from dynamixel_sdk import COMM_RX_TIMEOUT, COMM_SUCCESS, GroupSyncRead, PacketHandler, PortHandler
 
 from daemon.bus import packet
+from daemon.bus.port import Port
+from daemon.bus.scan import scan
 from daemon.bus.serial_port import SerialPort
-from daemon.errors import CommandError, LinkLostError
+from daemon.bus.tty_speed import tty_speed
+from daemon.clock import RealClock
+from daemon.errors import CommandError, LinkLostError, PortBaudError
 from retarget.robot import load_robot
 from sim.bus import SimBus
+from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
+from sim.port import SimPort
 from sim.pty import PtyServer
 from sim.world import World
 
@@ -82,6 +88,41 @@ def test_the_stock_sdk_reads_groups_and_misses_who_is_silent(tmp_path: Path) -> 
             until(lambda: handler.broadcastPing(port)[1] == COMM_SUCCESS)
         finally:
             port.closePort()
+
+
+def test_a_scan_finds_each_servo_once(tmp_path: Path) -> None:
+    """16 servos of 8 were found: at 4,500,000 baud, which termios has no name for, the simulated servos answered as well."""
+    robot = load_robot("op3")
+    with serving(PtyServer(SimBus(robot), tmp_path / "servos")):
+
+        def open_at(baud: int) -> SerialPort:
+            return SerialPort(str(tmp_path / "servos"), baud)
+
+        def found() -> list[tuple[int, int]]:
+            result = scan(open_at, RealClock(), bauds=(4_500_000, 2_000_000, 57_600), protocols=(2.0,))
+            return [(f.servo_id, f.baud) for f in result.found]
+
+        until(lambda: found() == [(i, 2_000_000) for i in sorted(robot.servo_ids)])
+
+
+def test_the_speed_of_a_tty_is_read_back(tmp_path: Path) -> None:
+    with serving(PtyServer(SimBus(ROBOT), tmp_path / "servos")):
+        for baud in (9600, 4_500_000, 57_142):
+            port = SerialPort(str(tmp_path / "servos"), baud)
+            assert tty_speed(port._fd) == baud
+            port.close()
+
+
+def test_a_speed_that_the_port_does_not_take_is_left_out_of_the_scan() -> None:
+    clock = VirtualClock()
+
+    def open_at(baud: int) -> Port:
+        if baud == 4_500_000:
+            raise PortBaudError("dxl:///dev/ttyUSB0", "baud 4500000 is not possible", "allowed: 57600")
+        return SimPort(SimBus(load_robot("op3")), clock)
+
+    result = scan(open_at, clock, bauds=(4_500_000, 2_000_000), protocols=(2.0,))
+    assert result.impossible_bauds == (4_500_000,) and len(result.found) == 8
 
 
 def test_rustypot_drives_the_servos(tmp_path: Path) -> None:
