@@ -18,7 +18,8 @@ DaemonError
 ├── ConfigError(key)               a setting outside what is allowed                 (ValueError)
 ├── NoCpuBuildError                no PyTorch without GPU libraries to install
 ├── ClipError                      a gesture that cannot be read or kept             (ValueError)
-│   └── UnknownGestureError(name)  no gesture of that name
+│   ├── UnknownGestureError(name)  no gesture of that name
+│   └── GestureExistsError(name)   there is one of that name already
 └── RequestError(code)             a message that cannot be carried out              (ValueError)
 """
 
@@ -143,6 +144,15 @@ class UnknownGestureError(ClipError):
         self.name, self.near = name, tuple(near)
         like = f"; near to it: {', '.join(near)}" if near else ""
         super().__init__(f"gesture {name!r}: not among the {known} known ones{like}; `mmmd gesture list` shows all")
+
+
+class GestureExistsError(ClipError):
+    """There is a gesture of that name already."""
+
+    def __init__(self, name: str, *, own: bool) -> None:
+        self.name, self.own = name, own
+        found = "one of your own" if own else "one that ships, whose place yours would take"
+        super().__init__(f"gesture '{name}': there is {found}; choose another name, or add --replace")
 
 
 def two_of(servo_id: int) -> str:

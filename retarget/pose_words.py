@@ -47,7 +47,9 @@ def _turned(robot: RobotModel, q_rad: Array) -> list[str]:
     lines: list[str] = []
     for part, straight in (("head", "head looking straight ahead"), ("waist", "trunk upright, facing ahead")):
         joints = [i for i, j in enumerate(robot.joints) if j.role.startswith(f"{part}_")]
-        off = [f"{robot.joints[i].name} {np.rad2deg(q_rad[i]):+.0f} deg" for i in joints if abs(np.rad2deg(q_rad[i])) >= 1]
+        off = [
+            f"{robot.joints[i].name} {np.rad2deg(q_rad[i]):+.0f} deg" for i in joints if abs(np.rad2deg(q_rad[i])) >= 1
+        ]
         if joints:
             lines.append(f"{part}: {', '.join(off)}" if off else straight)
     return lines

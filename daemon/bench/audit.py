@@ -70,7 +70,9 @@ def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -
     asked = {name: load_robot(name) for name in robots or list_robots()}
     without = sorted(name for name, robot in asked.items() if not _has_tables(robot))
     if robots and without:
-        raise CommandError(f"--robot {' '.join(without)}: its servos' control tables are not known here: it cannot be simulated")
+        raise CommandError(
+            f"--robot {' '.join(without)}: its servos' control tables are not known here: it cannot be simulated"
+        )
     models = {name: robot for name, robot in asked.items() if name not in without}
     engine = Engine.load(threads=1)
     texts = draw_texts(prompts, seed, outside_share=_OUTSIDE_SHARE)

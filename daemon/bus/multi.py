@@ -203,9 +203,7 @@ RobotBus = ServoBus | MultiBus
 """The servos of a robot, on one port or on several."""
 
 
-def open_bus(
-    url: str, robot: RobotModel, clock: Clock, *, slow_every: int = 0, margin_s: float = MARGIN_S
-) -> RobotBus:
+def open_bus(url: str, robot: RobotModel, clock: Clock, *, slow_every: int = 0, margin_s: float = MARGIN_S) -> RobotBus:
     """The bus behind a URL, or behind several with commas between them: `dxl:///dev/ttyUSB0,dxl:///dev/ttyUSB1`.
 
     On several ports every servo is looked for on each.

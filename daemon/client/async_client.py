@@ -198,9 +198,10 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         finally:
             socket.close(0)
 
-    async def record(self, name: str, command_id: str = "") -> Ack:
-        """Keep the motion of a command, the newest when no id is given, as a gesture."""
-        return await self._acknowledged(Record(id=uuid.uuid4().hex, name=name, command=command_id), self.endpoints.cmd)
+    async def record(self, name: str, command_id: str = "", *, replace: bool = False) -> Ack:
+        """Keep the motion of a command, the newest when no id is given, as a gesture; see `Client.record`."""
+        request = Record(id=uuid.uuid4().hex, name=name, command=command_id, replace=replace)
+        return await self._acknowledged(request, self.endpoints.cmd)
 
     async def capabilities(self) -> CapabilitiesEvent:
         """What this robot and this daemon can do."""

@@ -192,14 +192,14 @@ class Client(ControlCalls, CompositionCalls[Said]):
             socket.close(0)
             cmd.close(200)
 
-    def record(self, name: str, command_id: str = "") -> Ack:
+    def record(self, name: str, command_id: str = "", *, replace: bool = False) -> Ack:
         """Keep the motion of a command, the newest when no id is given, as a gesture.
 
         Raises:
-            RefusedError: there is none, or it cannot be kept.
+            RefusedError: there is none, it cannot be kept, or there is a gesture of that name and `replace` is not given.
             NoAnswerError: not in time.
         """
-        return self._command(Record(id=uuid.uuid4().hex, name=name, command=command_id))
+        return self._command(Record(id=uuid.uuid4().hex, name=name, command=command_id, replace=replace))
 
     def capabilities(self) -> CapabilitiesEvent:
         """What this robot and this daemon can do.

@@ -110,10 +110,14 @@ def _confirmed(console: Console, doubts: Sequence[Calibrated]) -> bool:
 
     for c in doubts:
         console.print(f"[yellow]{c.joint_name}: {c.doubt}[/yellow]", highlight=False, soft_wrap=True)
-    console.print("was the robot in the zero pose? Write this all the same? (yes or no)", highlight=False, soft_wrap=True)
+    console.print(
+        "was the robot in the zero pose? Write this all the same? (yes or no)", highlight=False, soft_wrap=True
+    )
     answer = sys.stdin.readline()
     if not answer:
-        raise CommandError("calibrate: end of input before an answer; nothing was written; --yes writes without a question")
+        raise CommandError(
+            "calibrate: end of input before an answer; nothing was written; --yes writes without a question"
+        )
     return answer.strip().lower() in ("y", "yes")
 
 

@@ -19,6 +19,7 @@ def gesture(
     name: Annotated[str, tyro.conf.Positional] = "",
     file: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="[F.npz]")] = None,
     command: str = "",
+    replace: bool = False,
     folder: Path | None = None,
     how: OmitArgPrefixes[PlayFlags] = PlayFlags(),  # noqa: B008
     wait: bool = True,
@@ -38,6 +39,7 @@ def gesture(
         name: of the gesture; for play, record and add.
         file: .npz of `mmmd generate`; for add.
         command: id of the command whose motion to record; the newest when it is not given.
+        replace: for record and add: take the place of a gesture of that name.
         folder: where your own gestures are; your data folder when it is not given. For list and add.
         how: how it is to be played.
         wait: return when the motion has ended; --no-wait returns once it is accepted.
@@ -49,10 +51,10 @@ def gesture(
     if not name:
         raise CommandError(f"gesture {verb}: no name; allowed: a name of `mmmd gesture list`, or a new one")
     if verb == "add":
-        return _add(name, file, folder)
+        return _add(name, file, folder, replace=replace)
     if verb == "record":
         with at.client() as robot:
-            ack = robot.record(name, command)
+            ack = robot.record(name, command, replace=replace)
         sys.stdout.write(f"recorded {ack.note}\n")
         return 0
     from daemon.wire.requests import Gesture
@@ -82,7 +84,7 @@ def _list(folder: Path | None, json: bool) -> int:
     return 0
 
 
-def _add(name: str, file: Path | None, folder: Path | None) -> int:
+def _add(name: str, file: Path | None, folder: Path | None, *, replace: bool) -> int:
     from daemon.gestures.library import GestureLibrary
     from daemon.playing.posture import posture_of
     from mmm_core.motion import load_npz
@@ -91,6 +93,6 @@ def _add(name: str, file: Path | None, folder: Path | None) -> int:
         raise CommandError(f"gesture add {name}: no file; allowed: an .npz of `mmmd generate`")
     motion = load_npz(file)
     library = GestureLibrary(folder)
-    clip = library.keep(name, motion.text or name, posture_of(motion), f"file {file.name}")
+    clip = library.keep(name, motion.text or name, posture_of(motion), f"file {file.name}", replace=replace)
     sys.stdout.write(f"added {name} ({len(clip.posture) / clip.posture.fps:.1f} s) to {library.folder}\n")
     return 0

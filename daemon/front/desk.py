@@ -6,7 +6,7 @@ import importlib.metadata
 from collections.abc import Callable
 
 from daemon.config import DaemonConfig
-from daemon.errors import ClipError
+from daemon.errors import ClipError, GestureExistsError
 from daemon.front.stop_texts import asks_to_stop
 from daemon.generator.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
@@ -152,7 +152,13 @@ class Desk:
 
     def _record(self, request: Record) -> Event:
         try:
-            text = self._sources.keep(request.name, request.command)
+            text = self._sources.keep(request.name, request.command, replace=request.replace)
+        except GestureExistsError as error:
+            return Rejected(
+                code="gesture_exists", asked=f"record {request.name!r}",
+                found="one of your own has that name" if error.own else "a gesture that ships has that name",
+                allowed="a new name", do="choose another name, or set `replace` (`mmmd gesture record NAME --replace`)",
+            )  # fmt: skip
         except ClipError as error:
             return Rejected(
                 code="bad_gesture", asked=f"record {request.name!r}", found=str(error), allowed="a motion that was played",

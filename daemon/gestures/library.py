@@ -8,7 +8,7 @@ import os
 import re
 from pathlib import Path
 
-from daemon.errors import ClipError, UnknownGestureError
+from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
 from daemon.gestures.clips import Clip, load_clips, save_clips
 from daemon.playing.posture import Posture, at_tempo
 from daemon.playing.score import marks_of
@@ -53,14 +53,24 @@ class GestureLibrary:
             raise UnknownGestureError(name, difflib.get_close_matches(name, names, 4, 0.5), len(names))
         return clip
 
-    def keep(self, name: str, text: str, posture: Posture, source: str) -> Clip:
-        """Make a clip of the user's own; one of that name is replaced.
+    def keep(self, name: str, text: str, posture: Posture, source: str, *, replace: bool = False) -> Clip:
+        """Make a clip of the user's own.
+
+        Args:
+            name: of the clip.
+            text: what it shows.
+            posture: its frames.
+            source: what made it.
+            replace: take the place of a clip of that name.
 
         Raises:
+            GestureExistsError: there is one of that name, and `replace` is not given.
             ClipError: the name or the length is not allowed, or the file cannot be written.
         """
         if not _NAME.fullmatch(name):
             raise ClipError(f"gesture name {name!r}; allowed: 1 to 64 of a-z, 0-9 and _, for example 'my_wave'")
+        if not replace and (name in self._shipped or self._path(name).exists()):
+            raise GestureExistsError(name, own=self._path(name).exists())
         if not 2 <= len(posture) <= LONGEST_CLIP_S * posture.fps:
             seconds = len(posture) / posture.fps
             raise ClipError(f"gesture '{name}': {seconds:.2f} s of motion; allowed: 2 frames to {LONGEST_CLIP_S:g} s")

@@ -30,6 +30,7 @@ from daemon.state.ledger import Entry
 from daemon.state.replies import NotPlayableError, generator_failed, too_late
 from daemon.wire.events import Accepted, Rejected
 from daemon.wire.requests import Command, Edit, Gesture, Inbetween, Lease, Play, Replay, Say, Story, tag_of
+from mmm_core.mirroring import mirror_words
 from mmm_core.motion import Motion
 from retarget.guarded_steps import GuardedSteps
 from retarget.robot import RobotModel
@@ -120,16 +121,17 @@ class Sources:
         if isinstance(request, Gesture):
             clip = self._originals.clip(request.name)
             motion = clip.posture.motion(text=clip.name)
-            score = await self._score(entry, clip.posture, motion, clip.marks)
+            score = await self._score(entry, clip.posture, motion, clip.marks, clip.text)
             return Prepared(score, _duration_s(clip.posture, request), understood=f"{clip.text} (gesture {clip.name})")
         if isinstance(request, Lease):
             return await self._lease(request)
         raise TypeError(f"no source for {type(request).__name__}")
 
-    def keep(self, name: str, command_id: str) -> str:
+    def keep(self, name: str, command_id: str, *, replace: bool = False) -> str:
         """Keep the motion of a command (the newest when the id is empty) as a gesture; what it shows.
 
         Raises:
+            GestureExistsError: there is one of that name, and `replace` is not given.
             ClipError: there is no such motion, or it cannot be kept.
         """
         key = command_id or self.kept.newest()
@@ -137,7 +139,7 @@ class Sources:
         if key is None or kept is None:
             raise ClipError(f"no motion of command {command_id!r} to keep; the newest: {self.kept.some()}; "
                             "`mmmd say` one first")  # fmt: skip
-        self.library.keep(name, kept.words, kept.posture, f"command {key}")
+        self.library.keep(name, kept.words, kept.posture, f"command {key}", replace=replace)
         return kept.words
 
     async def _generated(
@@ -253,10 +255,14 @@ class Sources:
                 raise NotPlayableError(event) from caught
             raise NotPlayableError(generator_failed(error, self._generator.state)) from caught
 
-    async def _score(self, entry: Entry, posture: Posture, motion: Motion, marks: Marks | None = None) -> Score:
+    async def _score(
+        self, entry: Entry, posture: Posture, motion: Motion, marks: Marks | None = None, shows: str = ""
+    ) -> Score:
         play = entry.request
         assert isinstance(play, Play), "only motions have a score of posture"
-        self.kept.add(entry.id, KeptMotion(play.words, varied(posture, play), motion))
+        words = shows or play.words
+        words = mirror_words(words) if play.mirror else words
+        self.kept.add(entry.id, KeptMotion(words, varied(posture, play), motion))
         if play.loop or play.hold or play.repeat > 1:  # looking for the loop takes a while
             return await asyncio.to_thread(ClipScore, posture, play, marks)
         return ClipScore(posture, play, marks)

@@ -164,12 +164,14 @@ class Record(Request, tag="record", kw_only=True):
     """Keep the motion of a command as a gesture of one's own.
 
     Attributes:
-        name: of the gesture; one of the user's own of that name is replaced.
+        name: of the gesture.
         command: id of the command whose motion to keep; empty means the newest.
+        replace: take the place of a gesture of that name; without it an existing one is refused.
     """
 
     name: Name
     command: Id = ""
+    replace: bool = False
 
 
 class Look(Request, tag="look"):

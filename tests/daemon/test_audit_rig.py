@@ -101,7 +101,9 @@ def test_a_robot_of_ones_own_can_be_audited(tmp_path, capsys):
     mine = tmp_path / "mine"
     shutil.copytree(ROBOT.path.parent, mine)
     text = (mine / "robot.toml").read_text()
-    (mine / "robot.toml").write_text(text.replace('name = "op3"', 'name = "mine"').replace("rate_hz = 125", "rate_hz = 40"))
+    (mine / "robot.toml").write_text(
+        text.replace('name = "op3"', 'name = "mine"').replace("rate_hz = 125", "rate_hz = 40")
+    )
     assert main(["bench", "audit", "--robot", str(mine), "--n", "1", "--json"]) == 0
     figures = json.loads(capsys.readouterr().out)
     assert figures["robots"] == [str(mine)] and figures["goals"] > 0 and figures["violations"] == 0

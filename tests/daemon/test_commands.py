@@ -222,6 +222,19 @@ def test_record_keeps_the_newest_motion_as_a_gesture(robot):
         robot.record("other", "never said")
 
 
+def test_a_recorded_gesture_is_not_overwritten_and_keeps_its_text(robot):
+    """One's own gesture was replaced without a word, and recording what was played from a gesture kept its name for a text."""
+    robot.say("wave with your right hand", seconds=1.0)
+    robot.record("shown", replace=True)
+    with pytest.raises(RefusedError) as caught:
+        robot.record("shown")
+    assert caught.value.code == "gesture_exists" and "replace" in caught.value.event.do
+    robot.gesture("shown")
+    assert robot.record("shown_again", replace=True).note == "shown_again: wave with your right hand"
+    robot.gesture("shown", mirror=True)
+    assert robot.record("shown_left", replace=True).note == "shown_left: wave with your left hand"
+
+
 def test_look_turns_the_head_while_the_arm_moves_and_lets_go(robot):
     names = robot.status().joint_names
     head = next(i for i, n in enumerate(names) if "head" in n and ("yaw" in n or "pan" in n))
@@ -295,7 +308,9 @@ def test_commands_of_the_shell(running, robot, tmp_path):
     assert running.mmmd("say", "wave", "--loop", "--hold").returncode == 2
     assert running.mmmd("gesture", "play", "nod").returncode == 0
     assert "nod" in running.mmmd("gesture", "play", "nodd").stderr
-    assert running.mmmd("gesture", "record", "kept").stdout.startswith("recorded kept")
+    assert running.mmmd("gesture", "record", "kept", "--replace").stdout.startswith("recorded kept")
+    again = running.mmmd("gesture", "record", "kept")
+    assert again.returncode == 1 and "--replace" in again.stderr
     assert running.mmmd("look", "--yaw", "10").returncode == 0 and running.mmmd("look").returncode == 0
     assert running.mmmd("idle", "off").returncode == 0
     assert "nothing is running" in running.mmmd("cancel").stderr

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.errors import ClipError, UnknownGestureError
+from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
 from daemon.gestures.clips import Clip, load_clips, save_clips
 from daemon.gestures.library import SHIPPED, GestureLibrary
 from daemon.gestures.make import WANTED, mirror_name
@@ -58,13 +58,18 @@ def test_what_is_kept_is_found_again_to_a_hundredth_of_a_degree(tmp_path):
     assert distance_deg(clip.posture, P).max() < 0.02
     info = next(i for i in library.infos() if i.name == "my_raise")
     assert info.own and info.seconds == 1.5
-    library.keep("my_raise", "another", P[:10], "test")
+    with pytest.raises(GestureExistsError, match=r"one of your own.*--replace"):
+        library.keep("my_raise", "another", P[:10], "test")
+    assert library.get("my_raise").text == "raise it"
+    library.keep("my_raise", "another", P[:10], "test", replace=True)
     assert library.get("my_raise").text == "another"
 
 
 def test_ones_own_wins_over_a_shipped_one(tmp_path):
     library = GestureLibrary(tmp_path)
-    library.keep("nod", "my own nod", P, "test")
+    with pytest.raises(GestureExistsError, match="one that ships"):
+        library.keep("nod", "my own nod", P, "test")
+    library.keep("nod", "my own nod", P, "test", replace=True)
     assert library.get("nod").text == "my own nod"
     assert [i.own for i in library.infos() if i.name == "nod"] == [True]
     (tmp_path / "nod.npz").unlink()
