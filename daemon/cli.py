@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import importlib.metadata
+import io
 import os
 import signal
 import sys
@@ -80,6 +81,7 @@ GOOD, FAILED, BAD_USE, ROBOT_FAULT = 0, 1, 2, 3
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns its exit status."""
+    _spell_out_what_cannot_be_shown()
     name, *arguments = (sys.argv[1:] if argv is None else list(argv)) or [""]
     if name in COMMANDS:
         return _guarded(name, arguments)
@@ -90,6 +92,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         _out(f"mmmd {importlib.metadata.version('mmmd')}")
         return GOOD
     return _failed(f"unknown command '{name}'; known: {', '.join(COMMANDS)}; `mmmd --help` describes them", BAD_USE)
+
+
+def _spell_out_what_cannot_be_shown() -> None:
+    """Characters that the terminal's encoding lacks are printed as escapes, where printing them would end the command."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _guarded(name: str, arguments: list[str]) -> int:

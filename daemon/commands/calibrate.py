@@ -50,10 +50,13 @@ def calibrate(
     from daemon.bus.multi import open_bus
     from daemon.clock import RealClock
     from daemon.errors import CommandError
-    from daemon.robot_picture import Pose, robot_picture
+    from daemon.picture_files import check_picture
+    from daemon.pictures.robot_picture import Pose, robot_picture
     from retarget.pose_words import pose_in_words
     from retarget.robot import load_robot
 
+    if picture is not None:
+        check_picture(picture, "--picture")
     if not limp:
         raise CommandError("calibrate cuts the torque of every servo: hold the robot, then add --limp")
     model, clock, console = load_robot(robot), RealClock(), Console()

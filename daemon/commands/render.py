@@ -43,25 +43,22 @@ def render(
     from rich.console import Console
     from rich.progress import track
 
-    from daemon.errors import DaemonError
+    from daemon.errors import CommandError
+    from daemon.picture_files import check_picture
     from daemon.pictures.drawing import contact_sheet, frames
     from daemon.pictures.film import write_film
     from daemon.pictures.performance import RUN_FPS, read_performance
 
-    if out.suffix not in _SIZES:
-        raise DaemonError(
-            f"--out {out}: {out.suffix or 'no suffix'}; allowed are .png (contact sheet), .gif and .mp4 (film)"
-        )
+    check_picture(out, "--out", tuple(_SIZES))
     if not (_even(width) and _even(height)):
-        raise DaemonError(f"--width {width} --height {height}: allowed are even numbers from 160 to 3840")
+        raise CommandError(f"--width {width} --height {height}: allowed are even numbers from 160 to 3840")
     performance = read_performance(file, robot, fps=RUN_FPS, from_s=from_s, to_s=to_s)
     if show == "person" and performance.person_m is None:
-        raise DaemonError(
+        raise CommandError(
             f"--show person: {file} is a recorded run, which holds the robot alone; allowed are robot and both"
         )
     console = Console(stderr=True)
     if out.suffix == ".png":
-        out.parent.mkdir(parents=True, exist_ok=True)
         contact_sheet([performance], show, view).save(out)
     else:
         pictures = frames(performance, show, view, (width, height))
@@ -82,15 +79,17 @@ def plot(file: Annotated[Path, tyro.conf.Positional], out: Path, robot: str | No
 
     Args:
         file: an .mcap of `mmmd run --log`.
-        out: the PNG to write.
+        out: the picture to write, .png, .svg, .pdf or .jpg.
         robot: name or robot.toml; the run's own robot when not given.
     """
     from rich.console import Console
 
+    from daemon.picture_files import check_picture
     from daemon.pictures.joints import joint_plot
     from daemon.recording.mcap_log import read_log
     from retarget.robot import load_robot
 
+    check_picture(out, "--out")
     log = read_log(file)
     joint_plot(log, load_robot(robot or log.metadata["robot"]), out)
     Console(soft_wrap=True).print(f"{out}: drawn", highlight=False)

@@ -36,7 +36,7 @@ def robot(
     Args:
         verb: list, new, check or show.
         name: for new the description; else a packaged robot, or the path of a robot.toml or its folder.
-        out: for new the folder (beside the description when not given), for show the PNG (NAME.png).
+        out: for new the folder (beside the description when not given), for show the picture, .png, .svg, .pdf or .jpg (NAME.png).
         servo: for new, the model of all servos when they are alike.
         text: for show, the gesture.
         seed: for show, the gesture's seed.
@@ -44,6 +44,7 @@ def robot(
     from rich.console import Console
 
     from daemon.errors import CommandError
+    from daemon.picture_files import check_picture
     from retarget.robot import list_robots, load_robot
 
     console = Console(soft_wrap=True, highlight=False)
@@ -56,6 +57,8 @@ def robot(
                            + ("my.urdf" if verb == "new" else "reference"))  # fmt: skip
     if verb == "new":
         return _new(console, Path(name), out, servo)
+    if verb == "show" and out is not None:
+        check_picture(out, "--out")
     model = load_robot(name, blanks=True)
     if verb == "check":
         return _check(console, model)

@@ -192,15 +192,16 @@ def test_the_joint_plot_is_one_panel_a_joint(robot: RobotModel, tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("arguments", "status", "message"),
     [
-        (["--out", "x.bmp"], "allowed are .png"),
-        (["--out", "x.gif", "--width", "17"], "even numbers from 160"),
-        (["--out", "x.gif", "--from-s", "99"], "no frame from 99"),
+        (["--out", "x.bmp"], 2, "allowed: .png"),
+        (["--out", "x.gif", "--width", "17"], 2, "even numbers from 160"),
+        (["--out", "x.gif", "--from-s", "99"], 1, "no frame from 99"),
     ],
 )
 def test_what_cannot_be_rendered_is_said(
     arguments: list[str],
+    status: int,
     message: str,
     wave: Motion,
     capsys: pytest.CaptureFixture[str],
@@ -209,7 +210,7 @@ def test_what_cannot_be_rendered_is_said(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     wave.save_npz(tmp_path / "wave.npz")
-    assert main(["render", "wave.npz", *arguments]) == 1
+    assert main(["render", "wave.npz", *arguments]) == status
     assert message in " ".join(capsys.readouterr().err.split())
     assert [file.name for file in tmp_path.iterdir()] == ["wave.npz"]
 
