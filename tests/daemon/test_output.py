@@ -37,6 +37,8 @@ def test_a_picture_that_cannot_be_written_is_bad_use(arguments, says, capsys, tm
 def test_a_terminal_of_ascii_is_served(arguments, status, tmp_path):
     """`gesture list` and errors that name Chinese text ended in `internal error (UnicodeEncodeError ...)`."""
     environment = {**os.environ, "PYTHONIOENCODING": "ascii", "LC_ALL": "C"}
-    done = subprocess.run([*MMMD, *arguments], env=environment, cwd=tmp_path, capture_output=True, timeout=60, check=False)
+    done = subprocess.run(
+        [*MMMD, *arguments], env=environment, cwd=tmp_path, capture_output=True, timeout=60, check=False
+    )
     assert done.returncode == status, done.stderr
     assert b"internal" not in done.stderr and (done.stdout + done.stderr).isascii()
