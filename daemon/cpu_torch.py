@@ -71,7 +71,7 @@ def install(requirement: str, *, constraint: Path | None, gpu: bool, cpu_index: 
         NoCpuBuildError: no index has a build without GPU libraries, or none at all for this machine.
     """
     pip = _Pip(constraint, pip_flags)
-    offered, problem = pip.offered(requirement) if gpu or pip.reads_metadata else (None, "")
+    offered, problem = pip.offered(requirement) if gpu or pip.reads_metadata else (None, pip.too_old)
     if offered is not None and offered.version == "":
         return "torch is installed already and is kept"
     if offered is not None and (gpu or not offered.gpu_libraries):
@@ -105,7 +105,9 @@ def _refusal(offered: Build | None, problem: str, cpu_index: str, cpu_problem: s
             f"the configured index has torch {offered.version}, which brings GPU libraries ({names}{more}): {GPU_SIZES}"
         )
     else:
-        first = f"the configured index has none for {_machine()}" + (f" ({problem})" if problem else "")
+        first = f"the configured index has none for {_machine()} ({problem})"
+        if problem.startswith("pip "):
+            first = f"the configured index was not asked: {problem}"
     return (
         f"torch: no CPU build found: {first}; {cpu_index}: {cpu_problem or 'only builds with GPU libraries'};"
         " nothing was installed."
@@ -124,14 +126,20 @@ class _Pip:
 
     Attributes:
         reads_metadata: whether it reads requirements without downloading the wheel, which for a GPU build has 0.5 to 0.9 GB.
+        too_old: why the configured index is not asked where it does not, and what to do.
     """
 
     def __init__(self, constraint: Path | None, flags: Sequence[str]) -> None:
         self._options = [*flags, "--quiet", "--disable-pip-version-check"]
         if constraint is not None:
             self._options += ["--constraint", str(constraint)]
-        version = re.match(r"(\d+)\.(\d+)", importlib.metadata.version("pip"))
-        self.reads_metadata = version is not None and (int(version[1]), int(version[2])) >= METADATA_WITHOUT_WHEEL
+        version = importlib.metadata.version("pip")
+        numbers = re.match(r"(\d+)\.(\d+)", version)
+        self.reads_metadata = numbers is not None and (int(numbers[1]), int(numbers[2])) >= METADATA_WITHOUT_WHEEL
+        self.too_old = (
+            f"pip {version} tells what a package requires only after downloading it, which pip"
+            f" {METADATA_WITHOUT_WHEEL[0]}.{METADATA_WITHOUT_WHEEL[1]} need not; `{sys.executable} -m pip install --upgrade pip`"
+        )
 
     def offered(self, requirement: str, environment: Mapping[str, str] | None = None) -> tuple[Build | None, str]:
         """The build that pip would install, with an empty version when one is installed; None and the reason for none."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import os
+import re
 import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -53,10 +56,24 @@ def make_index(folder: Path, *builds: tuple[str, tuple[str, ...]]) -> str:
 
 @pytest.fixture(scope="module")
 def python(tmp_path_factory) -> Path:
-    """The interpreter of an environment with pip and nothing else."""
+    """The interpreter of an environment with the pip of this one, as `make setup` leaves it, and nothing else."""
     folder = tmp_path_factory.mktemp("env")
-    subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", folder], check=True)
+    pip = importlib.metadata.distribution("pip")
+    installed = next(folder.glob("lib/*/site-packages"))
+    for name in ("pip", f"pip-{pip.version}.dist-info"):
+        shutil.copytree(pip.locate_file(name), installed / name)
     return folder / "bin" / "python"
+
+
+@pytest.fixture
+def old_pip(python) -> Iterator[str]:
+    """The version that pip says it has for one test: Debian 12's, which cannot read requirements alone."""
+    metadata = next(python.parents[1].glob("lib/*/site-packages/pip-*.dist-info")) / "METADATA"
+    text = metadata.read_text()
+    metadata.write_text(re.sub(r"(?m)^Version: .*$", "Version: 23.0.1", text))
+    yield "23.0.1"
+    metadata.write_text(text)
 
 
 def set_up(python: Path, configured: str, cpu_index: str, *arguments: str, constraint: Path | None = None):
@@ -135,6 +152,14 @@ def test_a_machine_without_any_build_is_named(python, tmp_path):
     assert "none for Python" in done.stderr and "--generator tcp://HOST:5874" in done.stderr
 
 
+def test_an_old_pip_is_named_and_the_index_is_not_blamed(python, old_pip, tmp_path):
+    """Debian 12's pip was never asked for the index's build, and the refusal said that the index had none."""
+    configured = make_index(tmp_path / "public", ("2.13.0+cpu", ()))
+    done, version = set_up(python, configured, "file:///nowhere")
+    assert (done.returncode, version) == (1, None)
+    assert f"was not asked: pip {old_pip}" in done.stderr and "pip install --upgrade pip" in done.stderr
+
+
 def test_what_is_installed_is_kept(python, tmp_path):
     make_wheel(tmp_path, "2.7.0")
     wheel = tmp_path / "torch-2.7.0-py3-none-any.whl"
@@ -148,4 +173,5 @@ def test_the_command_and_the_makefile_use_it():
     assert install_torch.__doc__ and "6 GB" in install_torch.__doc__
     assert CPU_INDEX in mmmd("install-torch", "--help").stdout.replace("\n", "")
     makefile = (ROOT / "Makefile").read_text()
+    assert "'pip>=23.2'" in makefile
     assert "-m daemon.cpu_torch --constraint constraints.txt --build $(TORCH)" in makefile
