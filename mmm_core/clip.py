@@ -20,6 +20,7 @@ from torch import Tensor, nn
 
 from mmm_core.clip_pieces import clean_text, read_vocabulary
 from mmm_core.errors import CheckpointError
+from mmm_core.foreign_tensors import check_tensors, load_exactly, n_blocks, shape_of
 from mmm_core.text import TextStates
 
 
@@ -130,14 +131,19 @@ def clip_from_openai(state: dict[str, Tensor], path: Path, n_heads: int | None =
     """The text tower of a CLIP state dict in OpenAI's layout; the image tower is left out.
 
     Raises:
-        CheckpointError: a weight of the text tower is missing.
+        CheckpointError: a weight of the text tower is missing, of another shape, or not dense, real and finite.
     """
-    text = {k: v.float() for k, v in state.items() if not k.startswith("visual.")}
+    used = ("token_embedding.", "positional_embedding", "text_projection", "ln_final.", "transformer.")
+    text = check_tensors({k: v for k, v in state.items() if k.startswith(used)}, path)
+    vocabulary, width = shape_of(text, "token_embedding.weight", 2, path)
+    n_layers = n_blocks(text, "transformer.resblocks.", path)
+    n_positions = shape_of(text, "positional_embedding", 2, path)[0]
+    sentence_dim = shape_of(text, "text_projection", 2, path)[1]
+    n_heads = n_heads or max(1, width // 64)
+    if width % n_heads:
+        raise CheckpointError(path, "token_embedding.weight", f"width {width}", f"a multiple of {n_heads} heads")
+    config = ClipConfig(vocabulary, n_positions, width, n_layers, n_heads, sentence_dim)
     try:
-        vocabulary, width = text["token_embedding.weight"].shape
-        n_layers = 1 + max(int(k.split(".")[2]) for k in text if k.startswith("transformer.resblocks."))
-        config = ClipConfig(vocabulary, len(text["positional_embedding"]), width, n_layers, n_heads or width // 64,
-                            text["text_projection"].shape[1])  # fmt: skip
         out = {
             "token_embedding.weight": text["token_embedding.weight"],
             "position_embedding": text["positional_embedding"],
@@ -153,5 +159,5 @@ def clip_from_openai(state: dict[str, Tensor], path: Path, n_heads: int | None =
     except (KeyError, ValueError) as error:
         raise CheckpointError(path, str(error).strip("'"), "missing", "CLIP's text tower in OpenAI's layout") from None
     tower = ClipText(config)
-    tower.load_state_dict(out)
-    return tower.eval().requires_grad_(False)
+    load_exactly(tower, out, path)
+    return tower

@@ -13,15 +13,14 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import CheckpointError
+from mmm_core.foreign_tensors import State, n_blocks
 
-State = dict[str, Tensor]
-
-_RESIDUALS = r"model\.(\d)\.conv(1|2)\.(weight|bias)"
+_RESIDUALS = r"model\.([0-9])\.conv(1|2)\.(weight|bias)"
 _CONV = {"1": "dilated", "2": "mix"}
 TOKENIZER_COPY = "trans_base.vqvae."
 _UNUSED = (
     r"trans_base\.pos_embedding\.weight",
-    r"trans_base\.cross_att\.\d+\.attn\.mask",
+    r"trans_base\.cross_att\.[0-9]+\.attn\.mask",
     r"trans_base\.pos_embed\.embed",
 )
 """In the file, but never read by the released code, or (the last) computed and checked here."""
@@ -41,7 +40,7 @@ def rename_transformer(state: State, path: Path) -> State:
     Raises:
         CheckpointError: an unknown tensor, or a key without its value.
     """
-    n_base = n_blocks(state, "trans_base.blocks.")
+    n_base = n_blocks(state, "trans_base.blocks.", path)
     ours: State = {}
     joined: dict[str, dict[str, Tensor]] = {}
     for name, tensor in state.items():
@@ -57,11 +56,6 @@ def rename_transformer(state: State, path: Path) -> State:
             raise CheckpointError(path, key, f"only its {next(iter(parts))}", "key and value")
         ours[key] = torch.cat([parts["key"], parts["value"]])
     return ours
-
-
-def n_blocks(state: State, prefix: str) -> int:
-    """How many numbered blocks stand below `prefix`."""
-    return 1 + max((int(k.split(".")[2]) for k in state if k.startswith(prefix)), default=-1)
 
 
 def _tokenizer_key(name: str, marks: tuple[str, ...], path: Path, full: str) -> str:
@@ -83,12 +77,12 @@ def _convolution(part: str, rest: str) -> str | None:
     """Our name of the tensor `rest` below `encoder.model.` or `decoder.model.`."""
     encoder = part == "encoder"
     fixed = {"0": "stem", "4": "out"} if encoder else {"0": "stem", "4": "mix", "6": "out"}
-    if (match := re.fullmatch(r"(\d)\.(weight|bias)", rest)) and match[1] in fixed:
+    if (match := re.fullmatch(r"([0-9])\.(weight|bias)", rest)) and match[1] in fixed:
         return f"{fixed[match[1]]}.{match[2]}"
     resample, residual = ("0", "1") if encoder else ("2", "0")
-    if (match := re.fullmatch(r"([23])\.(\d)\.(weight|bias)", rest)) and match[2] == resample:
+    if (match := re.fullmatch(r"([23])\.([0-9])\.(weight|bias)", rest)) and match[2] == resample:
         return f"{'halvings' if encoder else 'doublings'}.{int(match[1]) - 2}.{match[3]}"
-    if (match := re.fullmatch(rf"([23])\.(\d)\.{_RESIDUALS}", rest)) and match[2] == residual:
+    if (match := re.fullmatch(rf"([23])\.([0-9])\.{_RESIDUALS}", rest)) and match[2] == residual:
         return f"residuals.{int(match[1]) - 2}.{match[3]}.{_CONV[match[4]]}.{match[5]}"
     return None
 
@@ -105,7 +99,7 @@ def _transformer_key(name: str, n_base: int, path: Path) -> str:
         return fixed[name]
     if match := re.fullmatch(r"trans_base\.(to|cond|word)_emb\.(weight|bias)", name):
         return f"{ {'to': 'embed', 'cond': 'sentence_in', 'word': 'word_in'}[match[1]] }.{match[2]}"
-    if match := re.fullmatch(r"trans_(base|head)\.(cross_att|blocks)\.(\d+)\.(.*)\.(weight|bias)", name):
+    if match := re.fullmatch(r"trans_(base|head)\.(cross_att|blocks)\.([0-9]+)\.(.*)\.(weight|bias)", name):
         cross = match[2] == "cross_att"
         number = int(match[3]) + (n_base if match[1] == "head" else 0)
         parts = {

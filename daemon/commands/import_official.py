@@ -19,6 +19,7 @@ def import_official(
     clip: Path | None = None,
     vocabulary: Path | None = None,
     heads: int | None = None,
+    dilation_growth: int | None = None,
     any_statistics: bool = False,
     json: bool = False,
 ) -> int:
@@ -40,6 +41,8 @@ def import_official(
         clip: CLIP ViT-B/32: OpenAI's ViT-B-32.pt, or a state dict in .pt or .safetensors.
         vocabulary: CLIP's byte pairs: bpe_simple_vocab_16e6.txt.gz, or a tokenizer.json.
         heads: attention heads of the transformer; its width / 64 when not given, as released.
+        dilation_growth: the tokenizer's `dilation_growth_rate`, which its file does not hold. When not given, it is read
+            from the `run.log` that training left beside VQ.pth, or else is 3, as released.
         any_statistics: take mean and std as they are, for a model trained elsewhere.
         json: print one JSON object.
     """
@@ -47,6 +50,7 @@ def import_official(
     from mmm_core.checkpoint import Model, file_hash, save_model
     from mmm_core.clip import read_clip
     from mmm_core.official import (
+        dilation_growth_of,
         read_pickle,
         read_statistics,
         tokenizer_from_official,
@@ -57,7 +61,13 @@ def import_official(
         raise CommandError("import-official: --clip and --vocabulary go together; give both, or neither")
     if not out.parent.is_dir():
         raise CommandError(f"import-official: {out}: no folder '{out.parent}'; make it, or choose another")
-    vq = tokenizer_from_official(read_pickle(tokenizer, "net"), tokenizer)
+    growth, known_from = dilation_growth_of(tokenizer, dilation_growth)
+    if known_from == "assumed":
+        sys.stderr.write(
+            f"import-official: no run.log beside {tokenizer.name}: a dilation growth of {growth} is assumed, as released; "
+            "if it was trained with another one, say --dilation-growth N\n"
+        )
+    vq = tokenizer_from_official(read_pickle(tokenizer, "net"), tokenizer, growth)
     masked = transformer_from_official(read_pickle(transformer, "trans"), vq, transformer, heads)
     read_statistics(mean, std, vq, any_statistics=any_statistics)
     text = None if clip is None or vocabulary is None else read_clip(clip, vocabulary)
@@ -73,6 +83,7 @@ def import_official(
         "sha256": file_hash(out),
         "layout": vq.config.layout,
         "codebook": [vq.config.n_codes, vq.config.code_dim],
+        "dilation_growth": vq.config.dilation_growth,
         "parameters": sum(p.numel() for p in (*vq.parameters(), *masked.parameters())),
         "text": text is not None,
         "files": provenance["files"],
