@@ -1,4 +1,4 @@
-"""Arm poses from where the palm is to be: two-bone inverse kinematics in the chest frame, and places of the body.
+"""Arm poses from where the palm is to be: two-bone inverse kinematics in the chest frame.
 
 Places are (outward, up, forward) in metres from the middle between the shoulders, for the acting arm: outward is to the
 left for the left arm. The 22 joints end at the wrist; the palm lies `PALM_M` further along the forearm.
@@ -17,21 +17,6 @@ _UPPER_M, _FORE_M = float(BONE_LENGTHS_M[18]), float(BONE_LENGTHS_M[20]) + PALM_
 ELBOW_DOWN: Vector = (0.45, -0.85, -0.2)
 ELBOW_OUT: Vector = (1.0, -0.15, -0.1)
 ELBOW_UP: Vector = (0.8, 0.5, 0.0)
-
-CHIN: Vector = (0.02, 0.10, 0.13)
-MOUTH: Vector = (0.03, 0.16, 0.15)
-EYES: Vector = (0.03, 0.25, 0.13)
-FOREHEAD: Vector = (0.03, 0.30, 0.12)
-BROW: Vector = (0.09, 0.29, 0.12)
-EAR: Vector = (0.11, 0.21, 0.03)
-CROWN: Vector = (0.03, 0.38, 0.02)
-NAPE: Vector = (0.03, 0.17, -0.10)
-HEART: Vector = (-0.06, -0.13, 0.13)
-BELLY: Vector = (0.0, -0.34, 0.15)
-HIP: Vector = (0.17, -0.45, 0.06)
-LOWER_BACK: Vector = (0.06, -0.38, -0.15)
-OTHER_SHOULDER: Vector = (-0.17, -0.01, 0.08)
-STERNUM: Vector = (0.02, -0.16, 0.22)
 
 
 def reach(palm_m: Vector, elbow: Vector = ELBOW_DOWN, twist_rad: float = 0.0) -> ArmPose:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.evaluation.reference import Reference, channels, palms
-from mmm_core.evaluation.signs import shows
+from mmm_core.recognition.signs import shows
 from mmm_core.shown import Shown
 from mmm_core.strokes import peaks_beyond
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from mmm_core.corpus.heldout import PROBES, Probe
-from mmm_core.evaluation import checks
-from mmm_core.evaluation.signs import shows
 from mmm_core.motion import Motion
+from mmm_core.recognition import checks
+from mmm_core.recognition.signs import shows
 from mmm_core.shown import Shown, look_at, part
 
 SLOW_CYCLE_S, FAST_CYCLE_S = 0.72, 0.64

@@ -14,9 +14,9 @@ from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.score import Score
 from mmm_core.corpus.styles import STYLES
 from mmm_core.corpus.synthesis import rest_pose
-from mmm_core.evaluation.checks import PALM_M
 from mmm_core.features import recover
 from mmm_core.motion import FPS
+from mmm_core.recognition.checks import PALM_M
 from mmm_core.shown import Shown, look_at
 
 Array = NDArray[np.floating]

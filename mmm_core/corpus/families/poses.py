@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from mmm_core.corpus.families.gesture import ANY, BOTH, ONE, Family, Gesture
 from mmm_core.corpus.families.strokes import arms_to, keep, pair_to, reach_s, still, vary
-from mmm_core.corpus.reach import ELBOW_OUT, HIP, reach
+from mmm_core.corpus.reach import ELBOW_OUT, reach
 from mmm_core.corpus.score import SIDE, ArmPose, Score
+from mmm_core.recognition.places import HIP
 
 _UP = ArmPose((0.22, 0.9, 0.3), (0.08, 0.98, 0.12))
 _HALF_UP = ArmPose((0.2, -0.05, 0.97), (0.08, 0.3, 0.95))

@@ -4,18 +4,9 @@ from __future__ import annotations
 
 from mmm_core.corpus.families.gesture import ALL, BOTH, ONE, Family, Gesture
 from mmm_core.corpus.families.strokes import arms_to, circle, keep, loops, pair_to, repeat, still, strokes
-from mmm_core.corpus.reach import (
-    BELLY,
-    ELBOW_OUT,
-    HEART,
-    HIP,
-    LOWER_BACK,
-    OTHER_SHOULDER,
-    STERNUM,
-    beside,
-    reach,
-)
+from mmm_core.corpus.reach import ELBOW_OUT, beside, reach
 from mmm_core.corpus.score import SIDE, Score
+from mmm_core.recognition.places import BELLY, HEART, HIP, LOWER_BACK, OTHER_SHOULDER, STERNUM
 
 _ABOVE, _BELOW = reach((-0.12, -0.19, 0.22), (0.6, -0.7, 0.1)), reach((-0.14, -0.24, 0.15), (0.6, -0.8, 0.0))
 _X_HANDS = reach((-0.1, 0.02, 0.3), (0.5, -0.8, 0.0))

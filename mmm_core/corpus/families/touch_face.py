@@ -4,15 +4,9 @@ from __future__ import annotations
 
 from mmm_core.corpus.families.gesture import BOTH, ONE, Family, Gesture
 from mmm_core.corpus.families.strokes import arms_to, still, strokes
-from mmm_core.corpus.reach import (
-    CHIN,
-    ELBOW_DOWN,
-    EYES,
-    MOUTH,
-    beside,
-    reach,
-)
+from mmm_core.corpus.reach import ELBOW_DOWN, beside, reach
 from mmm_core.corpus.score import ArmPose, Score
+from mmm_core.recognition.places import CHIN, EYES, MOUTH
 
 _KISS_OUT = ArmPose((0.2, -0.35, 0.9), (0.12, 0.15, 1.0), 1.0)
 

@@ -4,17 +4,9 @@ from __future__ import annotations
 
 from mmm_core.corpus.families.gesture import BOTH, ONE, Family
 from mmm_core.corpus.families.strokes import still, strokes
-from mmm_core.corpus.reach import (
-    BROW,
-    CROWN,
-    EAR,
-    ELBOW_UP,
-    FOREHEAD,
-    NAPE,
-    beside,
-    reach,
-)
+from mmm_core.corpus.reach import ELBOW_UP, beside, reach
 from mmm_core.corpus.score import SIDE
+from mmm_core.recognition.places import BROW, CROWN, EAR, FOREHEAD, NAPE
 
 TOUCH_HEAD: dict[str, Family] = {
     "behind_head": Family(still(reach(NAPE, (0.9, 0.3, 0.1)), via=SIDE), holds=True),

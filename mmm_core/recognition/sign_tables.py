@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.corpus import reach
-from mmm_core.evaluation.checks import strokes
+from mmm_core.recognition import places
+from mmm_core.recognition.checks import strokes
 from mmm_core.shown import Shown
 
 Array = NDArray[np.floating]
@@ -117,7 +117,7 @@ HEAD_TRUNK: dict[str, Callable[[Shown, str], bool]] = {
     "shift": lambda s, d: not s.arms and 1.0 < _span(s.trunk_roll_deg) < 12 and max(_span(s.head_yaw_deg), _span(s.head_pitch_deg)) < 12,
 }  # fmt: skip
 
-_FACE = reach.MOUTH
+_FACE = places.MOUTH
 _TOUCHING = (0.0, 0.16)
 ONE_LEADS = (
     "superhero",
@@ -163,7 +163,7 @@ SIGNS: dict[str, Sign] = {
     "t_pose": Sign(((0.65, 0.9, -0.18, 0.25, -0.15, 0.3),), ((1, 0, 0), 0.9), held=True, bend_deg=(0, 30)),
     "stretch": Sign(((-0.1, 0.35, 0.42, 0.75, -0.2, 0.35),), ((0, 1, 0), 0.85), apart_m=(0, 0.5)),
     "victory": Sign(((0.4, 0.75, 0.28, 0.7, -0.2, 0.3),), ((0.6, 0.75, 0), 0.85), held=True, bend_deg=(0, 35)),
-    "superhero": Sign(((0.0, 0.45, 0.28, 0.65, 0.15, 0.6),), bend_deg=(0, 40), other=near(reach.HIP, 0.17)),
+    "superhero": Sign(((0.0, 0.45, 0.28, 0.65, 0.15, 0.6),), bend_deg=(0, 40), other=near(places.HIP, 0.17)),
     "flex": Sign(((0.25, 0.6, 0.1, 0.5, -0.15, 0.3),), ((0, 1, 0), 0.7), held=True, bend_deg=(60, 130)),
     "stop": Sign(((0.05, 0.45, -0.02, 0.4, 0.3, 0.62),), ((0, 0.6, 0.8), 0.85), held=True, bend_deg=(25, 90)),
     "oath": Sign(((0.25, 0.65, -0.05, 0.35, -0.1, 0.3),), ((0.1, 1, 0.1), 0.75), held=True, bend_deg=(85, 150)),
@@ -173,33 +173,33 @@ SIGNS: dict[str, Sign] = {
     # hands on the body
     "cross_arms": Sign(((-0.3, 0.05, -0.42, -0.08, 0.02, 0.32),), ((-1, 0.1, 0), 0.6), other=(-0.3, 0.08, -0.42, -0.08, 0.0, 0.34)),
     "cross_hands_x": Sign(((-0.3, 0.06, -0.15, 0.25, 0.12, 0.45),), apart_m=(0.0, 0.35), held=True),
-    "hands_on_hips": Sign((near(reach.HIP, 0.13),), bend_deg=(50, 130), held=True),
-    "behind_head": Sign((near(reach.NAPE, 0.13),), held=True),
-    "behind_back": Sign((near(reach.LOWER_BACK, 0.14),), held=True),
+    "hands_on_hips": Sign((near(places.HIP, 0.13),), bend_deg=(50, 130), held=True),
+    "behind_head": Sign((near(places.NAPE, 0.13),), held=True),
+    "behind_back": Sign((near(places.LOWER_BACK, 0.14),), held=True),
     "think": Sign((near((0.04, 0.12, 0.13), 0.1),), ((-0.2, 1, 0), 0.5), held=True, bend_deg=(105, 160)),
-    "salute": Sign((near(reach.BROW, 0.11),), ((-0.7, 0.6, 0), 0.6), held=True),
+    "salute": Sign((near(places.BROW, 0.11),), ((-0.7, 0.6, 0), 0.6), held=True),
     "shade_eyes": Sign((near((0.05, 0.33, 0.17), 0.09),), held=True),
     "facepalm": Sign((near((0.05, 0.27, 0.13), 0.09),), held=True),
-    "forehead": Sign((near(reach.FOREHEAD, 0.1),), held=True),
-    "wipe_brow": Sign((near(reach.FOREHEAD, 0.13),), None, (_OUT, 0.09)),
-    "heart": Sign((near(reach.HEART, 0.11),), held=True),
+    "forehead": Sign((near(places.FOREHEAD, 0.1),), held=True),
+    "wipe_brow": Sign((near(places.FOREHEAD, 0.13),), None, (_OUT, 0.09)),
+    "heart": Sign((near(places.HEART, 0.11),), held=True),
     "beat_chest": Sign(((-0.1, 0.18, -0.25, 0.08, 0.05, 0.27), (0.0, 0.4, -0.25, 0.1, 0.2, 0.5)), None, (_FORWARD, 0.08), bend_deg=(85, 160)),
-    "belly_rub": Sign((near(reach.BELLY, 0.16),), turn=(_OUT, _UP, -0.6)),
-    "hold_belly": Sign((near(reach.BELLY, 0.12),), held=True),
-    "listen": Sign((near(reach.EAR, 0.13),), held=True),
-    "phone": Sign((near(reach.EAR, 0.12),), held=True),
-    "cover_ears": Sign((near(reach.EAR, 0.11),), held=True),
-    "cover_eyes": Sign((near(reach.EYES, 0.1),), held=True),
+    "belly_rub": Sign((near(places.BELLY, 0.16),), turn=(_OUT, _UP, -0.6)),
+    "hold_belly": Sign((near(places.BELLY, 0.12),), held=True),
+    "listen": Sign((near(places.EAR, 0.13),), held=True),
+    "phone": Sign((near(places.EAR, 0.12),), held=True),
+    "cover_ears": Sign((near(places.EAR, 0.11),), held=True),
+    "cover_eyes": Sign((near(places.EYES, 0.1),), held=True),
     "kiss": Sign((near(_FACE, 0.1), (0.05, 0.5, -0.2, 0.3, 0.35, 0.65)), None, (_FORWARD, 0.2)),
     "hush": Sign((near((0.05, 0.16, 0.16), 0.09),), held=True),
-    "cover_mouth": Sign((near(reach.MOUTH, 0.1),), held=True),
-    "yawn": Sign((near(reach.MOUTH, 0.12),)),
+    "cover_mouth": Sign((near(places.MOUTH, 0.1),), held=True),
+    "yawn": Sign((near(places.MOUTH, 0.12),)),
     "drink": Sign((near((0.06, 0.18, 0.18), 0.1),), held=True),
-    "eat": Sign((near(reach.MOUTH, 0.12), (-0.1, 0.4, -0.42, -0.12, 0.2, 0.5)), None, (_UP, 0.22)),
+    "eat": Sign((near(places.MOUTH, 0.12), (-0.1, 0.4, -0.42, -0.12, 0.2, 0.5)), None, (_UP, 0.22)),
     "brush_teeth": Sign((near((0.05, 0.17, 0.18), 0.12),), None, (_OUT, 0.05)),
     "scratch_head": Sign((near((0.09, 0.36, -0.02), 0.13),)),
     "pat_head": Sign((near((0.05, 0.42, 0.02), 0.12),)),
-    "touch_shoulder": Sign((near(reach.OTHER_SHOULDER, 0.13),), held=True),
+    "touch_shoulder": Sign((near(places.OTHER_SHOULDER, 0.13),), held=True),
     "pray": Sign(((-0.06, 0.13, -0.2, 0.05, 0.12, 0.36),), apart_m=_TOUCHING, held=True, bend_deg=(80, 150)),
     "rub_hands": Sign(((-0.06, 0.13, -0.36, -0.05, 0.12, 0.42),), None, (_FORWARD, 0.04), apart_m=_TOUCHING),
     "clasp_hands": Sign(((-0.08, 0.13, -0.45, -0.18, 0.12, 0.36),), apart_m=_TOUCHING, held=True),
@@ -260,7 +260,7 @@ SIGNS: dict[str, Sign] = {
     "flap": Sign(((0.5, 0.9, -0.5, 0.5, -0.2, 0.35),), None, (_UP, 0.25), bend_deg=(0, 45), together=_UP),
     "chicken": Sign(((0.1, 0.5, -0.3, 0.25, 0.05, 0.4),), bend_deg=(100, 160)),
     "robot": Sign(((0.25, 0.65, 0.02, 0.45, -0.15, 0.3),), bend_deg=(60, 125), other=(0.25, 0.65, -0.6, -0.05, -0.15, 0.4), share=0.15),
-    "disco": Sign(((0.35, 0.8, 0.2, 0.7, -0.1, 0.45), (-0.4, 0.25, -0.6, -0.2, 0.0, 0.5)), None, (_UP, 0.5), other=near(reach.HIP, 0.17)),
+    "disco": Sign(((0.35, 0.8, 0.2, 0.7, -0.1, 0.45), (-0.4, 0.25, -0.6, -0.2, 0.0, 0.5)), None, (_UP, 0.5), other=near(places.HIP, 0.17)),
     "sway_arms": Sign(((-0.2, 0.75, 0.35, 0.75, -0.2, 0.4),), None, (_OUT, 0.18), bend_deg=(0, 35), opposed=_OUT),
     "arm_wave": Sign(((0.6, 0.9, -0.3, 0.35, -0.2, 0.35),), None, (_UP, 0.06)),
     "dance_pump": Sign(((0.05, 0.5, -0.25, 0.4, 0.15, 0.6),), None, (_UP, 0.1), bend_deg=(45, 130)),
@@ -274,7 +274,7 @@ SIGNS: dict[str, Sign] = {
 DIRECTED: dict[tuple[str, str], Sign] = {
     ("clap", "up"): Sign(((-0.08, 0.36, 0.25, 0.65, -0.05, 0.4),), None, (_OUT, 0.08), apart_m=(0, 0.16)),
     ("hug", "in"): Sign(((-0.35, 0.1, -0.35, 0.08, 0.1, 0.5), (0.4, 0.9, -0.25, 0.25, 0.1, 0.6)), None),
-    ("point", "self"): Sign((near(reach.HEART, 0.17),), held=True),
+    ("point", "self"): Sign((near(places.HEART, 0.17),), held=True),
     ("point", "back"): Sign(((0.15, 0.65, 0.0, 0.5, -0.4, 0.3),), ((0.1, 0.6, -0.8), 0.6), held=True),
     ("arm_circle", "back"): Sign(((0.5, 0.9, -0.55, 0.6, -0.5, 0.6),), bend_deg=(0, 40), turn=(_UP, _FORWARD, -0.6)),
     ("arm_circle", "forward"): SIGNS["arm_circle"],

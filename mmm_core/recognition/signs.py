@@ -13,9 +13,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.evaluation.checks import PALM_M, strokes
-from mmm_core.evaluation.sign_tables import DIRECTED, HEAD_TRUNK, ONE_LEADS, SIGNS, Box, Sign
 from mmm_core.motion import FPS
+from mmm_core.recognition.checks import PALM_M, strokes
+from mmm_core.recognition.sign_tables import DIRECTED, HEAD_TRUNK, ONE_LEADS, SIGNS, Box, Sign
 from mmm_core.shown import Shown
 
 Array = NDArray[np.floating]
