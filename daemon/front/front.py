@@ -12,7 +12,7 @@ import logging
 import sys
 import time
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
 import msgspec
 import zmq
@@ -29,6 +29,7 @@ from daemon.front.stop_texts import stops
 from daemon.front.stream_desk import TargetDesk
 from daemon.generator.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
+from daemon.inbox import Inbox, Message
 from daemon.keys import Doorkeeper, KeyFolder
 from daemon.log_feed import EVENT_LOGGER
 from daemon.playing.follower import Follower
@@ -40,7 +41,7 @@ from daemon.sockets import bind, publish_now, send_now
 from daemon.state.bus_view import BusView
 from daemon.state.ledger import Ledger, Route, split_route
 from daemon.state.machine import RobotState, StateMachine
-from daemon.wire.codec import WireError, decode_cmd, encode, error_event
+from daemon.wire.codec import WireError, decode_cmd, encode, error_event, only_frame
 from daemon.wire.event_base import Event
 from daemon.wire.events import Rejected
 from daemon.wire.status import HealthEvent, LogEvent, StateEvent
@@ -53,7 +54,11 @@ DRAIN_LIMIT = 10_000
 PARK_AGAIN_S = 1.0
 HEALTH_EVERY_S = 1.0
 STREAM_PAUSE_S = 0.001
-"""Between two targets that are read; of those that come meanwhile the newest counts."""
+"""Seconds between two looks at `stream`; of the targets that one sender sends meanwhile the newest counts."""
+STREAM_QUEUE = 64
+"""Targets that ZeroMQ keeps for each sender; what is more waits at the sender."""
+MOST_TARGETS = 256
+"""Targets that are received at one look, so that a flood of them does not keep the event loop."""
 SWITCH_S = 0.001
 """Longest that the event loop keeps the interpreter from the ctl thread."""
 SCHED_FIFO = 1
@@ -108,8 +113,10 @@ class Front:
         self._pub.setsockopt(zmq.XPUB_VERBOSE, 1)
         self._pub.setsockopt(zmq.XPUB_NODROP, 1)
         self._stream = context.socket(zmq.SUB)
-        self._stream.setsockopt(zmq.CONFLATE, 1)  # only the newest target is of use
+        # Not CONFLATE, although only the newest target is of use: libzmq aborts the process upon a message of two parts.
+        self._stream.setsockopt(zmq.RCVHWM, STREAM_QUEUE)
         self._stream.subscribe(b"")
+        self._cmd_inbox, self._pub_inbox, self._stream_inbox = map(Inbox, (self._cmd, self._pub, self._stream))
         self._targets = TargetDesk(robot, self.performer, self.ledger, self._publish_event)
         self._ctl_context = zmq.Context()  # its own I/O thread: a flood on the other sockets delays no stop
         if may_fifo(CONTROL_PRIORITY):  # libzmq aborts where it is not permitted
@@ -199,30 +206,36 @@ class Front:
 
     async def _serve_cmd(self) -> None:
         while True:
-            self._take_frames(await self._cmd.recv_multipart())
+            self._take_message(await self._cmd_inbox.receive())
             await asyncio.sleep(0)  # receiving what is there already never yields: a flood would hold up the robot
 
     async def _serve_stream(self) -> None:
+        """Take the newest target of each sender, so that one who floods does not displace those of another."""
         while True:
-            frame = await self._stream.recv()
-            if self._record is not None:
-                self._record("stream", frame)
-            self._targets.take(frame)
+            newest: dict[int, list[bytes]] = {}
+            message: Message | None = await self._stream_inbox.receive()
+            for _ in range(MOST_TARGETS):
+                newest[message.fd] = message.parts
+                message = await self._stream_inbox.waiting()
+                if message is None:
+                    break
+            for parts in newest.values():
+                if self._record is not None:
+                    self._record("stream", parts[0])
+                self._targets.take(parts)
             await asyncio.sleep(STREAM_PAUSE_S)
 
-    def _take_frames(self, frames: list[bytes]) -> None:
+    def _take_message(self, message: Message) -> None:
         t_received_ns = time.monotonic_ns()
-        route, parts = split_route(frames)
+        route, parts = split_route(message.parts)
         if not self._rates.allows(route.frames[0], t_received_ns * 1e-9) and not stops(parts):
             self._refuse_rate(route)
             return
         try:
-            if len(parts) != 1:
-                found = f"{len(parts)} frames"
-                raise WireError("frames", "read a request", found, "1 frame", "send the request as one frame")
-            request = decode_cmd(parts[0])
+            frame = only_frame(parts)
+            request = decode_cmd(frame)
             if self._record is not None:
-                self._record("cmd", parts[0])
+                self._record("cmd", frame)
             self._desk.take(request, route, t_received_ns)
         except WireError as error:
             event = error_event(error)
@@ -243,10 +256,10 @@ class Front:
     async def drain_cmd(self) -> None:
         """Take the requests that wait in the socket; the robot is followed between them."""
         for _ in range(DRAIN_LIMIT):
-            received = cast("asyncio.Future[list[bytes]]", self._cmd.recv_multipart(zmq.DONTWAIT))
-            if received.exception() is not None:
+            message = await self._cmd_inbox.waiting()
+            if message is None:
                 return
-            self._take_frames(received.result())
+            self._take_message(message)
             await asyncio.sleep(0)
 
     async def _tick_forever(self) -> None:
@@ -269,10 +282,10 @@ class Front:
     async def _serve_subscriptions(self) -> None:
         """Send the last value of each topic to whoever subscribes to it."""
         while True:
-            frames = await self._pub.recv_multipart()
-            if frames and frames[0][:1] == b"\x01":
+            asked = (await self._pub_inbox.receive()).parts[0]
+            if asked[:1] == b"\x01":
                 for topic, payload in list(self._last_values.items()):
-                    if topic.startswith(frames[0][1:]):
+                    if topic.startswith(asked[1:]):
                         self._overruns += not publish_now(self._pub, [topic, payload])
             await asyncio.sleep(0)
 

@@ -35,12 +35,12 @@ class TargetDesk:
         self._performer, self._ledger, self._publish = performer, ledger, publish
         self._inbox = StreamInbox(robot)
 
-    def take(self, frame: bytes) -> None:
-        """Read a frame; what is wrong with it moves nothing and does not count as a sign of life."""
+    def take(self, parts: list[bytes]) -> None:
+        """Read a message; what is wrong with it moves nothing and does not count as a sign of life."""
         lease = self._performer.lease
         lease_id, holder = (lease.id, lease.request.words) if lease is not None else ("", "")
         try:
-            q_rad = self._inbox.read(frame, lease_id, holder)
+            q_rad = self._inbox.read(parts, lease_id, holder)
         except WireError as error:
             self._tell(error)
             return

@@ -7,7 +7,7 @@ from collections import Counter
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.wire.codec import WireError, decode_target
+from daemon.wire.codec import WireError, decode_target, only_frame
 from daemon.wire.requests import Target
 from retarget.robot import RobotModel
 
@@ -31,11 +31,11 @@ class StreamInbox:
         self.bad: Counter[str] = Counter()
         self._told: dict[str, tuple[float, int]] = {}
 
-    def read(self, frame: bytes, lease_id: str, holder: str) -> Array:
+    def read(self, parts: list[bytes], lease_id: str, holder: str) -> Array:
         """(J,) radians, NaN for joints that are not named.
 
         Args:
-            frame: what came.
+            parts: of the message that came.
             lease_id: of the lease that is held, empty for none.
             holder: whose it is, in words.
 
@@ -43,7 +43,7 @@ class StreamInbox:
             WireError: it is no target of this lease.
         """
         try:
-            target = decode_target(frame)
+            target = decode_target(only_frame(parts))
             self._check_lease(target, lease_id, holder)
             return self._angles(target)
         except WireError as error:

@@ -98,6 +98,18 @@ def decode_target(frame: bytes) -> Target:
     return _or_refused(_read_target, frame)
 
 
+def only_frame(parts: list[bytes]) -> bytes:
+    """The one frame of a request.
+
+    Raises:
+        WireError: there are none or several.
+    """
+    if len(parts) != 1:
+        found, do = f"{len(parts)} frames", "send the request as one frame"
+        raise WireError("frames", "read a request", found, "1 frame", do)
+    return parts[0]
+
+
 def error_event(error: WireError) -> ErrorEvent:
     """The one event that answers a bad frame."""
     return ErrorEvent(

@@ -22,7 +22,7 @@ def target(**fields) -> bytes:
 
 
 def read(frame: bytes, inbox: StreamInbox | None = None) -> np.ndarray:
-    return (inbox or StreamInbox(ROBOT)).read(frame, "L", "stream of me")
+    return (inbox or StreamInbox(ROBOT)).read([frame], "L", "stream of me")
 
 
 def test_all_joints_in_order_or_some_by_name():
@@ -70,9 +70,9 @@ def test_what_is_wrong_has_a_name_and_is_counted(frame, code):
 def test_a_stranger_is_told_who_holds_the_lease_or_that_nobody_does():
     inbox = StreamInbox(ROBOT)
     with pytest.raises(WireError, match="stream of me holds lease 'L'"):
-        inbox.read(target(q_rad=[0.0] * N).replace(b'"L"', b'"X"'), "L", "stream of me")
+        inbox.read([target(q_rad=[0.0] * N).replace(b'"L"', b'"X"')], "L", "stream of me")
     with pytest.raises(WireError, match="nobody holds a lease"):
-        inbox.read(target(q_rad=[0.0] * N), "", "")
+        inbox.read([target(q_rad=[0.0] * N)], "", "")
 
 
 def test_a_flood_of_bad_messages_is_named_once_a_second_with_its_number():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -31,7 +32,16 @@ queued, are limited until it goes on."""
 
 
 class RunningDaemon:
-    """`mmmd run` on sockets in a folder of its own, with a generator peer whose answers are known unless `model`."""
+    """`mmmd run` on sockets in a folder of its own, with a generator peer whose answers are known unless `model`.
+
+    Args:
+        options: of `mmmd run`.
+        bus: where the servos are.
+        robot: which.
+        model: whether the daemon starts its own generator, with the shipped model.
+        answer: of the generator peer to a text.
+        tcp: sockets on free ports of this machine instead.
+    """
 
     def __init__(
         self,
@@ -40,17 +50,33 @@ class RunningDaemon:
         robot: str = "reference",
         model: bool = False,
         answer: Answer = generate,
+        tcp: bool = False,
     ) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="mmmd-test-")
         self.folder = Path(self._folder.name)
         self.endpoints = Endpoints(*(f"ipc://{self.folder}/{name}" for name in ("cmd", "ctl", "pub")))
+        if tcp:
+            cmd, ctl, pub, stream = (f"tcp://127.0.0.1:{port}" for port in free_ports(4))
+            self.endpoints = Endpoints(cmd, ctl, pub, stream=stream)
         self.peer = None if model else KinematicGenerator(f"ipc://{self.folder}/gen", answer)
         self.audit = self.folder / "audit.json"
         if bus == "sim://":
             bus = f"sim://?audit={self.audit}"
         generator = [] if model else ["--generator", f"ipc://{self.folder}/gen"]
         self.output = self.folder / "output"
-        command = [*MMMD, "run", "--robot", robot, "--bus", bus, *generator, *self.at, *options]
+        command = [
+            *MMMD,
+            "run",
+            "--robot",
+            robot,
+            "--bus",
+            bus,
+            *generator,
+            *self.at,
+            "--stream",
+            self.endpoints.stream,
+            *options,
+        ]
         with self.output.open("wb") as out:
             self.process = subprocess.Popen(command, stdout=out, stderr=out)
 
@@ -123,6 +149,13 @@ class RunningDaemon:
         if self.peer is not None:
             self.peer.close()
         self._folder.cleanup()
+
+
+def free_ports(n: int) -> list[int]:
+    """TCP ports that nobody listens at just now."""
+    with contextlib.ExitStack() as stack:
+        sockets = [stack.enter_context(socket.create_server(("127.0.0.1", 0))) for _ in range(n)]
+        return [s.getsockname()[1] for s in sockets]
 
 
 def mmmd(*arguments: str, timeout_s: float = 30.0, **environment: str) -> subprocess.CompletedProcess[str]:

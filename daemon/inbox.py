@@ -1,0 +1,107 @@
+"""Receives whole messages of few parts from an asyncio socket; what has more parts is discarded as it comes."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import NamedTuple, cast
+
+import zmq
+import zmq.asyncio
+
+MOST_PARTS = 8
+"""Parts of a message that are kept: an address, an empty delimiter, and more than any request of ours has."""
+DISCARDED_AT_ONCE = 256
+"""Parts that are discarded before the event loop has its turn."""
+
+
+class Message(NamedTuple):
+    """One message.
+
+    Attributes:
+        parts: its parts, at most `MOST_PARTS`; the first ones of a longer message.
+        fd: file descriptor of the connection it came through, -1 where ZeroMQ does not say.
+        peer: who is at the other end: the name of its key, else its address, else empty.
+        too_long: whether it had more parts.
+    """
+
+    parts: list[bytes]
+    fd: int
+    peer: str
+    too_long: bool
+
+
+class Inbox:
+    """The receiving side of one socket.
+
+    ZeroMQ hands over a message as a whole, however many parts it has; a list of a million parts would hold up the event
+    loop. Several tasks may receive from one `Inbox`: each gets messages of its own.
+    """
+
+    def __init__(self, socket: zmq.asyncio.Socket) -> None:
+        self._socket = socket
+        self._at_once: zmq.Socket[bytes] = zmq.Socket(
+            shadow=socket
+        )  # as the asyncio socket does with DONTWAIT, without a future
+        self._discarding = False
+
+    async def receive(self) -> Message:
+        """The next message."""
+        while True:
+            await self._discard()
+            frame = await cast("asyncio.Future[zmq.Frame]", self._socket.recv(copy=False))
+            if (message := self._message(frame)) is not None:
+                return message
+
+    async def waiting(self) -> Message | None:
+        """The next message that is there already, else None."""
+        while True:
+            await self._discard()
+            frame = self._next()
+            if frame is None:
+                return None
+            if (message := self._message(frame)) is not None:
+                return message
+
+    def _message(self, frame: zmq.Frame) -> Message | None:
+        """The message that begins with a frame; None for a frame in the middle of one that is discarded."""
+        if self._discarding:
+            self._discarding = frame.more
+            return None
+        parts = [frame]
+        while parts[-1].more and len(parts) < MOST_PARTS:
+            following = self._next()
+            assert following is not None, "the parts of a message come together"
+            parts.append(following)
+        self._discarding = parts[-1].more
+        return Message([part.bytes for part in parts], _fd(frame), _peer(frame), self._discarding)
+
+    async def _discard(self) -> None:
+        """Discard what is left of a message that is too long."""
+        while self._discarding:
+            for _ in range(DISCARDED_AT_ONCE):
+                frame = self._next()
+                self._discarding = frame is not None and frame.more
+                if not self._discarding:
+                    return
+            await asyncio.sleep(0)
+
+    def _next(self) -> zmq.Frame | None:
+        """The next frame that is there, else None."""
+        try:
+            return self._at_once.recv(zmq.DONTWAIT, copy=False)
+        except zmq.Again:
+            return None
+
+
+def _fd(frame: zmq.Frame) -> int:
+    return frame.get(zmq.SRCFD)
+
+
+def _peer(frame: zmq.Frame) -> str:
+    for name in ("User-Id", "Peer-Address"):
+        try:
+            if found := frame.get(name):
+                return str(found)
+        except zmq.ZMQError:
+            continue
+    return ""
