@@ -87,6 +87,7 @@ class HealthTracker:
         self.counters.timeouts += missing
         self.counters.alerts += alert & ~self._alerted
         self._alerted[valid] = alert[valid]
+        self.withheld |= self._woken_by_goal & alert  # a goal could give it its torque back
         self.state[valid] = np.where(alert[valid] | self.faulted[valid], Health.FAULTED, Health.OK)
         self.state[missing] = Health.MISSING
         self._well = not (self.state.any() or self._alerted.any() or self._missed.any() or self.faulted.any())

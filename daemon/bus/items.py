@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.bus import packet1
 from daemon.bus.asking import Asking
 from daemon.bus.events import BusEventKind
 from daemon.bus.group import GroupWrite, GroupWrite1
@@ -15,7 +16,7 @@ from daemon.bus.port import Port
 from daemon.bus.registers import POSITION_MODE, WATCHDOG_TRIPPED, Item
 from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
-from daemon.errors import CommandError
+from daemon.errors import CommandError, ServoFaultError
 from retarget.robot import ServoSpec
 
 _GAP_BYTES = 12
@@ -83,10 +84,26 @@ class Items(Asking):
             raise CommandError(f"servo {servo_id}: '{name}' = {value} does not fit {item.size} bytes") from None
         self._ask(self._of(row).write(servo_id, item.address, data), row, 0)
 
+    def write_unless_alarmed(self, servo_id: int, name: str, value: int) -> None:
+        """`write_item` of effort or torque: a servo of protocol 1.0 forgets its alarm with it, so it is asked for one before.
+
+        Raises:
+            ServoFaultError: it has an alarm, or refused.
+        """
+        row = self._row_of(servo_id)
+        item, dialect = self._item(row, name), self._of(row)
+        if dialect.version == 1.0:
+            answer = self._ask(dialect.read(servo_id, item.address, item.size), row, item.size)
+            if dialect.alert(answer.error):
+                found = f"{self.models[row].error_text(answer.error & packet1.ALERT_BITS)}; reboot the servo"
+                raise ServoFaultError(servo_id, f"no '{name}' while it has an alarm", found)
+        self.write_item(servo_id, name, value)
+
     def write_all(self, name: str, value: int) -> None:
         """Set one item of every servo, each confirmed; the first refusal is raised."""
+        write = self.write_unless_alarmed if name == "torque_enable" and value else self.write_item
         for servo_id in self.ids:
-            self.write_item(servo_id, name, value)
+            write(servo_id, name, value)
         if name == "torque_enable":
             self._expect_torque(on=bool(value))
 
@@ -117,7 +134,7 @@ class Items(Asking):
             self._send(b"".join(self._group_writes(name, values) for name in dict.fromkeys(items)))
             return
         for servo_id, name, value in zip(self.ids, items, values.tolist(), strict=True):
-            self.write_item(servo_id, name, value)
+            self.write_unless_alarmed(servo_id, name, value)
 
     def arm_watchdog(self, units: int) -> tuple[int, ...]:
         """Arm the bus watchdog (20 ms units) of every servo that has one; the ids of those without, or of no use.

@@ -53,6 +53,7 @@ class Judge:
         self._missing_cycles = self._missing_cycles + 1 if silent * 2 >= len(reading.valid) else 0
         if self._missing_cycles >= MISSING_CYCLES:
             return f"{silent} of {len(reading.valid)} servos are silent; check cable and power"
+        refuse_hardware_errors(self._bus, reading)
         withheld: list[int] = np.flatnonzero(self._bus.withheld).tolist()
         if withheld:
             names = ", ".join(self._name(row) for row in withheld[:3])
@@ -60,7 +61,6 @@ class Judge:
                 f"servo {names} silent: it may have lost power, and the next goal would switch its torque on wherever it"
                 " hangs, so it gets none; check cable and power, then reset and arm"
             )
-        refuse_hardware_errors(self._bus, reading)
         return self._tripped(reading) or self._lost_torque(reading)
 
     def withhold_tripped(self, reading: BusReading) -> None:
@@ -102,7 +102,7 @@ class Judge:
             return ""
         row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)
         if reading.valid[row] and self._bus.poll_item(self._bus.ids[row], "torque_enable") == 0:
-            return f"servo {self._name(row)} lost its torque; it may have rebooted"
+            return f"servo {self._name(row)} lost its torque; it may have tripped or rebooted"
         return ""
 
     def _name(self, row: int) -> str:

@@ -23,6 +23,7 @@ from daemon.driving.derating import Derating
 from daemon.driving.gate import Gate
 from daemon.driving.judging import MAY_HAVE_TRIPPED_S, Judge
 from daemon.driving.pace import Pace, SlowedSetpoints
+from daemon.driving.ramp import EFFORT_START, TorqueRamp
 from daemon.driving.shared import ESTOPS, BusLink, BusRequest, BusState, valid_requests
 from daemon.driving.slow_move import SlowMove
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
@@ -43,8 +44,6 @@ NO_WAY_LIMP_S = 10.0
 """Where no way to rest or park was found that keeps off the robot itself it holds in a fault, and goes limp after so long."""
 TORQUE_OFF_REPEATS = 5
 """Torque off is a packet that nobody answers: it is sent again, so that a spoilt one or a lost port costs nothing."""
-PWM_FULL, PWM_START, PWM_RAMP_S = 885, 250, 0.6
-"""Torque ramp after arming: goal PWM in 0.113 %, from a part of it to all (protocol 1.0: the same share of the torque limit)."""
 _COMES_TO = {
     BusRequest.STOP: BusState.STOPPING, BusRequest.TORQUE_OFF: BusState.STOPPING, BusRequest.PARK: BusState.PARKING,
 }  # fmt: skip
@@ -77,12 +76,11 @@ class Streamer:
         self._plan_id, self._frame, self._last = 0, 0, True
         self._underrun = False
         self._cycle, self._told_s, self._late_cycles = 0, clock.now_s(), 0
-        self._pwm: int | None = None
         self._front_lost_s: float | None = None
         self._torque_off_left = 0
         self._made_limp = self._limp_at_rest = False
         self._arming: Generator[None, None, Armed] | None = None
-        self._judge = Judge(robot, bus)
+        self._judge, self._ramp = Judge(robot, bus), TorqueRamp(bus, robot.bus.period_s)
         self._derating = Derating(robot.n_servos, robot.bus.period_s)
         self._setpoints, self._pace = SlowedSetpoints(link), Pace(robot.bus.period_s)
         self._asked: list[BusRequest] = []
@@ -129,7 +127,7 @@ class Streamer:
             if goal_rad is not None and self._goal_tick is not None:
                 self._goal_tick = np.rint(self._ticks.to_ticks(goal_rad)).astype(np.int32)
             self._told_s = self._clock.now_s()
-            reading = self._bus.exchange(self._goal_tick if self._torque else None)
+            reading = self._bus.exchange(None if self._ramp.holds_goals or not self._torque else self._goal_tick)
             if self._torque and self.state in (BusState.FAULT, BusState.ESTOP):
                 self._judge.withhold_tripped(reading)
             elif self._torque and (why := self._judge.fault(reading)):
@@ -173,7 +171,7 @@ class Streamer:
             if self.state is BusState.LIMP:
                 self._link.drop_queued()
                 self._link.set_text("")
-                self._arming = arm_in_steps(self.robot, self._bus, self._clock, PWM_START / PWM_FULL)
+                self._arming = arm_in_steps(self.robot, self._bus, self._clock, EFFORT_START)
                 self._enter(BusState.ARMING)
         else:
             self.stopping = True
@@ -201,10 +199,11 @@ class Streamer:
             self._fault(f"cannot arm: {error}")
 
     def _armed(self, armed: Armed) -> None:
-        self._arming, self._torque, self._pwm, self._made_limp = None, True, PWM_START, False
+        self._arming, self._torque, self._made_limp = None, True, False
         self._goal_tick, self._derating.limits = armed.goal_tick, armed.limits
         self._fed_s = self._clock.now_s()
         self._judge.armed()
+        self._ramp.begin()
         self._gate.reset(self._ticks.tick_to_rad(armed.goal_tick))
         self._forget_way()
 
@@ -220,7 +219,10 @@ class Streamer:
         self._frame_or_none()
         if not self._torque:
             return None
-        self._ramp_torque()
+        if self.state in _ARMED:
+            self._ramp.step()
+        if self._ramp.holds_goals and self.state is not BusState.STOPPING:
+            return self._gate.brake()  # where it was pinned
         if self.state in (BusState.ARMING, BusState.PARKING):
             return self._move_slowly()
         if self.state is BusState.STOPPING:
@@ -294,13 +296,6 @@ class Streamer:
     def _forget_way(self) -> None:
         self._slow.begin()
         self._limp_at_rest = False
-
-    def _ramp_torque(self) -> None:
-        if self._pwm is not None and self._cycle % 5 == 0:
-            self._pwm = min(PWM_FULL, self._pwm + round((PWM_FULL - PWM_START) * 5 * self._period_s / PWM_RAMP_S))
-            self._bus.set_effort(self._pwm / PWM_FULL)
-            if self._pwm == PWM_FULL:
-                self._pwm = None
 
     # Judgement.
 
