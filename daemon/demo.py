@@ -230,7 +230,7 @@ def draw(shown: list[Shown], log: Log, robot: RobotModel, out: Path) -> tuple[li
 def _performances(shown: list[Shown], log: Log, robot: RobotModel) -> list[Performance]:
     """The part of each text's motion that was played, the person beside the robot's goals."""
     from daemon.pictures.performance import of_motion
-    from mmm_core.engine import Engine
+    from mmm_core.generate.engine import Engine
 
     engine = Engine.load(threads=1)
     found: list[Performance] = []

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from daemon.errors import CommandError
-from mmm_core.motion import Motion
-from mmm_core.recordings.files import read_motion
-from mmm_core.skeleton import quat_wxyz
+from mmm_core.imports.recordings.files import read_motion
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import quat_wxyz
 from retarget.errors import MotionError, RetargetError
 from retarget.paths import JointPath
 from retarget.pipeline import Retargeter

@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import N_FEATURES, Motion
-from mmm_core.skeleton import BONE_LENGTHS_M, REST_DIRECTIONS, quat_wxyz, standing_joints
+from mmm_core.motion.motion import N_FEATURES, Motion
+from mmm_core.motion.skeleton import BONE_LENGTHS_M, REST_DIRECTIONS, quat_wxyz, standing_joints
 from retarget.kinematics import Kinematics
 from retarget.pipeline import Retargeter
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
 from retarget.collision import SelfContact
 from retarget.human import SIDES
 from retarget.kinematics import Kinematics

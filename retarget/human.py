@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import Motion
-from mmm_core.skeleton import JOINT_NAMES, PARENTS, across_shoulders, matrix_from_quat, standing_joints
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import JOINT_NAMES, PARENTS, across_shoulders, matrix_from_quat, standing_joints
 from retarget.errors import MotionError
 from retarget.kinematics import cross
 

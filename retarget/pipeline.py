@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
 from retarget.arm_chain import ArmChain
 from retarget.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.collision import Allowed, SelfContact

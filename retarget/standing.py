@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import FPS, N_FEATURES, Motion
-from mmm_core.skeleton import BONE_LENGTHS_M, standing_joints
+from mmm_core.motion.motion import FPS, N_FEATURES, Motion
+from mmm_core.motion.skeleton import BONE_LENGTHS_M, standing_joints
 from retarget.pipeline import Retargeter
 
 Array = NDArray[np.float64]

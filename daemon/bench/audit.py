@@ -25,7 +25,7 @@ from retarget.robot import RobotModel, list_robots, load_robot
 from sim.faults import PACKET_KINDS, Fault
 
 if TYPE_CHECKING:
-    from mmm_core.motion import Motion
+    from mmm_core.motion.motion import Motion
 
 _OUTSIDE_SHARE = 0.1
 _DISTURBED_SHARE = 0.1
@@ -64,7 +64,7 @@ def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -
     Raises:
         CommandError: a robot that was asked for has servos without a control table here.
     """
-    from mmm_core.engine import Engine
+    from mmm_core.generate.engine import Engine
 
     stderr = Console(stderr=True)
     asked = {name: load_robot(name) for name in robots or list_robots()}

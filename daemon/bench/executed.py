@@ -19,8 +19,8 @@ from daemon.bench.audit_rig import AuditRig
 from daemon.bench.motions import cut, glued
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.evaluation.probes import judge
-from mmm_core.motion import Motion
-from mmm_core.shown import look_at
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.posture_features import look_at
 from retarget.as_human import as_motion
 from retarget.paths import JointPath
 from retarget.pipeline import Retargeter

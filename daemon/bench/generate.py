@@ -25,9 +25,9 @@ def bench_generate(seed: int = 0) -> dict[str, Any]:
     """
     import torch
 
-    from mmm_core.engine import Engine
-    from mmm_core.text import TextStates
-    from mmm_core.transformer import OFFICIAL, MotionTransformer
+    from mmm_core.generate.engine import Engine
+    from mmm_core.model.text import TextStates
+    from mmm_core.model.transformer import OFFICIAL, MotionTransformer
 
     torch.set_num_threads(1)
     engine = Engine.load(threads=1)

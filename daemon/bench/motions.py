@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import FPS, N_FEATURES, Motion
-from mmm_core.skeleton import facing_yaw_rad, forward_kinematics, local_rotations, quat_wxyz
+from mmm_core.motion.motion import FPS, N_FEATURES, Motion
+from mmm_core.motion.skeleton import facing_yaw_rad, forward_kinematics, local_rotations, quat_wxyz
 
 _BESIDE_CHECKOUT = Path(__file__).parents[3] / "shared" / "data"
 _SHORTEST_FRAMES = 40

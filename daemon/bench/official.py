@@ -21,18 +21,18 @@ def bench_official(seed: int = 0, lengths: Sequence[int] = LENGTHS) -> dict[str,
     """`fp32_s`, `bf16_s`, `int8_s` (where the processor can), `reference_forward_ms`, `tokens_identical`, and ratios to one.
 
     Random weights: speed does not depend on them. `tokens_identical` compares, at each of `lengths`, the packed fp32 model
-    and the fast decoder with the plain model and the released sampler written plainly (`mmm_core.released_sampler`): a whole
+    and the fast decoder with the plain model and the released sampler written plainly (`mmm_core.model.released_sampler`): a whole
     text, and an edit of its middle, by turns with arg-max and at temperature 1; `lengths_that_differ` names the others. The
     steps are the released ten; the released code needs ten plain passes and more.
     """
     import torch
 
-    from mmm_core.eight_bit import can_eight_bit, to_eight_bit
-    from mmm_core.packed import pack
-    from mmm_core.sampling import OFFICIAL_SAMPLING, empty_row, fill
-    from mmm_core.text import TextStates
-    from mmm_core.transformer import OFFICIAL, MotionTransformer
-    from mmm_core.vqvae import VqVae, VqVaeConfig
+    from mmm_core.inference.int8_linear import can_eight_bit, to_eight_bit
+    from mmm_core.inference.onednn_linear import pack
+    from mmm_core.model.sampling import OFFICIAL_SAMPLING, empty_row, fill
+    from mmm_core.model.text import TextStates
+    from mmm_core.model.transformer import OFFICIAL, MotionTransformer
+    from mmm_core.model.vqvae import VqVae, VqVaeConfig
 
     torch.set_num_threads(1)
     torch.manual_seed(seed)  # pyright: ignore[reportUnknownMemberType]
@@ -85,9 +85,9 @@ def _same_ids(fast: Any, plain: Any, text: Any, n_tokens: int, seed: int) -> boo
     """Whether `fast` fills a row of `n_tokens`, and then its middle again, with the ids of the plain sampler."""
     import torch
 
-    from mmm_core.decode import seeded_noise
-    from mmm_core.released_sampler import sample_plainly
-    from mmm_core.sampling import OFFICIAL_SAMPLING, empty_row, fill
+    from mmm_core.model.decode import seeded_noise
+    from mmm_core.model.released_sampler import sample_plainly
+    from mmm_core.model.sampling import OFFICIAL_SAMPLING, empty_row, fill
 
     temperature = float(n_tokens % 2)
     row = empty_row(plain, n_tokens)

@@ -18,7 +18,7 @@ from daemon.bench.motions import bench_motions, cut, glued
 from daemon.bench.report import context
 from daemon.bench.retarget_peers import mink_figures
 from daemon.bench.whole_clip import best_of_clip
-from mmm_core.motion import FPS, Motion
+from mmm_core.motion.motion import FPS, Motion
 from retarget.human import read_human
 from retarget.limits import limit_step
 from retarget.paths import JointPath, JointState

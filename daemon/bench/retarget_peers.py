@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
 from retarget.human import SIDES, HumanPose, read_human
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from daemon.bench.motions import bench_motions
 from daemon.bench.retarget import causal_path, with_common_limits, wrist_speed_m_s
-from mmm_core.motion import FPS, Motion
+from mmm_core.motion.motion import FPS, Motion
 from retarget.collision import Allowed, SelfContact
 from retarget.human import read_human
 from retarget.pipeline import Retargeter

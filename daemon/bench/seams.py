@@ -17,14 +17,14 @@ from daemon.playing.planner import FADE_FRAMES
 from daemon.playing.posture import Posture, distance_deg, faded_in, joined, posture_of, standing
 from daemon.playing.sources import PREFIX_FRAMES
 from mmm_core.corpus.cmu import read_clips
-from mmm_core.features import recover
-from mmm_core.motion import FPS, Motion
+from mmm_core.motion.features import recover
+from mmm_core.motion.motion import FPS, Motion
 from retarget.paths import JointState
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
 
 if TYPE_CHECKING:
-    from mmm_core.engine import Engine
+    from mmm_core.generate.engine import Engine
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def bench_seams(n: int = 60, seed: int = 0, robot: str = "reference", data: str 
     """`peak_jerk_ratio` (the worst kind of seam), `velocity_step_share`, `loop_closure_deg`, and each kind's own."""
     from pathlib import Path
 
-    from mmm_core.engine import Engine
+    from mmm_core.generate.engine import Engine
 
     rng = np.random.default_rng(seed)
     engine = Engine.load(threads=1)
@@ -105,8 +105,8 @@ def _prompt_seams(
 
 def _prefix_seams(engine: Engine, motions: list[Motion], rng: np.random.Generator) -> list[float]:
     """Peak jerk where the second text of each pair goes on from the first one's motion, as `say` with a prefix does."""
-    from mmm_core.keyframes import features_of
-    from mmm_core.prefix import go_on
+    from mmm_core.generate.continuation import go_on
+    from mmm_core.generate.keyframes import features_of
 
     jerk: list[float] = []
     for a, b in zip(motions[::2], motions[1::2], strict=False):
@@ -174,7 +174,7 @@ def _real_jerk(folder: Any, rng: np.random.Generator) -> float:
 
 
 def _posture_of_joints(recovered: Any) -> Posture:
-    from mmm_core.motion import N_FEATURES, Motion
+    from mmm_core.motion.motion import N_FEATURES, Motion
 
     T = len(recovered.joints_m)
     motion = Motion(

@@ -15,8 +15,8 @@ THREADS = 2
 def bench_story(n_scenes: int = N_SCENES, seed: int = 0) -> dict[str, Any]:
     """`total_s`, `motion_s` and `first_frame_ms` of the shipped model on two threads, text encoding included."""
     from daemon.bench.texts import draw_texts
-    from mmm_core.engine import Engine
-    from mmm_core.story import Scene, tell
+    from mmm_core.generate.engine import Engine
+    from mmm_core.generate.story import Scene, tell
 
     engine = Engine.load(threads=THREADS)
     scenes = [Scene(text, LONGEST_S) for text in draw_texts(n_scenes, seed)]

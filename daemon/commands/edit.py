@@ -71,11 +71,11 @@ def edit(
                 "edit: --before-s, --after-s, --then, --bvh and --model need --out, the .npz file to write"
             )
         return play(_request(motion, text, part, start_s, end_s, seed, how), at, wait=wait, json=json)
-    from mmm_core.bvh import save_bvh
-    from mmm_core.editing import Edit, extend, in_between
-    from mmm_core.editing import edit as edit_motion
-    from mmm_core.engine import Engine
-    from mmm_core.motion import load_npz
+    from mmm_core.generate.editing import Edit, extend, in_between
+    from mmm_core.generate.editing import edit as edit_motion
+    from mmm_core.generate.engine import Engine
+    from mmm_core.motion.bvh import save_bvh
+    from mmm_core.motion.motion import load_npz
 
     stretch = start_s is not None or end_s is not None or bool(part)
     longer = bool(before_s or after_s or then)

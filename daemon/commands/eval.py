@@ -15,7 +15,7 @@ import tyro
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:
-    from mmm_core.motion import Motion
+    from mmm_core.motion.motion import Motion
 
 EvalName = Literal["probes", "fidelity", "scope", "tokenizer", "real", "paper"]
 MIRRORED_SEEDS = 2
@@ -148,10 +148,10 @@ def _probes(
     from daemon.bench.executed import Executed
     from daemon.bench.report import context
     from mmm_core.corpus.heldout import PROBES
-    from mmm_core.engine import Engine
     from mmm_core.evaluation.mirrored import mirrored_figures
     from mmm_core.evaluation.probes import evaluate
-    from mmm_core.evaluation.showable import showable
+    from mmm_core.evaluation.robot_capability import showable
+    from mmm_core.generate.engine import Engine
     from retarget.as_human import shown_on_a_person
     from retarget.pipeline import Retargeter
     from retarget.robot import load_robot
@@ -214,8 +214,8 @@ def _fidelity(
 
     from daemon.bench.report import context
     from mmm_core.corpus.families import FAMILIES
-    from mmm_core.engine import Engine
     from mmm_core.evaluation.fidelity import fidelity
+    from mmm_core.generate.engine import Engine
 
     if unknown := [name for name in families if name not in FAMILIES]:
         raise CommandError(f"eval fidelity: no family {unknown[0]!r}; allowed: {', '.join(FAMILIES)}")
@@ -243,8 +243,8 @@ def _scope(model: Path | None) -> dict[str, Any]:
     """Held-out prompts, one at a time, as a command comes in."""
     from daemon.bench.report import context
     from mmm_core.corpus.scope_prompts import SCOPE_TEST
-    from mmm_core.engine import Engine
     from mmm_core.evaluation.scope import scope_figures
+    from mmm_core.generate.engine import Engine
 
     engine = Engine.load(model)
     if engine.model.scope is None:
@@ -257,15 +257,15 @@ def _scope(model: Path | None) -> dict[str, Any]:
 def _tokenizer(model: Path | None) -> dict[str, Any]:
     """The corpus's motions, encoded and decoded."""
     from daemon.bench.report import context
-    from mmm_core.checkpoint import MODEL_FILE, file_hash, load_model
-    from mmm_core.evaluation.kept import tokenizer_figures
-    from mmm_core.tokenizer import Tokenizer
+    from mmm_core.evaluation.reconstruction import tokenizer_figures
+    from mmm_core.inference.checkpoint import MODEL_FILE, file_hash, load_model
+    from mmm_core.model.tokenizer import Tokenizer
 
     path = model or MODEL_FILE
     tokenizer = load_model(path).tokenizer
     if not isinstance(tokenizer, Tokenizer):
         raise CommandError("eval tokenizer: the model's tokenizer is one of the paper's; take one by body parts")
-    method = "motions of the gesture corpus, encoded and decoded (mmm_core/evaluation/kept.py)"
+    method = "motions of the gesture corpus, encoded and decoded (mmm_core/evaluation/reconstruction.py)"
     return {**tokenizer_figures(tokenizer), "checkpoint": file_hash(path), **context(0, method)}
 
 
@@ -306,8 +306,8 @@ def _measured(
     asked: _Asked,
 ) -> dict[str, Any]:
     from daemon.bench.report import context
-    from mmm_core.engine import Engine
     from mmm_core.evaluation import paper, report
+    from mmm_core.generate.engine import Engine
 
     if evaluator[1] is not None and None in evaluator:
         raise CommandError("eval: --glove goes with --evaluator finest.tar, --evaluator-mean and --evaluator-std")

@@ -15,7 +15,7 @@ from daemon.errors import CommandError
 from daemon.wire.requests import LONGEST_S, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S
 
 if TYPE_CHECKING:
-    from mmm_core.engine import Engine, Generation
+    from mmm_core.generate.engine import Engine, Generation
 
 _FILE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,119}")
 
@@ -109,7 +109,7 @@ def generate(
         sys.stderr.write(f"mmmd: {prompt.text!r} is out of scope: {made.reason}{nearest}\n")
         return 1
     if bvh is not None:
-        from mmm_core.bvh import save_bvh
+        from mmm_core.motion.bvh import save_bvh
 
         save_bvh(made.motion, bvh)
     _say(_summary(prompt, made, out), json)
@@ -137,9 +137,9 @@ def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candida
 
 def _tell(path: Path, out: Path, bvh: Path | None, seed: int, engine: Engine) -> int:
     """Write a story as one motion; the parts that were rejected are said."""
-    from mmm_core.bvh import save_bvh
-    from mmm_core.motion import joined
-    from mmm_core.story import Scene, check_scenes, tell
+    from mmm_core.generate.story import Scene, check_scenes, tell
+    from mmm_core.motion.bvh import save_bvh
+    from mmm_core.motion.motion import joined
 
     scenes = [Scene(line.text, line.seconds) for _, line in _lines(path, "--story", SceneLine)]
     check_scenes(scenes)
@@ -156,7 +156,7 @@ def _tell(path: Path, out: Path, bvh: Path | None, seed: int, engine: Engine) ->
 
 
 def _load(model: Path | None, threads: int, precision: Precision | None) -> Engine:
-    from mmm_core.engine import Engine
+    from mmm_core.generate.engine import Engine
 
     return Engine.load(model, threads=threads, precision=precision)
 

@@ -87,7 +87,7 @@ def _list(folder: Path | None, json: bool) -> int:
 def _add(name: str, file: Path | None, folder: Path | None, *, replace: bool) -> int:
     from daemon.gestures.library import GestureLibrary
     from daemon.playing.posture import posture_of
-    from mmm_core.motion import load_npz
+    from mmm_core.motion.motion import load_npz
 
     if file is None:
         raise CommandError(f"gesture add {name}: no file; allowed: an .npz of `mmmd generate`")

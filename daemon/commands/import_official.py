@@ -47,15 +47,15 @@ def import_official(
         json: print one JSON object.
     """
     from daemon.errors import CommandError
-    from mmm_core.checkpoint import Model, file_hash, save_model
-    from mmm_core.clip import read_clip
-    from mmm_core.official import (
+    from mmm_core.imports.clip_weights import read_clip
+    from mmm_core.imports.official import (
         dilation_growth_of,
         read_pickle,
         read_statistics,
         tokenizer_from_official,
         transformer_from_official,
     )
+    from mmm_core.inference.checkpoint import Model, file_hash, save_model
 
     if (clip is None) != (vocabulary is None):
         raise CommandError("import-official: --clip and --vocabulary go together; give both, or neither")

@@ -158,7 +158,7 @@ def _turns(ratio: float, linkage: bool) -> str:
 
 def _show(console: Any, model: RobotModel, out: Path, text: str, seed: int) -> int:
     from daemon.pictures.robot_picture import Pose, robot_picture
-    from mmm_core.engine import Engine
+    from mmm_core.generate.engine import Engine
     from retarget.pipeline import Retargeter
     from retarget.standing import standing_pose
 

@@ -37,7 +37,7 @@ from daemon.generator.messages import (
     generated_from,
 )
 from daemon.keys import KeyFolder, connect_curve
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
 
 log = logging.getLogger(__name__)
 

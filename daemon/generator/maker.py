@@ -19,15 +19,15 @@ from daemon.generator.messages import (
     motion_from,
 )
 from daemon.wire.requests import LONGEST_S
-from mmm_core.editing import Edit, edit, part_names
-from mmm_core.engine import Engine
 from mmm_core.errors import GenerationError
-from mmm_core.generation import Generation, no_motion
-from mmm_core.keyframes import Keyframe, between, features_of
-from mmm_core.motion import Motion
-from mmm_core.prefix import go_on
-from mmm_core.scope import ScopeVerdict
-from mmm_core.story import Scene, Told, tell_on
+from mmm_core.generate.continuation import go_on
+from mmm_core.generate.editing import Edit, edit, part_names
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.keyframes import Keyframe, between, features_of
+from mmm_core.generate.result import Generation, no_motion
+from mmm_core.generate.story import Scene, Told, tell_on
+from mmm_core.language.scope import ScopeVerdict
+from mmm_core.motion.motion import Motion
 
 HALVES = {"upper": ("left_arm", "right_arm"), "lower": ("rest",)}
 """The halves of the body in a model without an upper and a lower codebook: both arms, and all the rest of it."""

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.errors import DaemonError
-from mmm_core.motion import N_FEATURES, N_JOINTS, Motion
+from mmm_core.motion.motion import N_FEATURES, N_JOINTS, Motion
 
 GENERATION_VERSION = 4
 MIN_FRAMES = 2

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from daemon.errors import ClipError
 from daemon.playing.posture import Posture, standing
 from daemon.playing.score import Marks
-from mmm_core.motion import FPS
-from mmm_core.skeleton import BONE_LENGTHS_M, normalise
+from mmm_core.motion.motion import FPS
+from mmm_core.motion.skeleton import BONE_LENGTHS_M, normalise
 
 FORMAT = 1
 _KEPT = np.array([3, 6, 9, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21])

@@ -13,7 +13,7 @@ from daemon.gestures.clips import Clip, load_clips, save_clips
 from daemon.playing.posture import Posture, at_tempo
 from daemon.playing.score import marks_of
 from daemon.wire.status import GestureInfo
-from mmm_core.motion import FPS
+from mmm_core.motion.motion import FPS
 
 log = logging.getLogger(__name__)
 

@@ -19,7 +19,7 @@ from daemon.gestures.library import SHIPPED
 from daemon.playing.posture import Posture, distance_deg, mirrored, posture_of, standing
 from daemon.playing.score import marks_of
 from mmm_core.corpus.heldout import Probe
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
 
@@ -132,7 +132,7 @@ def mirror_name(name: str, names: set[str]) -> str:
 
 def main() -> int:
     """Make all that can be made; the others are named."""
-    from mmm_core.engine import Engine
+    from mmm_core.generate.engine import Engine
 
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     engine = Engine.load(threads=1)
@@ -181,7 +181,7 @@ def main() -> int:
 def _cost(motion: Motion, wanted: Wanted, retargeter: Retargeter) -> float | None:
     """How far a motion is from the best; None when it fails a check."""
     from mmm_core.evaluation.probes import judge
-    from mmm_core.shown import look_at
+    from mmm_core.motion.posture_features import look_at
 
     if motion.status != "accepted" or len(motion.joints_m) < 16:
         return None

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from daemon.errors import DaemonError
 from daemon.recording.mcap_log import Log, read_log
-from mmm_core.motion import Motion, load_npz
-from mmm_core.skeleton import matrix_from_quat
+from mmm_core.motion.motion import Motion, load_npz
+from mmm_core.motion.skeleton import matrix_from_quat
 from retarget.pipeline import Retargeter
 from retarget.robot import RobotModel, load_robot
 from retarget.ticks import JointServoMap

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.skeleton import JOINT_NAMES, PARENTS
+from mmm_core.motion.skeleton import JOINT_NAMES, PARENTS
 
 Array = NDArray[np.float64]
 Colour = Literal["left", "right", "", "nose"]

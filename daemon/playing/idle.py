@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.playing.posture import Posture, mixed, smooth_step, standing
-from mmm_core.motion import FPS
-from mmm_core.skeleton import JOINT_NAMES, normalise
+from mmm_core.motion.motion import FPS
+from mmm_core.motion.skeleton import JOINT_NAMES, normalise
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from dataclasses import dataclass, replace
 
 from daemon.playing.posture import Posture
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
 
 KEPT = 32
 

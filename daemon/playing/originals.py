@@ -17,7 +17,7 @@ from daemon.state.replies import NotPlayableError
 from daemon.wire.events import Failed, Rejected
 from daemon.wire.requests import Edit, KeyPoseOf, Replay
 from mmm_core.errors import MotionFileError
-from mmm_core.motion import Motion, load_npz
+from mmm_core.motion.motion import Motion, load_npz
 
 LARGEST_FILE_BYTES = 64 * 2**20
 

@@ -23,7 +23,7 @@ from daemon.playing.posture import Posture, joined, posture_of, standing
 from daemon.playing.stream_plan import StreamPlan
 from daemon.playing.stream_score import StreamScore
 from daemon.state.bus_view import BusView
-from mmm_core.motion import FPS
+from mmm_core.motion.motion import FPS
 from retarget.as_human import joints_of_path
 from retarget.human import read_human
 from retarget.paths import JointState

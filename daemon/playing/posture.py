@@ -12,8 +12,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import FPS, N_FEATURES, Motion
-from mmm_core.skeleton import (
+from mmm_core.motion.motion import FPS, N_FEATURES, Motion
+from mmm_core.motion.skeleton import (
     BONE_LENGTHS_M,
     JOINT_NAMES,
     MIRROR,

@@ -30,8 +30,8 @@ from daemon.state.ledger import Entry
 from daemon.state.replies import NotPlayableError, generator_failed, too_late
 from daemon.wire.events import Accepted, Rejected
 from daemon.wire.requests import Command, Edit, Gesture, Inbetween, Lease, Play, Replay, Say, Story, tag_of
-from mmm_core.mirroring import mirror_words
-from mmm_core.motion import Motion
+from mmm_core.language.mirroring import mirror_words
+from mmm_core.motion.motion import Motion
 from retarget.guarded_steps import GuardedSteps
 from retarget.robot import RobotModel
 

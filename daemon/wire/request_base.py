@@ -15,7 +15,7 @@ MAX_SEED = 2**31 - 1
 SHORTEST_S, LONGEST_S = 0.2, 9.8
 """Lengths of motion that may be asked for: one token and a whole window of the model, which a test holds together."""
 SHORTEST_PREFIX_S, LONGEST_PREFIX_S = 0.2, 1.6
-"""One token, and the longest prefix that the model is asked for (`mmm_core.prefix`)."""
+"""One token, and the longest prefix that the model is asked for (`mmm_core.generate.continuation`)."""
 LEAST_TEMPO, MOST_TEMPO = 0.5, 2.0
 LEAST_AMPLITUDE, MOST_AMPLITUDE = 0.3, 1.2
 MOST_REPEATS = 1000

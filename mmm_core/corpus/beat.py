@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from mmm_core.motion import FPS
-from mmm_core.tokens import FRAMES_PER_TOKEN
+from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.motion.motion import FPS
 
 BEAT_S = FRAMES_PER_TOKEN / FPS
 """Seconds: one token."""

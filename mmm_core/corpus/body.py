@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.corpus.score import Score
-from mmm_core.features import features_from_joints
-from mmm_core.motion import FPS
-from mmm_core.skeleton import (
+from mmm_core.motion.features import features_from_joints
+from mmm_core.motion.motion import FPS
+from mmm_core.motion.skeleton import (
     BONE_LENGTHS_M,
     REST_DIRECTIONS,
     Array,

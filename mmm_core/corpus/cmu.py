@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.errors import TrainingDataError
-from mmm_core.features import features_from_joints, mirror
-from mmm_core.mirroring import mirror_words
-from mmm_core.recordings.common_body import on_common_body
-from mmm_core.recordings.files import read_motion
-from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.imports.recordings.common_body import on_common_body
+from mmm_core.imports.recordings.files import read_motion
+from mmm_core.language.mirroring import mirror_words
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.motion.features import features_from_joints, mirror
 
 LONGEST_FRAMES = MAX_TOKENS * FRAMES_PER_TOKEN
 SHORTEST_FRAMES = 24

@@ -6,7 +6,10 @@ import functools
 
 import numpy as np
 
-from mmm_core.corpus.bending import (
+from mmm_core.corpus.families import FAMILIES, MIMED, Gesture, Words
+from mmm_core.corpus.styles import STYLES
+from mmm_core.corpus.withheld import is_withheld
+from mmm_core.language.inflection import (
     NUMBERS,
     expand,
     gerund,
@@ -18,9 +21,6 @@ from mmm_core.corpus.bending import (
     third_person,
     times,
 )
-from mmm_core.corpus.families import FAMILIES, MIMED, Gesture, Words
-from mmm_core.corpus.styles import STYLES
-from mmm_core.corpus.withheld import is_withheld
 
 OTHER = {"left": "right", "right": "left"}
 _WITH_HAND = (" with your {S} hand", " with your {S} arm", " with the {S} hand", " using your {S} hand", " with the {S} arm", " using the {S} arm")  # fmt: skip

@@ -1,7 +1,7 @@
 """Texts that the model cannot follow: legs, objects, acrobatics, talk, other languages, gibberish.
 
 `OUTSIDE` stands beside the known commands in the scope index: a refused text is said to be like the nearest of these.
-`outside_texts` builds thousands more from patterns, for the classifier behind the scope score (`mmm_core.scope`).
+`outside_texts` builds thousands more from patterns, for the classifier behind the scope score (`mmm_core.language.scope`).
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from importlib.resources import files
 
 import numpy as np
 
-from mmm_core.corpus.bending import plain, third_person
 from mmm_core.corpus.grammar import PERSONS, REQUESTS
+from mmm_core.language.inflection import plain, third_person
 
 Text = Callable[[np.random.Generator], str]
 

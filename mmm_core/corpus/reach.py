@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from mmm_core.corpus.score import ArmPose, Vector
-from mmm_core.skeleton import BONE_LENGTHS_M, REST_DIRECTIONS
+from mmm_core.motion.skeleton import BONE_LENGTHS_M, REST_DIRECTIONS
 
 PALM_M = 0.08
 SHOULDER_OUT_M = float(BONE_LENGTHS_M[13] * REST_DIRECTIONS[13][0] + BONE_LENGTHS_M[16])

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.corpus.beat import Calm
-from mmm_core.skeleton import Array, normalise
+from mmm_core.motion.skeleton import Array, normalise
 
 Vector = tuple[float, float, float]
 FRONT: Vector = (0.45, 0.0, 0.9)

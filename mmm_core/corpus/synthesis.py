@@ -14,9 +14,9 @@ from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.grammar import caption, usual_counts
 from mmm_core.corpus.score import REST_ARM, ArmPose, Score
 from mmm_core.corpus.styles import STYLES
-from mmm_core.motion import FPS
-from mmm_core.skeleton import Array
-from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.motion.motion import FPS
+from mmm_core.motion.skeleton import Array
 
 N_CAPTIONS = 6
 LONGEST_S = MAX_TOKENS * FRAMES_PER_TOKEN / FPS

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import re
 
-from mmm_core.corpus.bending import NUMBERS
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.corpus.scope_prompts import SCOPE_DEVELOPMENT, SCOPE_TEST
+from mmm_core.language.inflection import NUMBERS
 
 _EMPTY_WORDS = frozenset((
     "a", "an", "the", "your", "you", "me", "i", "for", "with", "using", "please", "now", "just", "and", "next", "ok", "hey", "um",

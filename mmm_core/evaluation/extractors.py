@@ -17,9 +17,9 @@ import torch
 from torch import Tensor, nn
 from torch.nn.utils.rnn import pack_padded_sequence
 
-from mmm_core.checkpoint import fill_module, load_tensors, save_tensors
 from mmm_core.errors import CheckpointError
-from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.inference.checkpoint import fill_module, load_tensors, save_tensors
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 
 N_CONTACTS = 4
 """Foot contacts, the last features, are not shown to the evaluator."""

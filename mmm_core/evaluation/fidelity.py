@@ -19,12 +19,12 @@ import numpy as np
 from mmm_core.corpus.body import Body
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise_spec
-from mmm_core.count_words import count_asked
 from mmm_core.evaluation.likeness import Checks, judge
 from mmm_core.evaluation.reference import reference
-from mmm_core.features import recover
-from mmm_core.motion import Motion
-from mmm_core.shown import Shown, look_at
+from mmm_core.language.count_words import count_asked
+from mmm_core.motion.features import recover
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.posture_features import Shown, look_at
 
 HELD_OUT_SEED = 23_000_001
 CORPUS_DRAWS = 10

@@ -17,11 +17,11 @@ import numpy as np
 from PIL import Image, ImageDraw  # matplotlib brings it
 
 from mmm_core.corpus.cmu import read_clips
-from mmm_core.engine import Engine
 from mmm_core.errors import TrainingDataError
-from mmm_core.features import recover
-from mmm_core.motion import FPS
-from mmm_core.skeleton import JOINT_NAMES, PARENTS, Array, matrix_from_quat, rotation_y
+from mmm_core.generate.engine import Engine
+from mmm_core.motion.features import recover
+from mmm_core.motion.motion import FPS
+from mmm_core.motion.skeleton import JOINT_NAMES, PARENTS, Array, matrix_from_quat, rotation_y
 
 SEED = 1
 PANEL = (96, 126)

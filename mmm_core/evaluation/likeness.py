@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.evaluation.reference import Reference, channels, palms
+from mmm_core.motion.posture_features import Shown
+from mmm_core.motion.repetitions import peaks_beyond
 from mmm_core.recognition.signs import shows
-from mmm_core.shown import Shown
-from mmm_core.strokes import peaks_beyond
 
 Array = NDArray[np.floating]
 Checks = dict[str, bool]

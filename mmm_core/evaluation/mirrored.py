@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from mmm_core.mirroring import mirror_words
-from mmm_core.motion import Motion
-from mmm_core.skeleton import MIRROR, PARENTS, Array, matrix_from_quat
+from mmm_core.language.mirroring import mirror_words
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import MIRROR, PARENTS, Array, matrix_from_quat
 
 UPPER = (3, 6, 9, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21)
 """Joints at the ends of the bones of trunk, neck and arms (HumanML3D's order)."""

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.corpus.synthesis import synthesise
-from mmm_core.features import recover
-from mmm_core.motion import FPS
+from mmm_core.motion.features import recover
+from mmm_core.motion.motion import FPS
 
 Array = NDArray[np.floating]
 MEASURES = (

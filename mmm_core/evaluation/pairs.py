@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.corpus.cmu import read_clips
-from mmm_core.datasets import Caption, Split, open_folder
-from mmm_core.engine import Engine
 from mmm_core.errors import EvaluationError, TrainingDataError
-from mmm_core.features import features_from_joints, joints_from_positions
-from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.generate.engine import Engine
+from mmm_core.imports.datasets import Caption, Split, open_folder
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.motion.features import features_from_joints, joints_from_positions
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,6 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from mmm_core.editing import part_names
-from mmm_core.engine import Engine
 from mmm_core.evaluation.metrics import Interval
 from mmm_core.evaluation.pairs import Pair
 from mmm_core.evaluation.protocol import (
@@ -35,7 +33,9 @@ from mmm_core.evaluation.protocol import (
     text_states,
 )
 from mmm_core.evaluation.reader import Motions, Reader
-from mmm_core.sampling import fill
+from mmm_core.generate.editing import part_names
+from mmm_core.generate.engine import Engine
+from mmm_core.model.sampling import fill
 
 Table = dict[str, dict[str, Interval | float | int]]
 """Lines by name, each with its columns."""

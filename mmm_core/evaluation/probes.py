@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from mmm_core.corpus.heldout import PROBES, Probe
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.posture_features import Shown, look_at, part
 from mmm_core.recognition import checks
 from mmm_core.recognition.signs import shows
-from mmm_core.shown import Shown, look_at, part
 
 SLOW_CYCLE_S, FAST_CYCLE_S = 0.72, 0.64
 """Longer from stroke to stroke is slow, shorter is fast; 0.6 to 0.7 s are usual."""
@@ -68,7 +68,7 @@ def evaluate(
 ) -> dict[str, Any]:
     """Shares of expectations met over all probes and seeds, refused ones counted as not met, and the worst texts.
 
-    With `showable` (`showable.py`) the same for those expectations alone that a robot can meet, as "of_showable".
+    With `showable` (`robot_capability.py`) the same for those expectations alone that a robot can meet, as "of_showable".
     """
     met: dict[str, list[bool]] = defaultdict(list)
     could: dict[str, list[bool]] = defaultdict(list)

@@ -15,14 +15,14 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from mmm_core.engine import Engine
 from mmm_core.evaluation import metrics
 from mmm_core.evaluation.metrics import Interval
 from mmm_core.evaluation.pairs import Pair
 from mmm_core.evaluation.reader import Motions, Reader
-from mmm_core.sampling import empty_row, fill
-from mmm_core.text import TextStates
-from mmm_core.tokens import FRAMES_PER_TOKEN
+from mmm_core.generate.engine import Engine
+from mmm_core.model.sampling import empty_row, fill
+from mmm_core.model.text import TextStates
+from mmm_core.model.tokens import FRAMES_PER_TOKEN
 
 GENERATE_BATCH = 16
 N_MODALITY_TEXTS, N_MODALITY = 100, 30

@@ -8,12 +8,12 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from mmm_core.engine import Engine
 from mmm_core.errors import EvaluationError
 from mmm_core.evaluation.extractors import Evaluator
 from mmm_core.evaluation.pairs import Pair, n_features, to_our_rest_pose
 from mmm_core.evaluation.words import WordVectors
-from mmm_core.text import MiniLm
+from mmm_core.generate.engine import Engine
+from mmm_core.model.text import MiniLm
 
 READ_BATCH = 64
 Motions = list[NDArray[np.float32]]

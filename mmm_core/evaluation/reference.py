@@ -14,10 +14,10 @@ from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.score import Score
 from mmm_core.corpus.styles import STYLES
 from mmm_core.corpus.synthesis import rest_pose
-from mmm_core.features import recover
-from mmm_core.motion import FPS
+from mmm_core.motion.features import recover
+from mmm_core.motion.motion import FPS
+from mmm_core.motion.posture_features import Shown, look_at
 from mmm_core.recognition.checks import PALM_M
-from mmm_core.shown import Shown, look_at
 
 Array = NDArray[np.floating]
 END_S = 0.3

@@ -9,9 +9,6 @@ from typing import Any
 import numpy as np
 import torch
 
-from mmm_core.checkpoint import EVALUATOR_FILE, file_hash, load_text_encoder
-from mmm_core.datasets import Split
-from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, EvaluationError
 from mmm_core.evaluation import paper
 from mmm_core.evaluation.extractors import load_evaluator, load_published
@@ -20,6 +17,9 @@ from mmm_core.evaluation.pairs import Pair, pairs_for
 from mmm_core.evaluation.protocol import Progress
 from mmm_core.evaluation.reader import Reader
 from mmm_core.evaluation.words import read_vectors
+from mmm_core.generate.engine import Engine
+from mmm_core.imports.datasets import Split
+from mmm_core.inference.checkpoint import EVALUATOR_FILE, file_hash, load_text_encoder
 
 TABLES = {1: "comparison", 3: "speed", 4: "editing in time", 5: "editing the upper body", 6: "ablations"}
 """Numbers and subjects; KIT-ML's comparison is number 2."""

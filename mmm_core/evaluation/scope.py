@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.engine import Engine
-from mmm_core.scope import ScopeVerdict
-from mmm_core.skeleton import Array
+from mmm_core.generate.engine import Engine
+from mmm_core.language.scope import ScopeVerdict
+from mmm_core.motion.skeleton import Array
 
 SHOWN = 12
 """Texts that are named where the score fails."""

@@ -1,4 +1,4 @@
-"""Kinematic checks of what a motion shows (`mmm_core.shown`), without looking at the text.
+"""Kinematic checks of what a motion shows (`mmm_core.motion.posture_features`), without looking at the text.
 
 Each check answers one question about a motion of the corpus's kinds. That they are right on motions that are right, and
 wrong on mirrored, absent and other ones, is tested.
@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import FPS
-from mmm_core.shown import Shown, angle_deg
-from mmm_core.strokes import peaks_beyond
+from mmm_core.motion.motion import FPS
+from mmm_core.motion.posture_features import Shown, angle_deg
+from mmm_core.motion.repetitions import peaks_beyond
 
 Array = NDArray[np.floating]
 

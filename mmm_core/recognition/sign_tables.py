@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mmm_core.motion.posture_features import Shown
 from mmm_core.recognition import places
 from mmm_core.recognition.checks import strokes
-from mmm_core.shown import Shown
 
 Array = NDArray[np.floating]
 Vector = tuple[float, float, float]

@@ -13,10 +13,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion import FPS
+from mmm_core.motion.motion import FPS
+from mmm_core.motion.posture_features import Shown
 from mmm_core.recognition.checks import PALM_M, strokes
 from mmm_core.recognition.sign_tables import DIRECTED, HEAD_TRUNK, ONE_LEADS, SIGNS, Box, Sign
-from mmm_core.shown import Shown
 
 Array = NDArray[np.floating]
 LEAST_FRAMES = 3

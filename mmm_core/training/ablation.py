@@ -17,16 +17,16 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from mmm_core.checkpoint import Model, load_text_encoder, save_model
 from mmm_core.corpus.cmu import read_clips
-from mmm_core.engine import Engine
 from mmm_core.errors import TrainingDataError
 from mmm_core.evaluation import paper, report
-from mmm_core.evaluation.kept import tokenizer_figures
 from mmm_core.evaluation.probes import evaluate
-from mmm_core.features import recover
-from mmm_core.tokenizer import Tokenizer
-from mmm_core.tokens import FRAMES_PER_TOKEN
+from mmm_core.evaluation.reconstruction import tokenizer_figures
+from mmm_core.generate.engine import Engine
+from mmm_core.inference.checkpoint import Model, load_text_encoder, save_model
+from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.motion.features import recover
 from mmm_core.training.batches import Clip, encode_clips
 from mmm_core.training.recipe import Recipe, TextRecipe
 from mmm_core.training.run import Run, written_whole

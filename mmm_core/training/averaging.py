@@ -12,8 +12,8 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from mmm_core.checkpoint import Model, file_hash, load_model, save_model
 from mmm_core.errors import CheckpointError
+from mmm_core.inference.checkpoint import Model, file_hash, load_model, save_model
 
 LEARNT = ("transformer", "length")
 """What is averaged; tokenizer, text tower and scope are the first model's."""

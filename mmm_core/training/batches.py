@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from rich.progress import track
 from torch import Tensor
 
-from mmm_core.text import TextEncoder, TextStates
-from mmm_core.tokenizer import Tokenizer
-from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.model.text import TextEncoder, TextStates
+from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.model.vqvae import VqVae
 from mmm_core.training.run import written_whole
-from mmm_core.vqvae import VqVae
 
 ENCODE_BATCH = 64
 

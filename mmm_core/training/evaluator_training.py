@@ -16,7 +16,7 @@ from torch import Tensor
 from mmm_core import distributed
 from mmm_core.errors import TrainingDataError
 from mmm_core.evaluation.extractors import OURS, Evaluator, EvaluatorConfig
-from mmm_core.tokenizer import feature_std
+from mmm_core.model.tokenizer import feature_std
 from mmm_core.training.batches import CaptionStates, Clip
 from mmm_core.training.run import Run, Schedule, train
 

@@ -21,13 +21,13 @@ from mmm_core.corpus.beat import BEAT_S
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.synthesis import synthesise
 from mmm_core.errors import TrainingDataError
-from mmm_core.features import mirror
-from mmm_core.mirroring import canonical
-from mmm_core.text import TextEncoder
-from mmm_core.tokenizer import Tokenizer
+from mmm_core.language.mirroring import canonical
+from mmm_core.model.text import TextEncoder
+from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.vqvae import VqVae
+from mmm_core.motion.features import mirror
 from mmm_core.training.batches import CaptionStates, Clip, TokenCorpus, encode_clips
 from mmm_core.training.run import written_whole
-from mmm_core.vqvae import VqVae
 
 log = logging.getLogger(__name__)
 WEIGHTS_FILE = "families.json"

@@ -10,11 +10,11 @@ from typing import Any, Literal, get_type_hints
 import msgspec
 
 from mmm_core.errors import TrainingDataError
-from mmm_core.tokenizer import TokenizerConfig
+from mmm_core.model.tokenizer import TokenizerConfig
+from mmm_core.model.transformer import TransformerConfig
+from mmm_core.model.vqvae import VqVaeConfig
 from mmm_core.training.run import Schedule
 from mmm_core.training.transformer_training import TOKENS_PER_BATCH, Corruption
-from mmm_core.transformer import TransformerConfig
-from mmm_core.vqvae import VqVaeConfig
 
 RECIPES = Path(__file__).parent / "recipes"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.skeleton import JOINT_NAMES, PARENTS
+from mmm_core.motion.skeleton import JOINT_NAMES, PARENTS
 
 INSTANTS = 8
 _COLOURS = {"left": "#c0392b", "right": "#2471a3"}

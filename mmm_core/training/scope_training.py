@@ -17,8 +17,8 @@ from mmm_core.corpus.grammar import caption, known_commands
 from mmm_core.corpus.outside import OUTSIDE, outside_texts
 from mmm_core.corpus.synthesis import draw_spec
 from mmm_core.corpus.withheld import is_withheld
-from mmm_core.scope import ScopeClassifier, ScopeIndex, clauses_of
-from mmm_core.text import TextEncoder
+from mmm_core.language.scope import ScopeClassifier, ScopeIndex, clauses_of
+from mmm_core.model.text import TextEncoder
 from mmm_core.training.recipe import ScopeRecipe
 
 log = logging.getLogger(__name__)

@@ -20,20 +20,23 @@ import torch
 from torch import Tensor, nn
 
 from mmm_core import distributed
-from mmm_core.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder, save_model
-from mmm_core.clip import ClipText, read_clip
 from mmm_core.corpus.stream import make_corpus
-from mmm_core.datasets import MotionFolder, open_folder
 from mmm_core.errors import CheckpointError, TrainingDataError
 from mmm_core.evaluation.extractors import OURS, Evaluator, save_evaluator
-from mmm_core.evaluation.kept import tokenizer_figures
-from mmm_core.features import joints_from_positions, recover
-from mmm_core.kit import joints_from_kit
-from mmm_core.length import LengthPredictor
-from mmm_core.motion import FPS, N_FEATURES
-from mmm_core.sampling import SamplingSettings, empty_row, fill
-from mmm_core.text import MiniLm, MiniLmConfig, TextEncoder, TextStates
-from mmm_core.tokenizer import Tokenizer
+from mmm_core.evaluation.reconstruction import tokenizer_figures
+from mmm_core.imports.clip_weights import read_clip
+from mmm_core.imports.datasets import MotionFolder, open_folder
+from mmm_core.imports.kit import joints_from_kit
+from mmm_core.inference.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder, save_model
+from mmm_core.model.clip import ClipText
+from mmm_core.model.length import LengthPredictor
+from mmm_core.model.sampling import SamplingSettings, empty_row, fill
+from mmm_core.model.text import MiniLm, MiniLmConfig, TextEncoder, TextStates
+from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.transformer import MotionTransformer
+from mmm_core.model.vqvae import VqVae
+from mmm_core.motion.features import joints_from_positions, recover
+from mmm_core.motion.motion import FPS, N_FEATURES
 from mmm_core.training.batches import (
     CaptionStates,
     Clip,
@@ -50,8 +53,6 @@ from mmm_core.training.samples import draw_rows
 from mmm_core.training.scope_training import build_scope
 from mmm_core.training.tokenizer_training import train_tokenizer, tune_decoder
 from mmm_core.training.transformer_training import train_length, train_transformer
-from mmm_core.transformer import MotionTransformer
-from mmm_core.vqvae import VqVae
 
 log = logging.getLogger(__name__)
 SAMPLE_TEXTS = ("wave with your right hand", "raise your left arm", "clap your hands", "bow")

@@ -18,11 +18,11 @@ from torch import Tensor
 
 from mmm_core import distributed
 from mmm_core.errors import TrainingDataError
-from mmm_core.features import joints_of
-from mmm_core.tokenizer import Tokenizer, TokenizerConfig, feature_std, rotation_channels
+from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig, feature_std, rotation_channels
+from mmm_core.model.vqvae import HEIGHT_CHANNELS, ROOT_HEIGHT, VqVae, VqVaeConfig
+from mmm_core.motion.features import joints_of
 from mmm_core.training.batches import Clip
 from mmm_core.training.run import Run, Schedule, train
-from mmm_core.vqvae import HEIGHT_CHANNELS, ROOT_HEIGHT, VqVae, VqVaeConfig
 
 WINDOW_FRAMES = 40
 BATCH = 128

@@ -15,14 +15,14 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mmm_core import distributed
-from mmm_core.length import LengthPredictor
-from mmm_core.text import TextStates
-from mmm_core.tokenizer import Tokenizer
+from mmm_core.model.length import LengthPredictor
+from mmm_core.model.text import TextStates
+from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.transformer import MotionTransformer, TransformerConfig
+from mmm_core.model.vqvae import VqVae
 from mmm_core.training.batches import TokenCorpus, length_buckets
 from mmm_core.training.fresh import FreshClips
 from mmm_core.training.run import Run, Schedule, train
-from mmm_core.transformer import MotionTransformer, TransformerConfig
-from mmm_core.vqvae import VqVae
 
 TOKENS_PER_BATCH = 1100
 """Rows per batch follow from the length, so that every step costs about the same."""

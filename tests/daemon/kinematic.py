@@ -23,8 +23,8 @@ from daemon.generator.messages import (
     motion_from,
 )
 from daemon.generator.process import serve
-from mmm_core.motion import Motion
-from mmm_core.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
 
 LET_GO = threading.Event()
 """A motion whose draft was played may come."""

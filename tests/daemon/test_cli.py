@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from daemon.cli import COMMANDS, _load, _run, main
-from mmm_core.checkpoint import MODEL_FILE
+from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.end_to_end.harness import RunningDaemon, mmmd
 
 pytestmark = pytest.mark.realtime

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from daemon.cli import main
-from mmm_core.motion import load_npz
+from mmm_core.motion.motion import load_npz
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ import pytest
 
 from daemon.bench.executed import Executed, tracking
 from mmm_core.corpus.heldout import PROBES
-from mmm_core.evaluation.kept import performed
-from mmm_core.evaluation.showable import as_motion
+from mmm_core.evaluation.reconstruction import performed
+from mmm_core.evaluation.robot_capability import as_motion
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
 from sim.faults import Fault

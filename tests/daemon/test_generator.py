@@ -21,9 +21,9 @@ from daemon.generator import messages as generation
 from daemon.generator.generation import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.generator.process import MOST_BEGUN, answers
-from mmm_core.checkpoint import MODEL_FILE
-from mmm_core.engine import Engine
-from mmm_core.prefix import go_on
+from mmm_core.generate.continuation import go_on
+from mmm_core.generate.engine import Engine
+from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.daemon.kinematic import KinematicGenerator, KinematicMaker, raised_arm
 
 pytestmark = pytest.mark.realtime

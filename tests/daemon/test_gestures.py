@@ -12,7 +12,7 @@ from daemon.gestures.make import WANTED, mirror_name
 from daemon.playing.posture import distance_deg, posture_of, standing
 from daemon.playing.score import marks_of
 from mmm_core.evaluation.probes import judge
-from mmm_core.shown import look_at
+from mmm_core.motion.posture_features import look_at
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
 from tests.daemon.kinematic import raised_arm

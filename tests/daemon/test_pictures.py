@@ -18,8 +18,8 @@ from daemon.pictures.joints import joint_plot, spans
 from daemon.pictures.performance import Performance, cut, of_motion, of_run
 from daemon.pictures.scene import VIEWS, Scene
 from daemon.recording.mcap_log import Log, LoggedCycle
-from mmm_core.motion import Motion
-from mmm_core.skeleton import JOINT_NAMES
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import JOINT_NAMES
 from retarget.robot import RobotModel, load_robot
 from retarget.ticks import JointServoMap
 

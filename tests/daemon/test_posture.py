@@ -18,7 +18,7 @@ from daemon.playing.posture import (
     scaled,
     standing,
 )
-from mmm_core.skeleton import matrix_from_quat, rotation_y
+from mmm_core.motion.skeleton import matrix_from_quat, rotation_y
 from retarget.human import read_human
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot

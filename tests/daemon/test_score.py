@@ -10,7 +10,7 @@ from daemon.playing.idle import STYLES, IdleScore, looking
 from daemon.playing.posture import Posture, distance_deg, joined, posture_of, standing
 from daemon.playing.score import ClipScore, Marks, marks_of
 from daemon.wire.requests import Say
-from mmm_core.motion import FPS
+from mmm_core.motion.motion import FPS
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
 from tests.daemon.kinematic import DOWN, motion_of, raised_arm
@@ -21,7 +21,7 @@ ARM = posture_of(raised_arm("right", 1.5, 1.3, "right"))
 
 def waving(strokes: int = 4, stroke_s: float = 0.8) -> Posture:
     """The right arm goes up, its forearm swings `strokes` times, and it comes down."""
-    from mmm_core.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
+    from mmm_core.motion.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
 
     assert KINEMATIC_FPS == FPS
     n_up, n = round(0.8 * FPS), round(strokes * stroke_s * FPS)

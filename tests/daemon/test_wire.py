@@ -13,9 +13,9 @@ from daemon.playing.sources import PREFIX_FRAMES
 from daemon.wire import codec as wire
 from daemon.wire import events, requests
 from daemon.wire.schemas import schemas, text_of
-from mmm_core.motion import FPS
-from mmm_core.prefix import LONGEST_PREFIX_TOKENS
-from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.generate.continuation import LONGEST_PREFIX_TOKENS
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.motion.motion import FPS
 
 DOCS = Path(__file__).parents[2] / "docs" / "wire"
 

@@ -12,7 +12,7 @@ import pytest
 from daemon.client import CancelledByError, RefusedError
 from daemon.wire import events as ev
 from daemon.wire.requests import KeyPoseOf, Say, SceneOf, Story
-from mmm_core.checkpoint import MODEL_FILE
+from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.end_to_end.harness import RunningDaemon, mmmd, plays_well
 from tests.end_to_end.test_start_and_end import child_pid
 

@@ -14,7 +14,7 @@ import pytest
 
 from daemon.wire.events import Accepted, Cancelled, Done, Progress
 from daemon.wire.requests import Say
-from mmm_core.checkpoint import MODEL_FILE
+from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 from tests.end_to_end.test_start_and_end import child_pid
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mmm_core.features import features_from_joints, features_from_rotations
-from mmm_core.kit import KIT, kit_facing_yaw_rad
-from mmm_core.skeleton import forward_kinematics
+from mmm_core.imports.kit import KIT, kit_facing_yaw_rad
+from mmm_core.motion.features import features_from_joints, features_from_rotations
+from mmm_core.motion.skeleton import forward_kinematics
 
 
 def standing(T: int) -> np.ndarray:

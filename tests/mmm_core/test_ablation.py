@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from daemon.cli import main
-from mmm_core.checkpoint import load_model
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.errors import TrainingDataError
 from mmm_core.evaluation import kept, probes
+from mmm_core.inference.checkpoint import load_model
 from mmm_core.training import ablation
 from mmm_core.training.ablation import BASE, TOKENIZERS, TRANSFORMERS, run_ablations, table
 from mmm_core.training.recipe import read_recipe

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import torch
 
-from mmm_core.checkpoint import load_model, load_text_encoder
 from mmm_core.corpus.beat import BEAT_S
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.synthesis import ClipSpec, synthesise, synthesise_spec
 from mmm_core.errors import TrainingDataError
 from mmm_core.evaluation.reference import reference
+from mmm_core.inference.checkpoint import load_model, load_text_encoder
 from mmm_core.training.fresh import WEIGHTS_FILE, FreshClips, FreshRecipe, read_weights, usual_weights, weights_of
 from mmm_core.training.run import Run, Schedule
 from mmm_core.training.transformer_training import Batches, train_transformer

@@ -7,9 +7,9 @@ import re
 import numpy as np
 import pytest
 
-from mmm_core.bvh import bvh_text, save_bvh
-from mmm_core.motion import Motion
-from mmm_core.skeleton import (
+from mmm_core.motion.bvh import bvh_text, save_bvh
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import (
     JOINT_NAMES,
     PARENTS,
     facing_yaw_rad,

@@ -12,7 +12,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmm_core.bvh import save_bvh
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.families.gesture import Words
@@ -22,9 +21,10 @@ from mmm_core.corpus.score import REST_ARM, Score
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.corpus.synthesis import ClipSpec, draw_spec, synthesise, synthesise_spec
 from mmm_core.errors import MotionFileError, TrainingDataError
-from mmm_core.features import recover
-from mmm_core.mirroring import mirror_words
-from mmm_core.motion import Motion
+from mmm_core.language.mirroring import mirror_words
+from mmm_core.motion.bvh import save_bvh
+from mmm_core.motion.features import recover
+from mmm_core.motion.motion import Motion
 
 SHARED = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared"))
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmm_core.datasets import open_folder, read_captions
 from mmm_core.errors import TrainingDataError
-from mmm_core.features import joints_from_positions, joints_of
-from mmm_core.kit import joints_from_kit, kit_facing_yaw_rad
+from mmm_core.imports.datasets import open_folder, read_captions
+from mmm_core.imports.kit import joints_from_kit, kit_facing_yaw_rad
+from mmm_core.motion.features import joints_from_positions, joints_of
 from tests.mmm_core.folders import features, kit_walk, make_folder
 
 

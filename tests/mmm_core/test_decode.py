@@ -8,8 +8,8 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmm_core.decode import DecodeSettings, decode, decode_plain
-from mmm_core.schedule import masked_counts
+from mmm_core.model.decode import DecodeSettings, decode, decode_plain
+from mmm_core.model.schedule import masked_counts
 
 K = 11
 MASK = K + 2

@@ -10,14 +10,14 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mmm_core.editing import Edit, edit, extend, in_between, part_names
-from mmm_core.engine import Engine
 from mmm_core.errors import GenerationError
-from mmm_core.features import Root, joints_from_positions, recover, root_after
-from mmm_core.sampling import empty_row, fill
-from mmm_core.story import Scene, check_scenes, tell
-from mmm_core.streaming import StreamingDecoder
-from mmm_core.vqvae import VqVae, VqVaeConfig
+from mmm_core.generate.editing import Edit, edit, extend, in_between, part_names
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.story import Scene, check_scenes, tell
+from mmm_core.model.sampling import empty_row, fill
+from mmm_core.model.streaming_decoder import StreamingDecoder
+from mmm_core.model.vqvae import VqVae, VqVaeConfig
+from mmm_core.motion.features import Root, joints_from_positions, recover, root_after
 
 
 @pytest.fixture(scope="module")

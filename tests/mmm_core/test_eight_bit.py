@@ -10,14 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from torch import nn
 
-import mmm_core.eight_bit as eight_bit
-from mmm_core.checkpoint import MODEL_FILE
-from mmm_core.eight_bit import EightBitLinear, can_eight_bit, to_eight_bit
-from mmm_core.engine import Engine
+import mmm_core.inference.int8_linear as eight_bit
 from mmm_core.errors import GenerationError
-from mmm_core.sampling import SamplingSettings, empty_row, fill
-from mmm_core.text import TextStates
-from mmm_core.transformer import MotionTransformer, TransformerConfig
+from mmm_core.generate.engine import Engine
+from mmm_core.inference.checkpoint import MODEL_FILE
+from mmm_core.inference.int8_linear import EightBitLinear, can_eight_bit, to_eight_bit
+from mmm_core.model.sampling import SamplingSettings, empty_row, fill
+from mmm_core.model.text import TextStates
+from mmm_core.model.transformer import MotionTransformer, TransformerConfig
 
 needs_vnni = pytest.mark.skipif(not can_eight_bit(), reason="this processor does not multiply eight-bit integers")
 needs_model = pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout")

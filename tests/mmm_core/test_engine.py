@@ -12,11 +12,11 @@ import pytest
 import torch
 from safetensors.torch import load_file, save_file
 
-from mmm_core.checkpoint import MODEL_FILE, load_model
-from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, GenerationError
-from mmm_core.shown import look_at
-from mmm_core.tokens import unpack_ids
+from mmm_core.generate.engine import Engine
+from mmm_core.inference.checkpoint import MODEL_FILE, load_model
+from mmm_core.model.tokens import unpack_ids
+from mmm_core.motion.posture_features import look_at
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +96,7 @@ def test_the_understood_side_is_the_side_of_the_words(engine: Engine) -> None:
 
 def test_to_load_and_ask_it_brings_in_no_compiler() -> None:
     """A generator that is started again is waited for; PyTorch's compiler alone takes longer to import than the model to load."""
-    asks = "import sys; from mmm_core.engine import Engine; Engine.load().generate('nod'); print(*sys.modules)"
+    asks = "import sys; from mmm_core.generate.engine import Engine; Engine.load().generate('nod'); print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", asks], capture_output=True, text=True, check=True)
     modules = set(done.stdout.split())
     assert "torch" in modules

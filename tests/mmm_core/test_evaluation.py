@@ -13,13 +13,13 @@ from mmm_core.corpus.grammar import base_phrase, known_commands
 from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, Probe
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthesise_spec
 from mmm_core.corpus.withheld import is_withheld
-from mmm_core.evaluation.kept import performed, shown
 from mmm_core.evaluation.probes import evaluate, judge
-from mmm_core.evaluation.showable import as_motion, showable
-from mmm_core.features import mirror
+from mmm_core.evaluation.reconstruction import performed, shown
+from mmm_core.evaluation.robot_capability import as_motion, showable
+from mmm_core.motion.features import mirror
+from mmm_core.motion.posture_features import Shown
 from mmm_core.recognition import checks
 from mmm_core.recognition.signs import shows
-from mmm_core.shown import Shown
 from retarget.as_human import shown_on_a_person
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot

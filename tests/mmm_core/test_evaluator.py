@@ -13,8 +13,6 @@ import pytest
 import torch
 
 from daemon.cli import main
-from mmm_core.checkpoint import EVALUATOR_FILE, Model, load_text_encoder, save_model
-from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, EvaluationError, TrainingDataError
 from mmm_core.evaluation import paper, report
 from mmm_core.evaluation.extractors import (
@@ -29,10 +27,12 @@ from mmm_core.evaluation.pairs import Pair, pairs_for, read_pairs, to_our_rest_p
 from mmm_core.evaluation.protocol import measure, measure_same, one_caption_each, text_states
 from mmm_core.evaluation.reader import Reader
 from mmm_core.evaluation.words import PARTS_OF_SPEECH, WordVectors, read_vectors
-from mmm_core.features import features_from_joints
-from mmm_core.tokenizer import Tokenizer, TokenizerConfig
-from mmm_core.transformer import MotionTransformer, TransformerConfig
-from mmm_core.vqvae import VqVae, VqVaeConfig
+from mmm_core.generate.engine import Engine
+from mmm_core.inference.checkpoint import EVALUATOR_FILE, Model, load_text_encoder, save_model
+from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig
+from mmm_core.model.transformer import MotionTransformer, TransformerConfig
+from mmm_core.model.vqvae import VqVae, VqVaeConfig
+from mmm_core.motion.features import features_from_joints
 from tests.mmm_core.folders import make_folder, standing
 
 DATA = Path(__file__).parents[3] / "shared" / "data"

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from mmm_core.features import features_from_joints, joints_from_positions, mirror, recover
-from mmm_core.skeleton import (
+from mmm_core.motion.features import features_from_joints, joints_from_positions, mirror, recover
+from mmm_core.motion.skeleton import (
     MIRROR,
     REST_DIRECTIONS,
     facing_yaw_rad,

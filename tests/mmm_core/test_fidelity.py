@@ -18,9 +18,9 @@ from mmm_core.corpus.synthesis import ClipSpec, SynthClip, rest_pose, synthesise
 from mmm_core.evaluation import fidelity as fidelity_module
 from mmm_core.evaluation.fidelity import CORPUS_DRAWS, cases_of, counting_checks, fidelity, judged, seen
 from mmm_core.evaluation.reference import reference
-from mmm_core.features import mirror, recover
-from mmm_core.motion import FPS, Motion
-from mmm_core.shown import look_at
+from mmm_core.motion.features import mirror, recover
+from mmm_core.motion.motion import FPS, Motion
+from mmm_core.motion.posture_features import look_at
 
 REPEATED = (
     Gesture("row", "both", 4), Gesture("flap", "both", 4), Gesture("knock", "right", 4), Gesture("swim_crawl", "both", 4),

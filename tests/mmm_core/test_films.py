@@ -9,11 +9,11 @@ import pytest
 from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
 
-from mmm_core.engine import Engine
 from mmm_core.errors import TrainingDataError
 from mmm_core.evaluation import films
 from mmm_core.evaluation.films import FILMS, PANEL, Film, Shown, contact_sheet, film, liveliest, make, person
-from mmm_core.skeleton import Array
+from mmm_core.generate.engine import Engine
+from mmm_core.motion.skeleton import Array
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from mmm_core.engine import Engine
-from mmm_core.making import OPENING_TOKENS
-from mmm_core.tokens import FRAMES_PER_TOKEN
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.motion_generation import OPENING_TOKENS
+from mmm_core.model.tokens import FRAMES_PER_TOKEN
 
 TEXTS = (
     "wave with your right hand", "wave with your left hand", "clap three times", "nod, then bow", "point up with your left hand"

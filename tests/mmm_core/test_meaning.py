@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import torch
 
-from mmm_core.meaning import Meanings
+from mmm_core.language.meaning import Meanings
 
 COMMANDS = (
     "lower both arms", "both arms up", "raise your left arm", "raise your right arm", "clap three times", "clap like a seal",

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mmm_core.editing import Edit, edit
-from mmm_core.engine import Engine
 from mmm_core.evaluation.mirrored import limb_angles_deg, mirrored_figures
-from mmm_core.features import mirror
-from mmm_core.mirroring import canonical, mirror_words
-from mmm_core.motion import Motion
-from mmm_core.sampling import OFFICIAL_SAMPLING
-from mmm_core.skeleton import MIRROR
+from mmm_core.generate.editing import Edit, edit
+from mmm_core.generate.engine import Engine
+from mmm_core.language.mirroring import canonical, mirror_words
+from mmm_core.model.sampling import OFFICIAL_SAMPLING
+from mmm_core.motion.features import mirror
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import MIRROR
 
 
 @pytest.fixture(scope="module")

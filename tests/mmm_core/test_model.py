@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 import torch
 
-from mmm_core.checkpoint import TEXT_FILE, load_text_encoder
-from mmm_core.quantizer import Quantizer
-from mmm_core.text import TextStates
-from mmm_core.tokenizer import Tokenizer, TokenizerConfig
-from mmm_core.transformer import MotionTransformer, StepMemory, TransformerConfig
+from mmm_core.inference.checkpoint import TEXT_FILE, load_text_encoder
+from mmm_core.model.quantizer import Quantizer
+from mmm_core.model.text import TextStates
+from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig
+from mmm_core.model.transformer import MotionTransformer, StepMemory, TransformerConfig
 
 
 @pytest.fixture(scope="module")

@@ -14,26 +14,26 @@ import pytest
 import torch
 from torch import Tensor
 
-from mmm_core.clip import clip_from_openai
-from mmm_core.clip_pieces import byte_pairs, clean_text, read_vocabulary
-from mmm_core.decode import NoiseFn
 from mmm_core.errors import CheckpointError, GenerationError
-from mmm_core.features import joints_from_positions, root_path
-from mmm_core.official import (
+from mmm_core.generate.sequence import official_transition_settings, transition_row
+from mmm_core.imports.clip_weights import clip_from_openai
+from mmm_core.imports.official import (
     read_pickle,
     read_statistics,
     tokenizer_from_official,
     transformer_from_official,
 )
-from mmm_core.official_names import rename_tokenizer, rename_transformer
-from mmm_core.quantizer import OfficialRuleQuantizer, perplexity
-from mmm_core.sampling import OFFICIAL_SAMPLING, empty_row, fill
-from mmm_core.schedule import official_counts
-from mmm_core.sequence import official_transition_settings, transition_row
-from mmm_core.streaming import StreamingDecoder
-from mmm_core.text import TextStates
-from mmm_core.transformer import OFFICIAL, MotionTransformer
-from mmm_core.vqvae import HEIGHT_CHANNELS, VqVae, VqVaeConfig
+from mmm_core.imports.official_names import rename_tokenizer, rename_transformer
+from mmm_core.model.clip_byte_pairs import byte_pairs, clean_text, read_vocabulary
+from mmm_core.model.decode import NoiseFn
+from mmm_core.model.quantizer import OfficialRuleQuantizer, perplexity
+from mmm_core.model.sampling import OFFICIAL_SAMPLING, empty_row, fill
+from mmm_core.model.schedule import official_counts
+from mmm_core.model.streaming_decoder import StreamingDecoder
+from mmm_core.model.text import TextStates
+from mmm_core.model.transformer import OFFICIAL, MotionTransformer
+from mmm_core.model.vqvae import HEIGHT_CHANNELS, VqVae, VqVaeConfig
+from mmm_core.motion.features import joints_from_positions, root_path
 from tests.mmm_core.golden import GOLDEN, golden, needs_golden
 
 pytestmark = needs_golden
@@ -371,7 +371,7 @@ class TestImport:
         self, tmp_path: Path, io: dict[str, Tensor], capsys: pytest.CaptureFixture[str]
     ) -> None:
         from daemon.cli import main
-        from mmm_core.checkpoint import load_model
+        from mmm_core.inference.checkpoint import load_model
 
         assert main(self.files(tmp_path)) == 0
         summary = json.loads(capsys.readouterr().out)
@@ -403,8 +403,8 @@ class TestImport:
     def test_with_clip_the_file_answers_texts(
         self, tmp_path: Path, tokenizer: VqVae, transformer: MotionTransformer
     ) -> None:
-        from mmm_core.checkpoint import Model, save_model
-        from mmm_core.engine import Engine
+        from mmm_core.generate.engine import Engine
+        from mmm_core.inference.checkpoint import Model, save_model
 
         text = clip_from_openai(golden("clip_text_tiny"), GOLDEN, n_heads=4)
         text.word_pieces = _few_pieces()

@@ -14,13 +14,13 @@ import pytest
 import torch
 from torch import Tensor
 
-from mmm_core.decode import NoiseFn
-from mmm_core.official import tokenizer_from_official, transformer_from_official
-from mmm_core.released_sampler import masked_counts_by_torch, sample_plainly
-from mmm_core.sampling import OFFICIAL_SAMPLING, empty_row, fill
-from mmm_core.schedule import official_counts
-from mmm_core.text import TextStates
-from mmm_core.transformer import MotionTransformer
+from mmm_core.imports.official import tokenizer_from_official, transformer_from_official
+from mmm_core.model.decode import NoiseFn
+from mmm_core.model.released_sampler import masked_counts_by_torch, sample_plainly
+from mmm_core.model.sampling import OFFICIAL_SAMPLING, empty_row, fill
+from mmm_core.model.schedule import official_counts
+from mmm_core.model.text import TextStates
+from mmm_core.model.transformer import MotionTransformer
 from tests.mmm_core.golden import GOLDEN, golden, needs_golden
 from tests.mmm_core.test_official import SAMPLES, recorded_noise, text_of
 

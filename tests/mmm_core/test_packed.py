@@ -8,10 +8,10 @@ import pytest
 import torch
 from torch import nn
 
-from mmm_core.packed import PackedLinear, can_pack, fastest_precision, pack
-from mmm_core.sampling import SamplingSettings, empty_row, fill
-from mmm_core.text import TextStates
-from mmm_core.transformer import MotionTransformer, TransformerConfig
+from mmm_core.inference.onednn_linear import PackedLinear, can_pack, fastest_precision, pack
+from mmm_core.model.sampling import SamplingSettings, empty_row, fill
+from mmm_core.model.text import TextStates
+from mmm_core.model.transformer import MotionTransformer, TransformerConfig
 
 pytestmark = pytest.mark.skipif(not can_pack(), reason="this PyTorch has no oneDNN")
 

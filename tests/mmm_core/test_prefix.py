@@ -9,12 +9,12 @@ import pytest
 import torch
 
 from daemon.playing.posture import distance_deg, posture_of
-from mmm_core.engine import Engine
 from mmm_core.errors import GenerationError
-from mmm_core.keyframes import features_of
-from mmm_core.motion import Motion
-from mmm_core.prefix import go_on
-from mmm_core.tokens import MAX_TOKENS
+from mmm_core.generate.continuation import go_on
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.keyframes import features_of
+from mmm_core.model.tokens import MAX_TOKENS
+from mmm_core.motion.motion import Motion
 
 
 @pytest.fixture(scope="module")

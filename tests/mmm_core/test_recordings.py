@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmm_core.bvh import save_bvh
 from mmm_core.errors import MotionFileError
-from mmm_core.motion import Motion
-from mmm_core.recordings.asf_amc import read_amc
-from mmm_core.recordings.files import find_motions, read_motion
+from mmm_core.imports.recordings.asf_amc import read_amc
+from mmm_core.imports.recordings.files import find_motions, read_motion
+from mmm_core.motion.bvh import save_bvh
+from mmm_core.motion.motion import Motion
 from retarget.human import read_human
 from tests.retarget.gestures import gesture
 
@@ -39,7 +39,7 @@ def test_humanml3ds_joints_and_features_are_read(wave: Motion, tmp_path: Path) -
     np.save(tmp_path / "joints.npy", wave.joints_m)
     same_arms(read_motion(tmp_path / "joints.npy"), wave, 1e-6)
     body = gesture("point")
-    from mmm_core.features import features_from_joints, joints_from_positions
+    from mmm_core.motion.features import features_from_joints, joints_from_positions
 
     features = features_from_joints(
         body.joints_m.astype(np.float64),

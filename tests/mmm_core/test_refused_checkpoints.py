@@ -15,8 +15,8 @@ import pytest
 import torch
 from torch import Tensor
 
-from mmm_core.clip import clip_from_openai
 from mmm_core.errors import CheckpointError
+from mmm_core.imports.clip_weights import clip_from_openai
 from tests.mmm_core.golden import GOLDEN, golden, needs_golden
 
 pytestmark = needs_golden
@@ -140,7 +140,7 @@ class TestDilationGrowth:
         (folder / "run.log").write_text(f"2024-06-03 20:22:10,123 INFO {arguments}\n2024 INFO Training on t2m\n")
 
     def growth(self, folder: Path, capsys: pytest.CaptureFixture[str]) -> int:
-        from mmm_core.checkpoint import load_model
+        from mmm_core.inference.checkpoint import load_model
 
         summary = json.loads(capsys.readouterr().out)
         model = load_model(folder / "official.safetensors")

@@ -13,12 +13,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmm_core.corpus.heldout import PROBES
-from mmm_core.count_words import count_asked
-from mmm_core.engine import Engine
-from mmm_core.motion import Motion
-from mmm_core.repeats import with_count
-from mmm_core.strokes import Strokes, peaks_beyond, strokes_of
-from mmm_core.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.repetition_editing import with_count
+from mmm_core.language.count_words import count_asked
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.repetitions import Strokes, peaks_beyond, strokes_of
 
 MASK = -1
 

@@ -10,16 +10,16 @@ import pytest
 import torch
 from scipy.stats import mannwhitneyu
 
-from mmm_core import checkpoint
-from mmm_core.checkpoint import Model, load_model, load_text_encoder, save_model
 from mmm_core.corpus.grammar import known_commands
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.corpus.outside import OUTSIDE, outside_texts
 from mmm_core.corpus.scope_prompts import SCOPE_DEVELOPMENT, SCOPE_TEST
-from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError
 from mmm_core.evaluation.scope import auroc, scope_figures
-from mmm_core.scope import ScopeIndex, clauses_of
+from mmm_core.generate.engine import Engine
+from mmm_core.inference import checkpoint
+from mmm_core.inference.checkpoint import Model, load_model, load_text_encoder, save_model
+from mmm_core.language.scope import ScopeIndex, clauses_of
 from mmm_core.training.recipe import ScopeRecipe
 from mmm_core.training.scope_training import build_scope, scope_sentences
 

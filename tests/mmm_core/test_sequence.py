@@ -12,13 +12,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mmm_core.engine import Engine
 from mmm_core.errors import GenerationError
-from mmm_core.in_turn import MOST_COMMANDS, MOST_WORDS, commands_in_turn
-from mmm_core.motion import Motion
-from mmm_core.sequence import FEWEST_TOKENS, TRANSITION_TOKENS, shared_out
-from mmm_core.shown import look_at, part
-from mmm_core.tokens import MAX_TOKENS, tokens_for_frames
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.sequence import FEWEST_TOKENS, TRANSITION_TOKENS, shared_out
+from mmm_core.language.clauses import MOST_COMMANDS, MOST_WORDS, commands_in_turn
+from mmm_core.model.tokens import MAX_TOKENS, tokens_for_frames
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.posture_features import look_at, part
 
 SENTENCES = json.loads((Path(__file__).parent / "sequences.json").read_text())
 

@@ -6,10 +6,10 @@ import msgspec
 import numpy as np
 import pytest
 
-from mmm_core.engine import Engine
 from mmm_core.errors import GenerationError
-from mmm_core.keyframes import Keyframe, between
-from mmm_core.story import Scene, Told, tell, tell_on
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.keyframes import Keyframe, between
+from mmm_core.generate.story import Scene, Told, tell, tell_on
 
 SCENES = [
     Scene("wave with your right hand", 2.0),

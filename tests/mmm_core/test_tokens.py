@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from mmm_core.errors import GenerationError
-from mmm_core.tokens import frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
+from mmm_core.model.tokens import frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
 
 
 @given(arrays(np.int64, st.tuples(st.integers(1, 49), st.integers(1, 3)), elements=st.integers(0, 511)))

@@ -16,12 +16,12 @@ import pytest
 import torch
 
 from daemon.cli import main
-from mmm_core.checkpoint import load_model, load_text_encoder, save_model
 from mmm_core.corpus.grammar import known_commands
-from mmm_core.engine import Engine
 from mmm_core.errors import CheckpointError, TrainingDataError
 from mmm_core.evaluation.extractors import load_evaluator
-from mmm_core.text import TextEncoder
+from mmm_core.generate.engine import Engine
+from mmm_core.inference.checkpoint import load_model, load_text_encoder, save_model
+from mmm_core.model.text import TextEncoder
 from mmm_core.training import scope_training
 from mmm_core.training.recipe import known_recipes, read_recipe
 from mmm_core.training.run import Run, Schedule
@@ -376,8 +376,8 @@ def test_the_papers_recipe_has_the_released_sizes() -> None:
     recipe = read_recipe("paper")
     tokenizer = recipe.tokenizer.config(263)
     transformer = recipe.transformer.config(tokenizer, 1, 512)
-    from mmm_core.transformer import OFFICIAL
-    from mmm_core.vqvae import VqVaeConfig
+    from mmm_core.model.transformer import OFFICIAL
+    from mmm_core.model.vqvae import VqVaeConfig
 
     assert tokenizer == VqVaeConfig()
     assert transformer == OFFICIAL

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from torch import nn
 
 from mmm_core.corpus.synthesis import synthesise
-from mmm_core.tokenizer import Tokenizer, TokenizerConfig
+from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig
 from mmm_core.training.batches import CaptionStates, Clip, load_clips, save_clips
 from mmm_core.training.run import Run, Schedule, train
 from mmm_core.training.tokenizer_training import train_tokenizer

@@ -142,7 +142,7 @@ def test_nothing_that_runs_imports_what_the_wheel_leaves_out():
             if name not in seen and not name.startswith(NEEDS_A_CLONE):
                 seen[name] = f"{seen[module]} {module}".strip()
                 waiting.append(name)
-    assert "mmm_core.engine" in seen and "daemon.driving.streamer" in seen
+    assert "mmm_core.generate.engine" in seen and "daemon.driving.streamer" in seen
 
 
 class Environment:
@@ -233,7 +233,8 @@ def test_the_whole_wheel_generates_from_another_directory(whole):
     told = whole.mmmd("retarget", "wave.npz", "--robot", "op3", "--out", "ticks.npz")
     assert told.returncode == 0, told.stderr
     where = whole.run(
-        "-c", "import daemon.cli, mmm_core.engine; print(daemon.cli.__file__, mmm_core.engine.__file__)"
+        "-c",
+        "import daemon.cli, mmm_core.generate.engine; print(daemon.cli.__file__, mmm_core.generate.engine.__file__)",
     ).stdout
     assert str(ROOT) not in where
 

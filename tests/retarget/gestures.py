@@ -4,8 +4,8 @@ import numpy as np
 
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.synthesis import ClipSpec, synthesise_spec
-from mmm_core.motion import Motion
-from mmm_core.skeleton import quat_wxyz
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import quat_wxyz
 
 
 def gesture(name, count=3, seed=0):

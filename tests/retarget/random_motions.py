@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmm_core.motion import Motion
-from mmm_core.skeleton import BONE_LENGTHS_M, MIRROR, PARENTS, quat_wxyz, rotation_about
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import BONE_LENGTHS_M, MIRROR, PARENTS, quat_wxyz, rotation_about
 
 _UP = {"spine1", "spine2", "spine3", "neck", "head"}
 _STANDING = {

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mmm_core.motion import Motion
-from mmm_core.skeleton import matrix_from_quat, standing_joints
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.skeleton import matrix_from_quat, standing_joints
 from retarget.as_human import joints_of_path
 from retarget.human import read_human
 from retarget.pipeline import Retargeter

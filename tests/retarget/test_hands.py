@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from gestures import gesture
 
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
 from retarget.hands import read_contacts
 from retarget.paths import JointPath
 from retarget.pipeline import Retargeter

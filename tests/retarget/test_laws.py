@@ -13,7 +13,7 @@ from test_pipeline import at_rest, check_bounds
 
 from daemon.bench.contacts import ContactCheck
 from daemon.bench.motions import cut
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
 from retarget.as_human import joints_of_path
 from retarget.human import read_human
 from retarget.paths import JointState

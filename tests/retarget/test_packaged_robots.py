@@ -15,8 +15,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from mmm_core.engine import Engine
-from mmm_core.motion import Motion
+from mmm_core.generate.engine import Engine
+from mmm_core.motion.motion import Motion
 from retarget.pipeline import Retargeter
 from retarget.robot import RobotModel, list_robots, load_robot
 from tests.retarget.random_motions import random_motion

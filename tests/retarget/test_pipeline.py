@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_motions import mirrored, random_motion, real_motions
 
-from mmm_core.motion import Motion
+from mmm_core.motion.motion import Motion
 from retarget.errors import MotionError
 from retarget.kinematics import Kinematics
 from retarget.limits import limit_step

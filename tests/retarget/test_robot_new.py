@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from mmm_core.engine import Engine
+from mmm_core.generate.engine import Engine
 from retarget.anatomy import find_anatomy
 from retarget.description import rotation_to_standard
 from retarget.errors import RobotFileError

@@ -9,7 +9,7 @@ import numpy as np
 from mmm_core.corpus.families.gesture import Gesture, Perform
 from mmm_core.corpus.reach import ELBOW_DOWN, reach
 from mmm_core.corpus.score import FRONT, ArmPose, Score, Vector
-from mmm_core.skeleton import Array
+from mmm_core.motion.skeleton import Array
 
 SHORTEST_CYCLE_S = 0.5
 """Faster cycles are lost between tokens of four frames, and no servo follows them."""

@@ -1,0 +1,54 @@
+"""What a robot can show of what the probes ask for: nobody without a waist bows, however well the text was understood.
+
+The corpus itself performs each probe, the robot follows, and what is not seen on it then is beyond the robot, or beyond the
+retargeting. What is left of an expectation tells the model apart from the body.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from mmm_core.corpus.heldout import PROBES, Probe
+from mmm_core.evaluation.probes import judge
+from mmm_core.evaluation.reconstruction import Features, performed
+from mmm_core.motion.features import recover
+from mmm_core.motion.motion import FPS, Motion
+from mmm_core.motion.posture_features import look_at
+
+PERFORMANCES = 3
+"""Of each probe; an expectation counts as one that can be shown when most of them show it."""
+OnRobot = Callable[[Motion], Motion]
+
+
+def showable(
+    on_robot: OnRobot, progress: Callable[[int], None] = lambda _n: None, probes: Sequence[Probe] = PROBES
+) -> dict[str, frozenset[str]]:
+    """For each probe's text the expectations that can be seen on a robot.
+
+    Args:
+        on_robot: what a robot makes of a motion, on a person (`retarget.as_human.shown_on_a_person`).
+        progress: told how many probes are done.
+        probes: those that are performed.
+    """
+    found: dict[str, frozenset[str]] = {}
+    for probe in probes:
+        seen: Counter[str] = Counter()
+        for seed in range(PERFORMANCES):
+            motion = on_robot(as_motion(performed(probe, seed), probe.text))
+            shown = look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+            seen.update(key for key, ok in judge(probe, shown, with_pose=True).items() if ok)
+        found[probe.text] = frozenset(key for key, n in seen.items() if 2 * n > PERFORMANCES)
+        progress(len(found))
+    return found
+
+
+def as_motion(features: Features, text: str = "") -> Motion:
+    """The motion of features (T, 263)."""
+    seen = recover(features)
+    return Motion(
+        seen.joints_m.astype(np.float32), FPS, seen.head_quat_wxyz.astype(np.float32), seen.forearm_twist_rad.astype(np.float32),
+        features, np.zeros(0, np.int32), text, 0, "accepted", 1.0,
+    )  # fmt: skip

@@ -1,0 +1,123 @@
+"""A gesture done as often as the text says.
+
+Parallel decoding keeps the sense of a repeated gesture but loses count of it (docs/model.md). So where a text names a
+number, several candidates are made and the strokes of each are counted; of the one that comes nearest, the tokens of one
+stroke, from peak to peak, stand again as often as strokes are missing, or those of strokes too many are left out. At each
+seam a [MASK] is left for the model to fill (MMM, arXiv 2312.03596, sec. 3.3: any part may be given).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import torch
+from torch import Tensor
+
+from mmm_core.language.scope import ScopeVerdict
+from mmm_core.model.sampling import fill
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.motion.repetitions import Strokes, strokes_of
+
+if TYPE_CHECKING:
+    from mmm_core.generate.engine import Engine
+    from mmm_core.generate.sequence import Command
+
+CLEAR = 0.3
+"""Strokes are left out only of a motion that repeats itself as well as this."""
+ALIKE = 0.5
+"""Before and after a stroke that stands alone the body must be as near as this to the same place."""
+_LONGEST_FRAMES, _SHORTEST_FRAMES, _AWAY = 28, 4, 0.6
+"""From the peak of such a stroke to where it began or ended; there the body is away from the peak by this share of the way."""
+_UNCLEAR, _NONE, _PER_MISFIT = 0.5, 3.0, 0.8
+_TAKEN = ScopeVerdict("accepted", 1.0, "", "")
+
+
+def ids_of_count(engine: Engine, command: Command, made: Sequence[Tensor], count: int, seed: int) -> Tensor:
+    """(L, C) ids of a command that asks for `count` strokes, from candidates (n_tokens, C); longer or shorter by strokes."""
+    transformer = engine.model.transformer
+    features = engine.model.tokenizer.decode(torch.stack(list(made))).numpy()
+    motions = [
+        engine.motion_of_features(f, ids, command.text, seed, _TAKEN) for f, ids in zip(features, made, strict=True)
+    ]
+    ids, strokes = min(zip(made, map(strokes_of, motions), strict=True), key=lambda pair: _far_from(count, pair[1]))
+    row = None if strokes is None else with_count(ids, strokes, count, transformer.ids.mask)
+    at_once = replace(engine.settings, steps=1)
+    return ids if row is None else fill(transformer, command.states, [row], [seed], at_once)[0]
+
+
+def with_count(ids: Tensor, strokes: Strokes, count: int, mask_id: int) -> Tensor | None:
+    """(L, C) ids with as many strokes as asked, [MASK] at the seams; None where they are right or nothing can be done.
+
+    No more than the longest motion has room for.
+    """
+    missing = count - len(strokes.frames)
+    if missing == 0 or not strokes.frames:
+        return None
+    if missing < 0:
+        return _without(ids, strokes, -missing, mask_id) if strokes.sure and strokes.misfit <= CLEAR else None
+    whole = _between_peaks(strokes) if len(strokes.frames) > 1 else _around_peak(strokes)
+    if whole is None:
+        return None
+    start, n_tokens = _token(whole[0]), max(1, _token(whole[1] - whole[0]))
+    again = min(missing, (MAX_TOKENS - len(ids)) // n_tokens)
+    if again <= 0:
+        return None
+    stroke = _opened(ids[start : start + n_tokens], mask_id)
+    return torch.cat([ids[: start + n_tokens], *[stroke] * again, _opened(ids[start + n_tokens :], mask_id)])
+
+
+def _far_from(count: int, strokes: Strokes | None) -> float:
+    """How little a candidate serves: strokes too many or too few, then how clear they are."""
+    if strokes is None:
+        return float("inf")
+    found = len(strokes.frames)
+    return abs(found - count) + _UNCLEAR * (not strokes.sure) + _NONE * (not found) + _PER_MISFIT * strokes.misfit
+
+
+def _between_peaks(strokes: Strokes) -> tuple[int, int]:
+    """First frame and end of the stroke that comes back best to where it began, in whole tokens as nearly as may be."""
+
+    def cost(pair: tuple[int, int]) -> float:
+        tokens = (pair[1] - pair[0]) / FRAMES_PER_TOKEN
+        return strokes.apart(*pair) + 0.02 * abs(tokens - round(tokens))
+
+    return min(pairwise(strokes.frames), key=cost)
+
+
+def _around_peak(strokes: Strokes) -> tuple[int, int] | None:
+    """From before the only stroke to after it, where the body is in nearly the same place."""
+    peak = strokes.frames[0]
+    first, end = max(0, peak - _LONGEST_FRAMES), min(len(strokes.path), peak + _LONGEST_FRAMES + 1)
+    way = max(strokes.apart(i, peak) for i in range(first, end))
+    before, after = (
+        [i for i in range(*span) if strokes.apart(i, peak) > _AWAY * way]
+        for span in ((first, peak - _SHORTEST_FRAMES + 1), (peak + _SHORTEST_FRAMES, end))
+    )
+    pairs = [(i, j) for i in before for j in after]
+    if not pairs:
+        return None
+    best = min(pairs, key=lambda pair: strokes.apart(*pair) / way + 0.012 * (pair[1] - pair[0]))
+    return best if strokes.apart(*best) <= ALIKE * way else None
+
+
+def _without(ids: Tensor, strokes: Strokes, n: int, mask_id: int) -> Tensor | None:
+    """Left out: from a peak to the n-th after it, where the body is most nearly in the same place."""
+    frames = strokes.frames
+    first = min(range(len(frames) - n), key=lambda i: strokes.apart(frames[i], frames[i + n]))
+    start = _token(frames[first])
+    end = start + _token(frames[first + n] - frames[first])
+    return torch.cat([ids[:start], _opened(ids[end:], mask_id)]) if end < len(ids) else None
+
+
+def _token(frame: int) -> int:
+    return round(frame / FRAMES_PER_TOKEN)
+
+
+def _opened(ids: Tensor, mask_id: int) -> Tensor:
+    """With a [MASK] for the first token."""
+    opened = ids.clone()
+    opened[:1] = mask_id
+    return opened

@@ -1,0 +1,149 @@
+"""The words by which English says that one action comes after another: patterns for `mmm_core.language.clauses`.
+
+They read texts whose words are parted by single blanks.
+"""
+
+from __future__ import annotations
+
+import re
+
+from mmm_core.language.count_words import ADVERBS, NUMBERS
+
+
+def _any(*phrases: str) -> str:
+    """A pattern for any of some phrases."""
+    return "(?:" + "|".join(phrases) + ")"
+
+
+def _pattern(pattern: str) -> re.Pattern[str]:
+    return re.compile(pattern, re.IGNORECASE)
+
+
+_WHO = _any("you", "he", "she", "it", "they", "we", "the robot")
+_HAVE = _any("'s", "'ve", "'re", " is", " are", " has", " have", "")
+_NUMBER = _any(*(word for word in NUMBERS if word.isalpha()), r"\d+")
+DONE = (
+    _any("once", "when", "as soon as", "after", "the moment")
+    + r"\s+"
+    + _any("that", "this", "you", "he", "she", "it", "they", r"the \w+")
+    + _HAVE
+    + _any(" been", "")
+    + r"\s+"
+    + _any("done (?:both|that|this|so|it)", "done", "finished", "over", "down", "completed?")
+    + r"(?: with (?:that|this|it))?(?! \w+ing\b| with\b)"
+)
+"""'Once that is done'."""
+NEXT = _any(
+    "then(?! some)", "(?:after|following) (?:all )?(?:that|this|which)", "afterwards?", "thereafter", "thereupon", "whereupon",
+    "subsequently", r"(?<!\bthe )next", "later(?: on)?", "finally", "lastly", "at last", "last of all", "in the end", "to finish",
+    "(?:secondly|thirdly|fourthly)", r"(?<!one )(?<!1 )(?<!\ba )(?:second|third|fourth)(?! \w+)", "now(?! and then)",
+    "(?:then )?straight into", DONE,
+)  # fmt: skip
+DIVIDES = _pattern(
+    "|".join((
+        rf"\s*[,;:.!]*\s*(?<!\w)(?<!\bnow )(?<!now and )(?:and\s+|but\s+)?{NEXT}(?!\w|\s+time|\s+to\b)[,:]?\s*",
+        r"\s*,?\s*(?:and\s+)?(?:(?:is|are|being)\s+)?(?:immediately\s+)?\bfollowed\s+(?:up\s+)?(?:by|with)\b[,:]?\s*",
+        r"\s*,?\s*(?:and\s+)?\b(?:end|finish|move|wrap)(?:\s+(?:off|up|on))?\s+(?:with|by|to|on)\b\s*",
+        r"\s*,?\s*(?:and\s+)?\bend\s+up\s+(?=\w+ing\b)",
+        r"\s*;\s*|\s*[.!]+\s+|\s*->\s*",
+        r"(?:^|[\s,;.])\s*\(?(?:[1-9][.)]|[a-d]\))\s*(?=[A-Za-z])",
+    ))
+)  # fmt: skip
+"""What stands between a command and the next."""
+AND = _pattern(r"\s*,\s*(?:and\s+)?|\s+and\s+")
+
+A_FIRST_B_LATER = _pattern(rf"(.+?)[,;]\s*(?:and\s+|but\s+)?(.+?),?\s+(?:(?:comes?|goes)\s+)?{NEXT}")
+"""The words of order come last."""
+A_BEFORE_B = _pattern(
+    rf"(.+?),?\s+(?:(?:right|just)\s+)?{_any('before', 'prior to', 'precedes', 'ahead of')}\s+(?:{_WHO}\s+)?(.+)"
+)
+B_AFTER_A = _pattern(
+    r"(.+?),?\s+(?:(?:right|just|only|once)\s+)*"
+    + _any(
+        "comes? after",
+        "after",
+        "succeeds",
+        "follows",
+        "having(?: first)?(?: begun with| opened with| started with)?",
+        rf"(?:once|as soon as)(?= {_WHO}\b)",
+    )
+    + rf"\s+(?:{_WHO}{_HAVE}\s+)?(?:first\s+)?(.+)"
+)
+BEFORE_B_A = _pattern(rf"(?:(?:right|just)\s+)?(?:before|prior\s+to)\s+(?:{_WHO}\s+)?(.+?),\s*(.+)")
+B_BEFORE_THAT_A = _pattern(
+    r"(.+?)[,;.]?\s*(?:and\s+|but\s+)?(?:(?:only )?before (?:that|this|which)|beforehand|but first),?\s+(.+)"
+)
+AFTER_A_B = _pattern(
+    r"(?:(?:right|just)\s+)?"
+    + _any("after", "once", "when", "as soon as", "having", "following")
+    + rf"\s+(?:{_WHO}{_HAVE}\s+)?(?:having\s+)?(?:(?:done|finished|through)\s+(?:with\s+)?)?(.+?),\s*(.+)"
+)
+
+NO_COMMAND = _pattern(
+    r"^\W*"
+    + _any(
+        "I", "that", "this", "which", "me", "us", "him", "her", "them", "all", "a (?:moment|second|while|pause|beat)", "another",
+        "the other", "each", "anything", "everything", "midnight", "noon", "you (?:go|start|begin|leave|do|answer|speak)",
+        rf"{_NUMBER} seconds?", "more", "once", "twice", "again",
+    )
+    + r"\b"
+)  # fmt: skip
+"""'After that', 'one after another', 'before anything else': nothing to be done is meant."""
+OPENING = _pattern(
+    r"^\W*(?:(?:"
+    + _any(
+        "and", "please", "ok(?:ay)?", "so", "now", "well", "alright", "(?:go|come) on(?=,|$)", "right(?=,|$)", "then",
+        "first(?:ly)?(?: of all| off)?", "to (?:begin|start)(?: with)?",
+        "(?:you )?(?:start|begin|finish|end|lead)(?: off| out| up| things off)? (?:by|with|on)", "let's have",
+    )
+    + r"\b|[1-9][.)]|[a-d]\))[,:]?\s*)+"
+)  # fmt: skip
+CLOSING = _pattern(
+    r"[\s,]*(?:\b(?:comes? |goes )?"
+    + _any("first(?: of all)?", "to (?:begin|start|end|finish) (?:on|with)", "beforehand")
+    + r"|[,;:.!?]+)\s*$"
+)
+
+_LIMB = _any("arms?", "hands?", "fists?", "ones?", "sides?")
+_MANNER = _any("please", "you", "slowly", "gently", "quickly")
+LEANS = _pattern(
+    rf"^(?:{_MANNER}\s+)*(?:"
+    + _any(
+        rf"(?:remain|wait|pause|rest)(?: (?:a|for|there|like|so|still|{_NUMBER})\b|$)",
+        "(?:relax|lower|lowers|lowering|drop|drops|release)(?: (?:it|them|again|both|slowly)| (?:your|the|his|her|their|its) "
+        rf"(?:left |right )?{_LIMB})?$",
+        "(?:let|stop|stay|stays|staying|return|returns|freeze|repeat|repeats|again|go back|come back|back|down|up)",
+        "(?:bring|brings|take|takes|put|puts) .*(?:down|back)", "do(?:es)? (?:it|that|so|the same)",
+        "(?:hold|keep)(?:s|ing)?"
+        "(?: (?:it|them|that|this|there|on|still|for|the pose|the position|your (?:position|balance)|until)|$)",
+        "(?:with|using|to the|the other|other|same)", rf"(?:the )?(?:left|right|same)(?: {_LIMB})?$",
+        "(?:not|no|don't|do not|never|without|instead|but)", rf"(?:{_NUMBER}|{'|'.join(ADVERBS)})(?: more| times?| seconds?)?",
+        "(?:faster|slower|harder|higher|louder|quicker)", "(?:for|until|at|in|on|as)",
+        r"(?:\S+ ){0,3}(?:it|them|again|likewise|the same|as well|too|nothing)",
+    )
+    + r"\b)|\b(?:stays?\s+still|rests)\b"
+)  # fmt: skip
+"""What means nothing without the command before it."""
+SUBJECT = _pattern(r"^(?:it|he|she|they)\s+(?=\w+s\b)")
+AT_ONCE = _pattern(
+    r"\b"
+    + _any("while", "whilst", "as you", "at the same time", "at once", "simultaneously", "meanwhile", "together", "all the while",
+           "along with")
+    + r"\b"
+)  # fmt: skip
+NOT = _pattern(r"\b(?:not|don't|never|instead|rather\s+than)\b")
+
+_ACT = _any(
+    "wav", "nod", "bow", "clap", "shrug", "salut", "point", "punch", "shak", "cross", "fold", "rais", "lift", "look",
+    "lean", "beckon", "hug", "stretch", "twist", "tilt", "facepalm", "cheer", "pray", "scratch", "rub", "pat", "knock",
+    "push", "pull", "throw", "catch", "jab", "box", "flap", "swim", "march", "danc", "drum", "circl", "spread", "open",
+    "touch", "cover", "blow", "wip", "stir", "typ", "applau", "conduct", "greet", "swing", "bend", "turn", "reach", "mak",
+    "giv", "tak", "do", "play", "act", "show", "strik", "thumb", "flex", "high", "lower",
+)  # fmt: skip
+SPEAKS_OF_AN_ACT = _pattern(rf"\b{_ACT}\w*")
+BEGINS_WITH_A_VERB = _pattern(rf"^(?:(?:{_MANNER}|to)\s+)*({_ACT})(?:e|p|s|es|d|ping|ing|ding)?\b")
+PREPARES = _pattern(
+    r"^(?:(?:please|you|to)\s+)*(?:rais|lift|reach|open|turn|look)\w*\s?"
+    r"(?:around|confused|(?:up|out|your|the|his|her|their|its|an?|one|both)\s.*)?$"
+)
+"""'Raise your hand and wave' is one gesture."""

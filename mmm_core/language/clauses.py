@@ -1,0 +1,113 @@
+"""Commands that a text asks for one after another: "clap before you bow, then nod" -> clap, bow, nod.
+
+A rule, not a model: English says the order of two actions with a small, closed set of words
+(`mmm_core.language.clause_patterns`), while a text encoder of this size hardly keeps it (docs/model.md). A clause that
+leans on the command before it ("and hold it there", "then with the right") stays with that command; between actions done
+at the same time only words of order divide.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from mmm_core.language import clause_patterns as words
+
+MOST_COMMANDS, MOST_WORDS = 4, 60
+"""Texts of more are taken as they stand."""
+_READS = re.compile(r"[A-Za-z]{2,}")
+
+
+@dataclass(frozen=True)
+class _Span:
+    start: int
+    end: int
+
+    def of(self, text: str) -> str:
+        return text[self.start : self.end]
+
+
+def commands_in_turn(text: str) -> list[str]:
+    """The commands of a text in the order in which they are to be done; one that asks for one is given back whole."""
+    if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
+        return [text]
+    bare = [_bare(c) for c in _in_turn(" ".join(text.split()))]
+    readable = all(_READS.search(c) for c in bare)
+    return bare if 1 < len(bare) <= MOST_COMMANDS and readable else [text]
+
+
+def _in_turn(text: str) -> list[str]:
+    for form in (words.BEFORE_B_A, words.B_BEFORE_THAT_A):
+        found = form.fullmatch(text)
+        if found and words.SPEAKS_OF_AN_ACT.search(found[1]) and _both_stand(found[1], found[2]):
+            return [*_in_turn(found[2]), *_in_turn(found[1])]
+    return [c for part in _divided(text) for c in _reordered(part)]
+
+
+def _divided(text: str) -> list[str]:
+    """Parts of a text between words of order, each with what leans on it."""
+    spans = _spans(text, _Span(0, len(text)), words.DIVIDES)
+    spans = [s for s in spans if _READS.search(_bare(s.of(text)))]
+    if len(spans) == 1:
+        late = words.A_FIRST_B_LATER.fullmatch(text.rstrip(" .!"))
+        if late and not _leans(late[2]):
+            return [late[1], late[2]]
+    if not words.AT_ONCE.search(text) and not words.NOT.search(text):
+        spans = [finer for span in spans for finer in _listed(text, span)]
+    parts: list[_Span] = []
+    for span in spans:
+        if parts and _leans(span.of(text)):
+            parts[-1] = _Span(parts[-1].start, span.end)
+        else:
+            parts.append(span)
+    return [s.of(text) for s in parts]
+
+
+def _spans(text: str, whole: _Span, between: re.Pattern[str]) -> list[_Span]:
+    """What stands between the matches of a pattern."""
+    spans, start = [], whole.start
+    for found in between.finditer(text, whole.start, whole.end):
+        spans.append(_Span(start, found.start()))
+        start = found.end()
+    return [*spans, _Span(start, whole.end)]
+
+
+def _listed(text: str, whole: _Span) -> list[_Span]:
+    """'wave, nod and bow' where every part begins with a verb of its own; else the whole."""
+    spans = _spans(text, whole, words.AND)
+    verbs = [words.BEGINS_WITH_A_VERB.match(_bare(s.of(text))) for s in spans]
+    if not all(verbs) or len({_bare(s.of(text)).lower() for s in spans}) < len(spans):
+        return [whole]
+    prepares = len(spans) == 2 and words.PREPARES.match(_bare(spans[0].of(text)))
+    return [whole] if prepares else spans
+
+
+def _reordered(part: str) -> list[str]:
+    """'B after A' -> A, B."""
+    opened = words.OPENING.sub("", part).strip()
+    for form, text, first, second in (
+        (words.AFTER_A_B, part.strip(), 1, 2), (words.A_BEFORE_B, opened, 1, 2), (words.B_AFTER_A, opened, 2, 1)
+    ):  # fmt: skip
+        found = form.fullmatch(text)
+        other = 1 if form is words.AFTER_A_B else 2
+        if found and words.SPEAKS_OF_AN_ACT.search(found[other]) and _both_stand(found[1], found[2]):
+            return [*_reordered(found[first]), *_reordered(found[second])]
+    return [part]
+
+
+def _both_stand(*pair: str) -> bool:
+    """Whether both are commands by themselves."""
+    return not any(words.NO_COMMAND.match(p.strip()) or _leans(p) or not _READS.search(_bare(p)) for p in pair)
+
+
+def _leans(clause: str) -> bool:
+    bare = _bare(clause)
+    return bool(words.LEANS.search(words.SUBJECT.sub("", bare)))
+
+
+def _bare(clause: str) -> str:
+    """Without the words of order around it."""
+    bare = clause.strip()
+    while (shorter := words.CLOSING.sub("", words.OPENING.sub("", bare)).strip()) != bare:
+        bare = shorter
+    return bare

@@ -1,0 +1,190 @@
+"""How far a text lies from what the model can do.
+
+A small classifier reads the untouched sentence vector: trained on the corpus's own sentences against texts of things that
+cannot be done (`mmm_core.corpus.outside`, `mmm_core.training.scope_training`). To its log-odds comes the margin by which the
+text lies nearer to a known command than to anything outside. The score is that sum as a probability; the known command that
+lies nearest is how the text was understood (`mmm_core.language.meaning`). A text of several clauses of which some cannot be done is
+degraded to the others.
+Method, thresholds and figures: docs/scope.md.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from mmm_core.language.meaning import Meanings
+from mmm_core.motion.motion import Status
+
+REJECT_BELOW = 0.5
+DEGRADE_BELOW = 0.97
+CLAUSE_BELOW = 0.06
+"""A clause among others is left out below this: it must be far outside, since clauses are short."""
+CLAUSE_KEPT_FROM = 0.995
+"""A clause of a text that is rejected as a whole is done from this on."""
+MARGIN_WEIGHT = 10.0
+LOGIT_AT_HALF = -2.5
+"""Log-odds with margin that mean a score of one half. This and the thresholds: docs/scope.md."""
+FEATURE_SCALE = 20.0
+"""Components of a unit vector of width 384 are about 1/20."""
+
+# Checkpoints without a classifier: cosines alone.
+COSINE_REJECT_BELOW = 0.45
+COSINE_DEGRADE_BELOW = 0.58
+OUTSIDE_MARGIN = 0.03
+"""There a text is refused when something outside lies nearer by this much, and reported as degraded from a tie on."""
+
+_BETWEEN_CLAUSES = re.compile(
+    r"""\s*[,;.]?\s*(?<!\bup\s)(?<!\bback\s)(?<!\bleft\s)(?<!\bright\s)
+    \b(?:and\ then|and\ afterwards|after\ that|then|and|while\ you|while|before\ you)\b\s*
+    |\s*[;,.]\s+""",
+    re.IGNORECASE | re.VERBOSE,
+)
+_LATIN_WORD = re.compile(r"[A-Za-z]{2,}")
+_CODE = re.compile(r"[{}<\\$|=]|(?<!-)>|://|\w\((?!s\))|\.\./|--\w")
+"""What programs, addresses and paths have and sentences do not."""
+MOST_CLAUSES, MOST_WORDS = 4, 30
+"""Texts of more are judged as a whole, so that a decision stays below 30 ms."""
+
+
+@dataclass(frozen=True)
+class ScopeVerdict:
+    """How a text was taken.
+
+    Attributes:
+        status: accepted, degraded (done in part, or far from anything learnt) or rejected.
+        score: 0 to 1; how surely the model can do it.
+        nearest: the known command that lies nearest.
+        reason: why it is not accepted; empty when it is.
+        kept: what is done of a text of which only some clauses can be; empty where the text is taken as it stands.
+    """
+
+    status: Status
+    score: float
+    nearest: str
+    reason: str
+    kept: str = ""
+
+
+class ScopeClassifier(nn.Module):
+    """Log-odds that a sentence vector (B, D) belongs to a text that can be done."""
+
+    def __init__(self, width: int, hidden: int) -> None:
+        super().__init__()
+        self.hidden = nn.Linear(width, hidden)
+        self.out = nn.Linear(hidden, 1)
+
+    def forward(self, sentence: Tensor) -> Tensor:
+        """(B, D) -> (B,)."""
+        return self.out(F.gelu(self.hidden(FEATURE_SCALE * sentence)))[:, 0]
+
+
+@dataclass(frozen=True)
+class ScopeIndex:
+    """Known commands and outside ones with their unit sentence vectors (N, D), and what tells them apart.
+
+    Attributes:
+        commands: the known commands first, then what cannot be done.
+        vectors: (N, D), in the same order.
+        n_known: how many of them are known commands.
+        classifier: None in checkpoints of before there was one; cosines decide then.
+    """
+
+    commands: list[str]
+    vectors: Tensor
+    n_known: int
+    classifier: ScopeClassifier | None = None
+    _meanings: Meanings = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Read the known commands."""
+        object.__setattr__(self, "_meanings", Meanings(self.commands[: self.n_known]))
+
+    def judge(self, text: str, sentence: Tensor) -> ScopeVerdict:
+        """Verdict for a text as a whole and its unit sentence vector (D,)."""
+        if unreadable := _unreadable(text):
+            return ScopeVerdict("rejected", 0.0, "", unreadable)
+        cosine = self.vectors @ sentence
+        known, outside = cosine[: self.n_known], cosine[self.n_known :]
+        nearest = self._meanings.nearest(text, known)
+        other = float(outside.max()) if len(outside) else -1.0
+        impossible = self.commands[self.n_known + int(outside.argmax())] if len(outside) else ""
+        if self.classifier is None:
+            return _by_cosine(nearest, float(known.max()), impossible, other)
+        score = self._score(sentence, float(known.max()) - other)
+        if score < REJECT_BELOW:
+            like = f"it is like '{impossible}', " if other > float(known.max()) - 0.1 else ""
+            reason = (
+                f"{like}nothing this upper-body model can do (score {score:.2f}; needed {REJECT_BELOW}); "
+                f"the nearest it can do: '{nearest}'"
+            )
+            return ScopeVerdict("rejected", score, nearest, reason)
+        if score < DEGRADE_BELOW:
+            return ScopeVerdict(
+                "degraded", score, nearest, f"taken as '{nearest}' ({score:.2f}); sure from {DEGRADE_BELOW}"
+            )
+        return ScopeVerdict("accepted", score, nearest, "")
+
+    @torch.inference_mode()
+    def _score(self, sentence: Tensor, margin: float) -> float:
+        assert self.classifier is not None
+        logit = float(self.classifier(sentence[None])) + MARGIN_WEIGHT * margin
+        return float(torch.sigmoid(torch.tensor(logit - LOGIT_AT_HALF)))
+
+
+def clauses_of(text: str) -> list[str]:
+    """The clauses of a text, in order; a text of one, of more than `MOST_CLAUSES` or `MOST_WORDS` gives none."""
+    if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
+        return []
+    parts = [part for part in _BETWEEN_CLAUSES.split(text.strip()) if _LATIN_WORD.search(part)]
+    return parts if 1 < len(parts) <= MOST_CLAUSES else []
+
+
+def with_clauses(whole: ScopeVerdict, clauses: list[str], verdicts: list[ScopeVerdict]) -> ScopeVerdict:
+    """The verdict of a text, given those of its clauses: degraded to what can be done of it, where that is not all.
+
+    Clauses lean on each other ("hold it there"), so one is left out only if it lies far outside; and a text that is
+    rejected as a whole is saved only by clauses that lie well inside.
+    """
+    if whole.status == "rejected":
+        taken = [i for i, v in enumerate(verdicts) if v.score >= CLAUSE_KEPT_FROM]
+    else:
+        taken = [i for i, v in enumerate(verdicts) if v.score >= CLAUSE_BELOW]
+    if not taken or len(taken) == len(clauses):
+        return whole
+    kept = ", then ".join(clauses[i] for i in taken)
+    left_out = "', '".join(clauses[i] for i in range(len(clauses)) if i not in taken)
+    reason = f"kept '{kept}'; left out '{left_out}', which this upper-body model cannot do"
+    best = max((verdicts[i] for i in taken), key=lambda v: v.score)
+    return replace(whole, status="degraded", nearest=best.nearest, reason=reason, kept=kept)
+
+
+def _by_cosine(nearest: str, score: float, impossible: str, other: float) -> ScopeVerdict:
+    if score < COSINE_REJECT_BELOW:
+        reason = f"nothing like it was learnt (nearest: '{nearest}', {score:.2f}; needed {COSINE_REJECT_BELOW})"
+        return ScopeVerdict("rejected", score, nearest, reason)
+    if other > score + OUTSIDE_MARGIN:
+        reason = f"it is like '{impossible}' ({other:.2f}), which this upper-body model cannot do"
+        return ScopeVerdict("rejected", score, nearest, reason)
+    if score < COSINE_DEGRADE_BELOW or other > score:
+        reason = f"taken as '{nearest}' ({score:.2f}); sure from {COSINE_DEGRADE_BELOW}"
+        return ScopeVerdict("degraded", score, nearest, reason)
+    return ScopeVerdict("accepted", score, nearest, "")
+
+
+def _unreadable(text: str) -> str:
+    """Why no sentence can be read in a text; empty where one can."""
+    if not any(c.isprintable() and not c.isspace() for c in text):
+        return "the text is empty"
+    latin, letters = sum(c.isascii() and c.isalpha() for c in text), sum(c.isalpha() for c in text)
+    if letters > 2 * latin:
+        return "it is written in another script; commands are in English"
+    if not _LATIN_WORD.search(text):
+        return "there is no word in it; commands are English sentences"
+    if found := _CODE.search(text):
+        return f"'{found[0]}' belongs to programs, not to commands in English"
+    return ""

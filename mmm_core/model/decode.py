@@ -1,0 +1,152 @@
+"""Parallel decoding (hot path): masked tokens -> tokens, all positions at once, the surest first.
+
+MMM (arXiv 2312.03596) sec. 3.3. Each step predicts every masked position, keeps the most confident ones and masks the
+rest again; a token once kept is never changed, so known tokens (context of an edit) survive by construction.
+`decode_plain` is the oracle: the same rule, one sequence at a time, written for reading.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from mmm_core.model.schedule import Schedule, masked_counts
+
+KEPT = -0.5
+"""Uncertainty of a chosen id is never below 0, but for rounding."""
+LogitsFn = Callable[[Tensor, Tensor], Tensor]
+"""The model: (B, L, C) ids with [MASK] where to fill, and which (B, L) are asked for -> (N, P, K) logits at those N
+positions, row by row, of the first P codebooks."""
+NoiseFn = Callable[[int, Tensor, tuple[int, int]], Tensor]
+"""(step, asked (B, L), (P, K)) -> (N, P, K) Gumbel noise."""
+
+
+@dataclass(frozen=True)
+class DecodeSettings:
+    """How to decode.
+
+    Attributes:
+        n_steps: steps for the longest motion.
+        schedule: how the masked share falls.
+        temperature: randomness; 0 = arg-max.
+        opening: so many positions at a row's beginning take their likeliest ids in the first step and are never masked
+            again: they can be played after it.
+    """
+
+    n_steps: int = 10
+    schedule: Schedule = "cosine"
+    temperature: float = 1.0
+    opening: int = 0
+
+
+def seeded_noise(seeds: list[int]) -> NoiseFn:
+    """Gumbel noise in which row b depends on seeds[b], the step and what is asked of that row alone.
+
+    So a batch of one and a batch of many give the same tokens for the same seed.
+    """
+
+    def noise(step: int, asked: Tensor, shape: tuple[int, int]) -> Tensor:
+        rows: list[Tensor] = []
+        for seed, n in zip(seeds, asked.sum(1).tolist(), strict=True):
+            generator = torch.Generator().manual_seed((seed * 1_000_003 + step) % (2**63 - 1))
+            rows.append(torch.rand(n, *shape, generator=generator))
+        return torch.cat(rows).clamp_(1e-20, 1 - 1e-7).log_().neg_().log_().neg_()  # -log(-log u) is Gumbel
+
+    return noise
+
+
+@torch.inference_mode()
+def decode(
+    tokens: Tensor,
+    logits_fn: LogitsFn,
+    mask_id: int,
+    settings: DecodeSettings,
+    seeds: list[int],
+    *,
+    n_predicted: int | None = None,
+    counts: list[list[int]] | None = None,
+    noise: NoiseFn | None = None,
+) -> Tensor:
+    """Fill every [MASK] in the predicted codebooks of `tokens`; whatever else stands there stays.
+
+    Args:
+        tokens: (B, L, C) int64 ids, `mask_id` where to fill: whole positions, or single codebooks of them (one body
+            part while the others are kept).
+        logits_fn: the model, see `LogitsFn`.
+        mask_id: id of [MASK].
+        settings: steps, schedule, temperature.
+        seeds: one per row.
+        n_predicted: codebooks to fill, the first P; None fills all C.
+        counts: masked positions before each step, for each row; None takes them from `settings`.
+        noise: where the randomness comes from; None draws it from `seeds`.
+
+    Returns:
+        (B, L, C) ids without [MASK] in the first P codebooks; rows may have different numbers of open positions.
+    """
+    P = tokens.shape[2] if n_predicted is None else n_predicted
+    tokens, seen_only = tokens[..., :P].clone(), tokens[..., P:]
+    noise = noise or seeded_noise(seeds)
+    open_ids = tokens == mask_id  # (B, L, P)
+    open_positions = open_ids.any(-1)  # (B, L)
+    if counts is None:
+        counts = [masked_counts(n, settings.n_steps, settings.schedule) for n in open_positions.sum(1).tolist()]
+    uncertainty = torch.where(open_positions, 1.0, -1.0)  # (B, L); what is below `KEPT` is never masked again
+    for step in range(max((len(c) for c in counts), default=0)):
+        wanted = torch.tensor([c[step] if step < len(c) else 0 for c in counts])
+        rank = uncertainty.argsort(dim=1, descending=True, stable=True).argsort(dim=1)
+        masked = (rank < wanted[:, None]) & (uncertainty > KEPT)  # (B, L): the `wanted` most uncertain of each row
+        if not masked.any():
+            break
+        tokens[open_ids & masked[..., None]] = mask_id
+        logits = logits_fn(torch.cat([tokens, seen_only], -1), masked).float()  # (N, P, K)
+        chosen = _choose(logits, settings.temperature, noise, step, masked)  # (N, P)
+        opening = masked.nonzero()[:, 1] < settings.opening
+        chosen[opening] = logits[opening].argmax(-1)
+        filled = open_ids[masked]  # (N, P): what is really chosen, the rest is known
+        tokens[masked] = torch.where(filled, chosen, tokens[masked])
+        likelihood = logits.softmax(-1).gather(-1, chosen[..., None])[..., 0]
+        uncertainty.fill_(-1.0)
+        uncertainty[masked] = 1.0 - (likelihood * filled).sum(-1) / filled.sum(-1)
+        uncertainty[:, : settings.opening] = -1.0
+    return torch.cat([tokens, seen_only], -1)
+
+
+def decode_plain(
+    tokens: Tensor, logits_fn: LogitsFn, mask_id: int, settings: DecodeSettings, seeds: list[int]
+) -> Tensor:
+    """The same result as `decode`, one sequence at a time and one position at a time: the test oracle."""
+    results: list[Tensor] = []
+    for row, seed in zip(tokens, seeds, strict=True):
+        ids = row.clone()
+        open_books = {i: [c for c in range(ids.shape[1]) if int(ids[i, c]) == mask_id] for i in range(len(ids))}
+        score = {i: 1.0 for i, books in open_books.items() if books}
+        for step, count in enumerate(masked_counts(len(score), settings.n_steps, settings.schedule)):
+            chosen_positions = sorted(sorted(score, key=lambda i: (-score[i], i))[:count])
+            if not chosen_positions:
+                break
+            asked = torch.zeros(1, len(ids), dtype=torch.bool)
+            for i in chosen_positions:
+                ids[i, open_books[i]] = mask_id
+                asked[0, i] = True
+            logits = logits_fn(ids[None], asked).float()
+            choice = _choose(logits, settings.temperature, seeded_noise([seed]), step, asked)
+            opening = [n for n, i in enumerate(chosen_positions) if i < settings.opening]
+            choice[opening] = logits[opening].argmax(-1)
+            score = {}
+            for n, i in enumerate(chosen_positions):
+                books = open_books[i]
+                ids[i, books] = choice[n, books]
+                score[i] = 1.0 - sum(float(logits[n, c].softmax(-1)[choice[n, c]]) for c in books) / len(books)
+            score = {i: uncertain for i, uncertain in score.items() if i >= settings.opening}
+        results.append(ids)
+    return torch.stack(results)
+
+
+def _choose(logits: Tensor, temperature: float, noise: NoiseFn, step: int, asked: Tensor) -> Tensor:
+    """Arg-max, or Gumbel-max sampling at `temperature`: (N, P, K) -> (N, P)."""
+    if temperature > 0:
+        logits = logits + temperature * noise(step, asked, (logits.shape[1], logits.shape[2]))
+    return logits.argmax(-1)

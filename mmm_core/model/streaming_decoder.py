@@ -1,0 +1,63 @@
+"""Ids that arrive piece by piece -> features as soon as they are final, the same as from one pass over the whole.
+
+A decoded frame depends on `halo_tokens` on each side. So a token's frames are final once so many tokens after it are
+known, and a window needs so many before it; both ends of the whole motion are padded as in one pass. Memory is bounded
+by the halo and the piece (MMM decodes a long motion in a single call at its end).
+"""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.model.vqvae import VqVae
+
+
+class StreamingDecoder:
+    """Feed ids with `push`, end with `finish`; both return (n, F) features, all in order and each once.
+
+    Args:
+        tokenizer: decodes.
+        kept: the `window` of a decoder that this one goes on for.
+        n_context: the same decoder's `n_context`.
+    """
+
+    def __init__(self, tokenizer: Tokenizer | VqVae, kept: Tensor | None = None, n_context: int = 0) -> None:
+        self._tokenizer = tokenizer
+        self._halo = tokenizer.halo_tokens()
+        none = torch.zeros(0, tokenizer.n_codebooks, dtype=torch.int64)
+        self._kept = none if kept is None else kept  # ids from the first still needed on
+        self._n_context = n_context  # of those, how many stand before the first token without frames
+
+    @property
+    def window(self) -> Tensor:
+        """(n, C) ids that later frames still need."""
+        return self._kept
+
+    @property
+    def n_context(self) -> int:
+        """How many of the window's ids have their frames already."""
+        return self._n_context
+
+    def push(self, ids: Tensor) -> Tensor:
+        """Features that (n, C) new ids make final."""
+        self._kept = torch.cat([self._kept, ids])
+        return self._decode(len(self._kept) - self._n_context - self._halo)
+
+    def finish(self) -> Tensor:
+        """Features of the last tokens."""
+        return self._decode(len(self._kept) - self._n_context)
+
+    @torch.inference_mode()
+    def _decode(self, n_tokens: int) -> Tensor:
+        """Features of the next `n_tokens`; what no later token needs is forgotten."""
+        if n_tokens <= 0:
+            return self._tokenizer.mean.new_zeros(0, len(self._tokenizer.mean))
+        start, end = self._n_context, self._n_context + n_tokens
+        window = self._kept[: end + self._halo]
+        features = self._tokenizer.decode(window[None])[0]
+        drop = max(0, end - self._halo)
+        self._kept, self._n_context = self._kept[drop:], end - drop
+        return features[start * FRAMES_PER_TOKEN : end * FRAMES_PER_TOKEN]
