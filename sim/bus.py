@@ -4,7 +4,7 @@ What is modelled: time of every byte, half duplex with collisions, answers in or
 the list in docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). Where the manual is
 silent: in a sync or bulk read the next servo waits for the time of an answer that does not come (on protocol 1.0 for ever,
 for it waits for the packet itself); a fast read ends at the first servo that is silent, for the next ones cannot continue
-its checksum; a packet with a wrong checksum is not answered.
+its checksum.
 """
 
 from __future__ import annotations
@@ -111,10 +111,21 @@ class SimBus:
                 for p in self._decoder.feed(bytes(heard[at:end])):
                     if p.instruction != Instruction.STATUS:
                         self._hear(p, 2.0, end_s, baud)
+                self._hear_damaged(self._decoder.damaged_id, 2.0, end_s, baud)
                 if self._decoder_1 is not None:
                     for p in self._decoder_1.feed(bytes(heard[at:end])):
                         self._hear(p, 1.0, end_s, baud)
+                    self._hear_damaged(self._decoder_1.damaged_id, 1.0, end_s, baud)
                 at = end
+
+    def _hear_damaged(self, servo_id: int | None, protocol: float, t_s: float, baud: int) -> None:
+        """A packet with a wrong checksum: the servo it seems to be for says so, and does nothing."""
+        if servo_id is None or servo_id == BROADCAST_ID:
+            return
+        self.world.advance(t_s)
+        for servo in self._listening(protocol, t_s, baud):
+            if servo.servo_id == servo_id and _answers(servo, Instruction.WRITE):
+                self._send(servo, servo_id, servo.errors.checksum, b"", t_s, baud)
 
     def _hear(self, p: Packet, protocol: float, t_s: float, baud: int) -> None:
         """One instruction packet, heard by the servos of its protocol and baud."""
@@ -173,8 +184,9 @@ class SimBus:
         It answers as who was asked, also when it has been given another id or baud (manual of RX-28, examples 7 and 8).
         """
         for servo in listening:
-            if "secondary_id" in servo.items and servo.memory.get("secondary_id") == p.servo_id:
-                self._instructions.carry_out(servo, p, t_s)
+            second_id = servo.memory.get("secondary_id") if "secondary_id" in servo.items else None
+            if second_id == p.servo_id != servo.servo_id:
+                self._instructions.carry_out(servo, p, t_s, by_second_id=True)
         for servo in by_id.get(p.servo_id, ()):
             error, parameters = self._instructions.carry_out(servo, p, t_s)
             if _answers(servo, p.instruction):

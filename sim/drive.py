@@ -42,7 +42,7 @@ class Mode(IntEnum):
     PWM = 16
 
 
-_POSITION_MODES = (Mode.POSITION, Mode.EXTENDED_POSITION, Mode.CURRENT_POSITION)
+POSITION_MODES = (Mode.POSITION, Mode.EXTENDED_POSITION, Mode.CURRENT_POSITION)
 
 
 class Drives:
@@ -110,7 +110,7 @@ class Drives:
     def touch(self) -> None:
         """A setting has changed: forget what was derived from the old ones."""
         self._quiet, self._rows = False, None
-        in_position = np.isin(self.mode, _POSITION_MODES)
+        in_position = np.isin(self.mode, POSITION_MODES)
         self._plain = bool(in_position.all()) and not (
             self.i_gain.any() or self.feedforward_1.any() or self.feedforward_2.any() or self.deadband_tick.any()
         )
@@ -134,9 +134,10 @@ class Drives:
     def live(self) -> list[tuple[float, ...]]:
         """Of each servo: position, velocity, current, duty, voltage, temperature, path position, path velocity."""
         if self._rows is None:
+            ramp_tick_s = self._ramp_tick_s * self.torque
             measured = (
                 self.position_tick, self.velocity_tick_s, self.current_a, self.duty, self.voltage_v,
-                self.temperature_c, self.path_tick, self.path_tick_s,
+                self.temperature_c, self.path_tick, np.where(self.mode == Mode.VELOCITY, ramp_tick_s, self.path_tick_s),
             )  # fmt: skip
             self._rows = list(zip(*(a.tolist() for a in measured), strict=True))
         return self._rows

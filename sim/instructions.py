@@ -21,8 +21,12 @@ class Instructions:
         self._audit = audit
         self.on_goal: Callable[[float, int, int], None] | None = None
 
-    def carry_out(self, servo: SimServo, p: Packet, t_s: float) -> tuple[int, bytes]:
-        """Do what an instruction says; error and parameters of the answer."""
+    def carry_out(self, servo: SimServo, p: Packet, t_s: float, *, by_second_id: bool = False) -> tuple[int, bytes]:
+        """Do what an instruction says; error and parameters of the answer.
+
+        `by_second_id`: the packet was for the servo's second id, by which its EEPROM cannot be changed (e-manual,
+        "Secondary ID").
+        """
         kind, parameters = p.instruction, p.parameters
         if kind == Instruction.PING:
             return 0, _identity(servo)
@@ -33,16 +37,20 @@ class Instructions:
                 return servo.errors.length, b""
             if kind == Instruction.READ:
                 return servo.read(access.address, access.length)
+            if by_second_id and servo.writes_eeprom(access.address, access.data):
+                return servo.errors.access, b""
             if kind == Instruction.WRITE:
                 return self.write(servo, access.address, access.data, t_s), b""
             return servo.register(access.address, access.data), b""
         if kind == Instruction.ACTION:
             pending = servo.act()
-            return (0 if pending is None else self.write(servo, *pending, t_s)), b""
+            return (servo.errors.instruction if pending is None else self.write(servo, *pending, t_s)), b""
         if kind == Instruction.REBOOT and servo.model.protocol == 2.0:
             self._audit.torque(t_s, servo.spec.servo_id, False, 0, 0)
             servo.reboot()
             return 0, b""
+        if by_second_id and kind in (Instruction.FACTORY_RESET, Instruction.CONTROL_TABLE_BACKUP):
+            return servo.errors.access, b""
         if kind == Instruction.FACTORY_RESET:
             return self._factory_reset(servo, p), b""
         if kind == Instruction.CLEAR and parameters == packet.CLEAR_MULTI_TURN:

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from daemon.bus.models import BusModel, IndirectWindow
 from daemon.bus.registers import Item
 
-INDIRECT = "indirect_address_"
+INDIRECT = "indirect_"
+"""What the names of indirect address items and of indirect data items begin with."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +43,11 @@ class Memory:
         self.model = model
         self._windows = model.indirect_windows(firmware)
         self.items: dict[str, Item] = dict(model.table) | _indirect_items(self._windows)
-        ends = [item.end for item in self.items.values()] + [w.data + w.count for w in self._windows]
-        self.size = max(ends)
+        self.size = max(item.end for item in self.items.values())
         self.bytes = bytearray(self.size)
+        self._is_item = bytearray(self.size)
+        for item in self.items.values():
+            self._is_item[item.address : item.end] = b"\1" * item.size
         self._by_address = {item.address: item for item in self.items.values()}
         self._measured, self._assumed = measured, dict(assumed or {})
         self._values: dict[str, int] = {}  # of items that only `set` changes
@@ -77,14 +80,22 @@ class Memory:
         """Store what was measured, packed side by side from the first of the measured addresses on."""
         layout.pack_into(self.bytes, self._measured.start, *values)
 
-    def read(self, address: int, length: int) -> bytes | None:
-        """Bytes as a client sees them; None beyond the end. Addresses without an item read as zero."""
+    def read(self, address: int, length: int, *, strict: bool = True) -> bytes | None:
+        """Bytes as a client sees them; None beyond the end, or, when `strict`, from or to an address without an item.
+
+        Addresses without an item between others read as zero: clients read the table in blocks.
+        """
         end = address + length
         if length < 1 or end > self.size:
             return None
         if end <= self._data_first:
+            if strict and not (self._is_item[address] and self._is_item[end - 1]):
+                return None
             return bytes(self.bytes[address:end])
-        return bytes(self.bytes[self.resolve(a)] for a in range(address, end))
+        targets = [self.resolve(a) for a in range(address, end)]
+        if strict and not (self._is_item[targets[0]] and self._is_item[targets[-1]]):
+            return None
+        return bytes(self.bytes[a] for a in targets)
 
     def resolve(self, address: int) -> int:
         """The address behind an indirect data byte; any other address is itself."""
@@ -132,11 +143,12 @@ class Memory:
 
 
 def _indirect_items(windows: tuple[IndirectWindow, ...]) -> dict[str, Item]:
-    """The address items of every window; from the factory each points to its own data byte."""
-    found: dict[str, Item] = {}
+    """The address and data items of every window; from the factory each address points to its own data byte, which is RAM."""
+    items: list[Item] = []
     for window in windows:
         for i in range(window.count):
-            name = f"{INDIRECT}{len(found) + 1}"
-            at, initial = window.address + 2 * i, window.data + i
-            found[name] = Item(name, at, 2, eeprom=window.kept, low=window.low, high=window.high, initial=initial)
-    return found
+            number, at, data = 1 + len(items) // 2, window.address + 2 * i, window.data + i
+            kept, low, high = window.kept, window.low, window.high
+            items.append(Item(f"{INDIRECT}address_{number}", at, 2, eeprom=kept, low=low, high=high, initial=data))
+            items.append(Item(f"{INDIRECT}data_{number}", data, 1, initial=0))
+    return {item.name: item for item in items}

@@ -3,8 +3,7 @@
 X and MX; what Y and P do otherwise stands in `servo_yp.py`.
 
 ROBOTIS e-manual, "Control Table" of XM430-W350, XL430-W250 and XL330-M288. Time is handed in, never read. Where the
-manual is silent we chose, and say so in docs/simulator.md: a write with one bad item writes nothing; an address without
-an item reads as zero.
+manual is silent we chose, and say so in docs/simulator.md: a write with one bad item writes nothing.
 """
 
 from __future__ import annotations
@@ -28,11 +27,13 @@ _SINGLE_TURN = (Mode.POSITION,)
 
 @dataclass(frozen=True)
 class Errors:
-    """What a servo answers to mistakes that are made before a register is reached."""
+    """What a servo answers to mistakes that are made before a register is reached, or by bytes that are no value."""
 
     instruction: int
     length: int
     access: int
+    value: int
+    checksum: int
 
 
 class SimServo(ServoPower):
@@ -42,7 +43,8 @@ class SimServo(ServoPower):
         asked: names of the items that the last write was about, whether it was taken or not.
     """
 
-    errors = Errors(ErrorCode.INSTRUCTION, ErrorCode.DATA_LENGTH, ErrorCode.ACCESS)
+    errors = Errors(ErrorCode.INSTRUCTION, ErrorCode.DATA_LENGTH, ErrorCode.ACCESS, ErrorCode.DATA_RANGE, ErrorCode.CRC)
+    _strict_reads = True
     has_encoder_error = True
     _position_range: ClassVar[Mapping[int, float]] = _POSITION_RANGE
     _limit_of: ClassVar[Mapping[str, str]] = _LIMIT_OF
@@ -58,7 +60,7 @@ class SimServo(ServoPower):
     def read(self, address: int, length: int) -> tuple[int, bytes]:
         """Error code and `length` bytes at `address`."""
         self._refresh()
-        data = self.memory.read(address, length)
+        data = self.memory.read(address, length, strict=self._strict_reads)
         return (self.errors.access, b"") if data is None else (ErrorCode.NONE, data)
 
     def write(self, address: int, data: bytes) -> int:
@@ -70,9 +72,10 @@ class SimServo(ServoPower):
             if span.problem:
                 return self.errors.length if span.problem == "short" else self.errors.access
             for item, at in span.items:
-                value = item.decode(part[at : at + item.size])
+                raw = part[at : at + item.size]
+                value = item.decode(raw)
                 self.asked.append(item.name)
-                error = self._refusal(item, value)
+                error = self._refusal(item, value) if item.holds(raw) else self.errors.value
                 if error:
                     return error
                 accepted.append((item, value))
@@ -81,6 +84,11 @@ class SimServo(ServoPower):
         for item, value in accepted:
             self._accept(item, value)
         return ErrorCode.NONE
+
+    def writes_eeprom(self, address: int, data: bytes) -> bool:
+        """Whether a write is about an item that is kept without power."""
+        spans = (self.memory.span(start, len(part)) for start, part in self.memory.runs(address, data))
+        return any(item.eeprom for span in spans for item, _ in span.items)
 
     def register(self, address: int, data: bytes) -> int:
         """Keep a write for `act` (instruction "Reg Write")."""
@@ -128,6 +136,7 @@ class SimServo(ServoPower):
         if name == "goal_position":
             self._set(name, value)
             self.drives.set_goal(self.index, self._to_shaft(value))
+            self._profile_type = self._type_of_profile()
             drive_mode = self.memory.get("drive_mode")
             if drive_mode & 8 and not self.torque and not self.is_faulted:
                 self._set_torque(True)  # drive mode bit 3: torque on by goal update

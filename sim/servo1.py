@@ -15,7 +15,7 @@ from sim.servo import Errors, SimServo
 from sim.servo_power import HEAT_BIT, OVERLOAD_BIT
 
 VOLTAGE_ERROR, ANGLE_ERROR, HEAT_ERROR, RANGE_ERROR = 1 << 0, 1 << 1, 1 << 2, 1 << 3
-OVERLOAD_ERROR, INSTRUCTION_ERROR = 1 << 5, 1 << 6
+CHECKSUM_ERROR, OVERLOAD_ERROR, INSTRUCTION_ERROR = 1 << 4, 1 << 5, 1 << 6
 _FULL = 1023
 _AMPERE_PER_UNIT, _ZERO_CURRENT = 0.0045, 2048  # MX-64/106 present current (e-manual, address 68)
 _COOLER_C = 5.0
@@ -24,7 +24,8 @@ _COOLER_C = 5.0
 class SimServo1(SimServo):
     """Registers of one AX or MX of Protocol 1.0."""
 
-    errors = Errors(INSTRUCTION_ERROR, INSTRUCTION_ERROR, INSTRUCTION_ERROR)
+    errors = Errors(INSTRUCTION_ERROR, INSTRUCTION_ERROR, INSTRUCTION_ERROR, RANGE_ERROR, CHECKSUM_ERROR)
+    _strict_reads = False
     has_encoder_error = False
     _measured_at = range(0)
 
@@ -62,7 +63,7 @@ class SimServo1(SimServo):
     def _refusal(self, item: Item, value: int) -> int:
         if item.eeprom and self.torque:
             return INSTRUCTION_ERROR
-        if not item.takes(value):
+        if not item.takes(value) or (item.name == "moving_speed" and value < 0 and not self._is_wheel):
             return RANGE_ERROR
         if item.name == "goal_position" and not self._is_wheel:
             low, high = self.memory.get("min_position_limit"), self.memory.get("max_position_limit")

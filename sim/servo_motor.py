@@ -13,7 +13,7 @@ from typing import ClassVar
 from daemon.bus.models import MODELS
 from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, Item
 from retarget.robot import ServoSpec
-from sim.drive import STEP_S, Drives, Mode
+from sim.drive import POSITION_MODES, STEP_S, Drives, Mode
 from sim.errors import SimSettingError
 from sim.memory import Memory
 
@@ -23,6 +23,8 @@ _FIRMWARE_OTHER = 45
 _LIVE_AT = range(120, 147)
 _LIVE = struct.Struct("<HBBhhiiiiHB")  # realtime tick 120 ... temperature 146, side by side; P: 568 ... 594
 _MS_PER_S, _TICK_WRAP_MS = 1000, 32768
+_RECTANGULAR, _TRIANGULAR, _TRAPEZOIDAL = 0x10, 0x20, 0x30
+"""Type of the profile in the moving status (e-manual, "Moving Status", bits 4 and 5)."""
 
 
 class ServoMotor:
@@ -37,6 +39,8 @@ class ServoMotor:
     """
 
     _measured_at = _LIVE_AT
+    _most_offset_in_position_mode: ClassVar[float] = 1024
+    """Homing offset in ticks beyond which position mode ignores it (e-manual, "Homing Offset")."""
     _assumed: ClassVar[Mapping[str, int]] = {}
     """What items begin with of which the manual does not say it."""
 
@@ -60,6 +64,7 @@ class ServoMotor:
         self.watchdog_tripped = False
         self._turn_tick = 0.0
         self._sign, self._homing_tick, self._threshold_tick_s = 1, 0, 0.0
+        self._profile_type = 0
         self._now_s = 0.0
         self._set("model_number", number)
         self._set("firmware_version", self.firmware)
@@ -128,10 +133,11 @@ class ServoMotor:
         """Hand what the registers say to the drive."""
         get, i, d = self.memory.get, self.index, self.drives
         self._sign = -1 if get("drive_mode") & 1 else 1
-        self._homing_tick = get("homing_offset")
         self._threshold_tick_s = get("moving_threshold") * self._tick_s_per_unit
         units = 1.0 / self._pwm_full
-        mode = get("operating_mode")
+        mode, offset = get("operating_mode"), get("homing_offset")
+        ignored = mode == Mode.POSITION and abs(offset) > self._most_offset_in_position_mode
+        self._homing_tick = 0 if ignored else offset
         d.mode[i] = mode
         pwm = get("goal_pwm")
         d.goal_duty[i] = self._sign * pwm * units
@@ -166,8 +172,10 @@ class ServoMotor:
         """Top speed and acceleration of the profile in ticks; inf for none."""
         velocity, acceleration = self.memory.get("profile_velocity"), self.memory.get("profile_acceleration")
         if not self.memory.get("drive_mode") & 4:
-            top = min(velocity, self.memory.get("velocity_limit")) * self._tick_s_per_unit if velocity else math.inf
-            return top, acceleration * self._tick_s2_per_unit if acceleration else math.inf
+            bend = acceleration * self._tick_s2_per_unit if acceleration else math.inf
+            if not velocity:  # a step, but in velocity mode (e-manual, "Profile Velocity", types of profile)
+                return math.inf, bend if self.memory.get("operating_mode") == Mode.VELOCITY else math.inf
+            return min(velocity, self.memory.get("velocity_limit")) * self._tick_s_per_unit, bend
         if not velocity:
             return math.inf, math.inf
         whole_s = velocity / _MS_PER_S  # time-based profile: milliseconds from start to end, and of speeding up
@@ -175,6 +183,16 @@ class ServoMotor:
         way = abs(float(self.drives.goal_tick[self.index] - self.drives.path_tick[self.index]))
         top = max(way, 1e-3) / max(whole_s - ramp_s, STEP_S)
         return top, top / ramp_s if ramp_s else math.inf
+
+    def _type_of_profile(self) -> int:
+        """What a goal position makes of the profile; from rest, as the manual assumes."""
+        top, bend = self._profile()
+        way = abs(float(self.drives.goal_tick[self.index] - self.drives.path_tick[self.index]))
+        if math.isinf(top):
+            return 0
+        if math.isinf(bend):
+            return _RECTANGULAR
+        return _TRAPEZOIDAL if way * bend > top**2 * (1 + 1e-9) else _TRIANGULAR
 
     @property
     def _tick_s2_per_unit(self) -> float:
@@ -198,13 +216,15 @@ class ServoMotor:
         sign, per_unit = self._sign, self._tick_s_per_unit
         moving = abs(velocity) > self._threshold_tick_s
         here = self._to_register(position)
-        arrived = abs(self.memory.get("goal_position") - here) < 10
+        in_position_mode = self.memory.get("operating_mode") in POSITION_MODES
+        arrived = in_position_mode and abs(self.memory.get("goal_position") - here) < 10
+        status = int(arrived) | int(in_position_mode and path_speed != 0) << 1 | self._profile_type
         if self._raw_per_ampere:
             effort = sign * current * self._raw_per_ampere
         else:
             effort = sign * duty * 1000
         self.memory.measure(
-            _LIVE, int(self._now_s * _MS_PER_S) % _TICK_WRAP_MS, int(moving), int(arrived) | int(path_speed != 0) << 1,
+            _LIVE, int(self._now_s * _MS_PER_S) % _TICK_WRAP_MS, int(moving), status,
             round(sign * duty * self._pwm_full), round(effort), round(sign * velocity / per_unit), round(here),
             round(sign * path_speed / per_unit), round(self._to_register(path)),
             max(0, round(voltage * 10)), max(0, min(255, round(temperature))),

@@ -74,7 +74,7 @@ class ServoPower(ServoMotor):
 
     def _power_on(self, *, was_on: bool = False) -> None:
         """RAM is fresh; whole turns are forgotten, unless power `was_on` all the time."""
-        self._pending = None
+        self._pending, self._profile_type = None, 0
         self._set_torque(False)
         startup = self.memory.get("startup_configuration") if "startup_configuration" in self.items else 0
         if startup & 2:

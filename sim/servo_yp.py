@@ -39,6 +39,7 @@ class SimServoP(SimServo):
 
     _measured_at = range(568, 595)
     _position_range: ClassVar[Mapping[int, float]] = {}
+    _most_offset_in_position_mode: ClassVar[float] = math.inf
     _limit_of: ClassVar[Mapping[str, str]] = _LIMIT_OF
     _assumed: ClassVar[Mapping[str, int]] = {"position_p_gain": 20, "velocity_p_gain": 20, "velocity_i_gain": 190}
 

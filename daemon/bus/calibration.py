@@ -22,6 +22,8 @@ MOVED_TICKS = 100
 """A joint moved by less than this (9 degrees) was not moved on purpose: its range in the file stays."""
 SUSPECT_DEG = 15.0
 """Degrees by which a zero may differ from the robot file's before a person is asked: a horn set one tooth off is 15 at most."""
+MOST_OFFSET_TICK = 1024
+"""Homing offset, either way, beyond which a servo in position mode ignores it (e-manual, "Homing Offset")."""
 MARGIN_S = 0.03
 """Seconds that an answer may be late while a person calibrates: nothing waits for it, and a busy machine is no brown-out."""
 
@@ -160,11 +162,13 @@ def _of_servo(robot: RobotModel, i: int, zero: int, ranges: Ranges, margin_deg: 
     first, last = servo.model.tick_range(servo.extended)
     problem = ""
     if low < first or high > last:
-        shift = round((first + last) / 2 - (low + high) / 2)
-        problem = (
-            f"its range crosses the end of the servo's turn (ticks {low} to {high}): turn the horn, or"
-            f" mmmd servo set {servo.servo_id} homing_offset {shift:+d} added to what is there, and calibrate again"
-        )
+        middle = round((first + last) / 2 - (low + high) / 2)
+        shift = max(-MOST_OFFSET_TICK, min(MOST_OFFSET_TICK, middle))
+        problem = f"its range crosses the end of the servo's turn (ticks {low} to {high}): turn the horn"
+        if low + shift >= first and high + shift <= last:
+            command = f"mmmd servo set {servo.servo_id} homing_offset {shift:+d}"
+            problem += f", or {command} added to what is there (beyond {MOST_OFFSET_TICK} in all it is ignored)"
+        problem += ", and calibrate again"
     low_deg, high_deg = round(ends[0] + margin_deg, 1), round(ends[1] - margin_deg, 1)
     return Calibrated(servo.servo_id, name, zero, low_deg, high_deg, problem, off_deg)
 

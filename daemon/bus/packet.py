@@ -270,16 +270,23 @@ def fast_parts(reply: Packet, lengths: Sequence[int]) -> list[Part]:
 
 
 class PacketDecoder:
-    """Bytes in, packets out. Garbage is skipped and counted; a length is believed only once the checksum agrees."""
+    """Bytes in, packets out. Garbage is skipped and counted; a length is believed only once the checksum agrees.
+
+    Attributes:
+        skipped_bytes, bad_checksums: counts since the beginning.
+        damaged_id: id in a packet that ended with the last byte fed and had a wrong checksum; None without one.
+    """
 
     def __init__(self) -> None:
         self._buffer = bytearray()
         self.skipped_bytes = 0
         self.bad_checksums = 0
+        self.damaged_id: int | None = None
 
     def feed(self, data: bytes) -> list[Packet]:
         """Packets completed by `data`."""
         self._buffer += data
+        self.damaged_id = None
         packets: list[Packet] = []
         while (found := self._next()) is not None:
             packets.append(found)
@@ -324,6 +331,8 @@ class PacketDecoder:
             return None
         if crc16(memoryview(buffer)[start : end - 2]) != buffer[end - 2] | buffer[end - 1] << 8:
             self.bad_checksums += 1
+            if end == len(buffer):
+                self.damaged_id = buffer[start + 4]
             return 0
         if buffer[start + 7] == Instruction.STATUS and length < 4:
             return 0

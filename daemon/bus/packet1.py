@@ -125,6 +125,10 @@ class PacketDecoder:
 
     Args:
         answers: True for the controller's role (status packets come in), False for the servo's (requests come in).
+
+    Attributes:
+        skipped_bytes, bad_checksums: counts since the beginning.
+        damaged_id: id in a packet that ended with the last byte fed and had a wrong checksum; None without one.
     """
 
     def __init__(self, *, answers: bool = True) -> None:
@@ -132,10 +136,12 @@ class PacketDecoder:
         self._buffer = bytearray()
         self.skipped_bytes = 0
         self.bad_checksums = 0
+        self.damaged_id: int | None = None
 
     def feed(self, data: bytes) -> list[Packet]:
         """Packets completed by `data`."""
         self._buffer += data
+        self.damaged_id = None
         packets: list[Packet] = []
         while (found := self._next()) is not None:
             packets.append(found)
@@ -175,6 +181,8 @@ class PacketDecoder:
             return None
         if checksum(memoryview(buffer)[start + 2 : end - 1]) != buffer[end - 1]:
             self.bad_checksums += 1
+            if end == len(buffer):
+                self.damaged_id = buffer[start + 2]
             return 0
         return end
 

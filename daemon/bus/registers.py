@@ -107,6 +107,10 @@ class Item:
             value = -value | 1 << self.sign_bit
         return value.to_bytes(self.size, "little", signed=value < 0)
 
+    def holds(self, data: bytes) -> bool:
+        """Whether these bytes are a value at all: above a sign bit there is nothing."""
+        return self.sign_bit is None or not int.from_bytes(data, "little") >> self.sign_bit + 1
+
     def takes(self, value: int) -> bool:
         """Whether the manual's range allows it."""
         return (self.low is None or value >= self.low) and (self.high is None or value <= self.high)

@@ -413,7 +413,7 @@ def test_calibration_writes_zero_and_range_of_what_was_moved(tmp_path: Path) -> 
     c = found["waist_yaw"]
     assert c.zero_tick == 2100 and (c.low_deg, c.high_deg) == (-41.9, 41.9) and not c.problem
     assert found["left_elbow"].low_deg is None and elbow.get("present_position") == found["left_elbow"].zero_tick
-    assert "crosses the end" in found["head_yaw"].problem and "homing_offset" in found["head_yaw"].problem
+    assert "crosses the end" in found["head_yaw"].problem and "homing_offset -1024" in found["head_yaw"].problem
     for name in ("robot.xml", "robot.toml"):
         (tmp_path / name).write_text((ROBOT.path.parent / name).read_text("utf-8"), "utf-8")
     robot, out = load_robot(str(tmp_path)), tmp_path / "mine.toml"
