@@ -20,7 +20,7 @@ from daemon.bench.motions import cut, glued
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.evaluation.probes import judge
 from mmm_core.motion.motion import Motion
-from mmm_core.motion.posture_features import look_at
+from mmm_core.motion.posture_features import posture_features
 from retarget.as_human import as_motion
 from retarget.paths import JointPath
 from retarget.pipeline import Retargeter
@@ -118,7 +118,7 @@ class Executed:
         commanded, measured = self.perform(motion)
         probe = self._probes[motion.text]
         told, done = (
-            judge(probe, look_at(m.joints_m, m.head_quat_wxyz, m.forearm_twist_rad), with_pose=True)
+            judge(probe, posture_features(m.joints_m, m.head_quat_wxyz, m.forearm_twist_rad), with_pose=True)
             for m in (commanded, measured)
         )
         self._commanded.update(key for key, ok in told.items() if ok)

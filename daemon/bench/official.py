@@ -27,7 +27,7 @@ def bench_official(seed: int = 0, lengths: Sequence[int] = LENGTHS) -> dict[str,
     """
     import torch
 
-    from mmm_core.inference.int8_linear import can_eight_bit, to_eight_bit
+    from mmm_core.inference.int8_linear import convert_to_int8, int8_is_supported
     from mmm_core.inference.onednn_linear import pack
     from mmm_core.model.sampling import OFFICIAL_SAMPLING, empty_row, fill
     from mmm_core.model.text import TextStates
@@ -43,9 +43,9 @@ def bench_official(seed: int = 0, lengths: Sequence[int] = LENGTHS) -> dict[str,
     closed = torch.full((1, N_TOKENS + 1, 1), plain.ids.mask)
     row = [empty_row(plain, N_TOKENS)]
     models = {"fp32": pack(copy.deepcopy(plain)), "bf16": pack(copy.deepcopy(plain), "bf16")}
-    if can_eight_bit():
+    if int8_is_supported():
         eight = copy.deepcopy(plain)
-        models["int8"] = to_eight_bit(eight, lambda: fill(eight, text, row, [seed], OFFICIAL_SAMPLING))
+        models["int8"] = convert_to_int8(eight, lambda: fill(eight, text, row, [seed], OFFICIAL_SAMPLING))
 
     def forward() -> None:
         with torch.inference_mode():

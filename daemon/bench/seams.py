@@ -105,7 +105,7 @@ def _prompt_seams(
 
 def _prefix_seams(engine: Engine, motions: list[Motion], rng: np.random.Generator) -> list[float]:
     """Peak jerk where the second text of each pair goes on from the first one's motion, as `say` with a prefix does."""
-    from mmm_core.generate.continuation import go_on
+    from mmm_core.generate.continuation import continue_motion
     from mmm_core.generate.keyframes import features_of
 
     jerk: list[float] = []
@@ -114,7 +114,7 @@ def _prefix_seams(engine: Engine, motions: list[Motion], rng: np.random.Generato
         k = int(rng.integers(WINDOW // 2, len(whole) - WINDOW // 2))
         shown = whole.at(np.arange(k - PREFIX_FRAMES, k)).motion()
         before = replace(shown, features=features_of(shown).numpy())
-        after = posture_of(go_on(engine, before, PREFIX_S, b.text, seed=b.seed).motion)
+        after = posture_of(continue_motion(engine, before, PREFIX_S, b.text, seed=b.seed).motion)
         after = faded_in(after, whole.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
         jerk.append(_peak_jerk(joined([whole[:k], after]), k))
     return jerk
@@ -124,7 +124,7 @@ def _draft_seams(engine: Engine, motions: list[Motion], rng: np.random.Generator
     """Peak jerk where a motion takes the place of its draft."""
     jerk: list[float] = []
     for motion in motions:
-        made = engine.begin(motion.text, seed=motion.seed).draft()
+        made = engine.begin(motion.text, seed=motion.seed).preview()
         if made is None:
             continue
         draft, whole = posture_of(made.motion), posture_of(motion)

@@ -16,15 +16,15 @@ def bench_story(n_scenes: int = N_SCENES, seed: int = 0) -> dict[str, Any]:
     """`total_s`, `motion_s` and `first_frame_ms` of the shipped model on two threads, text encoding included."""
     from daemon.bench.texts import draw_texts
     from mmm_core.generate.engine import Engine
-    from mmm_core.generate.story import Scene, tell
+    from mmm_core.generate.story import Scene, generate_story
 
     engine = Engine.load(threads=THREADS)
     scenes = [Scene(text, LONGEST_S) for text in draw_texts(n_scenes, seed)]
-    for _ in tell(engine, scenes[:3], seed=seed):
+    for _ in generate_story(engine, scenes[:3], seed=seed):
         pass  # warm
     start = time.perf_counter()
     first_s, n_frames = 0.0, 0
-    for piece in tell(engine, scenes, seed=seed):
+    for piece in generate_story(engine, scenes, seed=seed):
         first_s = first_s or time.perf_counter() - start
         n_frames += len(piece.joints_m)
     total_s = time.perf_counter() - start

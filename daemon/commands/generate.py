@@ -15,7 +15,8 @@ from daemon.errors import CommandError
 from daemon.wire.requests import LONGEST_S, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S
 
 if TYPE_CHECKING:
-    from mmm_core.generate.engine import Engine, Generation
+    from mmm_core.generate.engine import Engine
+from mmm_core.generate.result import GenerationResult
 
 _FILE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,119}")
 
@@ -137,13 +138,13 @@ def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candida
 
 def _tell(path: Path, out: Path, bvh: Path | None, seed: int, engine: Engine) -> int:
     """Write a story as one motion; the parts that were rejected are said."""
-    from mmm_core.generate.story import Scene, check_scenes, tell
+    from mmm_core.generate.story import Scene, check_scenes, generate_story
     from mmm_core.motion.bvh import save_bvh
     from mmm_core.motion.motion import joined
 
     scenes = [Scene(line.text, line.seconds) for _, line in _lines(path, "--story", SceneLine)]
     check_scenes(scenes)
-    pieces = list(tell(engine, scenes, seed=seed))
+    pieces = list(generate_story(engine, scenes, seed=seed))
     for piece in pieces:
         if piece.status == "rejected":
             sys.stderr.write(f"mmmd: left out: {piece.text!r} is out of scope ({piece.scope_score:.2f})\n")
@@ -212,7 +213,7 @@ def _problem(prompt: Prompt) -> str:
     return ""
 
 
-def _summary(prompt: Prompt, made: Generation, path: Path) -> dict[str, object]:
+def _summary(prompt: Prompt, made: GenerationResult, path: Path) -> dict[str, object]:
     return {
         "id": prompt.id, "text": prompt.text, "seed": prompt.seed, "out": str(path), "status": made.status,
         "scope_score": round(made.scope_score, 4), "understood": made.understood, "reason": made.reason,

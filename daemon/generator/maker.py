@@ -20,12 +20,12 @@ from daemon.generator.messages import (
 )
 from daemon.wire.requests import LONGEST_S
 from mmm_core.errors import GenerationError
-from mmm_core.generate.continuation import go_on
+from mmm_core.generate.continuation import continue_motion
 from mmm_core.generate.editing import Edit, edit, part_names
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.keyframes import Keyframe, between, features_of
-from mmm_core.generate.result import Generation, no_motion
-from mmm_core.generate.story import Scene, Told, tell_on
+from mmm_core.generate.result import GenerationResult, no_motion
+from mmm_core.generate.story import Scene, StoryState, continue_story
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.motion.motion import Motion
 
@@ -61,12 +61,12 @@ class EngineMaker:
         text, seed, seconds = request.text, request.seed, request.seconds
         if request.before is not None:
             before = _with_features(motion_from(request.before))
-            yield self._of(go_on(self._engine, before, request.prefix_s, text, seed=seed, seconds=seconds))
+            yield self._of(continue_motion(self._engine, before, request.prefix_s, text, seed=seed, seconds=seconds))
             return
-        making = self._engine.begin(text, seed=seed, seconds=seconds)
-        if request.draft and (draft := making.draft()) is not None:
-            yield self._of(draft, making.n_frames)
-        yield self._of(making.finished())
+        generation = self._engine.begin(text, seed=seed, seconds=seconds)
+        if request.draft and (draft := generation.preview()) is not None:
+            yield self._of(draft, generation.n_frames)
+        yield self._of(generation.result())
 
     def scene(self, request: SceneMessage) -> Generated:
         """The next piece of a story.
@@ -76,9 +76,9 @@ class EngineMaker:
             msgspec.MsgspecError: `told` is nothing that a scene before gave.
         """
         began_s = time.perf_counter()
-        told = msgspec.msgpack.decode(request.told, type=Told) if request.told else Told()
+        told = msgspec.msgpack.decode(request.told, type=StoryState) if request.told else StoryState()
         scene = None if request.text is None else Scene(request.text, request.seconds)
-        piece, told, verdict = tell_on(self._engine, scene, told, seed=request.seed, last=request.last)
+        piece, told, verdict = continue_story(self._engine, scene, told, seed=request.seed, last=request.last)
         piece = replace(piece, status=verdict.status, scope_score=verdict.score)
         return self._generated(piece, verdict, began_s, msgspec.msgpack.encode(told))
 
@@ -105,7 +105,7 @@ class EngineMaker:
 
         return self._unless_rejected(request.text, request.seed, made, "bad_keyframes")
 
-    def _of(self, made: Generation, draft_of: int = 0) -> Generated:
+    def _of(self, made: GenerationResult, draft_of: int = 0) -> Generated:
         how = (made.understood, made.reason, made.timings_ms, self.checkpoint_hash)
         return Generated(made.motion, *how, draft_of=draft_of)
 

@@ -181,11 +181,11 @@ def main() -> int:
 def _cost(motion: Motion, wanted: Wanted, retargeter: Retargeter) -> float | None:
     """How far a motion is from the best; None when it fails a check."""
     from mmm_core.evaluation.probes import judge
-    from mmm_core.motion.posture_features import look_at
+    from mmm_core.motion.posture_features import posture_features
 
     if motion.status != "accepted" or len(motion.joints_m) < 16:
         return None
-    verdict = judge(wanted.probe, look_at(motion.joints_m, motion.head_quat_wxyz))
+    verdict = judge(wanted.probe, posture_features(motion.joints_m, motion.head_quat_wxyz))
     if not all(verdict.values()):
         return None
     posture = posture_of(motion)

@@ -24,7 +24,7 @@ from mmm_core.evaluation.reference import reference
 from mmm_core.language.count_words import count_asked
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import Motion
-from mmm_core.motion.posture_features import Shown, look_at
+from mmm_core.motion.posture_features import PostureFeatures, posture_features
 
 HELD_OUT_SEED = 23_000_001
 CORPUS_DRAWS = 10
@@ -59,13 +59,13 @@ def cases_of(family: str, n: int = CORPUS_DRAWS) -> list[Case]:
     return cases
 
 
-def seen(body: Body) -> Shown:
+def seen(body: Body) -> PostureFeatures:
     """What a motion of the corpus shows."""
     motion = recover(body.features())
-    return look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    return posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 
-def judged(s: Shown, gesture: Gesture, text: str) -> Checks:
+def judged(s: PostureFeatures, gesture: Gesture, text: str) -> Checks:
     """The checks of a motion for a sentence; what the sentence leaves open may be done in any of its ways."""
     counts = {gesture.count}
     if count_asked(text) is None:
@@ -131,6 +131,6 @@ def counting_checks(cases: Sequence[Case]) -> list[str]:
 def _faults(motion: Motion, case: Case, counting: Sequence[str]) -> list[str]:
     if not len(motion.joints_m):
         return ["refused"]
-    s = look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     checks = judged(s, case.gesture, case.text)
     return [check for check in counting if not checks.get(check, True)]

@@ -42,14 +42,14 @@ _PALETTE = {"": (68, 68, 68), "left": (192, 57, 43), "right": (36, 113, 163)}
 
 
 @dataclass(frozen=True)
-class Shown:
+class PostureFeatures:
     """A motion to be drawn: joints (T, 22, 3) in metres and where the head faces (T, 3)."""
 
     joints_m: Array
     face: Array
 
     @classmethod
-    def of(cls, joints_m: Array, head_quat_wxyz: Array) -> Shown:
+    def of(cls, joints_m: Array, head_quat_wxyz: Array) -> PostureFeatures:
         """The same with the head's orientation (T, 4)."""
         return cls(joints_m.astype(np.float64), matrix_from_quat(head_quat_wxyz.astype(np.float64))[..., 2])
 
@@ -57,9 +57,9 @@ class Shown:
         """Frames."""
         return len(self.joints_m)
 
-    def cut(self, start: int, end: int) -> Shown:
+    def cut(self, start: int, end: int) -> PostureFeatures:
         """Frames `start` to `end`."""
-        return Shown(self.joints_m[start:end], self.face[start:end])
+        return PostureFeatures(self.joints_m[start:end], self.face[start:end])
 
 
 @dataclass(frozen=True)
@@ -103,24 +103,24 @@ FILMS = (
 )
 
 
-def recordings(folder: Path, captions: Sequence[str]) -> dict[str, Shown]:
+def recordings(folder: Path, captions: Sequence[str]) -> dict[str, PostureFeatures]:
     """The first recording with each caption, held-out splits before training's.
 
     Raises:
         TrainingDataError: no recording has a caption.
     """
-    found: dict[str, Shown] = {}
+    found: dict[str, PostureFeatures] = {}
     for split in ("test", "val", "train"):
         for features, texts in list(read_clips(folder, split))[::2]:  # every other one is a mirror image
             for caption in set(texts) & set(captions) - found.keys():
                 motion = recover(features)
-                found[caption] = Shown.of(motion.joints_m, motion.head_quat_wxyz)
+                found[caption] = PostureFeatures.of(motion.joints_m, motion.head_quat_wxyz)
     if missing := set(captions) - found.keys():
         raise TrainingDataError(folder, "captions", f"no clip with {sorted(missing)}", "the folder of docs/DATA.md")
     return found
 
 
-def liveliest(motion: Shown, n_frames: int) -> Shown:
+def liveliest(motion: PostureFeatures, n_frames: int) -> PostureFeatures:
     """The stretch of `n_frames` in which the wrists move most against the shoulders; all of a shorter motion."""
     if len(motion) <= n_frames:
         return motion
@@ -130,7 +130,7 @@ def liveliest(motion: Shown, n_frames: int) -> Shown:
     return motion.cut(start, start + n_frames)
 
 
-def person(motion: Shown, frame: int) -> Image.Image:
+def person(motion: PostureFeatures, frame: int) -> Image.Image:
     """One pose, its pelvis in the middle; a line from the head says where it faces."""
     width, height = (SMOOTH * side for side in PANEL)
     image = Image.new("RGB", (width, height), "white")
@@ -150,7 +150,7 @@ def person(motion: Shown, frame: int) -> Image.Image:
     return image.resize(PANEL, Image.Resampling.BOX)
 
 
-def film(path: Path, motions: Sequence[Shown]) -> None:
+def film(path: Path, motions: Sequence[PostureFeatures]) -> None:
     """Write motions side by side as an animated GIF; a shorter one stands still at its end."""
     n_frames = max(len(m) for m in motions)
     frames = [
@@ -164,7 +164,7 @@ def film(path: Path, motions: Sequence[Shown]) -> None:
     )
 
 
-def contact_sheet(path: Path, rows: Sequence[tuple[str, Shown]]) -> None:
+def contact_sheet(path: Path, rows: Sequence[tuple[str, PostureFeatures]]) -> None:
     """Write motions at eight instants, each row under its title."""
     title = 14
     sheet = Image.new("RGB", (INSTANTS * PANEL[0], len(rows) * (PANEL[1] + title)), "white")
@@ -194,10 +194,10 @@ def make(engine: Engine, folder: Path, out: Path, films: Sequence[Film] = FILMS)
     real = recordings(folder, [f.real for f in films if f.real])
     written: list[Path] = []
     lines: list[str] = []
-    rows: list[tuple[str, Shown]] = []
+    rows: list[tuple[str, PostureFeatures]] = []
     for one in films:
         generation = engine.generate(one.prompt, seed=SEED)
-        made = Shown.of(generation.motion.joints_m, generation.motion.head_quat_wxyz)
+        made = PostureFeatures.of(generation.motion.joints_m, generation.motion.head_quat_wxyz)
         said = f"{one.prompt!r} ({generation.status}, score {generation.scope_score:.2f})"
         if not len(made):
             lines.append(f"| {one.prompt} | refused: {generation.reason} | |")

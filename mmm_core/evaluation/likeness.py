@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.evaluation.reference import Reference, channels, palms
-from mmm_core.motion.posture_features import Shown
+from mmm_core.motion.posture_features import PostureFeatures
 from mmm_core.motion.repetitions import peaks_beyond
 from mmm_core.recognition.signs import shows
 
@@ -45,7 +45,7 @@ WAY_OFF_SHARE = 0.36
 _DTW_EVERY = 2
 
 
-def judge(s: Shown, ref: Reference) -> tuple[Checks, float]:
+def judge(s: PostureFeatures, ref: Reference) -> tuple[Checks, float]:
     """Which checks a motion passes, only those that the gesture has, and how far it is from the reference (0 is the same)."""
     g = ref.gesture
     off, pairs = _warped(s, ref.shown)
@@ -76,7 +76,7 @@ def repeats(ref: Reference) -> bool:
     return bool(FAMILIES[ref.gesture.family].counts) and bool(ref.acting)
 
 
-def _strokes(s: Shown, ref: Reference, core: slice) -> Checks:
+def _strokes(s: PostureFeatures, ref: Reference, core: slice) -> Checks:
     """Count, pace and size along the axis of each acting channel."""
     wide = slice(max(0, core.start - MARGIN_FRAMES), core.stop + MARGIN_FRAMES)
     made, meant = [], []
@@ -128,7 +128,7 @@ def _steady(made: list[int], meant: list[int], most: float) -> bool:
     return bool(ratio.max() / ratio.min() < most and 1 / TEMPO_RATIO < np.median(ratio) < TEMPO_RATIO)
 
 
-def _in_step(s: Shown, ref: Reference, core: slice) -> bool:
+def _in_step(s: PostureFeatures, ref: Reference, core: slice) -> bool:
     """Whether the two arms go together, against each other or one after the other as they should."""
     a, b = ref.acting
     meant = _lag(ref.along(ref.shown, a)[ref.core], ref.along(ref.shown, b)[ref.core])
@@ -167,7 +167,7 @@ def _turns(path: Array) -> float:
     return float((around[-1] - around[0]) / (2 * np.pi))
 
 
-def _apart(s: Shown) -> Array:
+def _apart(s: PostureFeatures) -> Array:
     both = palms(s)
     return np.linalg.norm(both["left"] - both["right"], axis=-1)
 
@@ -184,7 +184,7 @@ def _touches(made: Array, meant: Array, ref: Reference) -> bool:
     return len(again) == len(clean) and float(made[again].max()) < near + 2 * TOUCH_OFF_M
 
 
-def _takes_pose(s: Shown, ref: Reference) -> bool:
+def _takes_pose(s: PostureFeatures, ref: Reference) -> bool:
     """Whether palms, head and trunk come to where they rest in the clean motion, and stay a moment."""
     meant = channels(ref.shown)
     body = np.concatenate(list(meant.values()), -1)
@@ -206,7 +206,7 @@ def _takes_pose(s: Shown, ref: Reference) -> bool:
     return _longest(near) >= POSE_FRAMES
 
 
-def _angles(s: Shown, t: Shown) -> Iterable[tuple[Array, Array]]:
+def _angles(s: PostureFeatures, t: PostureFeatures) -> Iterable[tuple[Array, Array]]:
     names = ("head_yaw_deg", "head_pitch_deg", "head_roll_deg", "trunk_yaw_deg", "trunk_pitch_deg", "trunk_roll_deg")
     return ((getattr(s, name), getattr(t, name)) for name in names)
 
@@ -219,7 +219,7 @@ def _longest(yes: NDArray[np.bool_]) -> int:
     return longest
 
 
-def _warped(s: Shown, t: Shown) -> tuple[float, list[tuple[int, int]]]:
+def _warped(s: PostureFeatures, t: PostureFeatures) -> tuple[float, list[tuple[int, int]]]:
     """Mean distance of two motions with time warped to fit best, as a share of the second's range; and the matched frames."""
     a, b = (np.concatenate(list(channels(x).values()), -1)[::_DTW_EVERY] for x in (s, t))
     apart = np.linalg.norm(a[:, None] - b[None], axis=-1)

@@ -8,7 +8,7 @@ from typing import Any
 
 from mmm_core.corpus.heldout import PROBES, Probe
 from mmm_core.motion.motion import Motion
-from mmm_core.motion.posture_features import Shown, look_at, part
+from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
 from mmm_core.recognition import checks
 from mmm_core.recognition.signs import shows
 
@@ -19,7 +19,7 @@ MIN_PART = 12
 Generate = Callable[[str, int], Motion]
 
 
-def judge(probe: Probe, shown: Shown, with_pose: bool = False) -> dict[str, bool]:
+def judge(probe: Probe, shown: PostureFeatures, with_pose: bool = False) -> dict[str, bool]:
     """Which of a probe's expectations a motion meets; only those the probe has, and its family's sign if asked for."""
     if probe.then is not None:
         return {"order": _in_order(probe, probe.then, shown)}
@@ -44,7 +44,7 @@ def judge(probe: Probe, shown: Shown, with_pose: bool = False) -> dict[str, bool
     return verdict
 
 
-def _in_order(first: Probe, second: Probe, shown: Shown) -> bool:
+def _in_order(first: Probe, second: Probe, shown: PostureFeatures) -> bool:
     """Whether some moment parts the motion into the first gesture and the second, and none into second and first."""
     n_frames = len(shown.head_yaw_deg)
 
@@ -55,7 +55,7 @@ def _in_order(first: Probe, second: Probe, shown: Shown) -> bool:
     return any(parts(first, second, t) for t in moments) and not any(parts(second, first, t) for t in moments)
 
 
-def _is_seen(probe: Probe, shown: Shown) -> bool:
+def _is_seen(probe: Probe, shown: PostureFeatures) -> bool:
     ok = checks.limb(shown) == probe.limb and (not probe.side or shown.arms == probe.side)
     return ok and (not probe.direction or checks.direction(shown, probe.family) == probe.direction)
 
@@ -79,7 +79,9 @@ def evaluate(
             motion = generate(probe.text, seed)
             if len(motion.joints_m):
                 verdict = judge(
-                    probe, look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad), with_pose=True
+                    probe,
+                    posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad),
+                    with_pose=True,
                 )
             else:
                 refused += 1

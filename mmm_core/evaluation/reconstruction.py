@@ -21,7 +21,7 @@ from mmm_core.evaluation.probes import judge
 from mmm_core.model.tokenizer import Tokenizer
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from mmm_core.motion.features import recover
-from mmm_core.motion.posture_features import Shown, look_at
+from mmm_core.motion.posture_features import PostureFeatures, posture_features
 
 Features = NDArray[np.float32]
 ANGLES = ("trunk_yaw_deg", "trunk_pitch_deg", "trunk_roll_deg", "head_yaw_deg", "head_pitch_deg", "head_roll_deg")
@@ -35,10 +35,10 @@ N_EACH = 8
 _MOST_DRAWS = 100
 
 
-def shown(features: Features) -> Shown:
+def shown(features: Features) -> PostureFeatures:
     """What a motion's features show."""
     motion = recover(features)
-    return look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    return posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 
 def performed(probe: Probe, seed: int) -> Features:

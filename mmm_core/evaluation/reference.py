@@ -16,7 +16,7 @@ from mmm_core.corpus.styles import STYLES
 from mmm_core.corpus.synthesis import rest_pose
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import FPS
-from mmm_core.motion.posture_features import Shown, look_at
+from mmm_core.motion.posture_features import PostureFeatures, posture_features
 from mmm_core.recognition.checks import PALM_M
 
 Array = NDArray[np.floating]
@@ -29,7 +29,7 @@ ACTING_SHARE = 0.5
 _HEAD_DEG_PER_M, _TRUNK_DEG_PER_M, _FOREARM_M, _TWIST_M_PER_RAD, _LIFT = 100.0, 60.0, 0.25, 0.1, 3.0
 
 
-def channels(s: Shown) -> dict[str, Array]:
+def channels(s: PostureFeatures) -> dict[str, Array]:
     """What each limb does, (T, D) in metres or what counts as much: left, right, head, trunk."""
     out: dict[str, Array] = {}
     for side in ("left", "right"):
@@ -42,7 +42,7 @@ def channels(s: Shown) -> dict[str, Array]:
     return out
 
 
-def palms(s: Shown) -> dict[str, Array]:
+def palms(s: PostureFeatures) -> dict[str, Array]:
     """(T, 3) middle of each palm in the chest frame, metres."""
     return {side: s.wrists_m[side] + PALM_M * s.fore[side] for side in ("left", "right")}
 
@@ -61,13 +61,13 @@ class Reference:
     """
 
     gesture: Gesture
-    shown: Shown
+    shown: PostureFeatures
     core: slice
     acting: tuple[str, ...]
     axes: dict[str, Array]
     is_path: bool
 
-    def along(self, s: Shown, channel: str) -> Array:
+    def along(self, s: PostureFeatures, channel: str) -> Array:
         """(T,) how far a channel of `s` is along its axis."""
         return channels(s)[channel] @ self.axes[channel]
 
@@ -85,12 +85,12 @@ def reference(g: Gesture, otherwise: bool = False) -> Reference:
     posture = (style.trunk_pitch_rad, style.head_pitch_rad) if style else (0.0, 0.0)
     body = perform(score, int(np.ceil(score.time_s * FPS)), style.stiffness if style else 0.0, posture)
     motion = recover(body.features())
-    shown = look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    shown = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     core = slice(int(starts * FPS), max(int(ends * FPS), int(starts * FPS) + 4))
     return Reference(g, shown, core, *_acting(shown, core, FAMILIES[g.family].limb), score.is_traced)
 
 
-def _acting(s: Shown, core: slice, limb: str) -> tuple[tuple[str, ...], dict[str, Array]]:
+def _acting(s: PostureFeatures, core: slice, limb: str) -> tuple[tuple[str, ...], dict[str, Array]]:
     moving = {name: path[core] for name, path in channels(s).items()}
     reach = {name: float(np.linalg.norm(np.ptp(path, axis=0))) for name, path in moving.items()}
     wanted = ("left", "right") if limb == "arm" else (limb,) if limb else ()

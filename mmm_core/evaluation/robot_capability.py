@@ -16,7 +16,7 @@ from mmm_core.evaluation.probes import judge
 from mmm_core.evaluation.reconstruction import Features, performed
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import FPS, Motion
-from mmm_core.motion.posture_features import look_at
+from mmm_core.motion.posture_features import posture_features
 
 PERFORMANCES = 3
 """Of each probe; an expectation counts as one that can be shown when most of them show it."""
@@ -38,7 +38,7 @@ def showable(
         seen: Counter[str] = Counter()
         for seed in range(PERFORMANCES):
             motion = on_robot(as_motion(performed(probe, seed), probe.text))
-            shown = look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+            shown = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
             seen.update(key for key, ok in judge(probe, shown, with_pose=True).items() if ok)
         found[probe.text] = frozenset(key for key, n in seen.items() if 2 * n > PERFORMANCES)
         progress(len(found))

@@ -1,6 +1,6 @@
-"""Editing a motion: everything is a mask of ids to make again, with the rest as context.
+"""Edits of a motion: each masks the ids to generate anew and keeps the rest as context.
 
-MMM (arXiv 2312.03596) sec. 3.3 and 3.4: in-betweening, a new beginning or end, any other stretch, and single body parts
+MMM (arXiv 2312.03596) sec. 3.3 and 3.4: in-betweening, a new beginning or end, any other segment, and single body parts
 (the paper's upper body given the lower; here any of the tokenizer's parts).
 """
 
@@ -13,7 +13,8 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import GenerationError
-from mmm_core.generate.engine import Engine, check_seed
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.motion_model import check_seed
 from mmm_core.model.sampling import fill
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, tokens_for_frames
 from mmm_core.motion.motion import FPS, Motion
@@ -23,11 +24,11 @@ TOKEN_S = FRAMES_PER_TOKEN / FPS
 
 @dataclass(frozen=True)
 class Edit:
-    """What of a motion is made again.
+    """A segment of a motion, and the body parts in it, that are generated anew.
 
     Attributes:
-        start_s: from here on, seconds.
-        end_s: up to here; None is the motion's end.
+        start_s: beginning of the segment, seconds.
+        end_s: end of the segment, seconds; None is the motion's end.
         parts: body parts by their name in the tokenizer; None is the whole body.
     """
 
@@ -37,24 +38,24 @@ class Edit:
 
 
 def part_names(engine: Engine) -> tuple[str, ...]:
-    """Body parts that can be edited apart with this model, in the order of its codebooks."""
+    """Body parts that this model can edit on their own, in the order of its codebooks."""
     return engine.model.tokenizer.part_names
 
 
 def edit(engine: Engine, motion: Motion, what: Edit | Sequence[Edit], text: str, *, seed: int = 0) -> Motion:
-    """`motion` with the stretches and parts in `what` made again for `text`; all other ids stay as they are.
+    """`motion` with the segments in `what` generated anew for `text`; all other ids stay as they are.
 
-    In-betweening is a stretch in the middle, out-painting two at the ends. Stretches widen to whole tokens (0.2 s).
+    In-betweening is a segment in the middle, out-painting two at the ends. Segments widen to whole tokens (0.2 s).
 
     Args:
         engine: the model.
         motion: at most 9.8 s; its ids are used if they fit it, else its features are encoded.
-        what: one stretch or several.
-        text: what the new part is to be.
+        what: one segment or several.
+        text: a command for the new segments.
         seed: any integer from 0 to 2^31 - 1.
 
     Raises:
-        GenerationError: a stretch lies outside the motion or is empty, a part is unknown or cannot be predicted, the text
+        GenerationError: a segment lies outside the motion or is empty, a part is unknown or cannot be predicted, the text
             is rejected, or the motion is too long.
     """
     check_seed(seed)
@@ -116,7 +117,7 @@ def _filled(engine: Engine, row: Tensor, text: str, seed: int, n_frames: int | N
 
 
 def _span(one: Edit, n_tokens: int) -> slice:
-    """Tokens that a stretch touches."""
+    """Tokens that a segment touches."""
     end_s = n_tokens * TOKEN_S if one.end_s is None else one.end_s
     if not 0 <= one.start_s < end_s <= n_tokens * TOKEN_S + 1e-6:
         asked = f"the stretch from {one.start_s} to {end_s} s"
@@ -125,7 +126,7 @@ def _span(one: Edit, n_tokens: int) -> slice:
 
 
 def _books(engine: Engine, one: Edit) -> list[int]:
-    """Codebooks of the parts."""
+    """Codebooks of a segment's body parts."""
     names = part_names(engine)[: engine.model.transformer.config.n_out]
     if one.parts is None:
         return list(range(len(names)))

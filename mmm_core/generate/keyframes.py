@@ -1,8 +1,8 @@
-"""Motion through given poses at given times: what is between them is generated.
+"""Motion through given poses at given times; the model generates the frames between them.
 
 In-betweening of MMM (arXiv 2312.03596, sec. 3.3) with poses instead of motions: each pose becomes the id of a person who
-stands still in it, put where it is due; all other ids are [MASK]. Ids are coarse, so a pose is met to a few degrees:
-whoever needs it exactly leads the motion through it afterwards (`daemon.playing.keyposes`).
+stands still in it, at the position of its time; all other ids are [MASK]. Ids are coarse, so the motion passes a pose within
+a few degrees; a caller that needs the exact pose bends the motion towards it afterwards (`daemon.playing.keyposes`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from torch import Tensor
 
 from mmm_core.errors import GenerationError
 from mmm_core.generate.editing import TOKEN_S
-from mmm_core.generate.engine import Engine, check_seed
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.motion_model import check_seed
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.model.sampling import empty_row, fill
 from mmm_core.model.tokens import MAX_TOKENS, frames_for_seconds, tokens_for_frames
@@ -24,16 +25,16 @@ from mmm_core.motion.motion import FPS, Motion
 from mmm_core.motion.skeleton import matrix_from_quat
 
 STILL_FRAMES = 24
-"""A pose is read by the tokenizer as a person who holds it for 1.2 s, of which the middle is taken."""
+"""Frames, 1.2 s, for which a person holds the pose that the tokenizer encodes; the token in their middle is used."""
 
 
 @dataclass(frozen=True)
 class Keyframe:
-    """A pose that is due at a time.
+    """A pose and its time.
 
     Attributes:
-        at_s: from the motion's start.
-        pose: one frame, or several of which the first counts.
+        at_s: seconds from the motion's start.
+        pose: a motion whose first frame is the pose.
     """
 
     at_s: float
@@ -46,7 +47,7 @@ def between(engine: Engine, keyframes: Sequence[Keyframe], text: str = "", *, se
     Args:
         engine: the model.
         keyframes: poses in order of time, each in a token (0.2 s) of its own.
-        text: what happens between them; empty leaves it to the model.
+        text: a command for the frames between the poses; empty leaves them to the model.
         seed: any integer from 0 to 2^31 - 1.
 
     Raises:

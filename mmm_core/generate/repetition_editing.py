@@ -1,9 +1,9 @@
-"""A gesture done as often as the text says.
+"""Edits the ids of a repeated gesture until it has as many strokes as the text names.
 
-Parallel decoding keeps the sense of a repeated gesture but loses count of it (docs/model.md). So where a text names a
-number, several candidates are made and the strokes of each are counted; of the one that comes nearest, the tokens of one
-stroke, from peak to peak, stand again as often as strokes are missing, or those of strokes too many are left out. At each
-seam a [MASK] is left for the model to fill (MMM, arXiv 2312.03596, sec. 3.3: any part may be given).
+Parallel decoding keeps the sense of a repeated gesture but loses count of it (docs/model.md). Where a text names a number,
+the model generates several candidates and `mmm_core.motion.repetitions` counts their strokes. In the candidate with the
+nearest count, the tokens of one stroke, from peak to peak, are repeated for each missing stroke, or the tokens of surplus
+strokes are removed. Each seam is a [MASK] that the model fills (MMM, arXiv 2312.03596, sec. 3.3: any part may be given).
 """
 
 from __future__ import annotations
@@ -11,32 +11,31 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import torch
 from torch import Tensor
 
+from mmm_core.generate.motion_model import MotionModel
+from mmm_core.generate.sequence import Command
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.model.sampling import fill
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.motion.repetitions import Strokes, strokes_of
 
-if TYPE_CHECKING:
-    from mmm_core.generate.engine import Engine
-    from mmm_core.generate.sequence import Command
-
 CLEAR = 0.3
-"""Strokes are left out only of a motion that repeats itself as well as this."""
+"""Largest misfit of a cycle for strokes to be removed: a motion that repeats itself less clearly keeps them all."""
 ALIKE = 0.5
-"""Before and after a stroke that stands alone the body must be as near as this to the same place."""
+"""Largest distance between the body before and after a single stroke, as a share of the way to the stroke's peak."""
 _LONGEST_FRAMES, _SHORTEST_FRAMES, _AWAY = 28, 4, 0.6
-"""From the peak of such a stroke to where it began or ended; there the body is away from the peak by this share of the way."""
+"""Frames from the peak of a single stroke to its beginning or end, at most and at least; least distance of the body from the
+peak there, as a share of the way."""
 _UNCLEAR, _NONE, _PER_MISFIT = 0.5, 3.0, 0.8
+"""Weights against a missing or surplus stroke, which counts 1: an unsure count, no stroke at all, a unit of misfit."""
 _TAKEN = ScopeVerdict("accepted", 1.0, "", "")
 
 
-def ids_of_count(engine: Engine, command: Command, made: Sequence[Tensor], count: int, seed: int) -> Tensor:
-    """(L, C) ids of a command that asks for `count` strokes, from candidates (n_tokens, C); longer or shorter by strokes."""
+def ids_of_count(engine: MotionModel, command: Command, made: Sequence[Tensor], count: int, seed: int) -> Tensor:
+    """(L, C) ids of a command that names `count` strokes: the best of the candidates (n_tokens, C), edited towards that count."""
     transformer = engine.model.transformer
     features = engine.model.tokenizer.decode(torch.stack(list(made))).numpy()
     motions = [
@@ -49,9 +48,9 @@ def ids_of_count(engine: Engine, command: Command, made: Sequence[Tensor], count
 
 
 def with_count(ids: Tensor, strokes: Strokes, count: int, mask_id: int) -> Tensor | None:
-    """(L, C) ids with as many strokes as asked, [MASK] at the seams; None where they are right or nothing can be done.
+    """(L, C) ids with `count` strokes, as far as the longest motion has room, and a [MASK] at each seam.
 
-    No more than the longest motion has room for.
+    None where the count is right already or no stroke can be repeated or removed.
     """
     missing = count - len(strokes.frames)
     if missing == 0 or not strokes.frames:
@@ -70,7 +69,7 @@ def with_count(ids: Tensor, strokes: Strokes, count: int, mask_id: int) -> Tenso
 
 
 def _far_from(count: int, strokes: Strokes | None) -> float:
-    """How little a candidate serves: strokes too many or too few, then how clear they are."""
+    """Cost of a candidate: missing or surplus strokes first, then how clearly they are found."""
     if strokes is None:
         return float("inf")
     found = len(strokes.frames)
@@ -78,7 +77,7 @@ def _far_from(count: int, strokes: Strokes | None) -> float:
 
 
 def _between_peaks(strokes: Strokes) -> tuple[int, int]:
-    """First frame and end of the stroke that comes back best to where it began, in whole tokens as nearly as may be."""
+    """First frame and end of the stroke that returns nearest to its beginning; whole tokens are preferred."""
 
     def cost(pair: tuple[int, int]) -> float:
         tokens = (pair[1] - pair[0]) / FRAMES_PER_TOKEN
@@ -88,7 +87,7 @@ def _between_peaks(strokes: Strokes) -> tuple[int, int]:
 
 
 def _around_peak(strokes: Strokes) -> tuple[int, int] | None:
-    """From before the only stroke to after it, where the body is in nearly the same place."""
+    """First frame and end of the only stroke, with the body in nearly the same place; None where there is no such pair."""
     peak = strokes.frames[0]
     first, end = max(0, peak - _LONGEST_FRAMES), min(len(strokes.path), peak + _LONGEST_FRAMES + 1)
     way = max(strokes.apart(i, peak) for i in range(first, end))
@@ -104,7 +103,7 @@ def _around_peak(strokes: Strokes) -> tuple[int, int] | None:
 
 
 def _without(ids: Tensor, strokes: Strokes, n: int, mask_id: int) -> Tensor | None:
-    """Left out: from a peak to the n-th after it, where the body is most nearly in the same place."""
+    """(L, C) ids without `n` strokes: the frames from a peak to the n-th peak after it, in the most similar places, are cut out."""
     frames = strokes.frames
     first = min(range(len(frames) - n), key=lambda i: strokes.apart(frames[i], frames[i + n]))
     start = _token(frames[first])
@@ -117,7 +116,7 @@ def _token(frame: int) -> int:
 
 
 def _opened(ids: Tensor, mask_id: int) -> Tensor:
-    """With a [MASK] for the first token."""
+    """A copy with a [MASK] in place of the first token."""
     opened = ids.clone()
     opened[:1] = mask_id
     return opened

@@ -1,4 +1,4 @@
-"""What an answer of the engine is: the motion, or none, how the text was taken and how long it took."""
+"""The result of a generation: the motion, or an empty one, how the text was understood, and the time each stage took."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from mmm_core.motion.motion import FPS, N_FEATURES, N_JOINTS, Motion
 
 
 @dataclass(frozen=True)
-class Generation:
-    """A motion and how the text was taken.
+class GenerationResult:
+    """A motion and how its text was understood.
 
     Attributes:
         motion: the motion; of length zero when rejected.
@@ -34,27 +34,26 @@ class Generation:
 
     @property
     def scope_score(self) -> float:
-        """How near the text lies to what the model can do."""
+        """Score of the text from 0, nothing that the model can do, to 1."""
         return self.motion.scope_score
 
 
-class Clock:
-    """Milliseconds between laps."""
+class StageTimer:
+    """Measures the stages of one generation, which follow each other without a pause."""
 
     def __init__(self) -> None:
-        """Starts with the first lap."""
         self.laps_ms: dict[str, float] = {}
         self._last = time.perf_counter()
 
     def lap(self, name: str) -> None:
-        """Time since the last lap, under a name."""
+        """Record under `name` the milliseconds since the lap before, or since the start."""
         now = time.perf_counter()
         self.laps_ms[name] = 1e3 * (now - self._last)
         self._last = now
 
 
 def no_motion(text: str, seed: int, verdict: ScopeVerdict) -> Motion:
-    """The record of a rejected text: no frames."""
+    """The motion of a rejected text: without frames."""
     return Motion(
         joints_m=np.zeros((0, N_JOINTS, 3), np.float32),
         fps=FPS,
@@ -69,6 +68,6 @@ def no_motion(text: str, seed: int, verdict: ScopeVerdict) -> Motion:
     )
 
 
-def understood(verdict: ScopeVerdict) -> str:
-    """The nearest known command and its score; empty where none is near."""
+def understood_as(verdict: ScopeVerdict) -> str:
+    """Nearest known command and its score, as users see them: "wave (0.93)"; empty where none is near."""
     return f"{verdict.nearest} ({verdict.score:.2f})" if verdict.nearest else ""

@@ -10,26 +10,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import torch
 from torch import Tensor
 
-from mmm_core.generate.result import understood
+from mmm_core.generate.motion_model import MotionModel
+from mmm_core.generate.result import understood_as
 from mmm_core.language.clauses import commands_in_turn
-from mmm_core.model.sampling import SamplingSettings, fill
+from mmm_core.model.sampling import fill
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import MAX_TOKENS, tokens_for_frames
 
-if TYPE_CHECKING:
-    from mmm_core.generate.engine import Engine
-
 TRANSITION_TOKENS = 2
-"""Generated between two commands: 0.4 s, as in the released model."""
+"""Tokens generated between two commands: 0.4 s, as in the released model."""
 FEWEST_TOKENS = 4
-"""Of a command among several, however short the whole is asked to be."""
+"""Tokens that a command among several keeps at least, however short the whole motion is to be."""
 COMMAND_STRIDE = 15_485_863
-"""Between the seeds of a text's commands."""
+"""Distance between the seeds of a text's commands."""
 
 
 @dataclass(frozen=True)
@@ -37,10 +34,10 @@ class Command:
     """One of the commands of a text.
 
     Attributes:
-        text: its words.
-        states: of its words.
-        n_tokens: how many it takes.
-        understood: the nearest known command and its score, where it is one of several.
+        text: the command's words.
+        states: the text encoder's states of these words.
+        n_tokens: length of the command's motion.
+        understood: the nearest known command and its score; empty for a text of one command.
     """
 
     text: str
@@ -49,14 +46,15 @@ class Command:
     understood: str = ""
 
 
-def commands_of(engine: Engine, text: str, states: TextStates, n_frames: int | None) -> list[Command]:
-    """The commands of a text, in order; one if it asks for one, or if a part of it alone is nothing that can be done.
+def commands_of(engine: MotionModel, text: str, states: TextStates, n_frames: int | None) -> list[Command]:
+    """Commands of a text, in order. A text stays one command where a part of it, read alone, would be rejected.
 
     Args:
         engine: reads the parts and predicts their lengths.
-        text: what is done of a text, as the model reads it.
-        states: its states, as a whole.
-        n_frames: of the whole; None lets the model choose. The commands share it as their own lengths are to each other.
+        text: the part of a user's text that is carried out, as the model reads it.
+        states: states of the whole `text`.
+        n_frames: length of the whole motion, shared in proportion to the commands' own lengths; None lets the model
+            choose.
 
     Raises:
         GenerationError: `n_frames` is None and the model has no length predictor.
@@ -70,19 +68,19 @@ def commands_of(engine: Engine, text: str, states: TextStates, n_frames: int | N
             own = [tokens_for_frames(engine.predicted_frames(s)) for s, _ in read]
             if n_frames is not None or sum(own) > room:
                 own = shared_out(room, own)
-            return [Command(t, s, n, understood(v)) for t, (s, v), n in zip(parts, read, own, strict=True)]
+            return [Command(t, s, n, understood_as(v)) for t, (s, v), n in zip(parts, read, own, strict=True)]
     n_frames = engine.predicted_frames(states) if n_frames is None else n_frames
     return [Command(text, states, tokens_for_frames(n_frames))]
 
 
 def shared_out(room: int, wanted: Sequence[int]) -> list[int]:
-    """`room` tokens shared in proportion to what is wanted, at least `FEWEST_TOKENS` each; they add up to `room`."""
+    """Shares of `room` tokens in proportion to `wanted`, each at least `FEWEST_TOKENS`; their sum is `room`."""
     spare = room - FEWEST_TOKENS * len(wanted)
     ends = [round(spare * sum(wanted[: i + 1]) / sum(wanted)) for i in range(len(wanted))]
     return [FEWEST_TOKENS + end - start for start, end in pairwise([0, *ends])]
 
 
-def joined(engine: Engine, commands: Sequence[Command], rows: Sequence[Tensor], seed: int) -> Tensor:
+def joined(engine: MotionModel, commands: Sequence[Command], rows: Sequence[Tensor], seed: int) -> Tensor:
     """(L, C) ids of the commands' rows and the transitions between them."""
     between = transitions(engine, rows, [c.states for c in commands], seed)
     ids = rows[0]
@@ -91,8 +89,11 @@ def joined(engine: Engine, commands: Sequence[Command], rows: Sequence[Tensor], 
     return ids
 
 
-def transitions(engine: Engine, rows: Sequence[Tensor], texts: Sequence[TextStates], seed: int) -> list[Tensor]:
-    """(2, C) ids between neighbours, for the left one's text: half of each row is the context. One step, one batch."""
+def transitions(engine: MotionModel, rows: Sequence[Tensor], texts: Sequence[TextStates], seed: int) -> list[Tensor]:
+    """(2, C) ids between neighbouring rows, filled in one step and one batch.
+
+    The text is that of the left row; half of each row is the context.
+    """
     if len(rows) < 2:
         return []
     transformer = engine.model.transformer
@@ -103,17 +104,12 @@ def transitions(engine: Engine, rows: Sequence[Tensor], texts: Sequence[TextStat
 
 
 def transition_row(left: Tensor, right: Tensor, mask_id: int) -> Tensor:
-    """End of `left`, [MASK]s, beginning of `right`."""
+    """The end of `left`, [MASK]s, the beginning of `right`."""
     hole = left.new_full((TRANSITION_TOKENS, left.shape[1]), mask_id)
     return torch.cat([left[len(left) - _half(left) :], hole, right[: _half(right)]])
 
 
-def official_transition_settings(settings: SamplingSettings) -> SamplingSettings:
-    """As the released code fills transitions: one step at temperature 1."""
-    return replace(settings, official=True, steps=1, temperature=1.0)
-
-
 def _half(ids: Tensor) -> int:
-    """Half of a row, as context; the longest rows give one token less, so that both halves and the hole fit."""
+    """Tokens of a row that serve as context: half of them, one less in the longest rows, so that both halves and the hole fit."""
     half = len(ids) // 2
     return half - 1 if 2 * half >= MAX_TOKENS - 1 else half

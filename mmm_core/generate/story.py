@@ -2,7 +2,7 @@
 
 MMM (arXiv 2312.03596) sec. 3.3: each text is a row of its own; between neighbours a few masked tokens are filled with the
 end of one and the beginning of the next as context. The paper decodes everything at the end; here the decoder runs over
-a moving window, so motion begins with the first segment and a story may last for ever.
+a moving window, so motion begins with the first scene and a story may last for ever.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import GenerationError
-from mmm_core.generate.engine import Engine, check_seed
+from mmm_core.generate.engine import Engine
+from mmm_core.generate.motion_model import check_seed
 from mmm_core.generate.result import no_motion
 from mmm_core.generate.sequence import COMMAND_STRIDE, Command, commands_of, joined, transitions
 from mmm_core.language.scope import ScopeVerdict
@@ -27,9 +28,9 @@ from mmm_core.motion.features import Root, root_after
 from mmm_core.motion.motion import FPS, Motion
 
 READ_AHEAD = 8
-"""Segments made in one batch once the first is on its way."""
+"""Scenes generated in one batch, once the first scene has been given."""
 SCENE_STRIDE = 104_729
-"""Between the seeds of scenes."""
+"""Distance between the seeds of scenes."""
 
 
 @dataclass(frozen=True)
@@ -48,11 +49,11 @@ class _Segment:
     ids: Tensor  # (L, C)
 
 
-def tell(engine: Engine, scenes: Iterable[Scene], *, seed: int = 0) -> Iterator[Motion]:
-    """Pieces of one long motion, in order; joined they are the story. A piece says which text it mainly belongs to.
+def generate_story(engine: Engine, scenes: Iterable[Scene], *, seed: int = 0) -> Iterator[Motion]:
+    """Yields one long motion in chunks, in order; each carries the text that most of its frames belong to.
 
-    Scenes are read as they are needed, at most `READ_AHEAD` + 1 of them before their motion is due. A scene that is
-    rejected is left out; its piece has no frames and says why by its status.
+    Scenes are read when they are needed, at most `READ_AHEAD` + 1 ahead of their motion. A rejected scene is left out: its
+    chunk has no frames and the status "rejected".
 
     Raises:
         GenerationError: seed or a scene's seconds out of range.
@@ -80,16 +81,16 @@ def tell(engine: Engine, scenes: Iterable[Scene], *, seed: int = 0) -> Iterator[
 
 
 @dataclass(frozen=True)
-class Told:
-    """Where a story stands after some of its scenes: all that the next one needs, however much was told before.
+class StoryState:
+    """State of a story between two scenes. Its size does not grow with the story.
 
     Attributes:
-        n_scenes: scenes so far, those left out included.
-        text: of the last one that was not left out.
-        command: the last of that text's commands.
-        segment: its ids, L rows of C.
+        n_scenes: scenes so far, rejected ones included.
+        text: text of the last scene that was not rejected.
+        command: the last command of that text.
+        segment: ids of that scene, L rows of C.
         window: ids that the decoder still needs, rows of C.
-        n_context: how many of these have their frames already.
+        n_context: rows of `window` whose frames were given already.
     """
 
     n_scenes: int = 0
@@ -100,54 +101,59 @@ class Told:
     n_context: int = 0
 
 
-def tell_on(
-    engine: Engine, scene: Scene | None, told: Told, *, seed: int = 0, last: bool = False
-) -> tuple[Motion, Told, ScopeVerdict]:
-    """One scene more of a story: its next piece, where it stands then, how the text was taken.
+def continue_story(
+    engine: Engine, scene: Scene | None, state: StoryState, *, seed: int = 0, last: bool = False
+) -> tuple[Motion, StoryState, ScopeVerdict]:
+    """The motion of a story's next scene, the story's state after it, and the scope verdict of its text.
 
-    Piece by piece this gives the ids that `tell` gives, without anything being kept between the calls: whoever asks keeps
-    `Told`, so a story goes on with another engine when the first is gone. A piece may have no frames (a rejected scene, or
-    one too short for the decoder's halo). Joints start at the origin in each piece.
+    Scene by scene this yields the ids of `generate_story`. The engine keeps nothing between the calls: the caller keeps the
+    state, so another engine can continue the story. A motion may have no frames (a rejected scene, or one too short for the
+    decoder's halo). The joints of each motion start at the origin.
 
     Args:
         engine: the model.
-        scene: what comes next; None only leads to the end.
-        told: what the call before gave; `Told()` for the first.
-        seed: of the story.
-        last: whether the story ends here; its last frames are then given too.
+        scene: the next scene; None adds none and, with `last`, ends the story.
+        state: state from the call before; `StoryState()` for the first scene.
+        seed: seed of the story.
+        last: whether the story ends here; the motion then includes the last frames.
 
     Raises:
-        GenerationError: seed or seconds out of range, or ids in `told` that this model does not have.
+        GenerationError: seed or seconds out of range, or ids in `state` that this model does not have.
     """
     check_seed(seed)
     n_codebooks = engine.model.tokenizer.n_codebooks
     before, window = (
-        _ids_of(rows, n_codebooks, engine.model.transformer.ids.n_codes) for rows in (told.segment, told.window)
+        _ids_of(rows, n_codebooks, engine.model.transformer.ids.n_codes) for rows in (state.segment, state.window)
     )
-    decoder = StreamingDecoder(engine.model.tokenizer, window, told.n_context)
-    text, command, segment, new = told.text, told.command, before, before[:0]
+    decoder = StreamingDecoder(engine.model.tokenizer, window, state.n_context)
+    text, command, segment, new = state.text, state.command, before, before[:0]
     verdict = ScopeVerdict("accepted", 1.0, "", "")
     if scene is not None:
-        made = _segments(engine, [(told.n_scenes, scene)], seed)[0]
+        made = _segments(engine, [(state.n_scenes, scene)], seed)[0]
         verdict = made.verdict
         if len(made.ids):
             text, command, segment, new = scene.text, made.commands[-1].text, made.ids, made.ids
             if len(before):
-                said = Command(told.command, engine.understand(told.command)[0], len(before))
-                left = _Segment(Scene(told.text), verdict, [said], before)
+                said = Command(state.command, engine.understand(state.command)[0], len(before))
+                left = _Segment(Scene(state.text), verdict, [said], before)
                 new = torch.cat([*_between(engine, [left, made], seed), made.ids])
     features = torch.cat([decoder.push(new), *([decoder.finish()] if last else [])]).numpy()
     name = text if scene is None else scene.text
     some = len(features) > 0
     piece = engine.motion_of_features(features, new, name, seed, verdict) if some else no_motion(name, seed, verdict)
-    after = Told(
-        told.n_scenes + (scene is not None), text, command, segment.tolist(), decoder.window.tolist(), decoder.n_context
+    after = StoryState(
+        state.n_scenes + (scene is not None),
+        text,
+        command,
+        segment.tolist(),
+        decoder.window.tolist(),
+        decoder.n_context,
     )
     return piece, after, verdict
 
 
 def _ids_of(rows: list[list[int]], n_codebooks: int, n_codes: int) -> Tensor:
-    """(L, C) ids, checked."""
+    """(L, C) ids of a story's state, checked against this model."""
     if any(len(row) != n_codebooks or not all(0 <= i < n_codes for i in row) for row in rows):
         raise GenerationError(
             "a story of another model's ids was to go on", f"{n_codebooks} ids below {n_codes} a token"
@@ -161,7 +167,7 @@ def _between(engine: Engine, segments: list[_Segment], seed: int) -> list[Tensor
 
 
 def _batches(scenes: Iterable[Scene]) -> Iterator[list[tuple[int, Scene]]]:
-    """Numbered scenes: the first alone, so that motion begins at once, then several together."""
+    """Numbered scenes in batches: the first scene alone, so that motion begins at once, then `READ_AHEAD` together."""
     numbered = enumerate(scenes)
     size = 1
     while batch := list(islice(numbered, size)):
@@ -170,7 +176,7 @@ def _batches(scenes: Iterable[Scene]) -> Iterator[list[tuple[int, Scene]]]:
 
 
 def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> list[_Segment]:
-    """A segment for each scene; all their commands are made in one batch."""
+    """A segment for each scene; the commands of all scenes are generated in one batch."""
     understood = engine.understand_all([scene.text for _, scene in scenes])
     asked: list[list[Command]] = []
     seeds: list[int] = []

@@ -62,8 +62,13 @@ class Model:
     rest_pose: Literal["mmmd", "humanml3d"] = "mmmd"
 
     @property
+    def is_ours(self) -> bool:
+        """Whether this repository trained the model: sampling, int8, mirroring, counting and previews are tuned for such."""
+        return self.rest_pose == "mmmd"
+
+    @property
     def modules(self) -> dict[str, nn.Module]:
-        """What has weights, by the prefix of its tensors."""
+        """Modules with weights, by the prefix of their tensors."""
         named = {"tokenizer": self.tokenizer, "transformer": self.transformer, "length": self.length, "text": self.text}
         return {name: module for name, module in named.items() if module is not None}
 

@@ -20,7 +20,7 @@ from torch import Tensor, nn
 from mmm_core.inference.onednn_linear import SMALLEST
 
 MARGIN = 1.1
-"""The range of a layer's inputs is so much wider than what was measured."""
+"""Factor by which the range of a layer's inputs is wider than the measured one."""
 
 
 # PyTorch offers eight-bit layers with floats in and out under these names alone. It means to drop the first in a release
@@ -31,13 +31,13 @@ _PACK = getattr(torch.ops.quantized, "linear_prepack", None)
 _APPLY = getattr(torch.ops.quantized, "linear_with_input_q_dq_qweight_dq_output_fp32", None)
 
 
-def can_eight_bit() -> bool:
-    """Whether this PyTorch can, and the processor is the faster for it."""
+def int8_is_supported() -> bool:
+    """Whether this PyTorch has eight-bit layers and the processor multiplies eight-bit integers (VNNI)."""
     has_vnni = any(on and name in ("avx512_vnni", "avx_vnni") for name, on in torch.cpu.get_capabilities().items())
     return has_vnni and _ROUND is not None and _PACK is not None and _APPLY is not None
 
 
-class EightBitLinear(nn.Module):
+class Int8Linear(nn.Module):
     """A linear layer for inference.
 
     Args:
@@ -47,7 +47,7 @@ class EightBitLinear(nn.Module):
 
     def __init__(self, linear: nn.Linear, low: float, high: float) -> None:
         super().__init__()
-        assert _ROUND is not None and _PACK is not None, "see can_eight_bit"
+        assert _ROUND is not None and _PACK is not None, "see int8_is_supported"
         low, high = min(low, 0.0), max(high, 0.0)  # nought is always an integer
         self._scale = max((high - low) / 255, 1e-8)
         self._zero = min(255, max(0, round(-low / self._scale)))
@@ -60,16 +60,16 @@ class EightBitLinear(nn.Module):
 
     def forward(self, x: Tensor) -> Tensor:
         """(..., in) -> (..., out), float32 on both sides."""
-        assert _APPLY is not None, "see can_eight_bit"
+        assert _APPLY is not None, "see int8_is_supported"
         return _APPLY(x, self._scale, self._zero, self._packed)
 
 
-def to_eight_bit(module: nn.Module, run: Callable[[], object]) -> nn.Module:
+def convert_to_int8(module: nn.Module, run: Callable[[], object]) -> nn.Module:
     """Replace the linear layers of `module` in place, for inference only; returns it.
 
     Args:
-        module: what holds the layers.
-        run: passes through `module` what is typical; inputs of another range are clipped later on. A layer that it does
+        module: holds the layers.
+        run: runs typical inputs through `module`; inputs outside their range are clipped later on. A layer that `run` does
             not reach stays as it is.
     """
     layers = {n: m for n, m in module.named_modules() if isinstance(m, nn.Linear) and min(m.weight.shape) >= SMALLEST}
@@ -92,5 +92,5 @@ def to_eight_bit(module: nn.Module, run: Callable[[], object]) -> nn.Module:
         low, high = ranges[name]
         if low <= high:
             parent, _, child = name.rpartition(".")
-            setattr(module.get_submodule(parent), child, EightBitLinear(layer, MARGIN * low, MARGIN * high))
+            setattr(module.get_submodule(parent), child, Int8Linear(layer, MARGIN * low, MARGIN * high))
     return module

@@ -17,9 +17,9 @@ from torch import Tensor, nn
 Packing = Literal["fp32", "bf16"]
 
 PACKED_FOR_ROWS = 51
-"""Rows the packing is chosen for; any number works."""
+"""Rows of the matrix that the packing is optimised for; any number works."""
 SMALLEST = 128
-"""Layers narrower than this gain nothing."""
+"""Width below which a layer gains nothing from packing."""
 
 
 # PyTorch offers packing under these names alone; its own inference passes use them.
@@ -27,10 +27,10 @@ _PACK = getattr(torch.ops.mkldnn, "_reorder_linear_weight", None)
 _APPLY = getattr(torch.ops.mkldnn, "_linear_pointwise", None)
 
 
-class PackedLinear(nn.Module):
+class OneDnnLinear(nn.Module):
     """A linear layer for inference; `gelu` adds the activation that follows it.
 
-    What comes out of a bf16 layer stays bf16: the sum it is added to, or the next layer, takes it as it is.
+    A bf16 layer's output stays bf16: the sum it is added to, or the next layer, converts it.
     """
 
     def __init__(self, linear: nn.Linear, precision: Packing, *, gelu: bool = False) -> None:
@@ -43,24 +43,24 @@ class PackedLinear(nn.Module):
         self._bias = None if linear.bias is None else linear.bias.detach().to(self._dtype)
 
     def forward(self, x: Tensor) -> Tensor:
-        """(..., in) -> (..., out) in the layer's precision; what comes in is brought to it."""
+        """(..., in) -> (..., out) in the layer's precision, to which the input is converted."""
         assert _APPLY is not None, "see can_pack"
         return _APPLY(x.to(self._dtype), self._packed, self._bias, self._activation, [], "none")
 
 
 def can_pack() -> bool:
-    """Whether this PyTorch and processor can."""
+    """Whether this PyTorch has oneDNN's packed layers."""
     return torch.backends.mkldnn.is_available() and _PACK is not None and _APPLY is not None
 
 
 def fastest_precision(width: int = 1024, n_calls: int = 8) -> Packing:
-    """The faster of the two here, by timing a layer of `width`: about 20 ms. fp32 unless bf16 gains a quarter."""
+    """The faster precision on this machine, by timing a layer of `width`: about 20 ms. fp32 unless bf16 gains a quarter."""
     if not can_pack():
         return "fp32"
     x, linear, seconds = torch.zeros(PACKED_FOR_ROWS, width), nn.Linear(width, width), {}
     with torch.inference_mode():
         for precision in ("fp32", "bf16"):
-            layer = PackedLinear(linear, precision)
+            layer = OneDnnLinear(linear, precision)
             layer(x)
             start = time.perf_counter()
             for _ in range(n_calls):
@@ -85,7 +85,7 @@ def _replace(module: nn.Module, precision: Packing) -> None:
         if isinstance(child, nn.Linear) and min(child.weight.shape) >= SMALLEST:
             following = children[i + 1] if isinstance(module, nn.Sequential) and i + 1 < len(children) else None
             gelu = following is not None and isinstance(following[1], nn.GELU) and following[1].approximate == "none"
-            setattr(module, name, PackedLinear(child, precision, gelu=gelu))
+            setattr(module, name, OneDnnLinear(child, precision, gelu=gelu))
             if gelu and following is not None:
                 setattr(module, following[0], nn.Identity())
         else:

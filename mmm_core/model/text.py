@@ -19,14 +19,14 @@ from torch import Tensor, nn
 MAX_WORD_PIECES = 64
 """Longer texts are cut: a command is a sentence or two, and the model was trained on at most this."""
 
-_PICTURE_KINDS = ("So", "Sk", "Cs", "Co", "Cn")
+_EMOJI_CATEGORIES = ("So", "Sk", "Cs", "Co", "Cn")
 """Unicode categories of emoji, their skin tones, and signs that no word piece stands for."""
 _JOINERS = "\u200d\ufe0e\ufe0f"
 
 
-def without_pictures(text: str) -> str:
-    """A text without emoji and the like: they are no words, and make the encoder read those beside them otherwise."""
-    kept = (c for c in text if c not in _JOINERS and unicodedata.category(c) not in _PICTURE_KINDS)
+def strip_emoji(text: str) -> str:
+    """The text without emoji and other signs that are no words: they change how the encoder reads the words beside them."""
+    kept = (c for c in text if c not in _JOINERS and unicodedata.category(c) not in _EMOJI_CATEGORIES)
     return " ".join("".join(kept).split())
 
 

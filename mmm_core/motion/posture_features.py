@@ -1,4 +1,4 @@
-"""What a motion shows: directions of arms, head and trunk against the chest and the pelvis, wherever the person stands."""
+"""Posture features of a motion: directions of arms, head and trunk in the frames of chest and pelvis."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from mmm_core.motion.skeleton import matrix_from_quat, normalise
 Array = NDArray[np.floating]
 
 ARM_MOVED_DEG = 24.0
+"""Degrees from the hanging pose beyond which an arm counts as moved."""
 _ARMS = {"left": (16, 18, 20), "right": (17, 19, 21)}
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
-    """What a motion shows.
+class PostureFeatures:
+    """Directions of the upper body in every frame of a motion.
 
     Attributes:
         arms: which arms left their hanging pose: "left", "right", "both" or "".
@@ -43,8 +44,8 @@ class Shown:
     twist_rad: dict[str, Array | None]
 
 
-def look_at(joints_m: Array, head_quat_wxyz: Array, forearm_twist_rad: Array | None = None) -> Shown:
-    """Read a motion: (T, 22, 3) joints, (T, 4) head orientation and, where known, (T, 2) forearm twist."""
+def posture_features(joints_m: Array, head_quat_wxyz: Array, forearm_twist_rad: Array | None = None) -> PostureFeatures:
+    """Posture features of (T, 22, 3) joints, (T, 4) head orientation and, where known, (T, 2) forearm twist."""
     joints = np.asarray(joints_m, np.float64)
     pelvis = _frame(joints[:, 1] - joints[:, 2], np.broadcast_to([0.0, 1, 0], joints[:, 0].shape))
     chest = _frame(joints[:, 13] - joints[:, 14], joints[:, 12] - joints[:, 3])
@@ -61,11 +62,11 @@ def look_at(joints_m: Array, head_quat_wxyz: Array, forearm_twist_rad: Array | N
         side: None if forearm_twist_rad is None else np.asarray(forearm_twist_rad)[:, i] for i, side in enumerate(_ARMS)
     }
     lift = np.einsum("ti,ti->t", chest[:, :, 1], middle - joints[:, 9])
-    return Shown(_moved(upper, fore), *head, *trunk, upper, fore, wrists, lift, twist)
+    return PostureFeatures(_moved(upper, fore), *head, *trunk, upper, fore, wrists, lift, twist)
 
 
 def _moved(upper: dict[str, Array], fore: dict[str, Array]) -> str:
-    """Which arms left their hanging pose."""
+    """Names the arms that left their hanging pose: "left", "right", "both" or ""."""
     moved: list[str] = []
     for side in _ARMS:
         hanging = np.array([0.15 if side == "left" else -0.15, -0.97, 0.2])
@@ -74,10 +75,10 @@ def _moved(upper: dict[str, Array], fore: dict[str, Array]) -> str:
     return "both" if len(moved) == 2 else "".join(moved)
 
 
-def part(s: Shown, start: int, end: int) -> Shown:
-    """What frames `start` to `end` show."""
+def part(s: PostureFeatures, start: int, end: int) -> PostureFeatures:
+    """Posture features of frames `start` to `end`."""
     upper, fore = ({side: v[start:end] for side, v in d.items()} for d in (s.upper, s.fore))
-    return Shown(
+    return PostureFeatures(
         _moved(upper, fore), s.head_yaw_deg[start:end], s.head_pitch_deg[start:end], s.head_roll_deg[start:end],
         s.trunk_yaw_deg[start:end], s.trunk_pitch_deg[start:end], s.trunk_roll_deg[start:end], upper, fore,
         {side: v[start:end] for side, v in s.wrists_m.items()}, s.lift_m[start:end],
@@ -86,7 +87,7 @@ def part(s: Shown, start: int, end: int) -> Shown:
 
 
 def angle_deg(a: Array, b: Array) -> Array:
-    """(T,) between unit directions (T, 3) and `b`."""
+    """(T,) angles between unit directions (T, 3) and `b`."""
     return np.rad2deg(np.arccos(np.clip((a * normalise(b)).sum(-1), -1, 1)))
 
 

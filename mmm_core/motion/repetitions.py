@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion.motion import Motion
-from mmm_core.motion.posture_features import look_at
+from mmm_core.motion.posture_features import posture_features
 
 Array = NDArray[np.floating]
 
@@ -67,7 +67,7 @@ def strokes_of(motion: Motion) -> Strokes | None:
 
 def body_path(motion: Motion) -> Array:
     """(T, 18) wrists, head, trunk and forearms of a motion, in metres or what counts as much."""
-    s = look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     head = np.stack([s.head_yaw_deg, s.head_pitch_deg, s.head_roll_deg], -1) / _HEAD_DEG_PER_M
     trunk = np.stack([s.trunk_yaw_deg, s.trunk_pitch_deg, s.trunk_roll_deg], -1) / _TRUNK_DEG_PER_M
     forearms = [_FOREARM_M * s.fore[side] for side in ("left", "right")]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion.motion import FPS
-from mmm_core.motion.posture_features import Shown, angle_deg
+from mmm_core.motion.posture_features import PostureFeatures, angle_deg
 from mmm_core.motion.repetitions import peaks_beyond
 
 Array = NDArray[np.floating]
@@ -22,7 +22,7 @@ PALM_M = 0.08
 _STERNUM_M = np.array([0.0, -0.13, 0.13])
 
 
-def limb(s: Shown) -> str:
+def limb(s: PostureFeatures) -> str:
     """What moves most plainly: arm, trunk, head or nothing."""
     if s.arms:
         return "arm"
@@ -33,7 +33,7 @@ def limb(s: Shown) -> str:
     return "head" if head > HEAD_MOVED_DEG else ""
 
 
-def count(s: Shown, family: str, side: str = "") -> int | None:
+def count(s: PostureFeatures, family: str, side: str = "") -> int | None:
     """How often the stroke of a repeating family is made; None for families whose strokes are not counted.
 
     Args:
@@ -50,14 +50,14 @@ def count(s: Shown, family: str, side: str = "") -> int | None:
     return sum(counts) if family == "punch" or side == "alternating" else max(counts)
 
 
-def cycle_s(s: Shown, family: str) -> float | None:
+def cycle_s(s: PostureFeatures, family: str) -> float | None:
     """Seconds from stroke to stroke; None with fewer than two."""
     found = [peaks(signal, least) for signal, least in _stroke_signals(s, family)]
     best = max(found, key=len, default=[])
     return float(np.median(np.diff(best))) / FPS if len(best) > 1 else None
 
 
-def held_s(s: Shown, limb_name: str) -> float:
+def held_s(s: PostureFeatures, limb_name: str) -> float:
     """How long the limb stays where it has gone: the longest time with hardly any movement away from its start."""
     if limb_name == "arm":
         sides = ("left", "right") if s.arms in ("both", "") else (s.arms,)
@@ -79,7 +79,7 @@ def _still_s(path: Array, most_per_s: float) -> float:
     return longest / FPS
 
 
-def _stroke_signals(s: Shown, family: str) -> list[tuple[Array, float]]:
+def _stroke_signals(s: PostureFeatures, family: str) -> list[tuple[Array, float]]:
     """Signals whose peaks are the family's strokes, each with the least range that counts."""
     if family == "nod":
         return [(s.head_pitch_deg, 8.0)]
@@ -97,7 +97,7 @@ def _stroke_signals(s: Shown, family: str) -> list[tuple[Array, float]]:
     return [_ARM_SIGNALS[family](s, side) for side in sides]
 
 
-def direction(s: Shown, family: str) -> str:
+def direction(s: PostureFeatures, family: str) -> str:
     """Where a gesture with a direction goes, "" when nowhere."""
     if family == "look":
         yaw, pitch = s.head_yaw_deg, s.head_pitch_deg
@@ -124,20 +124,20 @@ def direction(s: Shown, family: str) -> str:
     return ""
 
 
-def _wave_signal(s: Shown, side: str) -> tuple[Array, float]:
+def _wave_signal(s: PostureFeatures, side: str) -> tuple[Array, float]:
     up = s.fore[side][:, 1] > 0.55
     return (s.fore[side][:, 0] * (1 if side == "left" else -1))[up], 0.25
 
 
-def _forward_signal(s: Shown, side: str) -> tuple[Array, float]:
+def _forward_signal(s: PostureFeatures, side: str) -> tuple[Array, float]:
     return s.wrists_m[side][:, 2], 0.12
 
 
-def _fold_signal(s: Shown, side: str) -> tuple[Array, float]:
+def _fold_signal(s: PostureFeatures, side: str) -> tuple[Array, float]:
     return s.fore[side][:, 1][s.upper[side][:, 2] > 0.25], 0.35
 
 
-def _height_signal(s: Shown, side: str) -> tuple[Array, float]:
+def _height_signal(s: PostureFeatures, side: str) -> tuple[Array, float]:
     return s.wrists_m[side][:, 1], 0.3
 
 
@@ -147,12 +147,12 @@ _ARM_SIGNALS = {
 }  # fmt: skip
 
 
-def _raised(s: Shown) -> NDArray[np.bool_]:
+def _raised(s: PostureFeatures) -> NDArray[np.bool_]:
     """Frames in which both wrists are in front or above."""
     return (s.wrists_m["left"][:, 1] > -0.35) & (s.wrists_m["right"][:, 1] > -0.35)
 
 
-def _held(s: Shown, side: str) -> NDArray[np.bool_]:
+def _held(s: PostureFeatures, side: str) -> NDArray[np.bool_]:
     """Frames in which an arm moves least of those in which it is away from rest."""
     away = angle_deg(s.upper[side], np.array([0.0, -1, 0])) + angle_deg(s.fore[side], np.array([0.0, -1, 0]))
     wanted = away > 0.7 * away.max()

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion.posture_features import Shown
+from mmm_core.motion.posture_features import PostureFeatures
 from mmm_core.recognition import places
 from mmm_core.recognition.checks import strokes
 
@@ -71,11 +71,11 @@ def _span(x: Array) -> float:
     return float(np.ptp(x))
 
 
-def _head_only(s: Shown) -> bool:
+def _head_only(s: PostureFeatures) -> bool:
     return not s.arms and max(_span(s.trunk_yaw_deg), _span(s.trunk_pitch_deg), _span(s.trunk_roll_deg)) < 22
 
 
-def _trunk_only(s: Shown) -> bool:
+def _trunk_only(s: PostureFeatures) -> bool:
     return not s.arms
 
 
@@ -85,7 +85,7 @@ def _lasts(x: Array, above: float, share: float) -> bool:
     return bool(moving.sum() and (x > above).sum() > share * moving.sum())
 
 
-def _largest_roll(s: Shown) -> float:
+def _largest_roll(s: PostureFeatures) -> float:
     return float(s.head_roll_deg[np.abs(s.head_roll_deg).argmax()])
 
 
@@ -96,7 +96,7 @@ def _fast(yaw_deg: Array) -> bool:
     return bool(np.abs(left[:, None] - right).min() <= SHAKE_FRAMES)
 
 
-HEAD_TRUNK: dict[str, Callable[[Shown, str], bool]] = {
+HEAD_TRUNK: dict[str, Callable[[PostureFeatures, str], bool]] = {
     "nod": lambda s, d: _head_only(s) and _span(s.head_pitch_deg) > 10 > _span(s.head_yaw_deg) and _span(s.head_roll_deg) < 10 and strokes(s.head_pitch_deg, 8.0) >= 1 and not _lasts(np.abs(s.head_pitch_deg - s.head_pitch_deg[0]), 10, 0.8),
     "shake_head": lambda s, d: _head_only(s) and s.head_yaw_deg.max() > 12 and s.head_yaw_deg.min() < -12 and _fast(s.head_yaw_deg) and _span(s.head_roll_deg) < 14,
     "tilt_head": lambda s, d: _head_only(s) and _largest_roll(s) * {"right": -1.0}.get(d, 1.0) > 10 and _span(s.head_yaw_deg) < 20,

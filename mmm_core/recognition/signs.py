@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion.motion import FPS
-from mmm_core.motion.posture_features import Shown
+from mmm_core.motion.posture_features import PostureFeatures
 from mmm_core.recognition.checks import PALM_M, strokes
 from mmm_core.recognition.sign_tables import DIRECTED, HEAD_TRUNK, ONE_LEADS, SIGNS, Box, Sign
 
@@ -40,7 +40,7 @@ class Arm:
 
 
 @lru_cache(maxsize=16)
-def arm_of(s: Shown, side: str) -> Arm:
+def arm_of(s: PostureFeatures, side: str) -> Arm:
     """The arm of a side, outward positive."""
     out = np.array([1.0 if side == "left" else -1.0, 1, 1])
     palm = (s.wrists_m[side] + PALM_M * s.fore[side]) * out
@@ -50,7 +50,7 @@ def arm_of(s: Shown, side: str) -> Arm:
     return Arm(palm, fore, bend, (np.linalg.norm(palm - hanging, axis=-1) > 0.12) | (bend > 50))
 
 
-def shows(s: Shown, family: str, side: str = "", direction: str = "") -> bool:
+def shows(s: PostureFeatures, family: str, side: str = "", direction: str = "") -> bool:
     """Whether the motion shows a gesture of the family, with the arm of `side` where one is named."""
     if family == "arms_down":
         sides = (side,) if side in _OTHER else ("left", "right")
@@ -65,7 +65,7 @@ def shows(s: Shown, family: str, side: str = "", direction: str = "") -> bool:
     return _has(s, sign, "left") or _has(s, sign, "right")
 
 
-def _has(s: Shown, sign: Sign, side: str) -> bool:
+def _has(s: PostureFeatures, sign: Sign, side: str) -> bool:
     arm, other = arm_of(s, side), arm_of(s, _OTHER[side])
     core = _core(arm.away)
     apart = np.linalg.norm(arm.palm - other.palm * np.array([-1.0, 1, 1]), axis=-1)
@@ -106,7 +106,7 @@ def _has(s: Shown, sign: Sign, side: str) -> bool:
     )
 
 
-def _comes_down(s: Shown, side: str) -> bool:
+def _comes_down(s: PostureFeatures, side: str) -> bool:
     """The arm begins raised and ends hanging."""
     palm = arm_of(s, side).palm
     return bool(palm[:3, 1].min() > -0.15 and palm[-3:, 1].max() < -0.4)

@@ -12,7 +12,7 @@ from daemon.gestures.make import WANTED, mirror_name
 from daemon.playing.posture import distance_deg, posture_of, standing
 from daemon.playing.score import marks_of
 from mmm_core.evaluation.probes import judge
-from mmm_core.motion.posture_features import look_at
+from mmm_core.motion.posture_features import posture_features
 from retarget.pipeline import Retargeter
 from retarget.robot import load_robot
 from tests.daemon.kinematic import raised_arm
@@ -28,7 +28,7 @@ def test_at_least_sixty_ship():
 @pytest.mark.parametrize("wanted", [w for w in WANTED if w.name in CLIPS], ids=lambda w: w.name)
 def test_a_shipped_gesture_shows_what_it_is_called(wanted):
     motion = CLIPS[wanted.name].posture.motion()
-    verdict = judge(wanted.probe, look_at(motion.joints_m, motion.head_quat_wxyz))
+    verdict = judge(wanted.probe, posture_features(motion.joints_m, motion.head_quat_wxyz))
     assert all(verdict.values()), verdict
 
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mmm_core.errors import GenerationError
 from mmm_core.generate.editing import Edit, edit, extend, in_between, part_names
 from mmm_core.generate.engine import Engine
-from mmm_core.generate.story import Scene, check_scenes, tell
+from mmm_core.generate.story import Scene, check_scenes, generate_story
 from mmm_core.model.sampling import empty_row, fill
 from mmm_core.model.streaming_decoder import StreamingDecoder
 from mmm_core.model.vqvae import VqVae, VqVaeConfig
@@ -136,7 +136,7 @@ class TestStory:
     SCENES = (Scene("wave with your right hand", 2.0), Scene("clap your hands"), Scene("nod twice", 1.5))
 
     def test_pieces_join_without_a_jump(self, engine: Engine) -> None:
-        pieces = list(tell(engine, self.SCENES, seed=4))
+        pieces = list(generate_story(engine, self.SCENES, seed=4))
         joints = np.concatenate([p.joints_m for p in pieces])
         n_tokens = sum(len(p.tokens) for p in pieces)
         assert len(joints) == 4 * n_tokens
@@ -154,16 +154,18 @@ class TestStory:
                 number += 1
                 yield Scene("nod", 1.0)
 
-        story = tell(engine, endless(), seed=1)
+        story = generate_story(engine, endless(), seed=1)
         next(story)
         assert len(read) <= 9
 
     def test_the_same_seed_tells_the_same_story(self, engine: Engine) -> None:
-        first, again = (np.concatenate([p.joints_m for p in tell(engine, self.SCENES, seed=2)]) for _ in range(2))
+        first, again = (
+            np.concatenate([p.joints_m for p in generate_story(engine, self.SCENES, seed=2)]) for _ in range(2)
+        )
         np.testing.assert_array_equal(first, again)
 
     def test_a_rejected_scene_is_left_out_and_said(self, engine: Engine) -> None:
-        pieces = list(tell(engine, [Scene("nod", 1.0), Scene("   "), Scene("nod", 1.0)], seed=1))
+        pieces = list(generate_story(engine, [Scene("nod", 1.0), Scene("   "), Scene("nod", 1.0)], seed=1))
         assert [p.status for p in pieces if not len(p.joints_m)] == ["rejected"]
         assert sum(len(p.joints_m) for p in pieces) == 20 + 8 + 20
 
@@ -172,7 +174,7 @@ class TestStory:
             check_scenes([Scene("nod"), Scene("nod", 99.0)])
 
     def test_pieces_come_in_order(self, engine: Engine) -> None:
-        texts = [p.text for p in tell(engine, self.SCENES, seed=4)]
+        texts = [p.text for p in generate_story(engine, self.SCENES, seed=4)]
         assert all(a == b or [s.text for s in self.SCENES].index(a) < [s.text for s in self.SCENES].index(b)
                    for a, b in pairwise(texts))  # fmt: skip
 

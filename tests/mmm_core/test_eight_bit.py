@@ -14,12 +14,12 @@ import mmm_core.inference.int8_linear as eight_bit
 from mmm_core.errors import GenerationError
 from mmm_core.generate.engine import Engine
 from mmm_core.inference.checkpoint import MODEL_FILE
-from mmm_core.inference.int8_linear import EightBitLinear, can_eight_bit, to_eight_bit
+from mmm_core.inference.int8_linear import Int8Linear, convert_to_int8, int8_is_supported
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill
 from mmm_core.model.text import TextStates
 from mmm_core.model.transformer import MotionTransformer, TransformerConfig
 
-needs_vnni = pytest.mark.skipif(not can_eight_bit(), reason="this processor does not multiply eight-bit integers")
+needs_vnni = pytest.mark.skipif(not int8_is_supported(), reason="this processor does not multiply eight-bit integers")
 needs_model = pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout")
 
 
@@ -33,14 +33,14 @@ def test_the_error_is_that_of_rounding(bias: bool, seed: int, rows: int, low: fl
     x_step, w_step = (high - low) / 255, linear.weight.abs().amax(1) / 127
     # half a step of each input times the weights, half a step of each weight times the inputs, and both
     most = 0.5 * (x_step * linear.weight.abs().sum(1) + w_step * (x.abs().sum(-1, keepdim=True) + 256 * x_step))
-    assert ((EightBitLinear(linear, low, high)(x) - linear(x)).abs() <= most + 1e-3).all()
+    assert ((Int8Linear(linear, low, high)(x) - linear(x)).abs() <= most + 1e-3).all()
 
 
 @needs_vnni
 @torch.inference_mode()
 def test_what_lies_outside_the_range_is_clipped() -> None:
     linear = nn.Linear(128, 128)
-    layer, x = EightBitLinear(linear, -1.0, 1.0), 3 * torch.randn(5, 128)
+    layer, x = Int8Linear(linear, -1.0, 1.0), 3 * torch.randn(5, 128)
     torch.testing.assert_close(layer(x), layer(x.clamp(-1.0, 1.0)), atol=0.05, rtol=0.05)
 
 
@@ -49,8 +49,8 @@ def test_what_lies_outside_the_range_is_clipped() -> None:
 def test_a_layer_takes_the_range_it_was_shown_and_one_that_saw_nothing_stays() -> None:
     model = nn.ModuleDict({"seen": nn.Linear(128, 256), "not_seen": nn.Linear(128, 256), "narrow": nn.Linear(8, 8)})
     x = torch.linspace(-0.5, 2.0, 256).reshape(2, 128)
-    to_eight_bit(model, lambda: (model["seen"](x), model["narrow"](torch.ones(1, 8))))
-    assert isinstance(model["seen"], EightBitLinear)
+    convert_to_int8(model, lambda: (model["seen"](x), model["narrow"](torch.ones(1, 8))))
+    assert isinstance(model["seen"], Int8Linear)
     assert isinstance(model["not_seen"], nn.Linear) and isinstance(model["narrow"], nn.Linear)
 
 
@@ -64,7 +64,7 @@ def test_a_row_does_not_depend_on_its_neighbours_and_is_nearly_the_plain_models(
     text = TextStates(words, torch.ones(2, 9, dtype=torch.bool), words.mean(1))
     rows, seeds = [empty_row(plain, 20), empty_row(plain, 33)], [1, 2]
     model = copy.deepcopy(plain)
-    to_eight_bit(model, lambda: fill(model, text, rows, seeds, SamplingSettings()))
+    convert_to_int8(model, lambda: fill(model, text, rows, seeds, SamplingSettings()))
     together = fill(model, text, rows, seeds, SamplingSettings())
     for i in range(2):
         alone = fill(model, text.part(slice(i, i + 1)), rows[i : i + 1], seeds[i : i + 1], SamplingSettings())
@@ -77,7 +77,7 @@ def test_a_row_does_not_depend_on_its_neighbours_and_is_nearly_the_plain_models(
 
 @needs_model
 def test_int8_is_taken_for_the_shipped_model_where_it_can_be(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert Engine.load(threads=None).precision == ("int8" if can_eight_bit() else "fp32")
+    assert Engine.load(threads=None).precision == ("int8" if int8_is_supported() else "fp32")
     monkeypatch.setattr(eight_bit, "_PACK", None)  # a PyTorch without such layers
     assert Engine.load(threads=None).precision == "fp32"
     with pytest.raises(GenerationError, match="int8"):

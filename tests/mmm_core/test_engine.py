@@ -16,7 +16,7 @@ from mmm_core.errors import CheckpointError, GenerationError
 from mmm_core.generate.engine import Engine
 from mmm_core.inference.checkpoint import MODEL_FILE, load_model
 from mmm_core.model.tokens import unpack_ids
-from mmm_core.motion.posture_features import look_at
+from mmm_core.motion.posture_features import posture_features
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,8 @@ def test_the_callers_length_wins_to_the_frame(engine: Engine, seconds: float) ->
 )
 def test_the_right_arms_move(engine: Engine, text: str, arms: str) -> None:
     found = [
-        look_at(m.joints_m, m.head_quat_wxyz).arms for m in (engine.generate(text, seed=s).motion for s in range(3))
+        posture_features(m.joints_m, m.head_quat_wxyz).arms
+        for m in (engine.generate(text, seed=s).motion for s in range(3))
     ]
     assert found.count(arms) >= 2, found
 

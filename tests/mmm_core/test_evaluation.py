@@ -17,7 +17,7 @@ from mmm_core.evaluation.probes import evaluate, judge
 from mmm_core.evaluation.reconstruction import performed, shown
 from mmm_core.evaluation.robot_capability import as_motion, showable
 from mmm_core.motion.features import mirror
-from mmm_core.motion.posture_features import Shown
+from mmm_core.motion.posture_features import PostureFeatures
 from mmm_core.recognition import checks
 from mmm_core.recognition.signs import shows
 from retarget.as_human import shown_on_a_person
@@ -133,7 +133,7 @@ def drawn(name: str, n: int, seed: int = 3) -> list[tuple[Gesture, np.ndarray]]:
 
 
 @pytest.fixture(scope="module")
-def everything() -> list[tuple[Gesture, Shown, Shown]]:
+def everything() -> list[tuple[Gesture, PostureFeatures, PostureFeatures]]:
     """A few clips of every family, each with its mirror image."""
     return [(g, shown(f), shown(mirror(f))) for name in FAMILIES for g, f in drawn(name, 3)]
 
@@ -145,7 +145,7 @@ def asked_side(name: str, side: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def seen_elsewhere(everything: list[tuple[Gesture, Shown, Shown]]) -> dict[str, list[bool]]:
+def seen_elsewhere(everything: list[tuple[Gesture, PostureFeatures, PostureFeatures]]) -> dict[str, list[bool]]:
     """For each family whether its sign is seen in each clip of every other family."""
     seen: dict[str, list[bool]] = {name: [] for name in FAMILIES}
     for g, s, _ in everything:
@@ -157,7 +157,7 @@ def seen_elsewhere(everything: list[tuple[Gesture, Shown, Shown]]) -> dict[str, 
 
 @pytest.mark.parametrize("name", sorted(FAMILIES))
 def test_each_family_has_a_sign_that_sees_it_and_little_else(
-    name: str, everything: list[tuple[Gesture, Shown, Shown]], seen_elsewhere: dict[str, list[bool]]
+    name: str, everything: list[tuple[Gesture, PostureFeatures, PostureFeatures]], seen_elsewhere: dict[str, list[bool]]
 ) -> None:
     """Right: own motions. Mirrored: not with the same arm. Absent: standing. Other: every other family."""
     own = [(g, s, m) for g, s, m in everything if g.family == name]

@@ -20,7 +20,7 @@ from mmm_core.evaluation.fidelity import CORPUS_DRAWS, cases_of, counting_checks
 from mmm_core.evaluation.reference import reference
 from mmm_core.motion.features import mirror, recover
 from mmm_core.motion.motion import FPS, Motion
-from mmm_core.motion.posture_features import look_at
+from mmm_core.motion.posture_features import posture_features
 
 REPEATED = (
     Gesture("row", "both", 4), Gesture("flap", "both", 4), Gesture("knock", "right", 4), Gesture("swim_crawl", "both", 4),
@@ -69,7 +69,7 @@ def test_standing_still_fails(g: Gesture) -> None:
 @pytest.mark.parametrize("g", SIDED, ids=name)
 def test_the_mirror_image_fails(g: Gesture) -> None:
     motion = recover(mirror(performed(g).features))
-    other = look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    other = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     assert not all(judged(other, g, "do it 3 times" if g.count == 3 else "do it").values())
 
 

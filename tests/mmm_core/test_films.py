@@ -11,7 +11,7 @@ from PIL.GifImagePlugin import GifImageFile
 
 from mmm_core.errors import TrainingDataError
 from mmm_core.evaluation import films
-from mmm_core.evaluation.films import FILMS, PANEL, Film, Shown, contact_sheet, film, liveliest, make, person
+from mmm_core.evaluation.films import FILMS, PANEL, Film, PostureFeatures, contact_sheet, film, liveliest, make, person
 from mmm_core.generate.engine import Engine
 from mmm_core.motion.skeleton import Array
 
@@ -21,9 +21,9 @@ def engine() -> Engine:
     return Engine.load()
 
 
-def shown(engine: Engine, text: str, seconds: float) -> Shown:
+def shown(engine: Engine, text: str, seconds: float) -> PostureFeatures:
     motion = engine.generate(text, seconds=seconds).motion
-    return Shown.of(motion.joints_m, motion.head_quat_wxyz)
+    return PostureFeatures.of(motion.joints_m, motion.head_quat_wxyz)
 
 
 def reds(image: Image.Image) -> Array:
@@ -46,7 +46,7 @@ def test_a_persons_left_is_on_the_right(engine: Engine) -> None:
 
 def test_a_turned_head_is_seen(engine: Engine) -> None:
     motion = shown(engine, "look to the left", 2)
-    turned = Shown(motion.joints_m, -motion.face)
+    turned = PostureFeatures(motion.joints_m, -motion.face)
     assert np.abs(motion.face[:, 0]).max() > 0.3
     assert not np.array_equal(np.asarray(person(motion, 20)), np.asarray(person(turned, 20)))
 
@@ -66,7 +66,7 @@ def test_a_film_has_every_second_frame_and_the_shorter_one_stands(engine: Engine
 def test_the_liveliest_stretch() -> None:
     joints = np.zeros((60, 22, 3))
     joints[30:40, 20, 0] = np.sin(np.arange(10))
-    motion = Shown(joints, np.zeros((60, 3)))
+    motion = PostureFeatures(joints, np.zeros((60, 3)))
     found = liveliest(motion, 15)
     assert len(found) == 15 and np.abs(found.joints_m[:, 20, 0]).sum() == pytest.approx(np.abs(joints[:, 20, 0]).sum())
     assert liveliest(motion, 60) is motion

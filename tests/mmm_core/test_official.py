@@ -15,7 +15,7 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import CheckpointError, GenerationError
-from mmm_core.generate.sequence import official_transition_settings, transition_row
+from mmm_core.generate.sequence import transition_row
 from mmm_core.imports.clip_weights import clip_from_openai
 from mmm_core.imports.official import (
     read_pickle,
@@ -341,7 +341,8 @@ def test_long_range_with_generated_transitions(
     for row, expected in zip(rows, io["long.out.transition_input_ids"], strict=True):
         assert torch.equal(row[:, 0], expected[: len(row)])
     left = TextStates(text.words[:3], text.word_mask[:3], text.sentence[:3])
-    settings = official_transition_settings(OFFICIAL_SAMPLING)
+    # The released code fills transitions in one step.
+    settings = dataclasses.replace(OFFICIAL_SAMPLING, official=True, steps=1, temperature=1.0)
     filled = fill(transformer, left, rows, [0] * 3, settings, recorded_noise(uniform[10:, :3]))
     pieces = [base[0]]
     for row, masked, following in zip(filled, rows, base[1:], strict=True):

@@ -8,7 +8,7 @@ import pytest
 import torch
 from torch import nn
 
-from mmm_core.inference.onednn_linear import PackedLinear, can_pack, fastest_precision, pack
+from mmm_core.inference.onednn_linear import OneDnnLinear, can_pack, fastest_precision, pack
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill
 from mmm_core.model.text import TextStates
 from mmm_core.model.transformer import MotionTransformer, TransformerConfig
@@ -22,8 +22,8 @@ pytestmark = pytest.mark.skipif(not can_pack(), reason="this PyTorch has no oneD
 def test_a_packed_layer_equals_the_plain_one(rows: int, bias: bool) -> None:
     torch.manual_seed(rows)
     linear, x = nn.Linear(256, 512, bias=bias), torch.randn(2, rows, 256)
-    torch.testing.assert_close(PackedLinear(linear, "fp32")(x), linear(x), atol=1e-5, rtol=1e-5)
-    half = PackedLinear(linear, "bf16")(x)
+    torch.testing.assert_close(OneDnnLinear(linear, "fp32")(x), linear(x), atol=1e-5, rtol=1e-5)
+    half = OneDnnLinear(linear, "bf16")(x)
     assert half.dtype == torch.bfloat16  # nobody widens it but who needs it wide
     torch.testing.assert_close(half.float(), linear(x), atol=0.05, rtol=0.05)
 

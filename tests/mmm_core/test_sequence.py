@@ -18,7 +18,7 @@ from mmm_core.generate.sequence import FEWEST_TOKENS, TRANSITION_TOKENS, shared_
 from mmm_core.language.clauses import MOST_COMMANDS, MOST_WORDS, commands_in_turn
 from mmm_core.model.tokens import MAX_TOKENS, tokens_for_frames
 from mmm_core.motion.motion import Motion
-from mmm_core.motion.posture_features import look_at, part
+from mmm_core.motion.posture_features import part, posture_features
 
 SENTENCES = json.loads((Path(__file__).parent / "sequences.json").read_text())
 
@@ -94,7 +94,7 @@ class TestSharing:
 
 
 def _arms(motion: Motion, start: int, end: int) -> str:
-    shown = look_at(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    shown = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     return part(shown, start, end).arms
 
 

@@ -9,7 +9,7 @@ import pytest
 from mmm_core.errors import GenerationError
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.keyframes import Keyframe, between
-from mmm_core.generate.story import Scene, Told, tell, tell_on
+from mmm_core.generate.story import Scene, StoryState, continue_story, generate_story
 
 SCENES = [
     Scene("wave with your right hand", 2.0),
@@ -26,12 +26,12 @@ def engine() -> Engine:
 
 
 def test_step_by_step_it_is_the_same_story(engine: Engine) -> None:
-    """`Told` goes through bytes between the steps, as between two machines."""
-    whole = np.concatenate([p.features for p in tell(engine, SCENES, seed=4)])
+    """`StoryState` goes through bytes between the steps, as between two machines."""
+    whole = np.concatenate([p.features for p in generate_story(engine, SCENES, seed=4)])
     state, pieces = b"", []
     for i, scene in enumerate(SCENES):
-        told = msgspec.msgpack.decode(state, type=Told) if state else Told()
-        piece, told, verdict = tell_on(engine, scene, told, seed=4, last=i == len(SCENES) - 1)
+        told = msgspec.msgpack.decode(state, type=StoryState) if state else StoryState()
+        piece, told, verdict = continue_story(engine, scene, told, seed=4, last=i == len(SCENES) - 1)
         state = msgspec.msgpack.encode(told)
         assert len(state) < 2000  # nothing that grows
         assert (verdict.status == "rejected") == (not scene.text.strip())
@@ -40,16 +40,16 @@ def test_step_by_step_it_is_the_same_story(engine: Engine) -> None:
 
 
 def test_a_story_can_be_ended_after_its_last_scene(engine: Engine) -> None:
-    whole = np.concatenate([p.features for p in tell(engine, SCENES[:1], seed=4)])
-    first, told, _ = tell_on(engine, SCENES[0], Told(), seed=4)
-    rest, _, _ = tell_on(engine, None, told, seed=4, last=True)
+    whole = np.concatenate([p.features for p in generate_story(engine, SCENES[:1], seed=4)])
+    first, told, _ = continue_story(engine, SCENES[0], StoryState(), seed=4)
+    rest, _, _ = continue_story(engine, None, told, seed=4, last=True)
     np.testing.assert_array_equal(np.concatenate([first.features, rest.features]), whole)
 
 
 @pytest.mark.parametrize("row", [[1, 2], [0, 0, 100_000], [0, -1, 0]])
 def test_ids_of_another_model_are_refused(engine: Engine, row: list[int]) -> None:
     with pytest.raises(GenerationError, match="another model"):
-        tell_on(engine, Scene("bow"), Told(1, "nod", [row], [row], 0))
+        continue_story(engine, Scene("bow"), StoryState(1, "nod", [row], [row], 0))
 
 
 def test_a_motion_through_poses_has_their_length_and_comes_near_them(engine: Engine) -> None:

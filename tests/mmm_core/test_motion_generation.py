@@ -23,8 +23,8 @@ def engine() -> Engine:
 
 @pytest.mark.parametrize("text", TEXTS)
 def test_the_motion_is_the_same_with_and_without_a_draft(text: str) -> None:
-    making = engine().begin(text, seed=3)
-    draft, motion = making.draft(), making.finished().motion
+    generation = engine().begin(text, seed=3)
+    draft, motion = generation.preview(), generation.result().motion
     assert draft is not None and draft.status == "accepted"
     assert np.array_equal(motion.features, engine().generate(text, seed=3).motion.features)
     assert np.array_equal(motion.tokens, engine().generate(text, seed=3).motion.tokens)
@@ -32,8 +32,8 @@ def test_the_motion_is_the_same_with_and_without_a_draft(text: str) -> None:
 
 @pytest.mark.parametrize("text", TEXTS)
 def test_the_motion_begins_as_its_draft_does(text: str) -> None:
-    making = engine().begin(text, seed=3)
-    draft, motion = making.draft(), making.finished().motion
+    generation = engine().begin(text, seed=3)
+    draft, motion = generation.preview(), generation.result().motion
     assert draft is not None
     half = OPENING_TOKENS * FRAMES_PER_TOKEN // 2
     apart_m = np.linalg.norm(draft.motion.joints_m[:half] - motion.joints_m[:half], axis=-1)
@@ -41,8 +41,8 @@ def test_the_motion_begins_as_its_draft_does(text: str) -> None:
 
 
 def test_the_later_part_of_a_motion_is_made_anew() -> None:
-    making = engine().begin(TEXTS[0], seed=3)
-    draft, motion = making.draft(), making.finished().motion
+    generation = engine().begin(TEXTS[0], seed=3)
+    draft, motion = generation.preview(), generation.result().motion
     assert draft is not None
     assert np.array_equal(draft.motion.tokens[:OPENING_TOKENS], motion.tokens[:OPENING_TOKENS])
     assert not np.array_equal(draft.motion.tokens, motion.tokens)
@@ -51,19 +51,19 @@ def test_the_later_part_of_a_motion_is_made_anew() -> None:
 @pytest.mark.parametrize("seconds", [None, 3.3])
 def test_the_motion_has_as_many_frames_as_was_told(seconds: float | None) -> None:
     for text in ("wave with your right hand", "nod, then bow"):
-        making = engine().begin(text, seed=1, seconds=seconds)
-        assert making.n_frames == len(making.finished().motion.joints_m)
+        generation = engine().begin(text, seed=1, seconds=seconds)
+        assert generation.n_frames == len(generation.result().motion.joints_m)
 
 
 def test_of_several_commands_the_first_is_drafted() -> None:
-    making = engine().begin("nod, then clap your hands", seed=1)
-    draft = making.draft()
+    generation = engine().begin("nod, then clap your hands", seed=1)
+    draft = generation.preview()
     assert draft is not None
-    assert len(draft.motion.joints_m) == len(engine().begin("nod", seed=1).finished().motion.joints_m)
-    assert making.n_frames > len(draft.motion.joints_m)
+    assert len(draft.motion.joints_m) == len(engine().begin("nod", seed=1).result().motion.joints_m)
+    assert generation.n_frames > len(draft.motion.joints_m)
 
 
 def test_what_is_rejected_has_no_draft() -> None:
-    making = engine().begin("do a backflip", seed=1)
-    assert making.draft() is None
-    assert making.finished().status == "rejected" and making.n_frames == 0
+    generation = engine().begin("do a backflip", seed=1)
+    assert generation.preview() is None
+    assert generation.result().status == "rejected" and generation.n_frames == 0

@@ -1,0 +1,172 @@
+"""A loaded checkpoint and its text encoder: reads texts, predicts lengths, turns ids into motions and motions into ids."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import islice
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmm_core.errors import GenerationError
+from mmm_core.inference.checkpoint import Model
+from mmm_core.language.mirroring import canonical, mirror_words
+from mmm_core.language.scope import ScopeVerdict, clauses_of, with_clauses
+from mmm_core.model.clip import ClipText
+from mmm_core.model.sampling import SamplingSettings
+from mmm_core.model.text import TextEncoder, TextStates, strip_emoji
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, pack_ids, tokens_for_frames, unpack_ids
+from mmm_core.motion.features import Root, mirror, recover, recover_from_positions
+from mmm_core.motion.motion import FPS, Motion
+
+SHORTEST_S = 0.8
+"""Seconds that a predicted length is raised to."""
+
+
+class MotionModel:
+    """A checkpoint ready for use. Not for several threads at once.
+
+    Attributes:
+        model: the checkpoint's modules.
+        encoder: the text encoder, the checkpoint's own or the shipped one.
+        checkpoint_hash: names the checkpoint in every motion and answer.
+        settings: how tokens are sampled.
+    """
+
+    def __init__(self, model: Model, encoder: TextEncoder, checkpoint_hash: str, settings: SamplingSettings) -> None:
+        self.model = model
+        self.encoder = encoder
+        self.checkpoint_hash = checkpoint_hash
+        self.settings = settings
+
+    def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
+        """States of a text and its scope verdict."""
+        return self.understand_all([text])[0]
+
+    def understand_fresh(self, text: str) -> tuple[TextStates, ScopeVerdict, bool]:
+        """States and scope verdict of a text for a motion that continues no other, and whether to mirror that motion.
+
+        The model reads only one of a text and its mirror image (`mmm_core.language.mirroring.canonical`), so that the
+        mirrored text gives the mirrored motion. Where a motion continues another, the other decides on left and right.
+        """
+        read, is_mirrored = canonical(text) if self.model.is_ours else (text, False)
+        states, verdict = self.understand(read)
+        if is_mirrored:
+            words = {key: mirror_words(getattr(verdict, key)) for key in ("nearest", "reason", "kept")}
+            verdict = replace(verdict, **words)
+        return states, verdict, is_mirrored
+
+    def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
+        """States and scope verdicts of several texts, encoded in one batch.
+
+        A text of which only a part can be done (`ScopeVerdict.kept`) has the states of that part.
+        """
+        states = self.read(texts)
+        scope = self.model.scope
+        if scope is None:
+            return [(states.row(i), _without_scope(text)) for i, text in enumerate(texts)]
+        verdicts = [scope.judge(text, sentence) for text, sentence in zip(texts, states.sentence, strict=True)]
+        clauses = [clauses_of(text) if scope.classifier is not None else [] for text in texts]
+        read = [clause for several in clauses for clause in several]
+        if read:
+            parts = map(scope.judge, read, self.read(read).sentence)
+            verdicts = [
+                with_clauses(whole, several, list(islice(parts, len(several))))
+                for whole, several in zip(verdicts, clauses, strict=True)
+            ]
+        return [
+            (self.read([verdict.kept]) if verdict.kept else states.row(i), verdict)
+            for i, verdict in enumerate(verdicts)
+        ]
+
+    def read(self, texts: list[str]) -> TextStates:
+        """States of texts as they stand, without a scope verdict. A text without words is read as a full stop.
+
+        CLIP knows emoji; from the compact encoder's texts they are removed (`strip_emoji`).
+        """
+        if isinstance(self.encoder, ClipText):
+            return self.encoder.encode(texts)
+        return self.encoder.encode([strip_emoji(text) or "." for text in texts])
+
+    def predicted_frames(self, states: TextStates) -> int:
+        """Frames that the length predictor gives for the first text, a multiple of a token's.
+
+        Raises:
+            GenerationError: the model has no length predictor.
+        """
+        if self.model.length is None:
+            raise GenerationError("no length was asked for", "seconds: this model was not trained to choose a length")
+        longest_s = MAX_TOKENS * FRAMES_PER_TOKEN / FPS
+        seconds = min(longest_s, max(SHORTEST_S, self.model.length.seconds(states)[0]))
+        return tokens_for_frames(round(seconds * FPS)) * FRAMES_PER_TOKEN
+
+    def motion(
+        self,
+        ids: Tensor,
+        text: str,
+        seed: int,
+        verdict: ScopeVerdict,
+        n_frames: int | None = None,
+        *,
+        is_mirrored: bool = False,
+    ) -> Motion:
+        """The motion of a row of ids (L, C), cut to `n_frames`. A mirrored motion carries the ids its features encode to."""
+        with torch.inference_mode():
+            whole = self.model.tokenizer.decode(ids[None])[0]
+            if is_mirrored:
+                whole = torch.from_numpy(mirror(whole.numpy()))
+                ids = self.model.tokenizer.encode(whole[None])[0]
+            features = whole[:n_frames].numpy()
+        return self.motion_of_features(features, ids, text, seed, verdict)
+
+    def motion_of_features(
+        self, features: np.ndarray, ids: Tensor, text: str, seed: int, verdict: ScopeVerdict, start: Root | None = None
+    ) -> Motion:
+        """The motion of decoded features (T, 263) and their ids (L, C), whose first frame stands at `start`."""
+        recovered = (recover if self.model.rest_pose == "mmmd" else recover_from_positions)(features, start)
+        return Motion(
+            joints_m=recovered.joints_m.astype(np.float32),
+            fps=FPS,
+            head_quat_wxyz=recovered.head_quat_wxyz.astype(np.float32),
+            forearm_twist_rad=recovered.forearm_twist_rad.astype(np.float32),
+            features=features,
+            tokens=pack_ids(ids.numpy(), self.model.tokenizer.config.n_codes),
+            text=text,
+            seed=seed,
+            status=verdict.status,
+            scope_score=verdict.score,
+        )
+
+    def ids_of(self, motion: Motion) -> Tensor:
+        """(L, C) ids of a motion: its own if they fit its frames, else those that its features encode to.
+
+        Raises:
+            GenerationError: the motion has neither, or another frame rate or other features than the model.
+        """
+        tokenizer = self.model.tokenizer
+        if motion.fps != FPS or motion.features.shape[1] != len(tokenizer.mean):
+            asked = f"a motion of {motion.fps:g} fps and {motion.features.shape[1]} features was given"
+            raise GenerationError(asked, f"{FPS:g} fps and {len(tokenizer.mean)} features, as this model's")
+        if len(motion.tokens) and len(motion.tokens) == tokens_for_frames(len(motion.features)):
+            return torch.from_numpy(unpack_ids(motion.tokens, tokenizer.config.n_codes, tokenizer.n_codebooks))
+        n_frames = len(motion.features) // FRAMES_PER_TOKEN * FRAMES_PER_TOKEN
+        if not n_frames or not motion.features.any():
+            raise GenerationError("a motion without features or tokens was given", "one written by `mmmd generate`")
+        with torch.inference_mode():
+            return tokenizer.encode(torch.from_numpy(motion.features[None, :n_frames]))[0]
+
+
+def check_seed(seed: int) -> None:
+    """Raises GenerationError for a seed outside 0 to 2^31 - 1."""
+    if not 0 <= seed < 2**31:
+        raise GenerationError(f"seed {seed} was asked for", "0 to 2147483647")
+
+
+def _without_scope(text: str) -> ScopeVerdict:
+    """An imported model takes every text but an empty one."""
+    return (
+        ScopeVerdict("accepted", 1.0, "", "")
+        if text.strip()
+        else ScopeVerdict("rejected", 0.0, "", "the text is empty")
+    )
