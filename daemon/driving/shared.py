@@ -1,8 +1,8 @@
 """Memory shared between front and bus process: setpoints down, requests down, cycles up. No locks.
 
 One file in memory, mapped by both. Each ring has one writer; indices are 64-bit words that only their owner moves, so a
-reader never waits and a stuck peer never blocks the bus. Each kind of request has a word, which holds the number of its
-newest one: an e-stop never queues behind anything, and what was given before it is not carried out after it.
+reader never waits and a stuck peer never blocks the bus. Requests are words too (`daemon.driving.request_words`): an e-stop
+never queues behind anything, and is owed until a cycle has carried it out.
 """
 
 from __future__ import annotations
@@ -21,13 +21,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bus.health import HEALTH
+from daemon.driving.request_words import HALTS, N_WORDS, Asked, Asker, BusRequest, RequestWords
 
 Array = NDArray[np.float64]
 
 N_SETPOINTS = 256
 N_CYCLES = 4096
 _TEXT_BYTES = 4096
-_MAGIC = 0x6D6D6D6403
+_MAGIC = 0x6D6D6D6404
 _PREFIX = "mmmd-link-"
 
 
@@ -44,46 +45,10 @@ class BusState(IntEnum):
     ESTOP = 7
 
 
-class BusRequest(IntEnum):
-    """What the front may ask of the bus process; the value is the request's word."""
-
-    ARM = 8
-    PARK = 9
-    STOP = 10
-    ESTOP = 11
-    RESET = 12
-    SHUTDOWN = 13
-    TORQUE_OFF = 14
-    ESTOP_HOLD = 15
-
-
-ESTOPS = (BusRequest.ESTOP, BusRequest.ESTOP_HOLD)
-HALTS = (BusRequest.STOP, BusRequest.PARK, BusRequest.TORQUE_OFF, *ESTOPS)
-"""They end what is played: every setpoint pushed before is void."""
-
-
-def valid_requests(asked: list[BusRequest]) -> list[BusRequest]:
-    """`asked`, in order, without what a later one made void.
-
-    An e-stop voids everything before it, a stop what would move the robot: a reset or an arm that was given before an
-    e-stop must not undo it because both came in the same cycle. Only an e-stop that cuts is not voided by one that holds.
-    """
-    valid: list[BusRequest] = []
-    for kind in asked:
-        if kind in ESTOPS:
-            lasting = (BusRequest.SHUTDOWN, BusRequest.ESTOP)
-            valid = [k for k in valid if k in lasting and k is not kind]
-        elif kind is BusRequest.STOP:
-            valid = [k for k in valid if k not in (BusRequest.ARM, BusRequest.PARK)]
-        valid.append(kind)
-    return valid
-
-
 class _Word(IntEnum):
     MAGIC = 0
     PUSHED = 1
     POPPED = 2
-    EPOCH = 3
     HEARTBEAT_NS = 4
     CYCLES = 5
     READY = 6
@@ -140,13 +105,22 @@ class Setpoint:
 
 
 class BusLink:
-    """Both ends of the shared memory; `create` in the front, `attach` in the bus process and in readers."""
+    """Both ends of the shared memory; `create` in the front, `attach` in the bus process and in readers.
 
-    def __init__(self, path: Path, n_joints: int, n_servos: int, *, owner: bool) -> None:
-        self.path, self.n_joints, self._owner = path, n_joints, owner
+    Args:
+        path: of the file.
+        n_joints: of the robot.
+        n_servos: of the robot.
+        owner: whether to make the file, and to remove it in the end.
+        asker: as whom this end asks the bus process for something.
+    """
+
+    def __init__(self, path: Path, n_joints: int, n_servos: int, *, owner: bool, asker: Asker = Asker.FRONT) -> None:
+        self.path, self.n_joints, self._owner, self._asker = path, n_joints, owner, asker
         setpoints, cycles = setpoint_dtype(n_joints), cycle_dtype(n_joints, n_servos)
         sizes = [
             64 * 8, N_SETPOINTS * setpoints.itemsize, N_CYCLES * cycles.itemsize, _TEXT_BYTES, n_servos * HEALTH.itemsize,
+            N_WORDS * 8,
         ]  # fmt: skip
         starts = np.concatenate([[0], np.cumsum(sizes)])
         if owner:
@@ -160,9 +134,10 @@ class BusLink:
         self._setpoints, self._cycles, self._text = parts[1].view(setpoints), parts[2].view(cycles), parts[3]
         self.health: NDArray[np.void] = parts[4].view(HEALTH)
         """(S,) state and counters of each servo; the bus process writes them in every cycle, anybody reads."""
+        self._requests = RequestWords(parts[5].view(np.uint64))
         self._left_out: list[tuple[int, int]] = []
         self._asking = threading.Lock()
-        self._seen = {request: int(self._words[request]) for request in BusRequest}
+        self._known_halts: dict[BusRequest, int] = dict.fromkeys(HALTS, 0)
         if owner:
             self._words[_Word.MAGIC] = _MAGIC
             self.heartbeat()
@@ -179,9 +154,9 @@ class BusLink:
         return cls(Path(name), n_joints, n_servos or n_joints, owner=True)
 
     @classmethod
-    def attach(cls, path: Path, n_joints: int, n_servos: int | None = None) -> BusLink:
+    def attach(cls, path: Path, n_joints: int, n_servos: int | None = None, *, asker: Asker = Asker.FRONT) -> BusLink:
         """The memory that another process created."""
-        return cls(path, n_joints, n_servos or n_joints, owner=False)
+        return cls(path, n_joints, n_servos or n_joints, owner=False, asker=asker)
 
     def close(self) -> None:
         """Remove the memory's file; mappings end with their processes."""
@@ -192,8 +167,21 @@ class BusLink:
 
     @property
     def epoch(self) -> int:
-        """Grows with each stop: setpoints of an older epoch are thrown away."""
-        return int(self._words[_Word.EPOCH])
+        """Grows with each halt that the front has asked for or knows of: setpoints of an older epoch are thrown away.
+
+        So a halt that the front has not been told of yet voids what it pushes meanwhile as well.
+        """
+        return sum(self._requests.halts(Asker.FRONT).values()) + sum(self._known_halts.values())
+
+    def know_of(self, halt: Asked) -> None:
+        """The front has been told of a halt that was asked for on `ctl`, and pushes nothing of before it any more."""
+        self._known_halts[halt.kind] = max(halt.number, self._known_halts[halt.kind])
+
+    @property
+    def unknown_halts(self) -> list[Asked]:
+        """Halts asked for on `ctl` of which the front has not been told."""
+        halts = self._requests.halts(Asker.CTL).items()
+        return [Asked(kind, number) for kind, number in halts if number > self._known_halts[kind]]
 
     @property
     def queued_frames(self) -> int:
@@ -228,17 +216,34 @@ class BusLink:
             self._left_out.append((first, head))
         return min(n, first - (head - n))
 
-    def request(self, kind: BusRequest, *, stay_s: float = 0.0) -> None:
+    def new_number(self) -> int:
+        """The number of a request that is asked for now."""
+        return self._requests.next_number(self._asker, time.monotonic_ns())
+
+    def request(self, kind: BusRequest, *, stay_s: float = 0.0, number: int | None = None) -> Asked:
         """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before.
 
-        After `stay_s` in the park pose a `PARK` goes limp.
+        Args:
+            kind: what.
+            stay_s: after so long in the park pose a `PARK` goes limp.
+            number: of a request that was asked for before now; None takes a new one.
         """
-        with self._asking:  # the ctl thread and the event loop both ask
+        with self._asking:  # threads of one process
             if kind is BusRequest.PARK:
                 self._words[_Word.PARK_STAY_MS] = round(1000 * stay_s)
-            if kind in HALTS:
-                self._words[_Word.EPOCH] += np.uint64(1)
-            self._words[kind] = 1 + max(int(self._words[k]) for k in BusRequest)
+            return self._requests.ask(self._asker, kind, self.new_number() if number is None else number)
+
+    def carried_out(self, asked: Asked) -> bool:
+        """Whether a bus cycle has carried out what this end has asked for."""
+        return self._requests.carried_out(self._asker, asked)
+
+    def overtaken(self, asked: Asked) -> bool:
+        """Whether a halt that came after it has made a request void."""
+        return self._requests.overtaken(asked)
+
+    def owes(self, *kinds: BusRequest) -> bool:
+        """Whether something of these kinds was asked for that no bus cycle has carried out."""
+        return any(self._requests.owes(kind) for kind in kinds)
 
     def heartbeat(self) -> None:
         """Say that the front is alive."""
@@ -275,7 +280,7 @@ class BusLink:
 
     def take_setpoint(self) -> Setpoint | None:
         """The next setpoint of the current epoch; None when there is none."""
-        tail, head, epoch = int(self._words[_Word.POPPED]), int(self._words[_Word.PUSHED]), self.epoch
+        tail, head, epoch = int(self._words[_Word.POPPED]), int(self._words[_Word.PUSHED]), self._halts
         found: Setpoint | None = None
         while tail < head and found is None:
             slot = self._setpoints[tail % N_SETPOINTS]
@@ -295,14 +300,20 @@ class BusLink:
     @property
     def cut_asked(self) -> bool:
         """Whether an e-stop that cuts torque waits to be taken."""
-        return int(self._words[BusRequest.ESTOP]) != self._seen[BusRequest.ESTOP]
+        return self._requests.waits(BusRequest.ESTOP)
 
-    def take_requests(self) -> list[BusRequest]:
-        """Requests since the last call in the order in which they were given, without those that a later one made void."""
-        asked = {kind: int(self._words[kind]) for kind in BusRequest}
-        fresh = sorted((number, kind) for kind, number in asked.items() if number != self._seen[kind])
-        self._seen = asked
-        return valid_requests([kind for _, kind in fresh])
+    def take_request(self) -> Asked | None:
+        """The oldest request that is neither taken nor void; owed to who asked until it is `done`."""
+        return self._requests.take()
+
+    def done(self, taken: Asked) -> None:
+        """A cycle has carried out a request."""
+        self._requests.done(taken)
+
+    @property
+    def _halts(self) -> int:
+        """The epoch as it is, whoever knows of it."""
+        return sum(sum(self._requests.halts(asker).values()) for asker in Asker)
 
     @property
     def heartbeat_age_s(self) -> float:

@@ -9,6 +9,7 @@ from daemon.bus.adapter import latency_advice
 from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.bus.multi import RobotBus
 from daemon.clock import Clock
+from daemon.driving.request_words import ESTOPS, BusRequest
 from daemon.driving.shared import BusLink, BusState, Readiness
 from daemon.driving.streamer import Streamer
 from daemon.errors import DaemonError
@@ -30,7 +31,7 @@ def start(
     """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link.
 
     `after_loss`, or a servo that has torque already, starts it in a latched fault: nothing may move by itself, and nothing
-    may be taken for limp that is not.
+    may be taken for limp that is not. An e-stop or torque off that nobody has carried out cuts torque before anything else.
     """
     try:
         bus = open_bus()
@@ -38,8 +39,11 @@ def start(
         link.set_ready(Readiness.FAILED, str(error))
         return None
     try:
+        _cut_what_is_owed(bus, link)
         bus.verify()
+        _cut_what_is_owed(bus, link)
         findings = check_servos(bus, robot)
+        _cut_what_is_owed(bus, link)
         for f in findings:
             log.log(
                 _LEVELS[f.severity],
@@ -60,6 +64,7 @@ def start(
             if advice:
                 log.warning("%s", advice)
         bus.exchange(None)
+        _cut_what_is_owed(bus, link)
         holding = ", ".join(str(i) for i in bus.ids if bus.read_item(i, "torque_enable"))
     except DaemonError as error:
         bus.close()
@@ -73,3 +78,9 @@ def start(
         streamer.state = BusState.FAULT
     link.set_ready(Readiness.READY, why)
     return streamer
+
+
+def _cut_what_is_owed(bus: RobotBus, link: BusLink) -> None:
+    """Torque off where somebody asks for it while the bus starts; the first cycle serves the request itself, and repeats it."""
+    if link.owes(*ESTOPS, BusRequest.TORQUE_OFF):
+        bus.send_torque_off()

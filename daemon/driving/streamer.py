@@ -24,7 +24,8 @@ from daemon.driving.gate import Gate
 from daemon.driving.judging import MAY_HAVE_TRIPPED_S, Judge
 from daemon.driving.pace import Pace, SlowedSetpoints
 from daemon.driving.ramp import EFFORT_START, TorqueRamp
-from daemon.driving.shared import ESTOPS, BusLink, BusRequest, BusState, valid_requests
+from daemon.driving.request_words import ESTOPS, Asked
+from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.slow_move import SlowMove
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from retarget.collision import SelfContact
@@ -44,6 +45,7 @@ NO_WAY_LIMP_S = 10.0
 """Where no way to rest or park was found that keeps off the robot itself it holds in a fault, and goes limp after so long."""
 TORQUE_OFF_REPEATS = 5
 """Torque off is a packet that nobody answers: it is sent again, so that a spoilt one or a lost port costs nothing."""
+HELD_UP = "the bus process was silent for more than 1 s and is back; the robot holds: `mmmd reset` makes it limp"
 _COMES_TO = {
     BusRequest.STOP: BusState.STOPPING, BusRequest.TORQUE_OFF: BusState.STOPPING, BusRequest.PARK: BusState.PARKING,
 }  # fmt: skip
@@ -83,7 +85,7 @@ class Streamer:
         self._judge, self._ramp = Judge(robot, bus), TorqueRamp(bus, robot.bus.period_s)
         self._derating = Derating(robot.n_servos, robot.bus.period_s)
         self._setpoints, self._pace = SlowedSetpoints(link), Pace(robot.bus.period_s)
-        self._asked: list[BusRequest] = []
+        self._owed: list[Asked] = []
         self._fed_s = clock.now_s()
 
     def run(self) -> None:
@@ -115,9 +117,10 @@ class Streamer:
         """One bus period."""
         self._told_s = self._clock.now_s()  # of a cycle in which no goals go out
         try:
-            self._asked = valid_requests([*self._asked, *self._link.take_requests()])
-            if self._asked:  # one a cycle, so that the front sees each state; an e-stop is always the first
-                self._serve(self._asked.pop(0))
+            asked = self._link.take_request()
+            if asked is not None:  # one a cycle, so that the front sees each state; an e-stop voids what came before it
+                self._owed.append(asked)
+                self._serve(asked.kind)
             self._repeat_torque_off()
             self._watch_heartbeat()
             self._limp_when_due()
@@ -136,6 +139,7 @@ class Streamer:
         except (LinkError, ServoFaultError) as error:
             self._fault(str(error))
         self._publish(self._bus.reading)
+        self._tell_done()
         self._cycle += 1
 
     def _waited_until(self, due_s: float) -> float:
@@ -151,6 +155,7 @@ class Streamer:
     def _serve(self, request: BusRequest) -> None:
         log.info("request %s in %s", request.name, self.state.name)
         if request in ESTOPS:
+            self._link.set_text("")
             self._estop(holds=request is BusRequest.ESTOP_HOLD)
         elif request in _COMES_TO:
             self._link.drop_queued()
@@ -160,6 +165,10 @@ class Streamer:
                 self._forget_way()
                 self._limp_at_rest = request is BusRequest.TORQUE_OFF
                 self._enter(_COMES_TO[request])
+            elif request is BusRequest.TORQUE_OFF and self.state is BusState.FAULT:
+                self._cut_torque()  # it has come to rest in a fault, and stays in it
+        elif request is BusRequest.FAULT:
+            self._fault(HELD_UP)
         elif request is BusRequest.RESET:
             if self.state in (BusState.ESTOP, BusState.FAULT):
                 self._bus.look_again()
@@ -175,6 +184,14 @@ class Streamer:
                 self._enter(BusState.ARMING)
         else:
             self.stopping = True
+
+    def _tell_done(self) -> None:
+        """Say that a request is carried out: a cut once its packets went out on every port, the others after their cycle."""
+        cut_waits = not self._torque and self._torque_off_left == TORQUE_OFF_REPEATS
+        for asked in list(self._owed):
+            if not (cut_waits and asked.kind in ESTOPS):
+                self._link.done(asked)
+                self._owed.remove(asked)
 
     def _estop(self, *, holds: bool) -> None:
         """Cut torque; or brake and hold, where nothing is latched that holds already."""

@@ -33,6 +33,7 @@ class Follower:
         self.bus_alive = True
         self.fault_reason = ""
         self._own_estop = ""
+        self._to_latch = False
         self.stopped = False
         self.idling = False
         self._epoch: int = planner.epoch
@@ -67,7 +68,13 @@ class Follower:
 
     def _report(self, state: BusState) -> Trigger:
         if not self.bus_alive or self._view.silent_s > BUS_SILENT_S:
+            if self.bus_alive and not self._to_latch:  # frozen: when it goes on it must not take up what it was doing
+                self._link.request(BusRequest.FAULT)
+                self._to_latch = True
             return Trigger.BUS_LOST
+        if self._to_latch and state not in (BusState.FAULT, BusState.ESTOP):
+            return Trigger.BUS_LOST  # cycles of a bus process that has not taken the request yet
+        self._to_latch = False
         report = REPORTS[state]
         if report is Trigger.BUS_HOLDING and self.stopped:
             return Trigger.BUS_STOPPED

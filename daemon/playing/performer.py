@@ -162,7 +162,8 @@ class Performer:
             self.follower.stopped = True
             self._link.request(BusRequest.STOP)
             for pending in self._waiting:
-                pending.epoch += pending.epoch == before  # what waits for its turn has not been stopped
+                if pending.epoch == before:  # what waits for its turn has not been stopped
+                    pending.epoch = self.planner.epoch
             self._player.end("cancel")
         for pending in self._waiting:
             if command_id in ("", pending.entry.id):

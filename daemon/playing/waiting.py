@@ -22,6 +22,9 @@ SHADOW_S = 0.1
 """A command that comes so soon after a stop was on its way when it was given, unless its sender's clock shows otherwise."""
 CLOCKS_KEPT = 64
 """Clocks of other machines, of which the newest halt is remembered."""
+LONGEST_WAY_S = 10.0
+"""Seconds by which a message of another machine may come later than one that it sent after it: TCP sends lost packets anew.
+Stamps that would need more than that to be true are taken for wrong."""
 
 
 @dataclass(eq=False)
@@ -55,6 +58,25 @@ class Pending:
         return self.when == "now" and not self.entry.accepted
 
 
+@dataclass(frozen=True)
+class _Stamp:
+    """A message of another machine.
+
+    Attributes:
+        sent_s: when it was sent, on that machine's clock.
+        came_s: when it came, on ours.
+    """
+
+    sent_s: float
+    came_s: float
+
+    def sent_before(self, other: _Stamp) -> bool:
+        """Whether it was sent before (or with) one that came before it, and no longer on its way than messages are."""
+        return (
+            self.sent_s <= other.sent_s and (other.sent_s - self.sent_s) + (self.came_s - other.came_s) <= LONGEST_WAY_S
+        )
+
+
 class Halts:
     """When a person last stopped, parked or cut torque, and what that means for a command.
 
@@ -64,7 +86,7 @@ class Halts:
 
     def __init__(self, clock: str | None = None) -> None:
         self._clock = clock_id() if clock is None else clock
-        self._sent_s: OrderedDict[str, float] = OrderedDict()
+        self._stamps: OrderedDict[str, _Stamp] = OrderedDict()
         self._from = ""
         self._n_given = self._n_served = 0
         self.at_s, self.by = float("-inf"), ""
@@ -75,9 +97,10 @@ class Halts:
         self._n_given += 1
         self.at_s, self.by, self._from = time.monotonic(), by, clock or ""
         if clock and clock != self._clock and sent_s is not None:
-            self._sent_s[clock] = max(sent_s, self._sent_s.pop(clock, sent_s))
-            if len(self._sent_s) > CLOCKS_KEPT:
-                self._sent_s.popitem(last=False)
+            stamp, before = _Stamp(sent_s, self.at_s), self._stamps.pop(clock, None)
+            self._stamps[clock] = before if before is not None and stamp.sent_before(before) else stamp
+            if len(self._stamps) > CLOCKS_KEPT:
+                self._stamps.popitem(last=False)
 
     def served(self) -> None:
         """What had arrived before a halt has ended. Called by the event loop, once for each halt."""
@@ -88,28 +111,31 @@ class Halts:
 
         It is as long as the halt is being served, which takes a while behind many requests, and a moment longer.
         """
-        after = self._sent_after(entry.request)
+        after = self._sent_after(entry)
         if after is not None:
             return not after
         return self._n_served < self._n_given or time.monotonic() - self.at_s < SHADOW_S
 
     def spares(self, entry: Entry) -> bool:
         """Whether a command that came before the halt was served was surely sent after it."""
-        return self._sent_after(entry.request) is True
+        return self._sent_after(entry) is True
 
-    def _sent_after(self, request: Request) -> bool | None:
+    def _sent_after(self, entry: Entry) -> bool | None:
         """Whether it was sent after the newest halt; None when no clock tells."""
-        sent_s, clock = request.t_mono, request.clock
+        sent_s, clock = entry.request.t_mono, entry.request.clock
         if sent_s is None or not clock:
             return None
         if clock == self._clock:
             return self.at_s < sent_s if sent_s <= time.monotonic() else None
-        halt_s = self._sent_s.get(clock)
-        if halt_s is None:
+        halt = self._stamps.get(clock)
+        if halt is None:
             return None
-        if sent_s <= halt_s:
-            return False
-        return True if clock == self._from else None  # the newest halt came from elsewhere
+        stamp = _Stamp(sent_s, entry.t_received_ns * 1e-9)
+        if sent_s <= halt.sent_s:
+            return False if stamp.sent_before(halt) else None
+        if clock != self._from:  # the newest halt came from elsewhere
+            return None
+        return True if stamp.came_s > halt.came_s or halt.sent_before(stamp) else None
 
 
 class WaitingRoom:

@@ -10,7 +10,7 @@ from daemon.playing.planner import Planner
 from daemon.state.bus_view import BusView
 from daemon.state.machine import RobotState, StateMachine
 from retarget.robot import load_robot
-from tests.daemon.rig import Rig, rig
+from tests.daemon.rig import Rig, lead_to, rig
 
 ROBOT = load_robot("reference")
 
@@ -37,19 +37,49 @@ class Front:
             assert self.rig.state in (BusState.LIMP, BusState.ARMING, BusState.HOLDING)
 
 
-def test_a_bus_process_that_was_silent_and_comes_back_armed_is_stopped_and_the_e_stop_says_why(monkeypatch) -> None:
+@pytest.mark.parametrize("state", ["limp", "arming", "holding", "playing", "stopping", "parking"])
+def test_a_bus_process_that_was_silent_for_a_while_and_comes_back_latches_the_fault_that_was_told(monkeypatch, state):
+    """It took up what it was doing, which cannot follow a fault, and ended in an e-stop that nobody had given."""
+    with rig("reference") as r:
+        front = Front(r, monkeypatch)
+        front.tick()
+        if state == "arming":
+            r.link.request(BusRequest.ARM)
+        elif state != "limp":
+            lead_to(r, state)
+        front.tick()
+        assert r.state.name.lower() == state
+        had_torque = all(r.torque)
+        assert front.tick(cycles=0, seconds=1.2 * BUS_SILENT_S) is RobotState.FAULT
+        assert "silent" in front.follower.fault_reason
+        passed = {front.tick() for _ in range(30)}
+        assert passed == {RobotState.FAULT} and r.state is BusState.FAULT
+        assert all(r.torque) == had_torque, "what has torque comes to rest and holds"
+        assert "is back" in front.follower.fault_reason and "reset" in front.follower.fault_reason
+        r.link.request(BusRequest.RESET)
+        assert front.tick() is RobotState.LIMP and front.follower.fault_reason == "" and not any(r.torque)
+        r.assert_limits_kept() if had_torque else None
+
+
+def test_a_reset_given_while_the_bus_process_was_silent_is_carried_out_after_the_fault(monkeypatch):
     with rig("reference") as r:
         front = Front(r, monkeypatch)
         front.arm()
-        assert front.tick(cycles=0, seconds=1.2 * BUS_SILENT_S) is RobotState.FAULT
-        assert "silent" in front.follower.fault_reason
+        front.tick(cycles=0, seconds=1.2 * BUS_SILENT_S)
+        r.link.request(BusRequest.RESET)
+        states = [front.tick() for _ in range(4)]
+        assert states[-1] is RobotState.LIMP and RobotState.ESTOP not in states and not any(r.torque)
+
+
+def test_what_cannot_follow_is_an_e_stop_that_says_why(monkeypatch) -> None:
+    with rig("reference") as r:
+        front = Front(r, monkeypatch)
+        front.arm()
+        front.machine.state = RobotState.FAULT  # which the bus process knows nothing of
         front.tick()
-        assert all(r.torque), "it holds still, and nobody knew"
         assert front.tick() is RobotState.ESTOP and not any(r.torque)
         reason = front.follower.fault_reason
-        assert "itself" in reason and "'bus holding'" in reason and "silent" in reason
-        r.link.request(BusRequest.RESET)
-        assert front.tick() is RobotState.LIMP and front.follower.fault_reason == ""
+        assert "itself" in reason and "'bus holding'" in reason
 
 
 def test_an_e_stop_that_somebody_gave_has_no_reason_of_the_daemons(monkeypatch) -> None:

@@ -99,6 +99,14 @@ def test_a_stop_voids_what_was_pushed_before_and_by_who_does_not_know_of_it(link
     assert got is not None and got.plan_id == 2
 
 
+def all_taken(bus: BusLink) -> list[BusRequest]:
+    """Requests as the bus process takes them, one a cycle."""
+    taken = []
+    while (asked := bus.take_request()) is not None:
+        taken.append(asked.kind)
+    return taken
+
+
 A, P, S, E, R, X = (BusRequest[k] for k in ("ARM", "PARK", "STOP", "ESTOP", "RESET", "SHUTDOWN"))
 
 
@@ -122,14 +130,14 @@ A, P, S, E, R, X = (BusRequest[k] for k in ("ARM", "PARK", "STOP", "ESTOP", "RES
 def test_requests_are_taken_once_in_order_without_those_that_are_void(link, bus, given, taken):
     for kind in given:
         link.request(kind)
-    assert bus.take_requests() == taken
-    assert bus.take_requests() == []
+    assert all_taken(bus) == taken
+    assert all_taken(bus) == []
 
 
 def test_a_request_of_before_the_bus_process_is_not_carried_out(link):
     """A bus process that starts anew must not arm because its predecessor was asked to."""
     link.request(BusRequest.ARM)
-    assert BusLink.attach(link.path, J).take_requests() == []
+    assert all_taken(BusLink.attach(link.path, J)) == []
 
 
 def test_cycles_are_read_by_several_readers_and_losses_counted(link, bus):

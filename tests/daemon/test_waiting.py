@@ -17,8 +17,9 @@ HERE, THERE, ELSEWHERE = "clock of this machine", "clock of another", "clock of 
 LONG_AGO_S = 10 * SHADOW_S
 
 
-def said(clock: str | None, t_mono: float | None) -> Entry:
-    return Entry("a", Say(text="wave", clock=clock, t_mono=t_mono), 0, [])
+def said(clock: str | None, t_mono: float | None, *, ago_s: float = 0.0) -> Entry:
+    came_ns = time.monotonic_ns() - round(1e9 * ago_s)
+    return Entry("a", Say(text="wave", clock=clock, t_mono=t_mono), came_ns, [])
 
 
 def halted(clock: str | None, sent_s: float | None, *, ago_s: float = 0.0) -> Halts:
@@ -85,6 +86,35 @@ def test_a_time_that_is_still_to_come_proves_nothing():
     assert halts.overtook(said(HERE, time.monotonic() + 3600)) and not halts.spares(said(HERE, time.monotonic() + 3600))
 
 
+@pytest.mark.parametrize("ahead_s", [1e3, 1e9, 1e300])
+def test_a_stop_stamped_with_the_far_future_cancels_nothing_that_comes_later(ahead_s):
+    """One such frame, and every later text of that machine ended in `cancelled`, for as long as the daemon ran."""
+    halts = halted(THERE, 500.0 + ahead_s, ago_s=LONG_AGO_S)
+    for sent_s in (499.0, 500.1, 900.0):
+        assert not halts.overtook(said(THERE, sent_s))
+    halts.note("stop", Stop(clock=THERE, t_mono=501.0))  # the next honest one counts again
+    halts.served()
+    halts.at_s -= LONG_AGO_S
+    assert halts.overtook(said(THERE, 500.9)) and not halts.overtook(said(THERE, 501.1))
+
+
+def test_a_text_stamped_with_the_far_future_is_not_spared_by_a_stop_that_comes_later():
+    """A text that came before the stop and says that it was sent after it: by a moment it may have been, by an hour not."""
+    halts = halted(THERE, 500.0)
+    assert halts.spares(said(THERE, 500.5, ago_s=1.0))
+    for ahead_s in (3600.0, 1e300):
+        assert not halts.spares(said(THERE, 500.0 + ahead_s, ago_s=1.0))
+    assert not halts.spares(said(THERE, 500.5, ago_s=60.0))
+
+
+def test_of_two_stops_that_crossed_on_their_way_the_later_one_counts():
+    halts = halted(THERE, 502.0, ago_s=LONG_AGO_S)
+    halts.note("stop", Stop(clock=THERE, t_mono=501.0))
+    halts.served()
+    halts.at_s -= LONG_AGO_S
+    assert halts.overtook(said(THERE, 501.5)) and halts.spares(said(THERE, 502.5))
+
+
 def test_without_a_stop_nothing_is_overtaken():
     assert not any(Halts(HERE).overtook(said(c, t)) for c in (HERE, THERE, None) for t in (None, -1e9, 0.0, 1e9))
 
@@ -93,7 +123,7 @@ def test_clocks_that_are_remembered_are_bounded():
     halts = Halts(HERE)
     for i in range(10 * CLOCKS_KEPT):
         halts.note("stop", Stop(clock=f"c{i}", t_mono=1.0))
-    assert len(halts._sent_s) == CLOCKS_KEPT and halts.spares(said(f"c{10 * CLOCKS_KEPT - 1}", 2.0))
+    assert len(halts._stamps) == CLOCKS_KEPT and halts.spares(said(f"c{10 * CLOCKS_KEPT - 1}", 2.0))
 
 
 def test_a_clock_has_one_name_for_all_processes_of_a_start():

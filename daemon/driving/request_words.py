@@ -1,0 +1,142 @@
+"""Requests to the bus process as words of shared memory: each stays asked for until a bus cycle has carried it out.
+
+Two processes ask: the one that serves `ctl` and the front. Each kind of request has two words for each of them: the number
+of the newest one asked, which only the asker writes and only raises, and the number of the newest one carried out, which only
+the bus process writes. A request is pending while the two differ, so it outlives the bus process that it was meant for,
+and no writer can undo what another has written. Numbers are the monotonic time of asking: they put the requests
+of both askers in one order, in which a halt voids what was asked before it, carried out or not. Sans-I/O.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Words = NDArray[np.uint64]
+
+
+class BusRequest(IntEnum):
+    """What may be asked of the bus process; the value is the place of its words."""
+
+    ARM = 0
+    PARK = 1
+    STOP = 2
+    ESTOP = 3
+    RESET = 4
+    SHUTDOWN = 5
+    TORQUE_OFF = 6
+    ESTOP_HOLD = 7
+    FAULT = 8
+    """The front has told a fault while the bus process was silent: it latches it when it is back."""
+
+
+class Asker(IntEnum):
+    """Who asks; the value is the row of its words."""
+
+    CTL = 0
+    FRONT = 1
+
+
+ESTOPS = (BusRequest.ESTOP, BusRequest.ESTOP_HOLD)
+HALTS = (BusRequest.STOP, BusRequest.PARK, BusRequest.TORQUE_OFF, *ESTOPS)
+"""They end what is played: every setpoint pushed before is void."""
+LASTING = (BusRequest.STOP, BusRequest.TORQUE_OFF, *ESTOPS, BusRequest.FAULT, BusRequest.SHUTDOWN)
+"""What a bus process that starts still owes. The others would move the robot, or unlatch it, long after they were asked for."""
+
+_MOVES = (BusRequest.ARM, BusRequest.PARK)
+_VOIDS: dict[BusRequest, tuple[BusRequest, ...]] = {
+    BusRequest.ESTOP: tuple(k for k in BusRequest if k not in (BusRequest.SHUTDOWN, BusRequest.ESTOP)),
+    BusRequest.ESTOP_HOLD: tuple(k for k in BusRequest if k not in (BusRequest.SHUTDOWN, *ESTOPS)),
+    BusRequest.FAULT: (*_MOVES, BusRequest.RESET),
+    BusRequest.STOP: _MOVES,
+}
+"""What each halt makes void of all that was asked before it: it must not be undone by it, whenever that is looked at."""
+
+N_WORDS = 2 * len(Asker) * len(BusRequest)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One request.
+
+    Attributes:
+        kind: what is asked.
+        number: when it was asked: twice the monotonic time in nanoseconds, plus the asker, so that no two are equal.
+    """
+
+    kind: BusRequest
+    number: int
+
+
+class RequestWords:
+    """Both ends of the words.
+
+    Args:
+        words: (N_WORDS,) in shared memory, zeros at first.
+    """
+
+    def __init__(self, words: Words) -> None:
+        parts = words.reshape(2, len(Asker), len(BusRequest))
+        self._asked, self._done = parts[0], parts[1]
+        self._taken: Words = np.where(np.isin(np.arange(len(BusRequest)), LASTING), self._done, self._asked)
+
+    # Who asks.
+
+    def next_number(self, asker: Asker, now_ns: int) -> int:
+        """A number above all that `asker` has given."""
+        return max(2 * now_ns, 2 * (int(self._asked[asker].max()) // 2 + 1)) + asker
+
+    def ask(self, asker: Asker, kind: BusRequest, number: int) -> Asked:
+        """Ask for `kind`; a number below that of a newer one of its kind is covered by that one."""
+        self._asked[asker, kind] = max(number, int(self._asked[asker, kind]))
+        return Asked(kind, number)
+
+    def carried_out(self, asker: Asker, asked: Asked) -> bool:
+        """Whether a bus cycle has carried out a request, or one of its kind that came after it."""
+        return int(self._done[asker, asked.kind]) >= asked.number
+
+    def overtaken(self, asked: Asked) -> bool:
+        """Whether a halt that was asked for after it has made a request void."""
+        return any(self._newest(halt) > asked.number for halt, void in _VOIDS.items() if asked.kind in void)
+
+    def halts(self, asker: Asker) -> dict[BusRequest, int]:
+        """The newest number of each halt that `asker` has asked for."""
+        return {kind: int(self._asked[asker, kind]) for kind in HALTS}
+
+    # The bus process.
+
+    def owes(self, kind: BusRequest) -> bool:
+        """Whether no bus cycle has carried out the newest request of a kind."""
+        return bool((self._asked[:, kind] != self._done[:, kind]).any())
+
+    def waits(self, kind: BusRequest) -> bool:
+        """Whether a request of a kind has not been taken by this process."""
+        return bool((self._asked[:, kind] != self._taken[:, kind]).any())
+
+    def take(self) -> Asked | None:
+        """The oldest request that was not taken by this process and is not void; None when there is none.
+
+        It is owed until `done`: should this process end before, the next one takes it again.
+        """
+        waiting = np.argwhere(self._asked != self._taken)
+        asked = sorted((int(self._asked[asker, kind]), int(asker), BusRequest(int(kind))) for asker, kind in waiting)
+        for number, asker, kind in asked:
+            self._taken[asker, kind] = number
+            taken = Asked(kind, number)
+            if self.overtaken(taken):
+                self._done[asker, kind] = max(number, int(self._done[asker, kind]))
+            elif not any(k is kind for n, _, k in asked if n > number):  # the newest of a kind stands for all
+                return taken
+        return None
+
+    def done(self, taken: Asked) -> None:
+        """A cycle has carried out `taken`, and with it all of its kind that were asked for before."""
+        for asker in Asker:
+            asked = min(int(self._asked[asker, taken.kind]), taken.number)
+            self._done[asker, taken.kind] = max(asked, int(self._done[asker, taken.kind]))
+
+    def _newest(self, kind: BusRequest) -> int:
+        return int(self._asked[:, kind].max())
