@@ -1,4 +1,4 @@
-"""Real motion: `clips.jsonl` beside the recordings it cuts, CMU's only (docs/DATA.md)."""
+"""Real motion: `clips.jsonl` beside the recordings that it cuts, of sources whose terms allow any use (docs/DATA.md)."""
 
 from __future__ import annotations
 
@@ -21,18 +21,42 @@ from mmm_core.motion.features import features_from_joints, mirror
 
 LONGEST_FRAMES = MAX_TOKENS * FRAMES_PER_TOKEN
 SHORTEST_FRAMES = 24
+FREE_TERMS = ("CMU", "MIT", "CC0")
+"""Terms of trials that are used; every other is left out."""
+MORE = "more"
+"""Subfolder with further recordings in the same form."""
+SAME_RECORDINGS = {
+    "cmu-washwindow_1-test": "14_12",
+    "cmu-basketball_signal_1-train": "29_02",
+    "cmu-basketball_signal_2-train": "29_07",
+    "cmu-directing_traffic_4-train": "14_24",
+    "cmu-jumping_4-train": "13_32",
+}
+"""Benchmark names under which a folder holds recordings that its subfolder holds under their trial's number."""
 
 
 def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.float32], list[str]]]:
     """Features and sentences of the usable clips of `split`, each followed by its mirror image.
 
-    Used: recordings under CMU's own terms, sentences that are not KIT-ML's, upright frames outside `bad_frames`. The
+    Used: recordings under terms of `FREE_TERMS`, sentences that are not KIT-ML's, upright frames outside `bad_frames`. The
     recordings are those of `motions_common_skeleton.npz`, or where there is none, TRIAL.bvh or TRIAL.amc (with its .asf).
+    A subfolder `more` is read too; of a recording that both hold, the subfolder's copy is used.
 
     Raises:
         TrainingDataError: a file is missing or a clip lies outside its recording.
         MotionFileError: a recording cannot be read.
     """
+    more, replaced = folder / MORE, frozenset[str]()
+    if (more / "clips.jsonl").is_file():
+        held = {t["trial"]: t for t in _json_lines(more / "trials.jsonl")}
+        replaced = frozenset(name for name, t in held.items() if t["replaces_rig"])
+        replaced |= {name for name, copy in SAME_RECORDINGS.items() if copy in held}
+        yield from _read_folder(more, split, frozenset())
+    yield from _read_folder(folder, split, replaced)
+
+
+def _read_folder(folder: Path, split: str, replaced: frozenset[str]) -> Iterator[tuple[NDArray[np.float32], list[str]]]:
+    """The clips of one folder, without those of the trials in `replaced`."""
     trials = {t["trial"]: t for t in _json_lines(folder / "trials.jsonl")}
     with ExitStack() as stack:
         recording = _recordings(folder, stack)
@@ -43,7 +67,7 @@ def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.
                 raise TrainingDataError(
                     folder, clip["clip"], f"trial {clip['trial']!r} is unknown", "a trial of trials.jsonl"
                 )
-            if clip["split"] != split or trial["terms"] != "CMU":
+            if clip["split"] != split or trial["terms"] not in FREE_TERMS or clip["trial"] in replaced:
                 continue
             captions = [c for c, s in zip(clip["captions"], clip["caption_source"], strict=True) if s != "KIT-ML"]
             if not 0 <= clip["start"] < clip["end"] <= len(joints) + 1:

@@ -19,6 +19,8 @@ from mmm_core.motion.motion import FPS
 from mmm_core.motion.skeleton import Array
 
 N_CAPTIONS = 6
+SINGLE_SHARE = 0.62
+"""Share of clips that show one gesture, where nothing else is asked for."""
 LONGEST_S = MAX_TOKENS * FRAMES_PER_TOKEN / FPS
 _COUNT_WEIGHTS = np.array([0.16, 0.21, 0.21, 0.16, 0.12, 0.07, 0.04, 0.03])
 """Probability of one to eight repetitions."""
@@ -109,10 +111,12 @@ def _in_a_manner(g: Gesture, rng: np.random.Generator) -> Gesture:
     return g
 
 
-def draw_spec(rng: np.random.Generator, weights: Mapping[str, float] | None = None) -> ClipSpec:
+def draw_spec(
+    rng: np.random.Generator, weights: Mapping[str, float] | None = None, single_share: float = SINGLE_SHARE
+) -> ClipSpec:
     """One gesture, two or three in a row, or two at once where the limbs are free; `weights` as of `draw_gesture`."""
-    kind = rng.random()
-    if kind < 0.62:
+    kind = float(np.interp(rng.random(), (0.0, single_share, 1.0), (0.0, SINGLE_SHARE, 1.0)))
+    if kind < SINGLE_SHARE:
         return ClipSpec((draw_gesture(rng, weights=weights),))
     if kind < 0.74:
         return ClipSpec(_pair_at_once(rng), parallel=True)
@@ -141,10 +145,22 @@ def _pair_at_once(rng: np.random.Generator) -> tuple[Gesture, Gesture]:
     return replace(pair[0], style=""), replace(pair[1], style="")
 
 
-def synthesise(rng: np.random.Generator, beat_s: float = 0.0, weights: Mapping[str, float] | None = None) -> SynthClip:
-    """A clip drawn at random, at most 9.8 s long; `beat_s` as of `synthesise_spec`, `weights` as of `draw_gesture`."""
+def synthesise(
+    rng: np.random.Generator,
+    beat_s: float = 0.0,
+    weights: Mapping[str, float] | None = None,
+    single_share: float = SINGLE_SHARE,
+) -> SynthClip:
+    """A clip drawn at random, at most 9.8 s long.
+
+    Args:
+        rng: source of all chance.
+        beat_s: seconds of a beat, as of `synthesise_spec`.
+        weights: how often each family is drawn, as of `draw_gesture`.
+        single_share: share of clips that show one gesture.
+    """
     while True:
-        clip = synthesise_spec(draw_spec(rng, weights), rng, beat_s)
+        clip = synthesise_spec(draw_spec(rng, weights, single_share), rng, beat_s)
         if clip is not None:
             return clip
 

@@ -17,9 +17,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mmm_core import distributed
 from mmm_core.corpus.beat import BEAT_S
 from mmm_core.corpus.families import FAMILIES
-from mmm_core.corpus.synthesis import synthesise
+from mmm_core.corpus.synthesis import SINGLE_SHARE, synthesise
 from mmm_core.errors import TrainingDataError
 from mmm_core.language.mirroring import canonical
 from mmm_core.model.text import TextEncoder
@@ -47,6 +48,7 @@ class FreshRecipe:
         captions: of each clip that are read.
         free_share: share of clips that keep no beat: performed as by a person, with sway, breath and uneven strokes.
         canonical_share: share of clips whose sentence is the one of it and its mirror image that the engine reads.
+        single_share: share of clips that show one gesture; the others show two at once, or two or three in turn.
     """
 
     clips: int = 0
@@ -56,6 +58,7 @@ class FreshRecipe:
     captions: int = 2
     free_share: float = 0.12
     canonical_share: float = 0.8
+    single_share: float = SINGLE_SHARE
 
 
 def usual_weights() -> dict[str, float]:
@@ -133,13 +136,14 @@ class FreshClips:
 
     def _round(self, k: int) -> Round:
         path = self._folder / f"round_{k:04d}.pt"
-        if not path.is_file():
+        if not path.is_file() and distributed.rank() == 0:
             made = self._made(k)
+            self._folder.mkdir(parents=True, exist_ok=True)
             with written_whole(path) as partial:
                 torch.save({"ids": made.ids, "caption_rows": made.caption_rows, "captions": made.captions,
                             "words": made.states.words, "n_words": torch.from_numpy(made.states.n_words),
                             "sentences": made.states.sentences}, partial)  # fmt: skip
-            return made
+        distributed.wait()
         kept = torch.load(path, weights_only=True)
         states = CaptionStates(kept["words"], kept["n_words"].numpy(), kept["sentences"])
         return Round(kept["ids"], kept["caption_rows"], kept["captions"], states)
@@ -158,7 +162,7 @@ class FreshClips:
     def _clip(self, k: int, i: int, weights: Mapping[str, float]) -> Clip:
         rng = np.random.default_rng((self._seed, 77, k, i))
         free = rng.random() < self._how.free_share
-        made = synthesise(rng, 0.0 if free else BEAT_S, weights)
+        made = synthesise(rng, 0.0 if free else BEAT_S, weights, self._how.single_share)
         n = self._how.captions
         if rng.random() >= self._how.canonical_share:
             return Clip(made.features, made.captions[:n], False)

@@ -13,6 +13,7 @@ from mmm_core.errors import TrainingDataError
 from mmm_core.model.tokenizer import TokenizerConfig
 from mmm_core.model.transformer import TransformerConfig
 from mmm_core.model.vqvae import VqVaeConfig
+from mmm_core.training.fresh import FreshRecipe
 from mmm_core.training.run import Schedule
 from mmm_core.training.transformer_training import TOKENS_PER_BATCH, Corruption
 
@@ -25,13 +26,15 @@ class DataRecipe:
 
     Attributes:
         folder: a HumanML3D or KIT-ML folder, or one with clips.jsonl (docs/DATA.md); empty for none.
-        synthesised: clips that the gesture corpus makes.
+        synthesised: clips that the gesture corpus makes before the training.
         licence: of the folder's data; it goes into the checkpoint.
+        fresh: gesture clips made while the transformer trains; the length predictor then trains on the newest of them.
     """
 
     folder: str = ""
     synthesised: int = 0
     licence: str = ""
+    fresh: FreshRecipe = field(default_factory=FreshRecipe)
 
 
 @dataclass(frozen=True)

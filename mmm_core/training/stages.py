@@ -33,6 +33,7 @@ from mmm_core.model.length import LengthPredictor
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill
 from mmm_core.model.text import MiniLm, MiniLmConfig, TextEncoder, TextStates
 from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from mmm_core.model.transformer import MotionTransformer
 from mmm_core.model.vqvae import VqVae
 from mmm_core.motion.features import joints_from_positions, recover
@@ -47,6 +48,7 @@ from mmm_core.training.batches import (
     save_clips,
 )
 from mmm_core.training.evaluator_training import train_evaluator
+from mmm_core.training.fresh import FreshClips
 from mmm_core.training.recipe import Recipe
 from mmm_core.training.run import Run
 from mmm_core.training.samples import draw_rows
@@ -227,8 +229,26 @@ class Stages:
         start = None
         if self.start is not None and self.start.transformer.config.n_words == self.recipe.text.tuned_layers:
             start = self.start.length  # else it has learnt to read other word states
-        seconds = [len(c.features) / fps for c in self.clips]
-        return train_length(self.corpus, seconds, self.recipe.length, self.run, start)
+        corpus = self.corpus
+        if self.fresh is not None:
+            corpus = self.fresh.corpus(self.recipe.transformer.schedule.steps - 1)
+        seconds = [len(ids) * FRAMES_PER_TOKEN / fps for ids in corpus.ids]
+        return train_length(corpus, seconds, self.recipe.length, self.run, start)
+
+    @cached_property
+    def fresh(self) -> FreshClips | None:
+        """Gesture clips made while the transformer trains, beside those of `corpus`; None where the recipe asks for none.
+
+        Raises:
+            TrainingDataError: the recipe's text encoder has layers of its own to train, whose states cannot be kept.
+        """
+        how = self.recipe.data.fresh
+        if not how.clips:
+            return None
+        if self.recipe.text.tuned_layers:
+            found = f"{self.recipe.text.tuned_layers}, with data.fresh"
+            raise TrainingDataError(self.run.folder, "text.tuned_layers", found, "0 where clips are made anew")
+        return FreshClips(how, self.run.folder / "fresh", self.tokenizer, self.text, self.recipe.seed, self.corpus)
 
     @cached_property
     def transformer(self) -> MotionTransformer:
@@ -240,7 +260,7 @@ class Stages:
         run = replace(self.run, sampler=lambda module, path: self._draw_samples(module, texts, path))
         start = None if self.start is None else self.start.transformer
         return train_transformer(
-            self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch, start,
+            self.fresh or self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch, start,
             self.text.layers if isinstance(self.text, MiniLm) else None, self.recipe.text.tuned_rate,
         )  # fmt: skip
 
@@ -266,19 +286,23 @@ class Stages:
 
     def model(self) -> Model:
         """All stages, as a model to be saved."""
-        length, transformer, tokenizer = self.length, self.transformer, self.tokenizer
+        transformer, length, tokenizer = self.transformer, self.length, self.tokenizer
         if isinstance(tokenizer, Tokenizer) and self.recipe.tokenizer.decoder.steps and self.start is None:
             tune_decoder(tokenizer, self.clips, self.recipe.tokenizer.decoder, self.run)
-        synthesised = bool(self.recipe.data.synthesised)
+        synthesised = self._has_gestures
         text = self.text if isinstance(self.text, ClipText) else None
         pose = "humanml3d" if self.folder is not None else "mmmd"
         scope = build_scope(self.text, self.recipe.scope) if synthesised and text is None else None
         return Model(tokenizer, transformer, length, scope, self.provenance(), text, pose)
 
+    @property
+    def _has_gestures(self) -> bool:
+        return bool(self.recipe.data.synthesised or self.recipe.data.fresh.clips)
+
     def provenance(self) -> dict[str, object]:
         """Where a checkpoint comes from: recipe, data with its licence, seed, revision, last losses."""
         sources = [f"those of its start ({self.start.provenance.get('data', 'not stated')})"] if self.start else []
-        sources += ["synthesised gestures (this repository, Apache-2.0)"] if self.recipe.data.synthesised else []
+        sources += ["synthesised gestures (this repository, Apache-2.0)"] if self._has_gestures else []
         if self.data is not None:
             sources.append(f"{self.data.name}: {self.recipe.data.licence or 'licence not stated by the recipe'}")
         start = {"start": {"sha256": file_hash(self._start_path), **self.start.provenance}} if self.start else {}

@@ -40,6 +40,7 @@ class Corruption:
         no_text_share: share of motions trained without their text.
         real_share: share of motions made by a person, where there are both kinds.
         part_share: share of motions of which single body parts are masked, so that parts can be edited alone.
+        cell_share: share of motions in which every body part of a position is masked by itself, not the position as a whole.
         context_share: share of the ids of codebooks that are only seen (the lower body of eq. 3) which are replaced.
     """
 
@@ -49,6 +50,7 @@ class Corruption:
     no_text_share: float = 0.1
     real_share: float = 0.12
     part_share: float = 0.0
+    cell_share: float = 0.0
     context_share: float = 0.1
 
 
@@ -76,6 +78,11 @@ def corrupt(
     n_masked = (share * n_tokens).round().clamp_min(1)
     order = torch.rand(B, L, generator=generator).masked_fill(~motion, 2.0).argsort(dim=1).argsort(dim=1)
     masked = (order < n_masked[:, None])[..., None].expand(B, L, P)
+    if how.cell_share and P > 1:
+        chance = torch.rand(B, L, P, generator=generator).masked_fill(~motion[..., None], 2.0)
+        rank = chance.reshape(B, -1).argsort(dim=1).argsort(dim=1).reshape(B, L, P)
+        by_cell = torch.rand(B, 1, 1, generator=generator) < how.cell_share
+        masked = torch.where(by_cell, rank < P * n_masked[:, None, None], masked)
     hidden = replaced[..., None].expand(B, L, P)
     if how.part_share and P > 1:
         parts = torch.rand(B, 1, P, generator=generator) < 0.5
