@@ -13,7 +13,7 @@ from mmm_core.generate.motion_model import MotionModel, check_seed
 from mmm_core.generate.result import GenerationResult
 from mmm_core.inference.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
 from mmm_core.inference.int8_linear import convert_to_int8, int8_is_supported
-from mmm_core.inference.onednn_linear import fastest_precision, pack
+from mmm_core.inference.onednn_linear import can_pack, can_pack_bf16, fastest_precision, pack
 from mmm_core.model.sampling import OFFICIAL_SAMPLING, OFFICIAL_UPPER_BODY, SamplingSettings
 from mmm_core.model.text import TextEncoder
 from mmm_core.model.tokens import frames_for_seconds
@@ -85,6 +85,10 @@ class Engine(MotionModel):
         if chosen == "int8" and not can_int8:
             needed = "int8 needs a processor and PyTorch with VNNI, and a model of whole motions"
             raise GenerationError("precision int8 was asked for", f"fp32 or bf16: {needed}")
+        if chosen == "bf16" and can_pack() and not can_pack_bf16():
+            raise GenerationError(
+                "precision bf16 was asked for", "fp32: bf16 needs a processor with AVX-512 or the like"
+            )
         words = "bf16" if chosen == "bf16" else "fp32"
         pack(encoder, words)
         engine = cls(model, encoder, file_hash(path), settings or plain, chosen)

@@ -25,6 +25,7 @@ SMALLEST = 128
 # PyTorch offers packing under these names alone; its own inference passes use them.
 _PACK = getattr(torch.ops.mkldnn, "_reorder_linear_weight", None)
 _APPLY = getattr(torch.ops.mkldnn, "_linear_pointwise", None)
+_BF16 = getattr(torch.ops.mkldnn, "_is_mkldnn_bf16_supported", None)
 
 
 class OneDnnLinear(nn.Module):
@@ -53,9 +54,14 @@ def can_pack() -> bool:
     return torch.backends.mkldnn.is_available() and _PACK is not None and _APPLY is not None
 
 
+def can_pack_bf16() -> bool:
+    """Whether oneDNN packs bf16 weights on this processor: with AVX-512 or AVX-NE-CONVERT, not with AVX2 alone."""
+    return can_pack() and _BF16 is not None and bool(_BF16())
+
+
 def fastest_precision(width: int = 1024, n_calls: int = 8) -> Packing:
     """The faster precision on this machine, by timing a layer of `width`: about 20 ms. fp32 unless bf16 gains a quarter."""
-    if not can_pack():
+    if not can_pack_bf16():
         return "fp32"
     x, linear, seconds = torch.zeros(PACKED_FOR_ROWS, width), nn.Linear(width, width), {}
     with torch.inference_mode():

@@ -11,7 +11,7 @@ import pytest
 from daemon.cli import main
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.errors import TrainingDataError
-from mmm_core.evaluation import kept, probes
+from mmm_core.evaluation import probes, reconstruction
 from mmm_core.inference.checkpoint import load_model
 from mmm_core.training import ablation
 from mmm_core.training.ablation import BASE, TOKENIZERS, TRANSFORMERS, run_ablations, table
@@ -36,9 +36,9 @@ EACH_KIND = [
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few probes and repeats: each is a motion made and judged."""
-    for module in (probes, kept):
+    for module in (probes, reconstruction):
         monkeypatch.setattr(module, "PROBES", EACH_KIND)
-    monkeypatch.setattr(kept, "N_EACH", 1)
+    monkeypatch.setattr(reconstruction, "N_EACH", 1)
     for name in ("PROBE_SEEDS", "REAL_REPEATS"):
         monkeypatch.setattr(ablation, name, 1)
     monkeypatch.setattr(ablation, "REAL_EACH", 2)

@@ -221,6 +221,27 @@ def test_a_span_outside_its_recording_is_named(tmp_path: Path) -> None:
         list(read_clips(folder(tmp_path, {"start": 10, "end": 90})))
 
 
+def test_further_recordings_take_the_place_of_their_older_copies(tmp_path: Path) -> None:
+    """Of a recording that both folders hold under one name, or under a benchmark's name, the copy in `more` is read."""
+
+    def write(path: Path, trials: dict[str, str], **more: str) -> None:
+        path.mkdir(exist_ok=True)
+        lines = [{"trial": t, "terms": terms, "bad_frames": [], **more} for t, terms in trials.items()]
+        clip = {"start": 0, "end": 40, "split": "train", "caption_source": ["ours"]}
+        clips = [clip | {"clip": t, "trial": t, "captions": [f"{path.name} {t}"]} for t in trials]
+        (path / "trials.jsonl").write_text("\n".join(map(json.dumps, lines)))
+        (path / "clips.jsonl").write_text("\n".join(map(json.dumps, clips)))
+        np.savez(path / "motions_common_skeleton.npz", **dict.fromkeys(trials, standing))
+
+    made = synthesise_spec(ClipSpec((Gesture("bow"),)), np.random.default_rng(0))
+    assert made is not None
+    standing = recover(made.features[:40]).joints_m.astype(np.float32)
+    old = tmp_path / "old"
+    write(old, {"01": "CMU", "05": "CMU", "cmu-jumping_4-train": "CMU", "09": "unknown"})
+    write(old / "more", {"05": "CMU", "13_32": "MIT", "m": "CC0", "n": "non-commercial"}, replaces_rig="cc")
+    assert {c for _, captions in read_clips(old) for c in captions} == {"old 01", "more 05", "more 13_32", "more m"}
+
+
 def test_an_unknown_recording_is_named(tmp_path: Path) -> None:
     with pytest.raises(TrainingDataError, match=r"'b' is unknown"):
         list(read_clips(folder(tmp_path, {"trial": "b"})))

@@ -8,12 +8,15 @@ import pytest
 import torch
 from torch import nn
 
-from mmm_core.inference.onednn_linear import OneDnnLinear, can_pack, fastest_precision, pack
+from mmm_core.errors import GenerationError
+from mmm_core.generate.engine import Engine
+from mmm_core.inference.onednn_linear import OneDnnLinear, can_pack, can_pack_bf16, fastest_precision, pack
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill
 from mmm_core.model.text import TextStates
 from mmm_core.model.transformer import MotionTransformer, TransformerConfig
 
 pytestmark = pytest.mark.skipif(not can_pack(), reason="this PyTorch has no oneDNN")
+needs_bf16 = pytest.mark.skipif(not can_pack_bf16(), reason="this processor packs no bf16 weights")
 
 
 @pytest.mark.parametrize("rows", [1, 7, 51, 200])
@@ -23,6 +26,13 @@ def test_a_packed_layer_equals_the_plain_one(rows: int, bias: bool) -> None:
     torch.manual_seed(rows)
     linear, x = nn.Linear(256, 512, bias=bias), torch.randn(2, rows, 256)
     torch.testing.assert_close(OneDnnLinear(linear, "fp32")(x), linear(x), atol=1e-5, rtol=1e-5)
+
+
+@needs_bf16
+@torch.inference_mode()
+def test_a_packed_layer_in_bf16_stays_bf16_and_near_the_plain_one() -> None:
+    torch.manual_seed(7)
+    linear, x = nn.Linear(256, 512), torch.randn(2, 7, 256)
     half = OneDnnLinear(linear, "bf16")(x)
     assert half.dtype == torch.bfloat16  # nobody widens it but who needs it wide
     torch.testing.assert_close(half.float(), linear(x), atol=0.05, rtol=0.05)
@@ -51,6 +61,7 @@ def test_a_packed_transformer_chooses_the_same_tokens() -> None:
     assert all(torch.equal(x, y) for x, y in zip(a, b, strict=True))
 
 
+@needs_bf16
 @pytest.mark.parametrize("width", [128, 256])
 @torch.inference_mode()
 def test_a_transformer_in_bf16_answers_in_fp32_and_nearly_the_same(width: int) -> None:
@@ -65,5 +76,12 @@ def test_a_transformer_in_bf16_answers_in_fp32_and_nearly_the_same(width: int) -
     assert float((near - exact).norm() / exact.norm()) < 0.02
 
 
-def test_a_precision_is_chosen() -> None:
-    assert fastest_precision(128, 2) in ("fp32", "bf16")
+def test_a_precision_is_chosen_that_the_processor_has() -> None:
+    """On a processor with AVX2 alone the choice ended in a RuntimeError of PyTorch."""
+    assert fastest_precision(128, 2) in (("fp32", "bf16") if can_pack_bf16() else ("fp32",))
+
+
+@pytest.mark.skipif(can_pack_bf16(), reason="this processor packs bf16 weights")
+def test_bf16_is_refused_by_name_where_the_processor_lacks_it() -> None:
+    with pytest.raises(GenerationError, match=r"bf16 was asked for.*AVX-512"):
+        Engine.load(precision="bf16", threads=None)

@@ -120,6 +120,20 @@ def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path
         assert engine.generate("wave with your right hand", seed=1, seconds=1).motion.joints_m.shape == (20, 22, 3)
 
 
+def test_a_recipe_makes_clips_while_it_trains(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Rounds are made when their first step comes; lengths are learnt from the newest; layers of words cannot be tuned beside."""
+    config, run = small(tmp_path / "fresh.toml"), tmp_path / "run"
+    fresh = "[data.fresh]\nclips = 2\nfirst = 4\nevery = 4\nrounds = 1\ncaptions = 1\n"
+    config.write_text(config.read_text().replace("[tokenizer]", fresh + "[tokenizer]", 1))
+    assert main(["train", "--config", str(config), "--run", str(run), "--sample-every", "0"]) == 0
+    assert sorted(p.name for p in (run / "fresh").iterdir()) == ["round_0000.pt", "round_0001.pt"]
+    assert load_model(run / "model.safetensors").provenance["recipe"]["data"]["fresh"]["clips"] == 2
+    tuned = tmp_path / "tuned.toml"
+    tuned.write_text(config.read_text() + "[text]\ntuned_layers = 1\n")
+    assert main(["train", "--config", str(tuned), "--run", str(tmp_path / "tuned")]) == 1
+    assert "text.tuned_layers" in capsys.readouterr().err
+
+
 def test_a_recipe_goes_on_from_a_finished_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The tokenizer, decoder and all, is as it was; the transformer has its weights and goes on from there."""
     first = small(tmp_path / "first.toml")

@@ -110,6 +110,21 @@ def test_corruption_masks_at_least_its_share_and_leaves_end_and_padding(seed: in
     assert all((whole[row, :n] == K + 2).all() for row, n in enumerate((a, b)))
 
 
+@given(st.integers(0, 500), st.integers(2, 20))
+def test_body_parts_can_be_masked_each_by_itself(seed: int, n: int) -> None:
+    K, L, P = 32, 24, 3
+    ids = torch.full((1, L, P), K + 1)
+    ids[0, :n] = torch.randint(K, (n, P), generator=torch.Generator().manual_seed(seed))
+    ids[0, n] = K
+    how = Corruption(masked_share=0.5, kept_share=1.0, cell_share=1.0)
+    out = corrupt(ids, torch.tensor([n]), K, how, torch.Generator().manual_seed(seed))
+    masked = out[0, :n] == K + 2
+    assert masked.sum() % P == 0 and masked.sum() >= P * max(1, round(0.5 * n) - 1)
+    assert torch.equal(out[0, :n][~masked], ids[0, :n][~masked]) and torch.equal(out[0, n:], ids[0, n:])
+    many = [corrupt(ids, torch.tensor([n]), K, how, torch.Generator().manual_seed(s))[0, :n] == K + 2 for s in range(9)]
+    assert any((m.any(-1) & ~m.all(-1)).any() for m in many), "positions are masked in part"
+
+
 def test_before_there_are_codes_latents_go_to_the_decoder_as_they_are(tmp_path: Path) -> None:
     """Plain steps leave the codebooks alone; then codes are laid into the latents, and the tokenizer is better than noise."""
     clips = [Clip(synthesise(np.random.default_rng(i)).features, ["x"], False) for i in range(6)]
