@@ -1,4 +1,4 @@
-"""The evaluator: what turns motions and texts into vectors that lie near each other when they belong together.
+"""The evaluator: maps motions and texts to vectors that are close when they belong together.
 
 Guo et al. 2022 (CVPR, "Generating Diverse and Natural 3D Human Motions from Text") sec. 6.1: movement snippets of four
 frames by convolution, then a bidirectional GRU over them; words by another. Attributes carry the published names, so
@@ -22,7 +22,7 @@ from mmm_core.inference.checkpoint import fill_module, load_tensors, save_tensor
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 
 N_CONTACTS = 4
-"""Foot contacts, the last features, are not shown to the evaluator."""
+"""Foot contacts, the last features, which the evaluator does not read."""
 KIND = "mmmd-evaluator"
 
 
@@ -30,7 +30,7 @@ KIND = "mmmd-evaluator"
 class EvaluatorConfig:
     """Sizes; the defaults are the published ones for HumanML3D.
 
-    `rest_pose` says whose rest directions the rotations are relative to that it learnt from (see `checkpoint.Model`).
+    `rest_pose` names the rest directions of the rotations in its training data (see `checkpoint.Model`).
     """
 
     n_features: int = 263
@@ -46,7 +46,7 @@ class EvaluatorConfig:
 OURS = EvaluatorConfig(
     movement=128, text_hidden=128, motion_hidden=128, embedding=64, word=384, part_of_speech=0, rest_pose="mmmd"
 )
-"""What this repository trains: small, since a few hundred clips of people are there to learn from."""
+"""Sizes of the evaluator that this repository trains: small, since it learns from a few hundred clips of people."""
 
 
 class MovementEncoder(nn.Module):
@@ -62,7 +62,6 @@ class MovementEncoder(nn.Module):
         self.out_net = nn.Linear(W, W)
 
     def forward(self, x: Tensor) -> Tensor:
-        """See the class."""
         return self.out_net(self.main(x.transpose(1, 2)).transpose(1, 2))
 
 
@@ -93,7 +92,6 @@ class TextReader(_BiGru):
         self.pos_emb = nn.Linear(config.part_of_speech, config.word) if config.part_of_speech else None
 
     def forward(self, words: Tensor, parts_of_speech: Tensor | None, lengths: Tensor) -> Tensor:
-        """See the class."""
         if self.pos_emb is not None and parts_of_speech is not None:
             words = words + self.pos_emb(parts_of_speech)
         return self.read(words, lengths)
@@ -106,12 +104,11 @@ class MotionReader(_BiGru):
         super().__init__(config.movement, config.motion_hidden, config.motion_hidden, config.embedding)
 
     def forward(self, snippets: Tensor, lengths: Tensor) -> Tensor:
-        """See the class."""
         return self.read(snippets, lengths)
 
 
 class Evaluator(nn.Module):
-    """All three, with the statistics of the features it was trained on."""
+    """The three networks, with the statistics of the features they were trained on."""
 
     mean: Tensor
     std: Tensor

@@ -1,4 +1,4 @@
-"""Whether the model makes each gesture as well as its corpus does: `mmmd eval fidelity`.
+"""Fidelity: the share of gestures that the model performs as well as its corpus. `mmmd eval fidelity`.
 
 For every family gestures and their captions are drawn as the corpus draws them, with seeds that no training uses. The corpus
 performs each in its free manner, and the model makes a motion for the caption alone. Both are judged by `likeness`. A check
@@ -36,7 +36,7 @@ Generate = Callable[[str, int], Motion]
 
 @dataclass(frozen=True)
 class Case:
-    """A gesture that is asked for, the sentence that asks, and how the corpus's own motion is judged."""
+    """A gesture, the sentence that asks for it, and the checks that the corpus's own motion passes."""
 
     gesture: Gesture
     text: str
@@ -60,13 +60,13 @@ def cases_of(family: str, n: int = CORPUS_DRAWS) -> list[Case]:
 
 
 def seen(body: Body) -> PostureFeatures:
-    """What a motion of the corpus shows."""
+    """Posture features of a motion of the corpus."""
     motion = recover(body.features())
     return posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 
 def judged(s: PostureFeatures, gesture: Gesture, text: str) -> Checks:
-    """The checks of a motion for a sentence; what the sentence leaves open may be done in any of its ways."""
+    """The checks of a motion for a sentence; where the sentence leaves a choice open, every choice counts."""
     counts = {gesture.count}
     if count_asked(text) is None:
         counts |= set(FAMILIES[gesture.family].counts)

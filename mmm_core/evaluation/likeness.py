@@ -1,8 +1,8 @@
-"""Strict checks of a motion against the corpus's own: not only which gesture, but that it is made well.
+"""Strict checks of a motion against the reference performance of its gesture: execution, not only recognition.
 
-A gesture may be told by its sign and still be broken: a circle that is an ellipse, strokes that come when they like, arms that
-fall out of step, hands that pass each other. Each check here asks one such question, by what the clean performance of the
-same gesture does, so that no table of families is needed.
+A recognisable gesture may still be broken: a circle that is an ellipse, strokes of uneven pace, arms out of step, hands that
+pass each other. Each check measures one such fault against the reference performance of the same gesture, so that no table
+of families is needed.
 """
 
 from __future__ import annotations
@@ -21,24 +21,24 @@ from mmm_core.recognition.signs import shows
 Array = NDArray[np.floating]
 Checks = dict[str, bool]
 TURN_SHARE = 0.4
-"""A stroke rises and falls by so much of the gesture's range."""
+"""Share of the gesture's range by which a stroke rises and falls at least."""
 PACE_RATIO = 1.42
-"""Of the times from stroke to stroke, the longest over the shortest against the clean ones'."""
+"""Longest over shortest time between strokes, at most this factor above the reference's ratio."""
 HALF_PACE_RATIO = 2.0
-"""The same of the times from turn to turn, out and back."""
+"""Longest over shortest time between turning points, at most this factor above the reference's ratio."""
 TEMPO_RATIO = 1.8
-"""How much faster or slower than the clean ones the strokes may be."""
+"""Factor by which strokes may be faster or slower than the reference's."""
 SIZE_RATIO, LEAST_SIZE = 1.75, 0.55
 EVEN_SHARE = 0.5
-"""The smallest stroke of the largest, against the clean ones'."""
+"""Smallest over largest stroke, at least this share of the reference's ratio."""
 ROUND_SHARE = 0.62
-"""Narrow over wide of a closed path, against the clean one's."""
+"""Width ratio of a closed path, at least this share of the reference's."""
 TURNS_OFF = 0.4
 MARGIN_FRAMES = 2
 PHASE_OFF = 0.2
-"""Of a cycle: how far the arms may be out of step."""
+"""Share of a cycle by which the arms may be out of step."""
 TOUCH_M, TOUCH_OFF_M = 0.15, 0.06
-"""Palms nearer than the first meet; a motion's palms come as near within the second."""
+"""Distance, metres, below which palms touch; and by which a motion's palms may stay farther apart than the reference's."""
 POSE_OFF_M, POSE_OFF_DEG, POSE_FRAMES = 0.15, 14.0, 4
 WAY_OFF_SHARE = 0.36
 """Mean distance from the clean motion, time warped, as a share of its range."""
@@ -46,7 +46,7 @@ _DTW_EVERY = 2
 
 
 def judge(s: PostureFeatures, ref: Reference) -> tuple[Checks, float]:
-    """Which checks a motion passes, only those that the gesture has, and how far it is from the reference (0 is the same)."""
+    """The checks that apply to the gesture with their outcome, and the distance of the motion from the reference (0: equal)."""
     g = ref.gesture
     off, pairs = _warped(s, ref.shown)
     checks = {
@@ -72,7 +72,7 @@ def judge(s: PostureFeatures, ref: Reference) -> tuple[Checks, float]:
 
 
 def repeats(ref: Reference) -> bool:
-    """Whether the gesture is one that has strokes."""
+    """Whether the gesture has strokes."""
     return bool(FAMILIES[ref.gesture.family].counts) and bool(ref.acting)
 
 
@@ -103,7 +103,7 @@ def _strokes(s: PostureFeatures, ref: Reference, core: slice) -> Checks:
 
 
 def _sized(made: Array, meant: Array, turn: float) -> bool:
-    """Whether the ways from turn to turn are as long as the clean ones, and alike."""
+    """Whether the distances between turning points match the reference's and each other."""
     ways = []
     for signal in (made, meant):
         turns = sorted([0, *_turning(signal, turn), *_turning(-signal, turn), len(signal) - 1])
@@ -117,19 +117,19 @@ def _sized(made: Array, meant: Array, turn: float) -> bool:
 
 
 def _turning(signal: Array, turn: float) -> list[int]:
-    """Frames of the peaks, without one that the motion ends on: where nothing moves any more a peak may be anywhere."""
+    """Frames of the peaks, without a peak at the motion's end: where nothing moves a peak may be anywhere."""
     found = peaks_beyond(signal, turn)
     return found[:-1] if found and signal[found[-1]] - signal[found[-1] :].min() < turn else found
 
 
 def _steady(made: list[int], meant: list[int], most: float) -> bool:
-    """Whether the times from stroke to stroke are as even as they should be, and of about the same length."""
+    """Whether the times between strokes are as even as the reference's, and of similar length."""
     ratio = np.diff(made) / np.diff(meant)
     return bool(ratio.max() / ratio.min() < most and 1 / TEMPO_RATIO < np.median(ratio) < TEMPO_RATIO)
 
 
 def _in_step(s: PostureFeatures, ref: Reference, core: slice) -> bool:
-    """Whether the two arms go together, against each other or one after the other as they should."""
+    """Whether both arms have the reference's phase: together, opposed or one after the other."""
     a, b = ref.acting
     meant = _lag(ref.along(ref.shown, a)[ref.core], ref.along(ref.shown, b)[ref.core])
     made = _lag(ref.along(s, a)[core], ref.along(s, b)[core])
@@ -139,7 +139,7 @@ def _in_step(s: PostureFeatures, ref: Reference, core: slice) -> bool:
 
 
 def _lag(a: Array, b: Array) -> float | None:
-    """By how much of its cycle `b` comes after `a`, by the strongest common frequency; None where nothing is common."""
+    """Phase of `b` behind `a`, as a share of the cycle of their strongest common frequency; None without one."""
     n = min(len(a), len(b))
     if n < 6:
         return None
@@ -151,7 +151,7 @@ def _lag(a: Array, b: Array) -> float | None:
 
 
 def _goes_round(made: Array, meant: Array) -> bool:
-    """Whether a palm's path is as round as the clean one, and goes round as often the same way."""
+    """Whether a palm's path is as round as the reference's, with as many turns in the same sense."""
     if len(made) < 5:
         return False
     plane = np.linalg.svd(meant - meant.mean(0), full_matrices=False)[2][:2]
@@ -173,7 +173,7 @@ def _apart(s: PostureFeatures) -> Array:
 
 
 def _touches(made: Array, meant: Array, ref: Reference) -> bool:
-    """Whether the palms meet, and again as often as they should."""
+    """Whether the palms touch as often as in the reference."""
     near = float(meant[ref.core].min())
     if made.min() > near + TOUCH_OFF_M:
         return False
@@ -185,7 +185,7 @@ def _touches(made: Array, meant: Array, ref: Reference) -> bool:
 
 
 def _takes_pose(s: PostureFeatures, ref: Reference) -> bool:
-    """Whether palms, head and trunk come to where they rest in the clean motion, and stay a moment."""
+    """Whether palms, head and trunk reach the pose that the reference holds, and hold it for a moment."""
     meant = channels(ref.shown)
     body = np.concatenate(list(meant.values()), -1)
     away = np.linalg.norm(body - body[0], axis=-1)
@@ -244,6 +244,6 @@ def _warped(s: PostureFeatures, t: PostureFeatures) -> tuple[float, list[tuple[i
 
 
 def _matched(pairs: list[tuple[int, int]], core: slice, n_frames: int) -> slice:
-    """Frames of a motion that match the core of the clean one."""
+    """Frames of a motion that match the core of the reference."""
     frames = [x for x, y in pairs if core.start <= y < core.stop]
     return slice(frames[0], min(n_frames, frames[-1] + 1)) if frames else slice(0, 0)

@@ -35,7 +35,6 @@ class Interval:
         return cls(float(array.mean()), float(1.96 * array.std() / np.sqrt(len(array))))
 
     def __str__(self) -> str:
-        """0.512±.003."""
         return f"{self.mean:.3f}±{self.half_width:.3f}"
 
 

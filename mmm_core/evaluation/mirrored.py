@@ -44,7 +44,7 @@ def _bones(joints: Array) -> Array:
 def mirrored_figures(
     generate: Callable[[str, int], Motion], texts: Sequence[str], seeds: Sequence[int]
 ) -> dict[str, Any]:
-    """RMS angle in degrees over texts that name a side; a pair of which one alone is refused, or of two lengths, is 180."""
+    """RMS angle in degrees over texts that name a side; 180 for a pair of different lengths, or with one text refused."""
     rms: list[float] = []
     for text in texts:
         other = mirror_words(text)

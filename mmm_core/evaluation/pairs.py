@@ -1,6 +1,6 @@
-"""Motions of people and their captions, in the form that the model to be measured knows.
+"""Motions of people and their captions, in the features of the model to be measured.
 
-Rotation channels depend on whose rest directions they are relative to (`checkpoint.Model.rest_pose`). A HumanML3D folder
+Rotation channels depend on the rest directions of their source (`checkpoint.Model.rest_pose`). A HumanML3D folder
 is brought to ours through its joint positions; the other way needs the body model that the data set was made with.
 """
 
@@ -78,7 +78,7 @@ def pairs_for(engines: Sequence[Engine], folder: Path, splits: Sequence[Split]) 
 
 
 def folder_rest_pose(folder: Path) -> str:
-    """Whose rest directions a folder's rotations are relative to."""
+    """The rest directions of a folder's rotations."""
     return "mmmd" if (folder / "clips.jsonl").is_file() else "humanml3d"
 
 

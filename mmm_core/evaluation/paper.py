@@ -1,8 +1,8 @@
 """The tables of the paper's section 5, on whatever data and checkpoints are at hand.
 
 1 (HumanML3D) and 2 (KIT-ML): real motion, the tokenizer's reconstruction, generation. 3: speed against quality. 4: editing in
-time. 5: editing the upper body. 6: ablations, over steps with one checkpoint, and over whatever the given checkpoints differ
-in (masking ratio, codebook).
+time. 5: editing the upper body. 6: ablations, over steps with one checkpoint, and over the differences between the given
+checkpoints (masking ratio, codebook).
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ STRETCHES: dict[str, tuple[tuple[float, float], ...]] = {
     "prefix (the rest is made)": ((0.5, 1.0),),
     "suffix (the rest is made)": ((0.0, 0.5),),
 }
-"""What is made again, as shares of the motion; half of it in every task."""
+"""Segments generated anew, as shares of the motion; together half of it in every task."""
 
 
 def for_evaluation(engine: Engine, temperature: float | None = None) -> Engine:
-    """The engine as it is measured: the released model at temperature 1, as its authors do, ours as it is used."""
+    """The engine with the settings of a measurement: temperature 1 for the released model, as its authors do, our own for ours."""
     if temperature is None:
         temperature = 1.0 if engine.settings.official else engine.settings.temperature
     return _with_settings(engine, temperature=temperature)
@@ -61,7 +61,7 @@ def comparison(
 ) -> Table:
     """Tables 1 and 2; `each` motions for a text give MModality.
 
-    The line of halves is what FID is between two samples of real motion of half the size.
+    The line of halves gives the FID between two halves of the real motions.
     """
     return {
         "real motion": {**measure_same(reader, pairs, _real, repeats)},
@@ -84,7 +84,7 @@ def speed(reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, p
 
 
 def editing_in_time(reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, progress: Progress) -> Table:
-    """Table 4: half of each real motion is made again with the same text."""
+    """Table 4: half of each real motion is generated anew for the same text."""
 
     def task(stretches: Sequence[tuple[float, float]]) -> Make:
         def hide(ids: Tensor) -> None:
@@ -115,7 +115,7 @@ def editing_the_upper_body(
 def ablations(
     reader: Reader, engines: dict[str, Engine], pairs: Sequence[Pair], repeats: int, progress: Progress
 ) -> Table:
-    """Table 6: steps with the first checkpoint, then each checkpoint with what its recipe says of itself."""
+    """Table 6: steps with the first checkpoint, then each checkpoint under its recipe's description."""
     table: Table = {}
     for steps, other in _with_steps(next(iter(engines.values()))):
         table[f"{steps} steps"] = {**measure(reader, pairs, _generate(other), repeats, progress)}
@@ -149,7 +149,7 @@ def _with_settings(engine: Engine, **changes: Any) -> Engine:
 
 @torch.inference_mode()
 def _made_again(engine: Engine, pairs: Sequence[Pair], hide: Callable[[Tensor], None], seed: int) -> Motions:
-    """Real motions with the ids that `hide` masks made again for the same text."""
+    """Real motions in which the ids that `hide` masks are generated anew for the same text."""
     made: Motions = []
     for i in range(0, len(pairs), GENERATE_BATCH):
         some = pairs[i : i + GENERATE_BATCH]

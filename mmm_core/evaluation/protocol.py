@@ -35,12 +35,12 @@ Row = dict[str, Interval]
 
 
 def text_states(engine: Engine, pairs: Sequence[Pair]) -> TextStates:
-    """States of the pairs' captions, as they stand: what a user would be refused, or get in part, is measured whole."""
+    """States of the pairs' captions as they stand: no caption is refused or shortened here."""
     return engine.read([p.text for p in pairs])
 
 
 def seeds_of(pairs: Sequence[Pair], first: int, seed: int) -> list[int]:
-    """A seed for each of `pairs`, of which the first is number `first` of its split."""
+    """A seed for each of `pairs`; the first pair is number `first` of its split."""
     return [(seed * 1_000_003 + first + k) % 2**31 for k in range(len(pairs))]
 
 
@@ -80,7 +80,7 @@ def one_caption_each(pairs: Sequence[Pair], generator: np.random.Generator) -> l
 def measure(
     reader: Reader, pairs: Sequence[Pair], make: Make, repeats: int, progress: Progress = lambda _: None
 ) -> Row:
-    """Metrics of what `make` gives in each repeat, against the real motions."""
+    """Metrics of the motions that `make` returns in each repeat, against the real motions."""
 
     def vectors(rows: list[int], seed: int) -> NDArray[np.float32]:
         return reader.motions(make([pairs[row] for row in rows], seed))
@@ -89,7 +89,7 @@ def measure(
 
 
 def measure_same(reader: Reader, pairs: Sequence[Pair], make: Make, repeats: int) -> Row:
-    """The same of motions that no seed and no caption changes (real or reconstructed): made once."""
+    """Metrics of motions that depend on no seed and no caption (real or reconstructed): computed once, then repeated."""
     firsts = {pair.motion: pair for pair in reversed(pairs)}
     made = dict(zip(firsts, reader.motions(make(list(firsts.values()), 0)), strict=True))
     return _measure(
@@ -126,7 +126,7 @@ def _measure(
 
 
 def fid_between_halves(reader: Reader, pairs: Sequence[Pair], repeats: int) -> Interval:
-    """FID of one half of the real motions against the other: what a sample of this size has by chance alone."""
+    """FID of one half of the real motions against the other: the value that a sample of this size has by chance."""
     real = reader.motions([p.features for p in {p.motion: p for p in pairs}.values()])
     values: list[float] = []
     for repeat in range(repeats):
@@ -138,7 +138,7 @@ def fid_between_halves(reader: Reader, pairs: Sequence[Pair], repeats: int) -> I
 def measure_modality(
     reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, each: int = N_MODALITY
 ) -> Interval:
-    """MModality: how far `each` motions for the same text lie from one another, for at most a hundred texts."""
+    """MModality: mean distance between `each` motions for the same text, for at most a hundred texts."""
     chosen = list({p.text: p for p in pairs}.values())[:N_MODALITY_TEXTS]
     vectors = np.stack([reader.motions(generate(engine, chosen, 10_000 + k)) for k in range(each)], 1)
     return Interval.of([metrics.multimodality(vectors, np.random.default_rng(r)) for r in range(repeats)])

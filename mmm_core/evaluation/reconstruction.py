@@ -1,6 +1,6 @@
-"""What a tokenizer keeps of the corpus's own motions, encoded and decoded: the gate before anything is trained on it.
+"""Reconstruction quality of a tokenizer on the corpus's own motions: the gate before a model is trained on its tokens.
 
-The mean joint error hides what a tokenizer loses: a head's turn or a trunk's roll moves joints by a few millimetres, and
+The mean joint error hides the losses of a tokenizer: a head's turn or a trunk's roll moves joints by a few millimetres, and
 whole codebooks have been trained that lost them altogether. So motions are judged before and after, as probes are judged.
 """
 
@@ -26,7 +26,7 @@ from mmm_core.motion.posture_features import PostureFeatures, posture_features
 Features = NDArray[np.float32]
 ANGLES = ("trunk_yaw_deg", "trunk_pitch_deg", "trunk_roll_deg", "head_yaw_deg", "head_pitch_deg", "head_roll_deg")
 MOVED_DEG = 8.0
-"""A motion counts for an angle from this range on."""
+"""Degrees of range from which a motion counts for an angle."""
 LEAST_AMPLITUDE = 0.85
 LEAST_HEAD_YAW = 0.9
 LEAST_COUNTS = 0.97
@@ -36,13 +36,13 @@ _MOST_DRAWS = 100
 
 
 def shown(features: Features) -> PostureFeatures:
-    """What a motion's features show."""
+    """Posture features of a motion given by its features (T, 263)."""
     motion = recover(features)
     return posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 
 def performed(probe: Probe, seed: int) -> Features:
-    """The corpus itself doing what a probe asks; features (T, 263)."""
+    """Features (T, 263) of the corpus's own performance of a probe."""
 
     def gesture(p: Probe) -> Gesture:
         family = FAMILIES[p.family]

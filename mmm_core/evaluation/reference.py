@@ -1,4 +1,4 @@
-"""How the corpus makes a gesture when nothing is left to chance: what a motion of that gesture is compared with."""
+"""The reference performance of a gesture: the corpus's own motion with all randomness off."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ Array = NDArray[np.floating]
 END_S = 0.3
 """Seconds of standing after a gesture."""
 ARM_MOVES_M, ANGLE_MOVES_M = 0.05, 0.06
-"""From so far a channel acts: metres, and what counts as much of head and trunk."""
+"""Range from which a channel counts as acting: metres for a hand, scaled angle for head and trunk."""
 ACTING_SHARE = 0.5
-"""Of the arm that goes farthest, how far another goes that acts as well."""
+"""Share of the largest arm's range from which the other arm acts too."""
 _HEAD_DEG_PER_M, _TRUNK_DEG_PER_M, _FOREARM_M, _TWIST_M_PER_RAD, _LIFT = 100.0, 60.0, 0.25, 0.1, 3.0
 
 
 def channels(s: PostureFeatures) -> dict[str, Array]:
-    """What each limb does, (T, D) in metres or what counts as much: left, right, head, trunk."""
+    """Path (T, D) of each limb: left, right, head, trunk; metres, with angles scaled to similar weight."""
     out: dict[str, Array] = {}
     for side in ("left", "right"):
         twist = s.twist_rad[side]
@@ -49,15 +49,15 @@ def palms(s: PostureFeatures) -> dict[str, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """A gesture as the corpus means it.
+    """The reference performance of a gesture.
 
     Attributes:
-        gesture: what is shown.
-        shown: the motion.
-        core: frames of the gesture itself, without the way there and back.
+        gesture: the gesture.
+        shown: posture features of its motion.
+        core: frames of the gesture itself, without its onset and return.
         acting: channels that make the strokes, or take the pose.
-        axes: of each acting channel, the direction along which it goes farthest.
-        is_path: whether the palms go round a path.
+        axes: direction of the largest extent of each acting channel.
+        is_path: whether the palms move round a closed path.
     """
 
     gesture: Gesture
@@ -68,7 +68,7 @@ class Reference:
     is_path: bool
 
     def along(self, s: PostureFeatures, channel: str) -> Array:
-        """(T,) how far a channel of `s` is along its axis."""
+        """(T,) position of a channel of `s` along its axis."""
         return channels(s)[channel] @ self.axes[channel]
 
 

@@ -1,4 +1,4 @@
-"""What `mmmd eval real` and `mmmd eval paper` say: measured tables as plain numbers, with what to make of them."""
+"""The reports of `mmmd eval real` and `mmmd eval paper`: measured tables as plain numbers, with remarks on the sample."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ TABLES = {1: "comparison", 3: "speed", 4: "editing in time", 5: "editing the upp
 """Numbers and subjects; KIT-ML's comparison is number 2."""
 KIT_FEATURES = 251
 SPEED_REPEATS, ABLATION_REPEATS = 3, 5
-"""At most so many in tables 3 and 6, which measure many models."""
+"""Most repeats in tables 3 and 6, which measure many models."""
 COLUMNS = ("R1", "R2", "R3", "FID", "MM-Dist", "Diversity", "MModality", "AITS s")
 """Columns in the paper's order; others come after them."""
 
 
 def default_splits(data: Path) -> tuple[Split, ...]:
-    """What is held out: test; in the small clips.jsonl layout also val, which nothing here is chosen on."""
+    """The held-out splits: test; in the small clips.jsonl layout also val, on which no choice here depends."""
     return ("val", "test") if (data / "clips.jsonl").is_file() else ("test",)
 
 
@@ -43,8 +43,8 @@ def load_reader(
     Args:
         evaluator: ours (None: the one that ships), or the published one if `glove` is given.
         glove: folder of the published word vectors.
-        mean: statistics that the published one was trained with.
-        std: the same.
+        mean: feature means that the published one was trained with.
+        std: their standard deviations.
 
     Raises:
         CheckpointError: a file is missing or is not what it should be.
@@ -130,7 +130,7 @@ def measured_pairs(reader: Reader, engines: Sequence[Engine], data: Path, splits
 
 
 def sizes(reader: Reader, pairs: Sequence[Pair]) -> dict[str, Any]:
-    """`n` motions, `n_texts` different captions, and what so many can say."""
+    """`n` motions, `n_texts` different captions, and remarks on metrics that need more of them."""
     n, n_texts = len({p.motion for p in pairs}), len({p.text for p in pairs})
     width = reader.evaluator.config.embedding
     said = [f"{n} motions with {n_texts} different captions; the literature measures 4,400 (HumanML3D)"]

@@ -1,7 +1,7 @@
-"""What a robot can show of what the probes ask for: nobody without a waist bows, however well the text was understood.
+"""The probes that a robot is able to show: nobody without a waist bows, however well the text was understood.
 
-The corpus itself performs each probe, the robot follows, and what is not seen on it then is beyond the robot, or beyond the
-retargeting. What is left of an expectation tells the model apart from the body.
+The corpus itself performs each probe and the robot follows. An expectation that is not met then is beyond the robot, or
+beyond the retargeting. The remaining expectations measure the model and not the body.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from mmm_core.motion.motion import FPS, Motion
 from mmm_core.motion.posture_features import posture_features
 
 PERFORMANCES = 3
-"""Of each probe; an expectation counts as one that can be shown when most of them show it."""
+"""Performances of each probe; the robot can show an expectation when most of them meet it."""
 OnRobot = Callable[[Motion], Motion]
 
 
 def showable(
     on_robot: OnRobot, progress: Callable[[int], None] = lambda _n: None, probes: Sequence[Probe] = PROBES
 ) -> dict[str, frozenset[str]]:
-    """For each probe's text the expectations that can be seen on a robot.
+    """The expectations that a robot can show, by the text of each probe.
 
     Args:
-        on_robot: what a robot makes of a motion, on a person (`retarget.as_human.shown_on_a_person`).
+        on_robot: maps a motion to a person in the robot's poses (`retarget.as_human.shown_on_a_person`).
         progress: told how many probes are done.
         probes: those that are performed.
     """

@@ -1,4 +1,4 @@
-"""The scope score on prompts kept apart: does it part what the model can do from what it cannot."""
+"""Measures the scope score on held-out prompts: how well it separates texts in scope from texts out of scope."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mmm_core.language.scope import ScopeVerdict
 from mmm_core.motion.skeleton import Array
 
 SHOWN = 12
-"""Texts that are named where the score fails."""
+"""Most texts listed where the score fails."""
 
 
 def auroc(inside: Sequence[float] | Array, outside: Sequence[float] | Array) -> float:

@@ -69,7 +69,6 @@ class MotionFolder:
 
     @property
     def n_features(self) -> int:
-        """Values in a frame."""
         return self.layout.n_features
 
     @property

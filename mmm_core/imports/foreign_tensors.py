@@ -53,7 +53,7 @@ def shape_of(state: State, key: str, n_dimensions: int, path: Path) -> torch.Siz
 
 
 def n_blocks(state: State, prefix: str, path: Path) -> int:
-    """How many blocks stand below `prefix`, which numbers them from 0 on without a gap.
+    """Number of blocks below `prefix`, which numbers them from 0 on without a gap.
 
     Raises:
         CheckpointError: a block without a plain decimal number, or a number missing below another.

@@ -40,16 +40,16 @@ WORD_PIECES_FILE = WEIGHTS_DIR / "minilm_word_pieces.json"
 
 @dataclass
 class Model:
-    """All that generation needs.
+    """The modules and tables that a generation needs.
 
     Attributes:
         tokenizer: by body parts (ours) or the paper's.
         transformer: the masked model.
         length: seconds from text; None in imported models, which take the caller's seconds.
-        scope: what the model can do; None in imported models, which accept everything.
+        scope: texts in and out of scope; None in imported models, which accept everything.
         provenance: where the weights come from.
         text: CLIP's text tower, in imported models; None means the packed MiniLM.
-        rest_pose: whose rest directions the rotation channels are relative to. "mmmd": joints come from the rotations;
+        rest_pose: rest directions of the rotation channels. "mmmd": joints come from the rotations;
             "humanml3d": from the position channels, as the reference recovers them.
     """
 
@@ -133,9 +133,9 @@ def load_model(path: Path | None = None) -> Model:
 
 
 class _Uninitialised(TorchFunctionMode):
-    """Modules made in it get no first weights: drawing those takes longer than reading the ones that take their place.
+    """Context in which new modules skip weight initialisation, which takes longer than reading the real weights.
 
-    PyTorch's own ways do not serve: on the meta device an embedding's first weights bring in its compiler (1.4 s).
+    PyTorch's meta device does not help: initialising an embedding there imports its compiler (1.4 s).
     """
 
     def __torch_function__(

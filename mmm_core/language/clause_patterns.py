@@ -1,6 +1,6 @@
-"""The words by which English says that one action comes after another: patterns for `mmm_core.language.clauses`.
+"""Patterns of the words by which English orders two actions in time, for `mmm_core.language.clauses`.
 
-They read texts whose words are parted by single blanks.
+Texts have single blanks between their words.
 """
 
 from __future__ import annotations
@@ -49,11 +49,11 @@ DIVIDES = _pattern(
         r"(?:^|[\s,;.])\s*\(?(?:[1-9][.)]|[a-d]\))\s*(?=[A-Za-z])",
     ))
 )  # fmt: skip
-"""What stands between a command and the next."""
+"""Words between a command and the next: "then", "; after that"."""
 AND = _pattern(r"\s*,\s*(?:and\s+)?|\s+and\s+")
 
 A_FIRST_B_LATER = _pattern(rf"(.+?)[,;]\s*(?:and\s+|but\s+)?(.+?),?\s+(?:(?:comes?|goes)\s+)?{NEXT}")
-"""The words of order come last."""
+"""Two actions in the text's order, with the words of order at the end."""
 A_BEFORE_B = _pattern(
     rf"(.+?),?\s+(?:(?:right|just)\s+)?{_any('before', 'prior to', 'precedes', 'ahead of')}\s+(?:{_WHO}\s+)?(.+)"
 )
@@ -88,7 +88,7 @@ NO_COMMAND = _pattern(
     )
     + r"\b"
 )  # fmt: skip
-"""'After that', 'one after another', 'before anything else': nothing to be done is meant."""
+"""'After that', 'one after another', 'before anything else': words that name no action."""
 OPENING = _pattern(
     r"^\W*(?:(?:"
     + _any(
@@ -123,7 +123,7 @@ LEANS = _pattern(
     )
     + r"\b)|\b(?:stays?\s+still|rests)\b"
 )  # fmt: skip
-"""What means nothing without the command before it."""
+"""Beginnings of clauses that mean nothing without the command before them."""
 SUBJECT = _pattern(r"^(?:it|he|she|they)\s+(?=\w+s\b)")
 AT_ONCE = _pattern(
     r"\b"

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from mmm_core.language import clause_patterns as words
 
 MOST_COMMANDS, MOST_WORDS = 4, 60
-"""Texts of more are taken as they stand."""
+"""Most commands and most words of a text that is divided; a longer text stays one command."""
 _READS = re.compile(r"[A-Za-z]{2,}")
 
 
@@ -28,7 +28,7 @@ class _Span:
 
 
 def commands_in_turn(text: str) -> list[str]:
-    """The commands of a text in the order in which they are to be done; one that asks for one is given back whole."""
+    """The commands of a text in the order of their execution; a text of one command is returned whole."""
     if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return [text]
     bare = [_bare(c) for c in _in_turn(" ".join(text.split()))]
@@ -45,7 +45,7 @@ def _in_turn(text: str) -> list[str]:
 
 
 def _divided(text: str) -> list[str]:
-    """Parts of a text between words of order, each with what leans on it."""
+    """Parts of a text between words of order; a clause that leans on a part stays with it."""
     spans = _spans(text, _Span(0, len(text)), words.DIVIDES)
     spans = [s for s in spans if _READS.search(_bare(s.of(text)))]
     if len(spans) == 1:
@@ -64,7 +64,7 @@ def _divided(text: str) -> list[str]:
 
 
 def _spans(text: str, whole: _Span, between: re.Pattern[str]) -> list[_Span]:
-    """What stands between the matches of a pattern."""
+    """The spans of a text between the matches of a pattern."""
     spans, start = [], whole.start
     for found in between.finditer(text, whole.start, whole.end):
         spans.append(_Span(start, found.start()))
@@ -106,7 +106,7 @@ def _leans(clause: str) -> bool:
 
 
 def _bare(clause: str) -> str:
-    """Without the words of order around it."""
+    """A clause without the words of order around it."""
     bare = clause.strip()
     while (shorter := words.CLOSING.sub("", words.OPENING.sub("", bare)).strip()) != bare:
         bare = shorter

@@ -1,16 +1,19 @@
-"""How often a text asks for something: "three times", "twice", "two bows" -> 3, 2, 2. A rule: numbers are a closed set."""
+"""The number of repetitions that a text names: "three times", "twice", "two bows" -> 3, 2, 2.
+
+A rule, not a model: numbers are a closed set of words.
+"""
 
 from __future__ import annotations
 
 import re
 
 MOST = 12
-"""Greater numbers are no number of strokes that fits into a motion."""
+"""Largest number read as a count: more strokes do not fit into a motion."""
 _WORDS = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 NUMBERS = {word: i for i, word in enumerate(_WORDS, 1)} | {str(i): i for i in range(1, MOST + 1)}
-"""What a word or digits stand for."""
+"""Number that a word or digits stand for."""
 ADVERBS = {"once": 1, "twice": 2, "thrice": 3}
-"""Words that say so many times by themselves."""
+"""Adverbs that name a number of times by themselves."""
 _NUMBER = rf"({'|'.join(NUMBERS)})"
 _NOT_STROKES = (
     "arms?|hands?|fists?|palms?|fingers?|thumbs?|eyes?|ears?|elbows?|shoulders?|wrists?|knees?|legs?|feet|foot|heads?|sides?|"

@@ -1,4 +1,4 @@
-"""English verbs bent: "wave your hand" becomes "waves their hand" or "waving"; counts as words and digits; slips and spelling."""
+"""English inflection: "wave your hand" becomes "waves their hand" or "waving"; counts as words and digits; slips and spelling."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def expand(pattern: str) -> tuple[str, ...]:
 
 
 def third_person(phrase: str, pronoun: str) -> str:
-    """What somebody does; further verbs are marked `^` in `phrase`."""
+    """The phrase in the third person singular; further verbs are marked `^` in `phrase`."""
     words = phrase.split(" ")
     words[0] = f"^{words[0]}"
     if words[1:2] == ["not"]:
@@ -37,7 +37,7 @@ def third_person(phrase: str, pronoun: str) -> str:
 
 
 def gerund(phrase: str, pronoun: str | None) -> str:
-    """Doing it; whose hands they are follows from `pronoun`, or stays "your"."""
+    """The phrase as a gerund; `pronoun` replaces "your" where it is given."""
     words = phrase.split(" ")
     if words[:2] == ["do", "not"]:
         words[:2] = ["not"]
@@ -72,7 +72,7 @@ def persons_words(phrase: str, pronoun: str) -> str:
 
 
 def times(count: int, rng: np.random.Generator) -> str:
-    """How often, in words or digits."""
+    """A number of times, in words or digits."""
     if count == 1:
         return ("once", "one time", "a single time", "1 time", "just once", "only once")[int(rng.integers(6))]
     if count == 2 and rng.random() < 0.5:
@@ -93,7 +93,7 @@ def singular(phrase: str) -> str:
 
 
 def respell(sentence: str, rng: np.random.Generator) -> str:
-    """One of the two spellings of words that have two."""
+    """The phrase with one of the two spellings of each word that has two."""
     for british, american in _SPELLINGS:
         if british in sentence and rng.random() < 0.4:
             sentence = re.sub(rf"\b{british}\b", american, sentence)

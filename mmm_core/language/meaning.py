@@ -1,6 +1,6 @@
-"""Which known command a text means: the nearest by its sentence vector that says nothing else about side, way and number.
+"""Finds the known command that a text means: the nearest sentence vector with the same side, direction and number.
 
-The vector hardly tells left from right, up from down or two from three, so these are read from the words.
+The vector hardly distinguishes left from right, up from down or two from three, so these are read from the words.
 """
 
 from __future__ import annotations
@@ -22,11 +22,12 @@ _WAYS = {
     "down": re.compile(r"\b(?:lower(?:s|ed|ing)?\b|drop|down\b|downwards?\b|sink|fall|hang)"),
 }
 _NEAR_ENOUGH = 0.95
-"""A command of the same number is taken if it lies so near as the nearest, else that one without its number."""
+"""Least share of the nearest command's cosine for a command of the same number; below it the nearest one is kept,
+without its number."""
 
 
 class Meanings:
-    """Known commands and what each says about side, way and number.
+    """Known commands with the side, direction and number that each names.
 
     Args:
         commands: N of them.
@@ -40,10 +41,10 @@ class Meanings:
         self._plain = torch.tensor([not _counts(_TIMES.sub("", c)) for c in commands])
 
     def nearest(self, text: str, cosine: Tensor) -> str:
-        """The command that a text means; `cosine` (N,) tells how near the known ones are to it.
+        """The command that a text means, given the cosines (N,) between the text and the known commands.
 
-        Where none names the same sides and no other way, the nearest of all. A number of times that the text does not name
-        is left out.
+        Without a command of the same sides and directions it is the nearest of all. A number that the text does not name is
+        left out.
         """
         ways, counts = _ways(text), _counts(text)
         agreeing = self._sides.are(_sides(text))
@@ -63,14 +64,14 @@ class Meanings:
 
 
 class _Said:
-    """One thing that each of N commands says, or not."""
+    """One property that each of N commands names or leaves open."""
 
     def __init__(self, said: Iterable[frozenset[str | int]]) -> None:
         self._numbers: dict[frozenset[str | int], int] = {}
         self._of = torch.tensor([self._numbers.setdefault(s, len(self._numbers)) for s in said])
 
     def are(self, what: frozenset[str | int]) -> Tensor:
-        """(N,) which of them say this."""
+        """(N,) mask of the commands that name exactly `what`."""
         return self._of == self._numbers.get(what, -1)
 
 

@@ -33,8 +33,8 @@ _CANONICAL = re.compile(r"right|(?<!anti-)(?<!counter-)(?<!anti)(?<!counter)cloc
 def mirror_words(sentence: str) -> str:
     """The sentence for the mirrored motion.
 
-    "waves the left hand right away" -> "waves the right hand right away"; "left the room" stays. What a sentence leaves
-    open ("he turned right as she came") is read as the idiom.
+    "waves the left hand right away" -> "waves the right hand right away"; "left the room" stays. An ambiguous
+    sentence ("he turned right as she came") is read as the idiom.
     """
     kept: list[str] = []
 
@@ -47,10 +47,10 @@ def mirror_words(sentence: str) -> str:
 
 
 def canonical(sentence: str) -> tuple[str, bool]:
-    """The one of a sentence and its mirror image that names the right (or clockwise) first, and whether it is the image.
+    """A sentence or its mirror image, whichever names the right (or clockwise) first, and whether it is the image.
 
-    A sentence without sides is its own. So is one whose image reads differently ("turn left as she came": "right as" is the
-    idiom), since the way back is lost.
+    A sentence without sides is its own canonical form. So is a sentence that mirroring twice does not restore ("turn left as
+    she came", since "right as" is an idiom).
     """
     image = mirror_words(sentence)
     back = mirror_words(image)

@@ -1,10 +1,10 @@
-"""How far a text lies from what the model can do.
+"""The scope of the model: how far a text lies from the motions that it can generate.
 
 A small classifier reads the untouched sentence vector: trained on the corpus's own sentences against texts of things that
-cannot be done (`mmm_core.corpus.outside`, `mmm_core.training.scope_training`). To its log-odds comes the margin by which the
-text lies nearer to a known command than to anything outside. The score is that sum as a probability; the known command that
-lies nearest is how the text was understood (`mmm_core.language.meaning`). A text of several clauses of which some cannot be done is
-degraded to the others.
+cannot be done (`mmm_core.corpus.outside`, `mmm_core.training.scope_training`). The margin by which
+the text lies nearer to a known command than to any text outside is added to its log-odds. The score is that sum as a
+probability; the nearest known command says how the text was understood (`mmm_core.language.meaning`). A text of several
+clauses, some of them out of scope, is degraded to the others.
 Method, thresholds and figures: docs/scope.md.
 """
 
@@ -23,9 +23,9 @@ from mmm_core.motion.motion import Status
 REJECT_BELOW = 0.5
 DEGRADE_BELOW = 0.97
 CLAUSE_BELOW = 0.06
-"""A clause among others is left out below this: it must be far outside, since clauses are short."""
+"""Score below which one clause among others is left out: low, since clauses are short and judged less surely."""
 CLAUSE_KEPT_FROM = 0.995
-"""A clause of a text that is rejected as a whole is done from this on."""
+"""Score from which a clause is kept although the whole text is rejected."""
 MARGIN_WEIGHT = 10.0
 LOGIT_AT_HALF = -2.5
 """Log-odds with margin that mean a score of one half. This and the thresholds: docs/scope.md."""
@@ -36,7 +36,8 @@ FEATURE_SCALE = 20.0
 COSINE_REJECT_BELOW = 0.45
 COSINE_DEGRADE_BELOW = 0.58
 OUTSIDE_MARGIN = 0.03
-"""There a text is refused when something outside lies nearer by this much, and reported as degraded from a tie on."""
+"""Cosine by which a text outside must be nearer for a refusal, in checkpoints without a classifier; from a tie on the
+text is degraded."""
 
 _BETWEEN_CLAUSES = re.compile(
     r"""\s*[,;.]?\s*(?<!\bup\s)(?<!\bback\s)(?<!\bleft\s)(?<!\bright\s)
@@ -46,21 +47,21 @@ _BETWEEN_CLAUSES = re.compile(
 )
 _LATIN_WORD = re.compile(r"[A-Za-z]{2,}")
 _CODE = re.compile(r"[{}<\\$|=]|(?<!-)>|://|\w\((?!s\))|\.\./|--\w")
-"""What programs, addresses and paths have and sentences do not."""
+"""Signs of programs, addresses and paths, which sentences do not have."""
 MOST_CLAUSES, MOST_WORDS = 4, 30
-"""Texts of more are judged as a whole, so that a decision stays below 30 ms."""
+"""Most clauses and most words of a text that is judged clause by clause, so that a decision stays below 30 ms."""
 
 
 @dataclass(frozen=True)
 class ScopeVerdict:
-    """How a text was taken.
+    """The verdict on a text.
 
     Attributes:
-        status: accepted, degraded (done in part, or far from anything learnt) or rejected.
-        score: 0 to 1; how surely the model can do it.
-        nearest: the known command that lies nearest.
-        reason: why it is not accepted; empty when it is.
-        kept: what is done of a text of which only some clauses can be; empty where the text is taken as it stands.
+        status: accepted, degraded (done in part, or far from the training texts) or rejected.
+        score: estimated probability, 0 to 1, that the model can carry out the text.
+        nearest: the nearest known command.
+        reason: why the text is not accepted; empty when it is.
+        kept: the clauses that are carried out; empty where the text is carried out as it stands.
     """
 
     status: Status
@@ -79,18 +80,17 @@ class ScopeClassifier(nn.Module):
         self.out = nn.Linear(hidden, 1)
 
     def forward(self, sentence: Tensor) -> Tensor:
-        """(B, D) -> (B,)."""
         return self.out(F.gelu(self.hidden(FEATURE_SCALE * sentence)))[:, 0]
 
 
 @dataclass(frozen=True)
 class ScopeIndex:
-    """Known commands and outside ones with their unit sentence vectors (N, D), and what tells them apart.
+    """Texts inside and outside the scope with their unit sentence vectors (N, D), and the classifier between them.
 
     Attributes:
-        commands: the known commands first, then what cannot be done.
+        commands: the known commands first, then texts out of scope.
         vectors: (N, D), in the same order.
-        n_known: how many of them are known commands.
+        n_known: number of known commands.
         classifier: None in checkpoints of before there was one; cosines decide then.
     """
 
@@ -101,7 +101,6 @@ class ScopeIndex:
     _meanings: Meanings = field(init=False)
 
     def __post_init__(self) -> None:
-        """Read the known commands."""
         object.__setattr__(self, "_meanings", Meanings(self.commands[: self.n_known]))
 
     def judge(self, text: str, sentence: Tensor) -> ScopeVerdict:
@@ -145,10 +144,10 @@ def clauses_of(text: str) -> list[str]:
 
 
 def with_clauses(whole: ScopeVerdict, clauses: list[str], verdicts: list[ScopeVerdict]) -> ScopeVerdict:
-    """The verdict of a text, given those of its clauses: degraded to what can be done of it, where that is not all.
+    """The verdict on a text, given the verdicts on its clauses: degraded to the clauses in scope where some are not.
 
-    Clauses lean on each other ("hold it there"), so one is left out only if it lies far outside; and a text that is
-    rejected as a whole is saved only by clauses that lie well inside.
+    Clauses lean on each other ("hold it there"), so a clause is left out only if it lies far outside; and a text that is
+    rejected as a whole is saved only by clauses well inside.
     """
     if whole.status == "rejected":
         taken = [i for i, v in enumerate(verdicts) if v.score >= CLAUSE_KEPT_FROM]
@@ -177,7 +176,7 @@ def _by_cosine(nearest: str, score: float, impossible: str, other: float) -> Sco
 
 
 def _unreadable(text: str) -> str:
-    """Why no sentence can be read in a text; empty where one can."""
+    """The reason why a text holds no readable sentence; empty where it holds one."""
     if not any(c.isprintable() and not c.isspace() for c in text):
         return "the text is empty"
     latin, letters = sum(c.isascii() and c.isalpha() for c in text), sum(c.isalpha() for c in text)

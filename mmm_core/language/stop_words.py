@@ -48,7 +48,7 @@ _MOTIONS = frozenset(
     motion motions motor motors move movement movements moves moving playback program servo servos show
     """.split()
 )
-"""What may be told to stop."""
+"""Words for a motion or a part of the body, as objects of a stop word."""
 
 _ACTIVITY = re.compile(
     r"\b(stop|stopp|cease|quit|halt|pause|cancel|enough|no more|dont keep|not keep) "

@@ -16,7 +16,8 @@ from torch import Tensor
 from mmm_core.model.schedule import Schedule, masked_counts
 
 KEPT = -0.5
-"""Uncertainty of a chosen id is never below 0, but for rounding."""
+"""Threshold on the uncertainty of a position: below it the id is known already. A chosen id's uncertainty is at least
+0, but for rounding."""
 LogitsFn = Callable[[Tensor, Tensor], Tensor]
 """The model: (B, L, C) ids with [MASK] where to fill, and which (B, L) are asked for -> (N, P, K) logits at those N
 positions, row by row, of the first P codebooks."""
@@ -26,13 +27,13 @@ NoiseFn = Callable[[int, Tensor, tuple[int, int]], Tensor]
 
 @dataclass(frozen=True)
 class DecodeSettings:
-    """How to decode.
+    """Settings of parallel decoding.
 
     Attributes:
         n_steps: steps for the longest motion.
-        schedule: how the masked share falls.
+        schedule: course of the masked share over the steps.
         temperature: randomness; 0 = arg-max.
-        opening: so many positions at a row's beginning take their likeliest ids in the first step and are never masked
+        opening: positions at a row's beginning that take their likeliest ids in the first step and are never masked
             again: they can be played after it.
     """
 
@@ -45,7 +46,7 @@ class DecodeSettings:
 def seeded_noise(seeds: list[int]) -> NoiseFn:
     """Gumbel noise in which row b depends on seeds[b], the step and what is asked of that row alone.
 
-    So a batch of one and a batch of many give the same tokens for the same seed.
+    A batch of one and a batch of many therefore give the same tokens for the same seed.
     """
 
     def noise(step: int, asked: Tensor, shape: tuple[int, int]) -> Tensor:

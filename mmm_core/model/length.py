@@ -1,4 +1,4 @@
-"""Length from text: how many seconds a command takes, with its spread.
+"""Length from text: the seconds that a command takes, with their spread.
 
 A log-normal: the median and the spread of log seconds are read from the word states by attention pooling, so that
 counts ("five times") reach it. The caller's `seconds` always wins over this.

@@ -92,7 +92,7 @@ class OfficialRuleQuantizer(Quantizer):
         self.register_buffer("ever_used", torch.zeros(n_codes, dtype=torch.bool))
 
     def forward(self, latents: Tensor) -> tuple[Tensor, Tensor]:
-        """As `Quantizer.forward`; the update comes after the codes are chosen."""
+        """Quantised latents and commitment loss, as `Quantizer.forward`; the codebook is updated after the codes are chosen."""
         latents = latents.float()
         whole = distributed.gathered(latents.detach()).flatten(0, -2) if self.training else latents
         if self.training and int(self.n_updates) == 0:
@@ -123,7 +123,7 @@ class OfficialRuleQuantizer(Quantizer):
 
 
 def perplexity(ids: Tensor, n_codes: int) -> Tensor:
-    """How many codes a batch uses evenly: exp of the entropy of the code frequencies."""
+    """Effective number of codes that a batch uses: exp of the entropy of the code frequencies."""
     share = torch.bincount(ids.reshape(-1), minlength=n_codes).float()
     share = share / share.sum()
     return torch.exp(-(share * (share + 1e-7).log()).sum())

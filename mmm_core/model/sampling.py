@@ -1,7 +1,7 @@
-"""Rows of ids with holes and a text -> rows without holes: the masked model asked through parallel decoding.
+"""Rows of ids with holes and a text -> rows without holes, by parallel decoding with the masked model.
 
-Every way of using the model is a mask handed to `fill`: from text alone all positions are open; in-betweening, endings,
-transitions and edits of a body part leave what is known in place (MMM, arXiv 2312.03596, sec. 3.3 and 3.4).
+Every use of the model is a mask for `fill`: from text alone all positions are open; in-betweening, endings,
+transitions and edits of a body part keep the known ids (MMM, arXiv 2312.03596, sec. 3.3 and 3.4).
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from mmm_core.model.transformer import MotionTransformer, StepMemory
 
 @dataclass(frozen=True)
 class SamplingSettings:
-    """How the model is asked.
+    """Settings of a generation.
 
     Attributes:
         steps: decoding steps, fewer where there are fewer tokens to fill.
         temperature: randomness; 0 always takes the likeliest id.
-        guidance: how much the text is stressed; 1 is the plain model, above it a second pass without text is subtracted.
-        schedule: how the masked share falls.
+        guidance: weight of the text; 1 is the plain model, above it a second pass without text is subtracted.
+        schedule: course of the masked share over the steps.
         opening: tokens at the beginning that stay as the first step gives them, so that playing may begin
             (`mmm_core.generate.motion_generation`).
         official: the released sampler's steps (`schedule.official_counts`) with `steps` for the longest motion.

@@ -1,4 +1,4 @@
-"""How many tokens stay masked at each step of parallel decoding. Pure functions."""
+"""The number of masked tokens before each step of parallel decoding. Pure functions."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Ids that arrive piece by piece -> features as soon as they are final, the same as from one pass over the whole.
+"""Ids that arrive in chunks -> features as soon as they are final, equal to those of one pass over the whole motion.
 
-A decoded frame depends on `halo_tokens` on each side. So a token's frames are final once so many tokens after it are
-known, and a window needs so many before it; both ends of the whole motion are padded as in one pass. Memory is bounded
-by the halo and the piece (MMM decodes a long motion in a single call at its end).
+A decoded frame depends on `halo_tokens` on each side. A token's frames are therefore final once `halo_tokens` after it are
+known, and a window needs as many before it; both ends of the whole motion are padded as in one pass. Memory is bounded
+by the halo and the chunk (MMM decodes a long motion in a single call at its end).
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ class StreamingDecoder:
 
     Args:
         tokenizer: decodes.
-        kept: the `window` of a decoder that this one goes on for.
-        n_context: the same decoder's `n_context`.
+        kept: `window` of a decoder that this one continues.
+        n_context: `n_context` of that decoder.
     """
 
     def __init__(self, tokenizer: Tokenizer | VqVae, kept: Tensor | None = None, n_context: int = 0) -> None:
@@ -38,7 +38,7 @@ class StreamingDecoder:
 
     @property
     def n_context(self) -> int:
-        """How many of the window's ids have their frames already."""
+        """Ids of the window whose frames were returned already."""
         return self._n_context
 
     def push(self, ids: Tensor) -> Tensor:
@@ -52,7 +52,7 @@ class StreamingDecoder:
 
     @torch.inference_mode()
     def _decode(self, n_tokens: int) -> Tensor:
-        """Features of the next `n_tokens`; what no later token needs is forgotten."""
+        """Features of the next `n_tokens`; ids that no later token needs are dropped."""
         if n_tokens <= 0:
             return self._tokenizer.mean.new_zeros(0, len(self._tokenizer.mean))
         start, end = self._n_context, self._n_context + n_tokens

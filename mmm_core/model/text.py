@@ -17,7 +17,7 @@ from tokenizers import Tokenizer as WordPieces
 from torch import Tensor, nn
 
 MAX_WORD_PIECES = 64
-"""Longer texts are cut: a command is a sentence or two, and the model was trained on at most this."""
+"""Word pieces that a text is cut to: a command is a sentence or two, and the model was trained on at most this."""
 
 _EMOJI_CATEGORIES = ("So", "Sk", "Cs", "Co", "Cn")
 """Unicode categories of emoji, their skin tones, and signs that no word piece stands for."""
@@ -32,10 +32,10 @@ def strip_emoji(text: str) -> str:
 
 @dataclass(frozen=True)
 class TextStates:
-    """What the transformer sees of B texts.
+    """Encoder states of B texts, the transformer's input.
 
     Attributes:
-        words: (B, W, D) state of each word piece; below the encoder's last layers where the model has these for its own
+        words: (B, W, D) state of each word piece; before the encoder's last layers where the model has its own copies of them
             (`TransformerConfig.n_words`).
         word_mask: (B, W) bool, true where there is a word piece.
         sentence: (B, D) unit vectors.
@@ -46,7 +46,7 @@ class TextStates:
     sentence: Tensor
 
     def repeated(self, times: int) -> TextStates:
-        """All texts, `times` times after one another."""
+        """The whole batch repeated `times` times."""
         return TextStates(
             self.words.repeat(times, 1, 1), self.word_mask.repeat(times, 1), self.sentence.repeat(times, 1)
         )
@@ -56,7 +56,6 @@ class TextStates:
         return TextStates(self.words[rows], self.word_mask[rows], self.sentence[rows])
 
     def to(self, device: torch.device) -> TextStates:
-        """The same on a device."""
         return TextStates(self.words.to(device), self.word_mask.to(device), self.sentence.to(device))
 
     @staticmethod
@@ -77,9 +76,7 @@ class TextStates:
 class TextEncoder(Protocol):
     """Anything that turns texts into states."""
 
-    def encode(self, texts: list[str]) -> TextStates:
-        """States of `texts`."""
-        ...
+    def encode(self, texts: list[str]) -> TextStates: ...
 
 
 @dataclass(frozen=True)
@@ -120,8 +117,8 @@ class MiniLm(nn.Module):
     """The compact encoder. Call `encode`; weights are set by `mmm_core.inference.checkpoint`.
 
     Attributes:
-        n_left_out: of its layers, the last ones, that word states have not been through: a model that has such layers of its
-            own reads them on. Sentence vectors have been through all.
+        n_left_out: number of last layers that word states skip: a model with its own copies of these layers applies them
+            itself. Sentence vectors pass all layers.
     """
 
     def __init__(self, config: MiniLmConfig, word_pieces: WordPieces, n_left_out: int = 0) -> None:

@@ -23,17 +23,14 @@ class SpecialIds:
 
     @property
     def end(self) -> int:
-        """Id of [END]."""
         return self.n_codes
 
     @property
     def pad(self) -> int:
-        """Id of [PAD]."""
         return self.n_codes + 1
 
     @property
     def mask(self) -> int:
-        """Id of [MASK]."""
         return self.n_codes + 2
 
 

@@ -55,7 +55,7 @@ OFFICIAL = TransformerConfig(
 
 @dataclass(frozen=True)
 class TextContext:
-    """What stays the same in every decoding step: the sentence token and each cross block's keys and values."""
+    """Text inputs that are equal in every decoding step: the sentence token and each cross block's keys and values."""
 
     sentence: Tensor  # (B, W)
     keys_values: list[tuple[Tensor, Tensor]]  # (B, heads, words, head_dim) each
@@ -181,7 +181,7 @@ class MotionTransformer(nn.Module):
         self.codebooks.copy_(stacked / stacked.std((1, 2), keepdim=True))
 
     def read_text(self, text: TextStates) -> TextContext:
-        """Everything of a text that does not change between decoding steps."""
+        """The part of a text's computation that is equal in every decoding step."""
         words = text.words
         for layer in self.word_layers:
             words = layer(words, text.word_mask[:, None, None, :])
@@ -224,7 +224,7 @@ class MotionTransformer(nn.Module):
         return self.head(self.norm_out(x)).float().reshape(len(x), self.config.n_out, -1)
 
     def with_words(self, ids: Tensor, positions: Tensor, context: TextContext) -> Tensor:
-        """(B, L, W): what stands at each position and what the words say to it; positions do not see each other yet."""
+        """(B, L, W) states after attention to the words, before positions attend to each other."""
         x = self.embed(self._vectors(ids))
         if len(self.cross):
             x = x + positions
@@ -241,9 +241,9 @@ class MotionTransformer(nn.Module):
 
 
 class StepMemory:
-    """What the word blocks gave in the step before, for one sequence and one text.
+    """Outputs of the word blocks from the step before, for one sequence and one text.
 
-    Those blocks have no self-attention, so a position's result depends on its id alone: most ids stay from step to step,
+    Those blocks have no self-attention, so a position's output depends on its id alone: most ids stay from step to step,
     and a position that is masked again has been masked before.
     """
 

@@ -152,7 +152,6 @@ class VqVae(nn.Module):
         return x
 
     def denormalise(self, x: Tensor) -> Tensor:
-        """Inverse of `normalise`."""
         features = x * self.std + self.mean
         if self.config.layout == "halves":
             heights = x[..., HEIGHT_CHANNELS] * self.height_std + self.height_mean
@@ -173,7 +172,7 @@ class VqVae(nn.Module):
         return torch.cat([F.embedding(ids[..., c], q.codebook) for c, q in enumerate(self.books)], -1)
 
     def latents(self, normalised: Tensor) -> list[Tensor]:
-        """What the quantisers see: (B, T/4, D) for each codebook."""
+        """(B, T/4, D) inputs of the quantisers, one tensor for each codebook."""
         return [e(normalised[..., list(c)]) for e, c in zip(self.encoders, self.channels, strict=True)]
 
     def forward(self, normalised: Tensor) -> tuple[Tensor, Tensor]:

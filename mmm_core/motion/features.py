@@ -32,7 +32,7 @@ CONTACT_SPEED_M = 0.045
 
 @dataclass(frozen=True)
 class RecoveredMotion:
-    """What features say.
+    """Motion recovered from features.
 
     Attributes:
         joints_m: (T, 22, 3) joints on the common body.
@@ -47,12 +47,12 @@ class RecoveredMotion:
 
 @dataclass(frozen=True)
 class FeatureLayout:
-    """What the features of a skeleton of J joints need to know about it.
+    """Facts of a skeleton of J joints that its features depend on.
 
     Attributes:
         n_joints: J; a row has 12 J - 1 values.
         left_feet: ankle and toe of the left foot.
-        right_feet: the same of the right.
+        right_feet: ankle and toe of the right foot.
         contact_m2: a foot joint whose step in a frame has a smaller square stands.
     """
 
@@ -63,7 +63,6 @@ class FeatureLayout:
 
     @property
     def n_features(self) -> int:
-        """Values in a row."""
         return 12 * self.n_joints - 1
 
 
@@ -109,7 +108,7 @@ def features_from_rotations(
 
 @dataclass(frozen=True)
 class Root:
-    """Where a motion stands: the next frame's yaw and place, so that a motion can be recovered piece by piece."""
+    """Yaw and position of a motion's next frame: with them a motion can be recovered chunk by chunk."""
 
     yaw_rad: float = 0.0
     x_m: float = 0.0
@@ -123,7 +122,7 @@ def root_path(features: Array, start: Root | None = None) -> tuple[Array, Array]
 
 
 def root_after(features: Array, start: Root | None = None) -> Root:
-    """Where the frame after `features` stands."""
+    """Yaw and position of the frame after `features`."""
     yaw, root = _root_with_next(features, start or Root())
     return Root(float(yaw[-1]), float(root[-1, 0]), float(root[-1, 2]))
 
@@ -151,7 +150,7 @@ def recover(features: Array, start: Root | None = None) -> RecoveredMotion:
 
 
 def recover_from_positions(features: Array, start: Root | None = None) -> RecoveredMotion:
-    """The same from the position channels, for data whose rotations have other rest directions than ours (HumanML3D).
+    """Joints, head and forearms from the position channels, for data with other rest directions than ours (HumanML3D).
 
     The head's turn and the forearms' twist cannot be seen in positions: the head follows the neck, the twist is 0.
     """

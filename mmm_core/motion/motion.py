@@ -1,4 +1,4 @@
-"""The Motion record: what the model hands to everything downstream. NumPy only, no torch.
+"""The Motion record: the model's output and the input of everything downstream. NumPy only, no torch.
 
 Frame: metres, y up, z forward, x to the person's left; see `mmm_core.motion.skeleton` for the joints.
 """
@@ -28,7 +28,7 @@ _STATUSES: tuple[Status, ...] = ("accepted", "degraded", "rejected")
 
 @dataclass(frozen=True)
 class Motion:
-    """A human motion of T frames, with what is needed to repeat it.
+    """A human motion of T frames, and the text, seed and tokens that generate it again.
 
     Attributes:
         joints_m: (T, 22, 3) float32, joint positions in the world, metres.
@@ -39,8 +39,8 @@ class Motion:
         tokens: (L,) int32, one id for each four frames (several codebooks are packed into one id).
         text: the command.
         seed: the seed the motion was sampled with.
-        status: how the command was taken.
-        scope_score: how near the text lies to what the model can do, about 0 (far) to 1.
+        status: accepted, degraded or rejected, the scope verdict of the text.
+        scope_score: score of the text from about 0, nothing that the model can do, to 1.
     """
 
     joints_m: NDArray[np.float32]
@@ -80,7 +80,6 @@ class Motion:
 
     @property
     def duration_s(self) -> float:
-        """Length in seconds."""
         return len(self.joints_m) / self.fps
 
     def save_npz(self, path: Path | str) -> None:
@@ -108,10 +107,10 @@ class Motion:
 
 
 def joined(pieces: Sequence[Motion]) -> Motion:
-    """Consecutive pieces of one motion as one; texts are joined by "; ", the seed is the first piece's.
+    """Consecutive chunks of one motion as one; texts are joined by "; ", the seed is the first chunk's.
 
     Raises:
-        ValueError: no pieces, or pieces of different fps.
+        ValueError: no chunks, or chunks of different fps.
     """
     if not pieces or len({p.fps for p in pieces}) != 1:
         raise ValueError(

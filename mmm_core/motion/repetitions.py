@@ -1,7 +1,7 @@
-"""Strokes of a motion that repeats something, whatever it is: found along what comes back, from peak to peak.
+"""Counts the strokes of a repetitive motion, of any gesture: peaks along the main direction of its most regular cycle.
 
-No family is known here: what the body does is a path in one space (wrists, forearms, head, trunk), and a stretch that comes
-back after some time is a cycle of it.
+The body is a path in one space (wrists, forearms, head, trunk). A cycle is a segment of that path that recurs after one
+period; no family of gestures is known here.
 """
 
 from __future__ import annotations
@@ -17,26 +17,27 @@ from mmm_core.motion.posture_features import posture_features
 Array = NDArray[np.floating]
 
 SHORTEST_FRAMES, LONGEST_FRAMES = 6, 32
-"""Of a cycle: 0.3 to 1.6 s."""
+"""Shortest and longest period of a cycle, frames: 0.3 to 1.6 s."""
 LEAST_M, LEAST_SHARE = 0.05, 0.2
-"""A cycle goes so far, and through so much of the whole motion's range."""
+"""Least range of a cycle: metres, and share of the whole motion's range."""
 NEARLY, NEARLY_ADD = 1.3, 0.08
-"""Of the periods that come back about as well as the best, the shortest is the cycle and the others are several of it."""
+"""Factor and sum by which a shorter period's misfit may exceed the best one: longer periods of equal misfit are
+multiples of the cycle."""
 TURN_SHARE = 0.45
-"""A stroke rises and falls by so much of the cycle's range."""
+"""Share of the cycle's range by which a stroke rises and falls at least."""
 _HEAD_DEG_PER_M, _TRUNK_DEG_PER_M, _FOREARM_M = 100.0, 60.0, 0.25
 
 
 @dataclass(frozen=True)
 class Strokes:
-    """What repeats in a motion.
+    """The strokes of a motion.
 
     Attributes:
-        path: (T, D) the body, in metres or what counts as much.
-        frames: of the strokes' peaks.
-        sure: whether as many valleys as peaks were found.
-        range_m: how far a cycle goes.
-        misfit: mean distance of the body from where it was a period before, as a share of that range; 0 is exact.
+        path: (T, D) body, metres; angles are scaled to lengths of similar weight.
+        frames: frames of the strokes' peaks.
+        sure: whether peaks and valleys are equal in number.
+        range_m: range of one cycle, metres.
+        misfit: mean distance between the body and itself one period earlier, as a share of the range; 0 is exact.
     """
 
     path: Array
@@ -46,7 +47,7 @@ class Strokes:
     misfit: float
 
     def apart(self, i: int, j: int) -> float:
-        """How far the body is at frame i from where it is at frame j, as a share of a cycle's range."""
+        """Distance of the body between frames i and j, as a share of a cycle's range."""
         return float(np.linalg.norm(self.path[i] - self.path[j])) / self.range_m
 
 
@@ -66,7 +67,7 @@ def strokes_of(motion: Motion) -> Strokes | None:
 
 
 def body_path(motion: Motion) -> Array:
-    """(T, 18) wrists, head, trunk and forearms of a motion, in metres or what counts as much."""
+    """(T, 18) wrists, head, trunk and forearms of a motion, metres; angles are scaled to lengths of similar weight."""
     s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     head = np.stack([s.head_yaw_deg, s.head_pitch_deg, s.head_roll_deg], -1) / _HEAD_DEG_PER_M
     trunk = np.stack([s.trunk_yaw_deg, s.trunk_pitch_deg, s.trunk_roll_deg], -1) / _TRUNK_DEG_PER_M
@@ -75,7 +76,7 @@ def body_path(motion: Motion) -> Array:
 
 
 def peaks_beyond(signal: Array, turn: float) -> list[int]:
-    """Frames of the peaks that rise by more than `turn` from the valley before, and are fallen from by as much or are last."""
+    """Frames of the peaks that rise by more than `turn` from the valley before; all but the last also fall by as much."""
     found: list[int] = []
     rising, valley, peak = False, float(signal[0]), float(signal[0])
     for frame, value in enumerate(signal[1:].tolist(), 1):
@@ -93,7 +94,7 @@ def peaks_beyond(signal: Array, turn: float) -> list[int]:
 
 
 def _cycle(path: Array) -> tuple[int, int, float, float] | None:
-    """First frame, period, misfit and range of what comes back best."""
+    """First frame, period, misfit and range of the most regular cycle; None where none has enough range."""
     T = len(path)
     least_m = max(LEAST_M, LEAST_SHARE * float(np.ptp(path, axis=0).max())) if T else 0.0
     high, low = path.copy(), path.copy()  # of the window that begins at each frame

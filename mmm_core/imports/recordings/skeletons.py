@@ -167,7 +167,7 @@ def _leaning_as_ours(joints: Array, rest: Array) -> Array:
 
 
 def _lean_rad(standing: Array) -> float:
-    """How far before its spine the neck of (1, 22, 3) upright joints is."""
+    """Angle by which the neck of (1, 22, 3) upright joints leans before the spine."""
     left, up = across_shoulders(standing)[0], standing[0, _NECK] - standing[0, _SPINE1]
     forward = normalise(np.cross(left, [0.0, 1, 0]))
     return float(np.arctan2(up @ forward, up[1]))
