@@ -184,9 +184,7 @@ def describe(one: Shown, audited: dict[int, tuple[int, int]]) -> list[str]:
     lines = [f'"{one.text}"']
     if accepted is None:
         return [*lines, f"  refused: {last.message if isinstance(last, Refusal) else 'no answer'}"]
-    lines.append(
-        f"  {accepted.status}: understood as {accepted.understood}; generated in {accepted.generate_ms:.0f} ms"
-    )
+    lines.append(f"  {accepted.status}: {accepted.understood}; generated in {accepted.generate_ms:.0f} ms")
     if isinstance(last, Done):
         first = "-" if last.first_motion_ms is None else f"{last.first_motion_ms:.0f} ms"
         lines.append(f"  first moving servo frame {first} after the text; duration {last.duration_s:.2f} s")

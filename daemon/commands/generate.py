@@ -216,7 +216,8 @@ def _problem(prompt: Prompt) -> str:
 def _summary(prompt: Prompt, made: GenerationResult, path: Path) -> dict[str, object]:
     return {
         "id": prompt.id, "text": prompt.text, "seed": prompt.seed, "out": str(path), "status": made.status,
-        "scope_score": round(made.scope_score, 4), "understood": made.understood, "reason": made.reason,
+        "scope_score": round(made.scope_score, 4), "understood": _understood(made), "nearest": made.understood,
+        "reason": made.reason,
         "frames": len(made.motion.joints_m), "fps": made.motion.fps, "ms": round(sum(made.timings_ms.values()), 1),
     }  # fmt: skip
 
@@ -227,4 +228,15 @@ def _say(summary: dict[str, object], json: bool) -> None:
         sys.stdout.flush()
     elif summary["status"] != "rejected":
         frames, fps = summary["frames"], summary["fps"]
-        sys.stdout.write(f"{summary['out']}: {frames} frames at {fps:g} fps; understood as {summary['understood']}\n")
+        sys.stdout.write(f"{summary['out']}: {frames} frames at {fps:g} fps: {summary['understood']}\n")
+
+
+def _understood(made: GenerationResult) -> str:
+    """What a motion shows, in one sentence; "" where there is none."""
+    from mmm_core.recognition.seen import Scene, scenes_seen, sentence
+
+    motion = made.motion
+    if not len(motion.joints_m):
+        return ""
+    scenes = made.scenes or (Scene(motion.duration_s, f"{motion.text}\n{made.understood}"),)
+    return sentence(scenes_seen(motion, scenes))

@@ -144,7 +144,8 @@ def describe(event: object) -> str:
     if isinstance(event, Accepted):
         reason = f" ({event.reason})" if event.reason else ""
         length = f"; {event.duration_s:.1f} s" if event.duration_s else ""
-        return f"{event.status}: understood as {event.understood}{reason}{length}"
+        lacks = f"; this robot cannot show all of it: {event.lacks}" if event.lacks else ""
+        return f"{event.status}: {event.understood}{reason}{length}{lacks}"
     if isinstance(event, Progress):
         if event.scene is not None:
             taken = "left out" if event.status == "rejected" else event.status
@@ -154,8 +155,10 @@ def describe(event: object) -> str:
         after = "the text" if event.target_t_mono is None else "the first target"
         return f"{event.stage}: first servo frame {event.first_motion_ms:.0f} ms after {after}"
     if isinstance(event, Done):
+        missing = f", but {event.missing}" if event.missing else ""
+        verdict = f"{event.shown}: {event.seen}{missing}; " if event.shown else ""
         return (
-            f"done: {event.duration_s:.2f} s; peak {event.peak_speed_joint} at {100 * event.peak_speed_share:.0f} % of "
+            f"done: {verdict}{event.duration_s:.2f} s; peak {event.peak_speed_joint} at {100 * event.peak_speed_share:.0f} % of "
             f"its {event.peak_speed_limit_rad_s:.2f} rad/s; {event.clipped_frames} of {event.frames} frames clipped; "
             f"direction error {event.direction_error_deg:.1f} deg"
         )

@@ -107,7 +107,7 @@ class EngineMaker:
 
     def _of(self, made: GenerationResult, draft_of: int = 0) -> Generated:
         how = (made.understood, made.reason, made.timings_ms, self.checkpoint_hash)
-        return Generated(made.motion, *how, draft_of=draft_of)
+        return Generated(made.motion, *how, draft_of=draft_of, scenes=made.scenes)
 
     def _unless_rejected(self, text: str, seed: int, make: Callable[[], Motion], code: str) -> Generated:
         """What `make` makes, unless the text is out of scope; no text at all is in scope."""

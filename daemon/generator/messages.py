@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from daemon.errors import DaemonError
 from mmm_core.motion.motion import N_FEATURES, N_JOINTS, Motion
+from mmm_core.recognition.seen import Scene
 
 GENERATION_VERSION = 4
 MIN_FRAMES = 2
@@ -168,6 +169,7 @@ class GeneratedMessage(MotionArrays, tag="generated", kw_only=True):
     checkpoint_hash: str
     told: bytes = b""
     draft_of: int = 0
+    scenes: list[tuple[float, str]] = []
 
 
 ToGenerator = GenerateMessage | SceneMessage | EditMessage | BetweenMessage | PingMessage
@@ -189,6 +191,7 @@ class Generated:
         checkpoint_hash: the weights it used.
         told: where a story then stands; else empty.
         draft_of: frames that the motion will have, about, of which this is a draft; 0 when it is the motion.
+        scenes: parts of the motion and the words that each was made for; empty where it is one.
     """
 
     motion: Motion
@@ -198,6 +201,7 @@ class Generated:
     checkpoint_hash: str
     told: bytes = b""
     draft_of: int = 0
+    scenes: tuple[Scene, ...] = ()
 
 
 def encode(message: ToGenerator | FromGenerator) -> bytes:
@@ -239,6 +243,7 @@ def generated_message(request_id: int, generated: Generated) -> GeneratedMessage
         checkpoint_hash=generated.checkpoint_hash,
         told=generated.told,
         draft_of=generated.draft_of,
+        scenes=[(scene.end_s, scene.words) for scene in generated.scenes],
     )
 
 
@@ -278,7 +283,8 @@ def generated_from(message: GeneratedMessage, min_frames: int = MIN_FRAMES, *, m
     if motion.status != "rejected" and message.n_frames < min_frames:
         raise bad_motion(message.text, f"{message.n_frames} frames")
     how = (message.understood, message.reason, message.timings_ms, message.checkpoint_hash)
-    return Generated(motion, *how, message.told, message.draft_of)
+    scenes = tuple(Scene(end_s, words) for end_s, words in message.scenes)
+    return Generated(motion, *how, message.told, message.draft_of, scenes)
 
 
 def bad_motion(text: str, found: str) -> GeneratorError:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from daemon.playing.posture import Posture
 from mmm_core.motion.motion import Motion
+from mmm_core.recognition.seen import Scene
 
 KEPT = 32
 
@@ -19,12 +21,14 @@ class KeptMotion:
         words: what it was, in a word or a sentence.
         posture: as it was played, with tempo, size and mirror.
         motion: as it was made.
+        scenes: parts of `posture` and the words that each was made for.
         plan_id: number of its plan; 0 before it has one.
     """
 
     words: str
     posture: Posture
     motion: Motion
+    scenes: Sequence[Scene] = ()
     plan_id: int = 0
 
 
@@ -40,10 +44,10 @@ class KeptMotions:
         while len(self._kept) > KEPT:
             self._kept.popitem(last=False)
 
-    def renew(self, command_id: str, posture: Posture, motion: Motion) -> None:
+    def renew(self, command_id: str, posture: Posture, motion: Motion, scenes: Sequence[Scene]) -> None:
         """What was kept of a command, if it still is, was a draft of this."""
         if command_id in self._kept:
-            self._kept[command_id] = replace(self._kept[command_id], posture=posture, motion=motion)
+            self._kept[command_id] = replace(self._kept[command_id], posture=posture, motion=motion, scenes=scenes)
 
     def number(self, command_id: str, plan_id: int) -> None:
         """Its plan got a number."""

@@ -73,7 +73,7 @@ class Performer:
         self.layers = Layers(config.idle)
         self.halts = Halts()
         self._waiting = WaitingRoom()
-        self._player = Player(planner, follower, ledger, self.layers)
+        self._player = Player(planner, follower, ledger, self.layers, sources.verdict)
 
     @property
     def machine(self) -> StateMachine:

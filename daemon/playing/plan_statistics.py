@@ -11,6 +11,9 @@ from daemon.wire.events import Done
 from retarget.report import RetargetReport
 from retarget.robot import RobotModel
 
+SAMPLED_HZ = 20.0
+LONGEST_SAMPLED_S = 20.0
+
 
 class PlanStatistics:
     """Gathers the cycle records of one plan.
@@ -42,6 +45,7 @@ class PlanStatistics:
         self._frames = 0
         self._direction_deg_frames = 0.0
         self._clipped = self._interventions = 0
+        self._goals_rad: list[NDArray[np.float64]] = []
 
     @property
     def first_motion_ms(self) -> float | None:
@@ -62,6 +66,11 @@ class PlanStatistics:
         self._direction_deg_frames += report.direction_mean_deg * frames
         self._clipped += report.clipped_frames
         self._interventions += report.interventions
+
+    @property
+    def goals_rad(self) -> NDArray[np.float64]:
+        """(T, J) goals of the joints so far, `SAMPLED_HZ` of them a second, of the first `LONGEST_SAMPLED_S` seconds."""
+        return np.array(self._goals_rad).reshape(-1, self._robot.n_joints)
 
     def feed(self, records: NDArray[Any], dropped: int = 0) -> None:
         """Take new records, of this plan and of others, in order."""
@@ -84,6 +93,7 @@ class PlanStatistics:
             moved = np.flatnonzero((np.concatenate([before, ticks[:-1]]) != ticks).any(1))
             if len(moved):
                 self.first_motion_ns = int(times[moved[0]])
+        self._sample(records)
         shares = np.abs(records["velocity_rad_s"]).max(0) / self._robot.velocity_limit_rad_s
         self._peak_share = np.maximum(self._peak_share, shares)
         self.last_frame = max(self.last_frame, int(records["frame"].max()))
@@ -94,8 +104,16 @@ class PlanStatistics:
             self.underruns += len(late)
             self.last_underrun_frame = int(late.max())
 
-    def done(self, frames: int) -> Done:
-        """The event that ends the plan."""
+    def _sample(self, records: NDArray[Any]) -> None:
+        """Keep the goals of every frame in which a new sample is due."""
+        if len(self._goals_rad) >= LONGEST_SAMPLED_S * SAMPLED_HZ:
+            return
+        sample = np.floor(records["frame"] * SAMPLED_HZ / self._robot.bus.rate_hz)
+        for i in np.flatnonzero(np.diff(sample, prepend=len(self._goals_rad) - 1) > 0).tolist():
+            self._goals_rad.append(records["goal_rad"][i].astype(np.float64))
+
+    def done(self, frames: int, shown: str = "", seen: str = "", missing: str = "") -> Done:
+        """The event that ends the plan, with whether the robot showed its motion, what that shows, and what was not seen."""
         j = int(self._peak_share.argmax())
         limit = float(self._robot.velocity_limit_rad_s[j])
         span_ns = 0 if self._t_first_ns is None else self._t_last_ns - self._t_first_ns
@@ -115,4 +133,7 @@ class PlanStatistics:
             direction_error_deg=round(self._direction_deg_frames / max(1, self._frames), 3),
             interventions=self._interventions,
             log_dropped=self.dropped,
+            shown=shown,
+            seen=seen,
+            missing=missing,
         )

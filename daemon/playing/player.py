@@ -19,9 +19,11 @@ from daemon.playing.follower import Follower
 from daemon.playing.idle import IdleScore
 from daemon.playing.layers import Layers
 from daemon.playing.plan import Plan
+from daemon.playing.plan_statistics import SAMPLED_HZ
 from daemon.playing.planner import Planner
 from daemon.playing.posture import Posture, standing
 from daemon.playing.score import ClipScore, Score
+from daemon.playing.showing import Verdict
 from daemon.playing.story_score import StoryScore
 from daemon.playing.stream_plan import StreamPlan
 from daemon.playing.stream_score import StreamScore
@@ -46,6 +48,13 @@ IDLE_AFTER_S = 0.8
 GAZE_S = 0.8
 BRAKING_TIMEOUT_S = 2.0
 
+Judge = Callable[[Entry, NDArray[np.float64], float], Verdict]
+"""Whether goals (T, J) of so many a second have shown what a command's motion shows."""
+
+
+def _not_judged(_entry: Entry, _q_rad: NDArray[np.float64], _fps: float) -> Verdict:
+    return Verdict()
+
 
 class Player:
     """What is played, and its end.
@@ -54,8 +63,11 @@ class Player:
         entry: the command that is played; None for none, and for idle movements.
     """
 
-    def __init__(self, planner: Planner, follower: Follower, ledger: Ledger, layers: Layers) -> None:
+    def __init__(
+        self, planner: Planner, follower: Follower, ledger: Ledger, layers: Layers, judge: Judge = _not_judged
+    ) -> None:
         self._planner, self._follower, self._ledger, self._layers = planner, follower, ledger, layers
+        self._judge = judge
         self.entry: Entry | None = None
         self._score: Score | StreamScore | None = None
         self._stream = StreamWatch(planner, ledger)
@@ -197,7 +209,8 @@ class Player:
             if isinstance(plan, StreamPlan):
                 self._stream.end(plan)
             if entry is not None:
-                self._ledger.emit(entry, statistics.done(plan.n_frames))
+                verdict = self._judge(entry, statistics.goals_rad, SAMPLED_HZ)
+                self._ledger.emit(entry, statistics.done(plan.n_frames, verdict.shown, verdict.seen, verdict.missing))
         elif stalled:
             self._fail(entry, f"{statistics.last_frame + 1} of {plan.n_frames} frames were played", plan.plan_id)
 

@@ -7,10 +7,13 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from daemon.config import DaemonConfig
 from daemon.errors import ClipError
@@ -23,6 +26,7 @@ from daemon.playing.keyposes import KeyPose, led_through
 from daemon.playing.originals import Originals
 from daemon.playing.posture import Posture, joined, mirrored, posture_of
 from daemon.playing.score import ClipScore, Marks, Score, varied
+from daemon.playing.showing import Showing, Shows, Verdict, at_tempo
 from daemon.playing.story_score import SceneNews, StoryScore
 from daemon.playing.stream_score import StreamScore
 from daemon.state.lease import LeaseClock
@@ -32,6 +36,7 @@ from daemon.wire.events import Accepted, Rejected
 from daemon.wire.requests import Command, Edit, Gesture, Inbetween, Lease, Play, Replay, Say, Story, tag_of
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.motion.motion import Motion
+from mmm_core.recognition.seen import Scene
 from retarget.guarded_steps import GuardedSteps
 from retarget.robot import RobotModel
 
@@ -70,6 +75,8 @@ class Prepared:
     scope_score: float = 1.0
     generate_ms: float = 0.0
     silence_s: float | None = None
+    nearest: str = ""
+    lacks: str = ""
 
     def accepted(self, entry: Entry, plan_id: int) -> Accepted:
         """The event."""
@@ -83,6 +90,8 @@ class Prepared:
             duration_s=round(self.duration_s, 3),
             generate_ms=round(self.generate_ms, 2),
             silence_s=self.silence_s,
+            nearest=self.nearest,
+            lacks=self.lacks,
         )
 
 
@@ -94,6 +103,7 @@ class Sources:
     ) -> None:
         self._config, self._generator, self.library = config, generator, library
         self.kept = KeptMotions()
+        self._showing = Showing(robot)
         self._robot = robot
         self._make_s = FIRST_MAKE_S
         self._originals = Originals(library, self.kept, config.motions or Path())
@@ -116,13 +126,18 @@ class Sources:
         if isinstance(request, Replay):
             motion = await asyncio.to_thread(self._originals.motion, request)
             posture = await asyncio.to_thread(posture_of, motion)
-            score = await self._score(entry, posture, motion)
-            return Prepared(score, _duration_s(posture, request), understood=motion.text or request.words)
+            score, shows = await self._score(entry, posture, motion, words=motion.text)
+            return Prepared(
+                score, _duration_s(posture, request), understood=shows.sentence, nearest=motion.text, lacks=shows.lacks
+            )
         if isinstance(request, Gesture):
             clip = self._originals.clip(request.name)
             motion = clip.posture.motion(text=clip.name)
-            score = await self._score(entry, clip.posture, motion, clip.marks, clip.text)
-            return Prepared(score, _duration_s(clip.posture, request), understood=f"{clip.text} (gesture {clip.name})")
+            score, shows = await self._score(entry, clip.posture, motion, marks=clip.marks, words=clip.text)
+            nearest = f"{clip.text} (gesture {clip.name})"
+            return Prepared(
+                score, _duration_s(clip.posture, request), understood=shows.sentence, nearest=nearest, lacks=shows.lacks
+            )
         if isinstance(request, Lease):
             return await self._lease(request)
         raise TypeError(f"no source for {type(request).__name__}")
@@ -153,7 +168,19 @@ class Sources:
         if keys:
             posture = led_through(posture, keys)
             motion = posture.motion(motion)
-        return _prepared(generated, await self._score(entry, posture, motion), _duration_s(posture, entry.request))
+        score, shows = await self._score(entry, posture, motion, generated.scenes, words=_words_of(generated))
+        return _prepared(generated, score, _duration_s(posture, entry.request), shows)
+
+    def verdict(self, entry: Entry, q_rad: NDArray[np.float64], fps: float) -> Verdict:
+        """Whether the robot has shown what a command's motion shows.
+
+        Args:
+            entry: the command.
+            q_rad: (T, J) goals that the robot was given for it.
+            fps: how many of them a second.
+        """
+        kept = self.kept.of_command(entry.id)
+        return Verdict() if kept is None else self._showing.verdict(kept.posture, kept.scenes, q_rad, fps)
 
     async def _drafted(self, entry: Entry, request: Say) -> Prepared:
         """What can be played at once of a text, while the generator goes on with it."""
@@ -161,20 +188,25 @@ class Sources:
         first, whole = await self._asked(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
         _check_in_scope(entry, first)
         draft = posture_of(first.motion)
-        score = await self._score(entry, draft, first.motion)
+        score, shows = await self._score(
+            entry, draft, first.motion, first.scenes, words=_words_of(first), draft=whole is not None
+        )
         if whole is None:
-            return _prepared(first, score, _duration_s(draft, request))
+            return _prepared(first, score, _duration_s(draft, request), shows)
 
         def posture(generated: Generated) -> Posture:
             return varied(posture_of(generated.motion), request)
 
         def keep(done: asyncio.Task[Generated]) -> None:
             if not done.cancelled() and done.exception() is None:
-                self.kept.renew(entry.id, posture(done.result()), done.result().motion)
+                made = done.result()
+                as_played = posture(made)
+                scenes = at_tempo(_scenes(made.scenes, made.motion, _words_of(made)), request.tempo)
+                self.kept.renew(entry.id, as_played, made.motion, scenes)
 
         whole.add_done_callback(keep)
         duration_s = first.draft_of / draft.fps / request.tempo
-        return _prepared(first, DraftScore(varied(draft, request), whole, posture), duration_s)
+        return _prepared(first, DraftScore(varied(draft, request), whole, posture), duration_s, shows)
 
     async def _said(self, entry: Entry, request: Say, played: Played) -> Prepared:
         ask = self._generator.generate
@@ -256,23 +288,48 @@ class Sources:
             raise NotPlayableError(generator_failed(error, self._generator.state)) from caught
 
     async def _score(
-        self, entry: Entry, posture: Posture, motion: Motion, marks: Marks | None = None, shows: str = ""
-    ) -> Score:
+        self, entry: Entry, posture: Posture, motion: Motion, scenes: Sequence[Scene] = (), *, words: str,
+        marks: Marks | None = None, draft: bool = False,
+    ) -> tuple[Score, Shows]:  # fmt: skip
+        """The score of a motion, and what it shows; it is kept under the command's id.
+
+        Args:
+            entry: the command.
+            posture: the motion before mirror, size and tempo.
+            motion: as it was made.
+            scenes: its parts; none where it is one, which `words` tell of.
+            words: what it is said to be; the command's own words where that is empty.
+            marks: loop and hold of a clip that has them.
+            draft: whether the motion is a draft of one to come.
+        """
         play = entry.request
         assert isinstance(play, Play), "only motions have a score of posture"
-        words = shows or play.words
-        words = mirror_words(words) if play.mirror else words
-        self.kept.add(entry.id, KeptMotion(words, varied(posture, play), motion))
+        said = words if isinstance(play, Gesture) and words else play.words
+        said = mirror_words(said) if play.mirror else said
+        as_played = varied(posture, play)
+        parts = at_tempo(_scenes(scenes, motion, words or play.words), play.tempo)
+        self.kept.add(entry.id, KeptMotion(said, as_played, motion, parts))
+        shows = await asyncio.to_thread(self._showing.of, as_played, parts, draft=draft)
         if play.loop or play.hold or play.repeat > 1:  # looking for the loop takes a while
-            return await asyncio.to_thread(ClipScore, posture, play, marks)
-        return ClipScore(posture, play, marks)
+            return await asyncio.to_thread(ClipScore, posture, play, marks), shows
+        return ClipScore(posture, play, marks), shows
 
 
-def _prepared(generated: Generated, score: Score, duration_s: float) -> Prepared:
-    """With what the generator tells of a motion."""
+def _prepared(generated: Generated, score: Score, duration_s: float, shows: Shows) -> Prepared:
+    """With what the generator tells of a motion, and what the motion shows."""
     motion, made_ms = generated.motion, sum(generated.timings_ms.values())
-    how = (motion.status, generated.understood, generated.reason, motion.scope_score, made_ms)
-    return Prepared(score, duration_s, *how)
+    how = (motion.status, shows.sentence, generated.reason, motion.scope_score, made_ms)
+    return Prepared(score, duration_s, *how, nearest=generated.understood, lacks=shows.lacks)
+
+
+def _scenes(scenes: Sequence[Scene], motion: Motion, words: str) -> Sequence[Scene]:
+    """The scenes of a motion; one where none are told."""
+    return scenes or [Scene(motion.duration_s, words)]
+
+
+def _words_of(generated: Generated) -> str:
+    """The words that may name what a generated motion shows: its text, and the known command that is nearest."""
+    return f"{generated.motion.text}\n{generated.understood}"
 
 
 def _check_in_scope(entry: Entry, generated: Generated) -> None:

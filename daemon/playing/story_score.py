@@ -20,6 +20,7 @@ from daemon.generator.messages import Generated, GeneratorError
 from daemon.playing.posture import Posture, at_steps, joined, mirrored, posture_of, scaled, standing
 from daemon.state.replies import NotPlayableError, generator_failed
 from daemon.wire.requests import Story
+from mmm_core.recognition.seen import Scene, scenes_seen, sentence
 
 log = logging.getLogger(__name__)
 
@@ -44,7 +45,7 @@ class SceneNews:
         text: of it.
         status: accepted, degraded, or rejected when it was left out.
         reason: why it is not accepted.
-        understood: the nearest known command.
+        understood: what the scene's motion shows.
         scope_score: how near that is.
     """
 
@@ -177,9 +178,9 @@ class StoryScore:
         if scene is not None:
             self._n_asked += 1
             m = generated.motion
-            self._news.append(
-                SceneNews(place + 1, scene.text, m.status, generated.reason, generated.understood, m.scope_score)
-            )
+            words = f"{scene.text}\n{generated.understood}"
+            shows = sentence(scenes_seen(m, [Scene(m.duration_s, words)])) if len(m.joints_m) else generated.understood
+            self._news.append(SceneNews(place + 1, scene.text, m.status, generated.reason, shows, m.scope_score))
         return generated
 
     def _varied(self, p: Posture) -> Posture:

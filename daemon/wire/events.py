@@ -15,7 +15,9 @@ class Accepted(Event, tag="accepted"):
         plan_id: number of the plan in the log.
         text: the text.
         status: accepted, or degraded when only part of the text can be done.
-        understood: nearest known command and its score.
+        understood: what the motion shows that was made for the text, in one sentence; of a lease, what it takes.
+        nearest: the known command that lies nearest to the text, and its score; empty where no text was read.
+        lacks: what this robot lacks to show the motion; empty for nothing.
         reason: why it is degraded, else empty.
         scope_score: how near the text lies to what the model can do.
         duration_s: length of the generated motion, of one whose strokes are counted (`say` with a number) as first drafted; 0
@@ -33,6 +35,8 @@ class Accepted(Event, tag="accepted"):
     duration_s: float
     generate_ms: float
     silence_s: float | None = None
+    nearest: str = ""
+    lacks: str = ""
 
 
 class Progress(Event, tag="progress"):
@@ -51,7 +55,7 @@ class Progress(Event, tag="progress"):
         text: of the part.
         status: accepted, degraded, or rejected when the part was left out.
         reason: why it is not accepted.
-        understood: nearest known command and its score.
+        understood: what the motion shows that was made for the part, in one sentence.
         scope_score: how near the part lies to what the model can do.
     """
 
@@ -85,6 +89,10 @@ class Done(Event, tag="done"):
         direction_error_deg: mean angle between the human's and the robot's arm bones.
         interventions: times the path was led round a self-collision.
         log_dropped: cycles that are missing from these figures.
+        shown: whether the goals that the robot was given show what the motion shows: "shown", "in part" or "not shown"; empty
+            where it is not judged (a story, a lease, a motion of more than 15 s).
+        seen: what the motion shows, in one sentence.
+        missing: what was not seen on the robot; empty for nothing.
     """
 
     terminal: ClassVar[bool] = True
@@ -102,6 +110,9 @@ class Done(Event, tag="done"):
     direction_error_deg: float
     interventions: int = 0
     log_dropped: int = 0
+    shown: str = ""
+    seen: str = ""
+    missing: str = ""
 
 
 class Cancelled(Event, tag="cancelled"):

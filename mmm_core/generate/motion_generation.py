@@ -23,6 +23,8 @@ from mmm_core.language.count_words import count_asked
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.motion.motion import FPS
+from mmm_core.recognition.seen import Scene
 
 OPENING_TOKENS = 2
 """Tokens that the preview and the motion share: 0.4 s, longer than generating and retargeting the motion usually takes.
@@ -129,4 +131,14 @@ class MotionGeneration:
         if len(self._commands) > 1:
             several = ", then ".join(c.understood for c in self._commands)
             understood = mirror_words(several) if mirrored else several
-        return GenerationResult(motion, understood, verdict.reason, dict(self._timer.laps_ms))
+        return GenerationResult(motion, understood, verdict.reason, dict(self._timer.laps_ms), self._scenes())
+
+    def _scenes(self) -> tuple[Scene, ...]:
+        """Where each command ends, were it made in full; a transition belongs to the command that it leads to."""
+        found: list[Scene] = []
+        n_tokens = 0
+        for command in self._commands:
+            n_tokens += command.n_tokens + (TRANSITION_TOKENS if found else 0)
+            words = f"{command.text}\n{command.understood or self._verdict.nearest}"
+            found.append(Scene(n_tokens * FRAMES_PER_TOKEN / FPS, words))
+        return tuple(found)

@@ -9,6 +9,7 @@ import numpy as np
 
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.motion.motion import FPS, N_FEATURES, N_JOINTS, Motion
+from mmm_core.recognition.seen import Scene
 
 
 @dataclass(frozen=True)
@@ -20,12 +21,14 @@ class GenerationResult:
         understood: the nearest known command and its score.
         reason: why the text was degraded or rejected, else empty.
         timings_ms: milliseconds spent in each stage.
+        scenes: the motion's parts and the words that each was made for; empty where it is one.
     """
 
     motion: Motion
     understood: str
     reason: str
     timings_ms: dict[str, float]
+    scenes: tuple[Scene, ...] = ()
 
     @property
     def status(self) -> str:

@@ -124,7 +124,7 @@ class ScopeIndex:
             return ScopeVerdict("rejected", score, nearest, reason)
         if score < DEGRADE_BELOW:
             return ScopeVerdict(
-                "degraded", score, nearest, f"taken as '{nearest}' ({score:.2f}); sure from {DEGRADE_BELOW}"
+                "degraded", score, nearest, f"not sure of it: score {score:.2f}; sure from {DEGRADE_BELOW}"
             )
         return ScopeVerdict("accepted", score, nearest, "")
 
@@ -170,7 +170,7 @@ def _by_cosine(nearest: str, score: float, impossible: str, other: float) -> Sco
         reason = f"it is like '{impossible}' ({other:.2f}), which this upper-body model cannot do"
         return ScopeVerdict("rejected", score, nearest, reason)
     if score < COSINE_DEGRADE_BELOW or other > score:
-        reason = f"taken as '{nearest}' ({score:.2f}); sure from {COSINE_DEGRADE_BELOW}"
+        reason = f"not sure of it: score {score:.2f}; sure from {COSINE_DEGRADE_BELOW}"
         return ScopeVerdict("degraded", score, nearest, reason)
     return ScopeVerdict("accepted", score, nearest, "")
 

@@ -26,11 +26,17 @@ def limb(s: PostureFeatures) -> str:
     """What moves most plainly: arm, trunk, head or nothing."""
     if s.arms:
         return "arm"
-    trunk = max(_reach(s.trunk_yaw_deg), _reach(s.trunk_pitch_deg), _reach(s.trunk_roll_deg))
-    head = max(_reach(s.head_yaw_deg), _reach(s.head_pitch_deg), _reach(s.head_roll_deg))
+    trunk, head = reach_deg(s, "trunk"), reach_deg(s, "head")
     if trunk > max(TRUNK_MOVED_DEG, 0.4 * head):  # the trunk goes along a little when the head looks aside
         return "trunk"
     return "head" if head > HEAD_MOVED_DEG else ""
+
+
+def reach_deg(s: PostureFeatures, limb_name: str) -> float:
+    """How far "head" or "trunk" turns from where it was in the first frame, about any axis."""
+    if limb_name == "trunk":
+        return max(_reach(s.trunk_yaw_deg), _reach(s.trunk_pitch_deg), _reach(s.trunk_roll_deg))
+    return max(_reach(s.head_yaw_deg), _reach(s.head_pitch_deg), _reach(s.head_roll_deg))
 
 
 def count(s: PostureFeatures, family: str, side: str = "") -> int | None:

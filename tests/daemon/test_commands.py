@@ -207,7 +207,8 @@ def test_the_same_id_is_one_gesture_and_never_another_command(robot, talk):
 
 def test_gestures_need_no_generator_words(robot):
     done = robot.gesture("nod_twice", tempo=1.2)
-    assert tag_of(done.events[-1]) == "done" and "nod_twice" in done.events[0].understood
+    assert tag_of(done.events[-1]) == "done" and "nod_twice" in done.events[0].nearest
+    assert done.events[0].understood == "nods twice" and (done.done.shown, done.done.seen) == ("shown", "nods twice")
     with pytest.raises(RefusedError) as caught:
         robot.gesture("nodd")
     assert caught.value.code == "unknown_gesture" and "nod" in caught.value.event.allowed

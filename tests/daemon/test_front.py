@@ -76,7 +76,10 @@ def test_say_is_accepted_moves_and_is_done(robot):
     said = robot.say("wave with your right hand")
     assert kinds(said.events) == ["accepted", "progress", "done"]
     done = said.done
-    assert said.events[0].understood == "raise the right arm (0.90)"
+    accepted = said.events[0]
+    assert accepted.nearest == "raise the right arm (0.90)" and accepted.lacks == ""
+    assert accepted.understood == "moves the right hand to the side", "what the motion shows, whatever the text was"
+    assert (done.shown, done.seen, done.missing) == ("shown", accepted.understood, "")
     assert 0 < done.first_motion_ms < 2000
     assert done.gate_clipped_frames == 0 and 0 < done.peak_speed_share <= 1
     assert done.duration_s == pytest.approx(done.frames / 100, abs=0.2)
@@ -143,7 +146,7 @@ def test_a_text_with_a_prefix_is_generated_from_what_will_have_been_played(robot
         time.sleep(1.5)
         said = robot.say("raise your left arm", prefix_s=0.8, mirror=mirror)
         assert isinstance(list(events)[-1], ev.Cancelled)
-    assert said.events[0].understood.endswith(f"after 32 frames, {up} arm up, 0.8 s of them")
+    assert said.events[0].nearest.endswith(f"after 32 frames, {up} arm up, 0.8 s of them")
     assert said.done is not None and plays_well(said.done)
 
 

@@ -1,0 +1,105 @@
+"""What a command's motion shows, what the robot lacks for it, and afterwards whether the robot has shown it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.playing.lacking import instead, lacking
+from daemon.playing.posture import Posture
+from mmm_core.recognition.named import families_named
+from mmm_core.recognition.seen import HARDLY, NOTHING_MOVES, Scene, lost, scenes_seen, sentence
+from retarget.as_human import as_motion
+from retarget.pipeline import Retargeter
+from retarget.robot import RobotModel
+
+Array = NDArray[np.float64]
+SHOWN, IN_PART, NOT_SHOWN = "shown", "in part", "not shown"
+LONGEST_S = 15.0
+"""Seconds of a motion that are judged; what comes later is not looked at."""
+
+
+@dataclass(frozen=True)
+class Shows:
+    """What is told of a motion before it is played.
+
+    Attributes:
+        sentence: what it shows.
+        lacks: what the robot lacks to show it; "" for nothing.
+    """
+
+    sentence: str
+    lacks: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether a robot has shown what a motion shows.
+
+    Attributes:
+        shown: "shown", "in part" or "not shown"; "" where it is not judged.
+        seen: what the motion shows.
+        missing: what was not seen on the robot; "" for nothing.
+    """
+
+    shown: str = ""
+    seen: str = ""
+    missing: str = ""
+
+
+class Showing:
+    """Reads motions for one robot. Its methods may run in any thread."""
+
+    def __init__(self, robot: RobotModel) -> None:
+        self._retargeter, self._lock = Retargeter(robot), threading.Lock()
+        families_named("wave")  # its tables are read now and not with the first text
+
+    def of(self, posture: Posture, scenes: Sequence[Scene], *, draft: bool = False) -> Shows:
+        """What a motion shows, and what the robot lacks for it.
+
+        Args:
+            posture: the motion, or its first part.
+            scenes: its scenes; those that begin after the posture's end are told by their words.
+            draft: whether it is a draft, whose strokes are not counted: the motion may have another number of them.
+        """
+        motion, length_s = posture.motion(), len(posture) / posture.fps
+        n_here = 1 + sum(scene.end_s < length_s for scene in scenes[:-1])
+        acts = scenes_seen(motion, scenes[:n_here])
+        to_come = [f"what '{scene.words.partition(chr(10))[0]}' asks" for scene in scenes[n_here:]]
+        with self._lock:
+            lacks = lacking(self._retargeter, motion, acts)
+        return Shows(", then ".join([sentence(acts, counted=not draft), *to_come]), lacks)
+
+    def verdict(self, posture: Posture, scenes: Sequence[Scene], q_rad: Array, fps: float) -> Verdict:
+        """Whether the robot has shown a motion.
+
+        Args:
+            posture: the motion, as it was to be played.
+            scenes: its scenes.
+            q_rad: (T, J) goals that the robot was given for it.
+            fps: how many of them a second.
+        """
+        if len(q_rad) < 2 or len(posture) > LONGEST_S * posture.fps:
+            return Verdict()
+        motion = posture.motion()
+        acts = scenes_seen(motion, scenes)
+        every, said = [act for scene in acts for act in scene], sentence(acts)
+        if all(act.sentence == NOTHING_MOVES for act in every):
+            meant = all("stand" in families_named(scene.words) for scene in scenes)
+            return Verdict(SHOWN, said) if meant else Verdict(NOT_SHOWN, said, "nothing moves")
+        robots = as_motion(self._retargeter.kinematics, q_rad[: round(motion.duration_s * fps) + 1], fps, motion)
+        missing = [(act, what, instead(act, robots)) for act, what in lost(robots, scenes, acts)]
+        if not missing:
+            return Verdict(SHOWN, said)
+        seen_at_all = any(other or not what.endswith(HARDLY) for _, what, other in missing) or len(missing) < len(every)
+        words = "; ".join(dict.fromkeys(what + other for _, what, other in missing))
+        return Verdict(IN_PART if seen_at_all else NOT_SHOWN, said, words)
+
+
+def at_tempo(scenes: Sequence[Scene], tempo: float) -> list[Scene]:
+    """The scenes of a motion that is played `tempo` times as fast."""
+    return [replace(scene, end_s=scene.end_s / tempo) for scene in scenes]
