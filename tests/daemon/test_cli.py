@@ -157,8 +157,8 @@ def running():
 def test_the_session_of_the_readme(running):
     said = running.mmmd("say", "wave with your right hand")
     assert said.returncode == 0
-    assert said.stdout.splitlines()[0].startswith("accepted: waves with the right hand")
-    assert said.stdout.splitlines()[-1].startswith("done: shown: waves with the right hand")
+    assert said.stdout.splitlines()[0].startswith("accepted: moves the right hand to the side")
+    assert said.stdout.splitlines()[-1].startswith("done: shown: moves the right hand to the side")
     assert "reference on sim://" in running.mmmd("status").stdout
     for verb, after in (("stop", "idle"), ("estop", "estop"), ("reset", "limp"), ("arm", "idle"), ("park", "limp")):
         result = running.mmmd(verb)
