@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from daemon.bench.audit_rig import AuditRig
 from daemon.bench.motions import cut, glued
-from mmm_core.corpus.heldout import PROBES
+from mmm_core.corpus.heldout import PROBE_SETS
 from mmm_core.evaluation.probes import judge
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
@@ -80,7 +80,7 @@ class Executed:
         self._tracking: list[Tracking] = []
         self._commanded: Counter[str] = Counter()
         self._kept: Counter[str] = Counter()
-        self._probes = {p.text: p for p in PROBES}
+        self._probes = {p.text: p for probes in PROBE_SETS.values() for p in probes}
 
     def perform(self, motion: Motion) -> tuple[Motion, Motion]:
         """What the path of a motion commands, and what the servos measured, both on a person."""

@@ -31,6 +31,7 @@ def eval(
     json: bool = False,
     seeds: int = 5,
     robots: tuple[str, ...] = ("reference", "op3"),
+    probes: Literal["development", "test"] = "development",
     executed: int = 1,
     families: tuple[str, ...] = (),
     steps: int | None = None,
@@ -49,10 +50,10 @@ def eval(
     """Measure the model.
 
     probes: side, limb, count (within one) and direction of motions for commands in words it was not trained on, as
-    generated and as the paths of robots show them, of all and of what the robot has joints for (of_showable: what is seen on it
-    when the corpus itself performs the probe), and as simulated servos execute those paths under load (executed: judged on the
-    positions that they measure; kept: the share of what the path shows). How far the mirrored text's motion is from the
-    mirrored motion.
+    generated and as the paths of robots show them, of all and of what can be shown (of_showable: what the checks see on a
+    person, or on the robot, when the corpus itself performs the probe), and as simulated servos execute those paths under
+    load (executed: judged on the positions that they measure; kept: the share of what the path shows). How far the mirrored
+    text's motion is from the mirrored motion.
 
     fidelity: whether each gesture of the corpus is made as well as the corpus makes it, from the corpus's own sentences and
     held-out seeds: sign, arms, way, pose, number, pace and size of strokes, round paths, arms in step, hands that meet. A check
@@ -74,6 +75,8 @@ def eval(
 
     Example: mmmd eval probes --seeds 1 --robots poppy_torso my_robot.toml
 
+    Example: mmmd eval probes --probes test --seeds 5 --robots reference --json
+
     Example: mmmd eval fidelity --seeds 10 --json
 
     Example: mmmd eval fidelity --families row flap march_arms --steps 8
@@ -90,6 +93,7 @@ def eval(
         json: print one JSON object instead of lines.
         seeds: motions for each probe, or each family (fidelity).
         robots: names or robot files, each of which shows the probes' motions as well.
+        probes: which set of probes: models are chosen by one, and reported on the other.
         executed: seeds of each probe that the simulated robots execute too; 0: none.
         families: families of the corpus (fidelity); all when none is given.
         steps: decoding steps of every motion (fidelity); the model's own when it is not given.
@@ -108,7 +112,7 @@ def eval(
     from rich.console import Console
 
     if name == "probes":
-        figures, shown = _probes(model[0] if model else None, seeds, robots, _seeds_executed(executed, seeds))
+        figures, shown = _probes(model[0] if model else None, seeds, robots, _seeds_executed(executed, seeds), probes)
     elif name == "fidelity":
         figures, shown = _fidelity(model[0] if model else None, seeds, families, steps)
     elif name == "tokenizer":
@@ -139,7 +143,7 @@ def _seeds_executed(executed: int, seeds: int) -> int:
 
 
 def _probes(
-    model: Path | None, seeds: int, robots: Sequence[str], executed: int
+    model: Path | None, seeds: int, robots: Sequence[str], executed: int, which: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Every probe generated once for each seed; the same motions checked on each robot, `executed` seeds as its servos do them."""
     from rich.console import Console
@@ -147,7 +151,7 @@ def _probes(
 
     from daemon.bench.executed import Executed
     from daemon.bench.report import context
-    from mmm_core.corpus.heldout import PROBES
+    from mmm_core.corpus.heldout import PROBE_SETS
     from mmm_core.evaluation.mirrored import mirrored_figures
     from mmm_core.evaluation.probes import evaluate
     from mmm_core.evaluation.robot_capability import showable
@@ -156,6 +160,7 @@ def _probes(
     from retarget.pipeline import Retargeter
     from retarget.robot import load_robot
 
+    probes = PROBE_SETS[which]
     retargeters = {name: Retargeter(load_robot(name)) for name in robots}
     engine = Engine.load(model)
     motions: dict[tuple[str, int], Motion] = {}
@@ -166,37 +171,44 @@ def _probes(
 
     figures: dict[str, Any] = {}
     with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("generated", total=len(PROBES) * seeds)
-        figures["generated"] = evaluate(generated, range(seeds), lambda n: bar.update(task, completed=n))
+        task = bar.add_task("what the checks see", total=len(probes))
+        seen = showable(lambda motion: motion, lambda n: bar.update(task, completed=n), probes)
+        bar.reset(task, description="generated", total=len(probes) * seeds)
+        figures["generated"] = evaluate(generated, range(seeds), lambda n: bar.update(task, completed=n), seen, probes)
         for name, retargeter in retargeters.items():
 
             def on_robot(text: str, seed: int, retargeter: Retargeter = retargeter) -> Motion:
                 return shown_on_a_person(retargeter, motions[text, seed])
 
-            bar.reset(task, description=f"what {name} can show", total=len(PROBES))
-            can = showable(partial(shown_on_a_person, retargeter), lambda n: bar.update(task, completed=n))
-            bar.reset(task, description=name, total=len(PROBES) * seeds)
-            found = evaluate(on_robot, range(seeds), lambda n: bar.update(task, completed=n), can)
+            bar.reset(task, description=f"what {name} can show", total=len(probes))
+            can = showable(partial(shown_on_a_person, retargeter), lambda n: bar.update(task, completed=n), probes)
+            bar.reset(task, description=name, total=len(probes) * seeds)
+            found = evaluate(on_robot, range(seeds), lambda n: bar.update(task, completed=n), can, probes)
             figures.setdefault("retargeted", {})[name] = found
             if executed:
-                bar.reset(task, description=f"{name} executes", total=len(PROBES) * executed)
+                bar.reset(task, description=f"{name} executes", total=len(probes) * executed)
                 robot = Executed(retargeter)
                 done = evaluate(
                     lambda text, seed, robot=robot: robot.shown(motions[text, seed]),
-                    range(executed), lambda n: bar.update(task, completed=n), can,
+                    range(executed), lambda n: bar.update(task, completed=n), can, probes,
                 )  # fmt: skip
                 figures.setdefault("executed", {})[name] = {**done, **robot.figures()}
 
     def again(text: str, seed: int) -> Motion:
         return motions[text, seed] if (text, seed) in motions else engine.generate(text, seed=seed).motion
 
-    figures["mirrored"] = mirrored_figures(again, [p.text for p in PROBES], range(min(seeds, MIRRORED_SEEDS)))
+    figures["mirrored"] = mirrored_figures(again, [p.text for p in probes], range(min(seeds, MIRRORED_SEEDS)))
     method = (
-        "held-out probes (mmm_core/corpus/heldout.py), kinematic checks on generated joints, and on the joints that a robot's "
-        "path shows (retarget/as_human.py); refused counts as wrong; executed: on positions measured by simulated servos with the "
-        "robot's body in MuJoCo behind them (daemon/bench/executed.py)"
+        f"held-out probes, {which} set (mmm_core/corpus/heldout.py), kinematic checks on generated joints, and on the joints "
+        "that a robot's path shows (retarget/as_human.py); refused counts as wrong; executed: on positions measured by simulated "
+        "servos with the robot's body in MuJoCo behind them (daemon/bench/executed.py)"
     )
-    figures |= {"n": figures["generated"]["n"], "checkpoint": engine.checkpoint_hash, **context(0, method)}
+    figures |= {
+        "n": figures["generated"]["n"],
+        "set": which,
+        "checkpoint": engine.checkpoint_hash,
+        **context(0, method),
+    }
     return figures, {
         "generated": figures["generated"],
         **figures.get("retargeted", {}),

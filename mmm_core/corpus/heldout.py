@@ -49,3 +49,6 @@ def read_probes(name: str) -> tuple[Probe, ...]:
 
 PROBES = read_probes("probes_development")
 """The development set: models, decoding steps and temperatures have been chosen by it."""
+TEST_PROBES = read_probes("probes_test")
+"""The test set, by two writers who saw neither the development set nor any phrase of the corpus: figures are reported on it, nothing is chosen by it."""
+PROBE_SETS = {"development": PROBES, "test": TEST_PROBES}

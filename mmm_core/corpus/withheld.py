@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from mmm_core.corpus.heldout import PROBES
+from mmm_core.corpus.heldout import PROBE_SETS
 from mmm_core.corpus.scope_prompts import SCOPE_DEVELOPMENT, SCOPE_TEST
 from mmm_core.language.inflection import NUMBERS
 
@@ -27,7 +27,9 @@ def _key(text: str) -> str:
 
 
 _PROMPTS = (*SCOPE_TEST.all_texts(), *SCOPE_DEVELOPMENT.all_texts())
-_WITHHELD = frozenset(_key(text) for text in (*(p.text for p in PROBES), *_PROMPTS)) - {""}
+_WITHHELD = frozenset(
+    _key(text) for text in (*(p.text for probes in PROBE_SETS.values() for p in probes), *_PROMPTS)
+) - {""}
 
 
 def is_withheld(phrase: str) -> bool:

@@ -65,16 +65,19 @@ def evaluate(
     seeds: Sequence[int],
     progress: Callable[[int], None] = lambda _n: None,
     showable: Mapping[str, frozenset[str]] | None = None,
+    probes: Sequence[Probe] | None = None,
 ) -> dict[str, Any]:
     """Shares of expectations met over all probes and seeds, refused ones counted as not met, and the worst texts.
 
-    With `showable` (`robot_capability.py`) the same for those expectations alone that a robot can meet, as "of_showable".
+    With `showable` (`robot_capability.py`) the same for those expectations alone that a robot can meet, as "of_showable". Without
+    `probes` the development set is taken.
     """
+    probes = PROBES if probes is None else probes
     met: dict[str, list[bool]] = defaultdict(list)
     could: dict[str, list[bool]] = defaultdict(list)
     misses: dict[str, int] = defaultdict(int)
     refused = done = 0
-    for probe in PROBES:
+    for probe in probes:
         for seed in seeds:
             motion = generate(probe.text, seed)
             if len(motion.joints_m):
@@ -95,7 +98,7 @@ def evaluate(
             progress(done)
     worst = sorted(((n, text) for text, n in misses.items() if n), reverse=True)[:12]
     of_showable = {"of_showable": {**_shares(could), "n_each": _sizes(could)}} if showable is not None else {}
-    counts = {"n": len(PROBES) * len(seeds), "n_each": _sizes(met), "refused": refused}
+    counts = {"n": len(probes) * len(seeds), "n_each": _sizes(met), "refused": refused}
     return {**_shares(met), **of_showable, **counts, "most_missed": worst}
 
 

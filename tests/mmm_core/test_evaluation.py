@@ -10,7 +10,7 @@ import pytest
 
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.grammar import base_phrase, known_commands
-from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, Probe
+from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, TEST_PROBES, Probe
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthesise_spec
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.evaluation.probes import evaluate, judge
@@ -96,7 +96,7 @@ def test_no_probe_is_a_sentence_of_the_grammar_and_some_words_are_never_said() -
     said = {plain(text) for text in known_commands(10_000)}
     for i in range(400):
         said |= {plain(text) for text in synthesise(np.random.default_rng((1, i))).captions}
-    assert not said & {plain(p.text) for p in PROBES}
+    assert not said & {plain(p.text) for p in (*PROBES, *TEST_PROBES)}
     assert not [text for text in said if is_withheld(text)], "but for politeness, articles and digits"
     words = {word for text in said for word in text.split()}
     assert not [v for v in HELD_OUT_VERBS if {v, v + "s", v + "es", v + "ing", v[:-1] + "ing"} & words]
@@ -113,9 +113,21 @@ def test_a_phrase_that_is_a_probe_but_for_its_trimmings_is_withheld() -> None:
 
 
 def test_probes_name_families_limbs_and_directions_that_exist() -> None:
-    for probe in PROBES:
+    for probe in (*PROBES, *TEST_PROBES):
         assert FAMILIES[probe.family].limb == probe.limb, probe.text
         assert probe.direction in ("", *FAMILIES[probe.family].directions), probe.text
+
+
+def test_the_test_set_shares_no_sentence_with_the_development_set() -> None:
+    assert len({p.text for p in TEST_PROBES}) == len(TEST_PROBES) >= 198
+    assert not {p.text.lower() for p in TEST_PROBES} & {p.text.lower() for p in PROBES}
+
+
+def test_both_sets_of_probes_can_be_measured() -> None:
+    """A set is given as it is: what is not performed at all meets nothing of either."""
+    still = performed(next(p for p in TEST_PROBES if p.family == "bow"), 0)[:1].repeat(40, 0)
+    figures = evaluate(lambda text, _: as_motion(still, text), [0], probes=TEST_PROBES)
+    assert figures["n"] == len(TEST_PROBES) and figures["side"] == 0.0 and figures["count_exact"] == 0.0
 
 
 def drawn(name: str, n: int, seed: int = 3) -> list[tuple[Gesture, np.ndarray]]:
