@@ -8,10 +8,14 @@ from typing import NamedTuple, cast
 import zmq
 import zmq.asyncio
 
+from daemon.connections import ConnectionGuard
+
 MOST_PARTS = 8
 """Parts of a message that are kept: an address, an empty delimiter, and more than any request of ours has."""
 DISCARDED_AT_ONCE = 256
 """Parts that are discarded before the event loop has its turn."""
+MOST_DISCARDED = 1000
+"""Parts after which the sender is cut off as well."""
 
 
 class Message(NamedTuple):
@@ -19,15 +23,24 @@ class Message(NamedTuple):
 
     Attributes:
         parts: its parts, at most `MOST_PARTS`; the first ones of a longer message.
-        fd: file descriptor of the connection it came through, -1 where ZeroMQ does not say.
-        peer: who is at the other end: the name of its key, else its address, else empty.
-        too_long: whether it had more parts.
+        fd: file descriptor of the connection it came through; -1 for what ZeroMQ made itself, as at the end of a subscriber.
+        frame: the first part, with what ZeroMQ knows about the sender.
     """
 
     parts: list[bytes]
     fd: int
-    peer: str
-    too_long: bool
+    frame: zmq.Frame
+
+    @property
+    def peer(self) -> str:
+        """Who is at the other end: the name of its key, else its address, else empty."""
+        for name in ("User-Id", "Peer-Address"):
+            try:
+                if found := self.frame.get(name):
+                    return str(found)
+            except zmq.ZMQError:
+                continue
+        return ""
 
 
 class Inbox:
@@ -35,14 +48,19 @@ class Inbox:
 
     ZeroMQ hands over a message as a whole, however many parts it has; a list of a million parts would hold up the event
     loop. Several tasks may receive from one `Inbox`: each gets messages of its own.
+
+    Args:
+        socket: received from by nobody else.
+        guard: of its connections.
     """
 
-    def __init__(self, socket: zmq.asyncio.Socket) -> None:
-        self._socket = socket
+    def __init__(self, socket: zmq.asyncio.Socket, guard: ConnectionGuard) -> None:
+        self._socket, self._guard = socket, guard
         self._at_once: zmq.Socket[bytes] = zmq.Socket(
             shadow=socket
         )  # as the asyncio socket does with DONTWAIT, without a future
         self._discarding = False
+        self._discarded = 0
 
     async def receive(self) -> Message:
         """The next message."""
@@ -65,25 +83,36 @@ class Inbox:
     def _message(self, frame: zmq.Frame) -> Message | None:
         """The message that begins with a frame; None for a frame in the middle of one that is discarded."""
         if self._discarding:
-            self._discarding = frame.more
+            self._discard_one(frame)
             return None
         parts = [frame]
         while parts[-1].more and len(parts) < MOST_PARTS:
             following = self._next()
             assert following is not None, "the parts of a message come together"
             parts.append(following)
-        self._discarding = parts[-1].more
-        return Message([part.bytes for part in parts], _fd(frame), _peer(frame), self._discarding)
+        self._discarding, self._discarded = parts[-1].more, 0
+        fd = _fd(frame)
+        self._guard.received(fd)
+        return Message([part.bytes for part in parts], fd, frame)
 
     async def _discard(self) -> None:
         """Discard what is left of a message that is too long."""
         while self._discarding:
             for _ in range(DISCARDED_AT_ONCE):
                 frame = self._next()
-                self._discarding = frame is not None and frame.more
+                if frame is None:
+                    self._discarding = False
+                else:
+                    self._discard_one(frame)
                 if not self._discarding:
                     return
             await asyncio.sleep(0)
+
+    def _discard_one(self, frame: zmq.Frame) -> None:
+        self._discarding = frame.more
+        self._discarded += 1
+        if self._discarded == MOST_DISCARDED:
+            self._guard.shut_down(_fd(frame), "a message of too many parts", f"more than {MOST_DISCARDED}")
 
     def _next(self) -> zmq.Frame | None:
         """The next frame that is there, else None."""
@@ -94,14 +123,7 @@ class Inbox:
 
 
 def _fd(frame: zmq.Frame) -> int:
-    return frame.get(zmq.SRCFD)
-
-
-def _peer(frame: zmq.Frame) -> str:
-    for name in ("User-Id", "Peer-Address"):
-        try:
-            if found := frame.get(name):
-                return str(found)
-        except zmq.ZMQError:
-            continue
-    return ""
+    try:
+        return frame.get(zmq.SRCFD)
+    except zmq.ZMQError:
+        return -1

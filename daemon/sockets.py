@@ -11,18 +11,42 @@ from daemon.config import config_error
 from daemon.keys import KeyFolder, serve_curve
 from daemon.probe import listening
 
-MAX_RECEIVE_BYTES = 1 << 20
-"""ZeroMQ drops the connection of a peer that sends more; below it the peer is told what is allowed."""
+MAX_RECEIVE_BYTES = 128 << 10
+"""Bytes of a frame. ZeroMQ drops the connection of a peer that sends more; below it the peer is told what is allowed."""
+RECEIVE_QUEUE = 16
+RECEIVE_BUFFER_BYTES = 256 << 10
+"""Bytes that the system keeps of each peer besides."""
+HANDSHAKE_MS = 3000
+"""Milliseconds that a peer has to shake hands. ZeroMQ's 30 s let silent connections pile up."""
 
 
-def bind(socket: zmq.Socket[Any], key: str, endpoint: str, keys: KeyFolder | None = None) -> None:
+def bind(
+    socket: zmq.Socket[Any],
+    key: str,
+    endpoint: str,
+    keys: KeyFolder | None = None,
+    *,
+    most_bytes: int = MAX_RECEIVE_BYTES,
+    queue: int = RECEIVE_QUEUE,
+) -> None:
     """Bind a socket; one that machines can reach takes only allowed `keys`, where there are any.
 
+    Args:
+        socket: the socket.
+        key: names the setting, for errors.
+        endpoint: where to bind it.
+        keys: of the clients that are let in over tcp; None lets all in.
+        most_bytes: of a frame that it receives.
+        queue: messages that ZeroMQ keeps of each peer until they are received; more wait at the peer.
+
     Raises:
-        ConfigError: the endpoint is taken or cannot be bound; `key` names the setting.
+        ConfigError: the endpoint is taken or cannot be bound.
     """
     socket.setsockopt(zmq.LINGER, 0)
-    socket.setsockopt(zmq.MAXMSGSIZE, MAX_RECEIVE_BYTES)
+    socket.setsockopt(zmq.MAXMSGSIZE, most_bytes)
+    socket.setsockopt(zmq.RCVHWM, queue)
+    socket.setsockopt(zmq.RCVBUF, RECEIVE_BUFFER_BYTES)
+    socket.setsockopt(zmq.HANDSHAKE_IVL, HANDSHAKE_MS)
     if keys is not None and endpoint.startswith("tcp://"):
         serve_curve(socket, keys)
     do = "stop the other daemon (`mmmd status` shows it), or choose another endpoint"

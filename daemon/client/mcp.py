@@ -11,7 +11,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import importlib.metadata
-import json
 import logging
 import threading
 from collections.abc import Awaitable, Callable
@@ -19,14 +18,32 @@ from typing import IO, Any, cast
 
 from daemon.client.async_client import AsyncClient
 from daemon.client.errors import CancelledByError, Said
+from daemon.client.json_rpc import (
+    BAD_PARAMETERS,
+    INTERNAL,
+    NO_METHOD,
+    AnswerWriter,
+    Call,
+    RpcError,
+    RpcId,
+    decode_call,
+    failure,
+    lines,
+    result,
+)
 from daemon.errors import DaemonError
+from daemon.wire.codec import MOST_NAMED
 from daemon.wire.requests import LEAST_AMPLITUDE, LEAST_TEMPO, LONGEST_S, MOST_AMPLITUDE, MOST_TEMPO, SHORTEST_S
+from daemon.wire.showing import shortened, shown
 from mmm_core.language.stop_words import means_stop
 
 log = logging.getLogger(__name__)
 
 PROTOCOL_REVISIONS = ("2025-06-18", "2025-03-26", "2024-11-05")
-_PARSE_ERROR, _BAD_REQUEST, _NO_METHOD, _BAD_PARAMETERS = -32700, -32600, -32601, -32602
+MOST_WAITING = 64
+"""Motions that wait for their turn; one more is refused."""
+END_S = 2.0
+"""Seconds that the last answers have to be read."""
 _OPTIONS: dict[str, Any] = {
     "tempo": {"type": "number", "minimum": LEAST_TEMPO, "maximum": MOST_TEMPO},
     "amplitude": {"type": "number", "minimum": LEAST_AMPLITUDE, "maximum": MOST_AMPLITUDE},
@@ -63,7 +80,7 @@ class McpServer:
     def __init__(self, client: AsyncClient) -> None:
         self._client = client
         self._turn = asyncio.Lock()
-        self._halts = 0
+        self._halts = self._waiting = 0
         self._halted_by = ""
         self._tools: dict[str, Callable[[dict[str, Any]], Awaitable[str]]] = {
             "say": self._say,
@@ -75,52 +92,55 @@ class McpServer:
             "status": self._status,
         }
 
-    async def serve(self, source: IO[str], out: IO[str]) -> None:
+    async def serve(self, source: IO[bytes], out: IO[str]) -> None:
         """Answer each line of the source, which is read in a thread, until it ends and all are answered."""
         loop = asyncio.get_running_loop()
-        lines: asyncio.Queue[str] = asyncio.Queue()
+        unread: asyncio.Queue[bytes] = asyncio.Queue()
+        answers = AnswerWriter(out)
 
         def read() -> None:
             with contextlib.suppress(RuntimeError):  # the loop has ended: nobody listens any more
-                for line in source:
-                    loop.call_soon_threadsafe(lines.put_nowait, line)
-                loop.call_soon_threadsafe(lines.put_nowait, "")
+                for line in lines(source):
+                    loop.call_soon_threadsafe(unread.put_nowait, line)
+                loop.call_soon_threadsafe(unread.put_nowait, b"")
 
-        async def reply(line: str) -> None:
+        async def reply(line: bytes) -> None:
             answer = await self.answer(line)
             if answer is not None:
-                out.write(json.dumps(answer) + "\n")
-                out.flush()
+                answers.write(answer)
 
         threading.Thread(target=read, name="mcp", daemon=True).start()
         async with asyncio.TaskGroup() as replies:
-            while line := await lines.get():
+            while line := await unread.get():
                 if line.strip():
                     replies.create_task(reply(line))
+        await asyncio.to_thread(answers.close, END_S)
 
-    async def answer(self, line: str) -> dict[str, Any] | None:
-        """The reply to one message; None for a notification."""
+    async def answer(self, line: bytes) -> dict[str, Any] | None:
+        """The reply to one message, whatever it is; None for a notification."""
+        call_id: RpcId = None
         try:
-            message = json.loads(line)
-        except (json.JSONDecodeError, RecursionError) as error:
-            return _error(None, _PARSE_ERROR, f"no JSON: {error}")
-        if not isinstance(message, dict):
-            return _error(None, _BAD_REQUEST, "one JSON object a line")
-        asked = cast("dict[str, Any]", message)
-        request_id, method, parameters = asked.get("id"), asked.get("method"), asked.get("params", {})
-        if not isinstance(method, str) or not isinstance(parameters, dict):
-            return _error(request_id, _BAD_REQUEST, "`method` is a string and `params` an object")
-        if request_id is None:
-            return None
-        if method == "initialize":
-            return _result(request_id, self._initialize(cast("dict[str, Any]", parameters)))
-        if method == "ping":
-            return _result(request_id, {})
-        if method == "tools/list":
-            return _result(request_id, {"tools": TOOLS})
-        if method == "tools/call":
-            return await self._call(request_id, cast("dict[str, Any]", parameters))
-        return _error(request_id, _NO_METHOD, f"method {method!r}; known: initialize, ping, tools/list, tools/call")
+            call = decode_call(line)
+            call_id = call.id
+            return None if call_id is None else result(call_id, await self._answer(call))
+        except RpcError as error:
+            error.id = call_id if error.id is None else error.id
+            return failure(error)
+        except Exception as error:  # one line must not end the server: the next one may be an e-stop
+            log.exception("a call failed")
+            return failure(RpcError(INTERNAL, shortened(error), call_id))
+
+    async def _answer(self, call: Call) -> dict[str, Any]:
+        if call.method == "initialize":
+            return self._initialize(call.params)
+        if call.method == "ping":
+            return {}
+        if call.method == "tools/list":
+            return {"tools": TOOLS}
+        if call.method == "tools/call":
+            return await self._call(call.params)
+        known = "initialize, ping, tools/list, tools/call"
+        raise RpcError(NO_METHOD, f"method {shown(call.method)}; known: {known}")
 
     def _initialize(self, parameters: dict[str, Any]) -> dict[str, Any]:
         asked = parameters.get("protocolVersion")
@@ -131,42 +151,48 @@ class McpServer:
             "instructions": "A humanoid upper body. Short commands, one motion each; a new one takes over from the old.",
         }
 
-    async def _call(self, request_id: Any, parameters: dict[str, Any]) -> dict[str, Any]:
+    async def _call(self, parameters: dict[str, Any]) -> dict[str, Any]:
         name, arguments = parameters.get("name"), parameters.get("arguments", {})
         tool = self._tools.get(name) if isinstance(name, str) else None
         if tool is None or not isinstance(arguments, dict):
-            return _error(request_id, _BAD_PARAMETERS, f"tool {name!r}; known: {', '.join(self._tools)}")
+            raise RpcError(BAD_PARAMETERS, f"tool {shown(name)}; known: {', '.join(self._tools)}")
         given = cast("dict[str, Any]", arguments)
         schema = next(t["inputSchema"] for t in TOOLS if t["name"] == name)
-        unknown = given.keys() - schema["properties"].keys()
-        missing = set(schema["required"]) - given.keys()
+        unknown = sorted(map(shown, given.keys() - schema["properties"].keys()))[:MOST_NAMED]
+        missing = sorted(set(schema["required"]) - given.keys())
         if unknown or missing:
-            text = f"unknown: {', '.join(sorted(unknown)) or 'none'}; missing: {', '.join(sorted(missing)) or 'none'}"
-            return _error(request_id, _BAD_PARAMETERS, f"{name}: {text}; allowed: {', '.join(schema['properties'])}")
+            text = f"unknown: {', '.join(unknown) or 'none'}; missing: {', '.join(missing) or 'none'}"
+            raise RpcError(BAD_PARAMETERS, f"{name}: {text}; allowed: {', '.join(schema['properties'])}")
         try:
-            return _result(request_id, _text(await tool(given)))
+            return _text(await tool(given))
         except CancelledByError as error:
-            return _result(request_id, _text(str(error)))
-        except (DaemonError, ValueError, TypeError) as error:
-            return _result(request_id, _text(str(error), failed=True))
+            return _text(str(error))
+        except (DaemonError, ValueError, TypeError, OverflowError) as error:
+            return _text(shortened(error), failed=True)
 
     async def _say(self, arguments: dict[str, Any]) -> str:
-        text, wait = str(arguments.pop("text")), bool(arguments.pop("wait", True))
+        text, wait = _string(arguments.pop("text")), bool(arguments.pop("wait", True))
         if means_stop(text):  # waits for no motion that is being played
             return await self._stop({})
         return await self._play(lambda: self._client.say(text, wait=wait, **arguments))
 
     async def _gesture(self, arguments: dict[str, Any]) -> str:
-        name, wait = str(arguments.pop("name")), bool(arguments.pop("wait", True))
+        name, wait = _string(arguments.pop("name")), bool(arguments.pop("wait", True))
         return await self._play(lambda: self._client.gesture(name, wait=wait, **arguments))
 
     async def _play(self, ask: Callable[[], Awaitable[Said]]) -> str:
         """Ask for a motion when those before are done with; one that a stop finds waiting is not asked for any more."""
         halts = self._halts
-        async with self._turn:
-            if halts != self._halts:
-                raise CancelledByError(self._halted_by)
-            return _told((await ask()).events)
+        if self._waiting >= MOST_WAITING:
+            raise ValueError(f"{self._waiting} motions wait already; wait for their answers, or call `stop`")
+        self._waiting += 1
+        try:
+            async with self._turn:
+                if halts != self._halts:
+                    raise CancelledByError(self._halted_by)
+                return _told((await ask()).events)
+        finally:
+            self._waiting -= 1
 
     async def _stop(self, _: dict[str, Any]) -> str:
         self._halts, self._halted_by = self._halts + 1, "stop"
@@ -202,9 +228,12 @@ def _text(text: str, *, failed: bool = False) -> dict[str, Any]:
     return {"content": [{"type": "text", "text": text}], "isError": failed}
 
 
-def _result(request_id: Any, result: dict[str, Any]) -> dict[str, Any]:
-    return {"jsonrpc": "2.0", "id": request_id, "result": result}
+def _string(value: object) -> str:
+    """A text as it was given.
 
-
-def _error(request_id: Any, code: int, message: str) -> dict[str, Any]:
-    return {"jsonrpc": "2.0", "id": request_id, "error": {"code": code, "message": message}}
+    Raises:
+        TypeError: it is none.
+    """
+    if not isinstance(value, str):
+        raise TypeError(f"found {shown(value)}; allowed: a string")
+    return value

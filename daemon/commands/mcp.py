@@ -22,7 +22,7 @@ def mcp(at: OmitArgPrefixes[Connection] = Connection()) -> int:  # noqa: B008
 
     async def serve() -> None:
         async with at.async_client() as robot:
-            await McpServer(robot).serve(sys.stdin, sys.stdout)
+            await McpServer(robot).serve(sys.stdin.buffer, sys.stdout)
 
     asyncio.run(serve())
     return 0

@@ -19,14 +19,16 @@ import zmq
 import zmq.asyncio
 
 from daemon.config import DaemonConfig
+from daemon.connections import ConnectionGuard, Share
 from daemon.driving.realtime import CONTROL_PRIORITY, may_fifo
 from daemon.driving.shared import BusLink, BusRequest
 from daemon.front.control import ControlThread
 from daemon.front.controls import FrontControls
-from daemon.front.desk import Desk
+from daemon.front.desk import TOPICS, Desk
 from daemon.front.rates import RATE_HZ, Rates
 from daemon.front.stop_texts import stops
 from daemon.front.stream_desk import TargetDesk
+from daemon.front.subscriptions import MOST_BYTES, RECEIVE_QUEUE, LastValues
 from daemon.generator.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
 from daemon.inbox import Inbox, Message
@@ -55,12 +57,12 @@ PARK_AGAIN_S = 1.0
 HEALTH_EVERY_S = 1.0
 STREAM_PAUSE_S = 0.001
 """Seconds between two looks at `stream`; of the targets that one sender sends meanwhile the newest counts."""
-STREAM_QUEUE = 64
-"""Targets that ZeroMQ keeps for each sender; what is more waits at the sender."""
 MOST_TARGETS = 256
 """Targets that are received at one look, so that a flood of them does not keep the event loop."""
 SWITCH_S = 0.001
 """Longest that the event loop keeps the interpreter from the ctl thread."""
+SHARES = {"cmd": Share(256), "ctl": Share(64, gives_way="oldest"), "pub": Share(256), "stream": Share(64)}
+"""Connections of each socket. Who connects to `ctl` gets in whatever waits there: it may be for an e-stop."""
 SCHED_FIFO = 1
 """As in sched.h; ZeroMQ takes the number."""
 Record = Callable[[str, bytes], None]
@@ -103,7 +105,6 @@ class Front:
         self._started_s = time.monotonic()
         self.recording = str(config.log) if config.log else ""
         self._rates = Rates()
-        self._last_values: dict[bytes, bytes] = {}
         self._tasks: list[asyncio.Task[None]] = []
         self._loop: asyncio.AbstractEventLoop | None = None
         self._events_dropped = self._overruns = 0
@@ -113,10 +114,7 @@ class Front:
         self._pub.setsockopt(zmq.XPUB_VERBOSE, 1)
         self._pub.setsockopt(zmq.XPUB_NODROP, 1)
         self._stream = context.socket(zmq.SUB)
-        # Not CONFLATE, although only the newest target is of use: libzmq aborts the process upon a message of two parts.
-        self._stream.setsockopt(zmq.RCVHWM, STREAM_QUEUE)
-        self._stream.subscribe(b"")
-        self._cmd_inbox, self._pub_inbox, self._stream_inbox = map(Inbox, (self._cmd, self._pub, self._stream))
+        self._stream.subscribe(b"")  # not CONFLATE, with which libzmq aborts the process upon a message of two parts
         self._targets = TargetDesk(robot, self.performer, self.ledger, self._publish_event)
         self._ctl_context = zmq.Context()  # its own I/O thread: a flood on the other sockets delays no stop
         if may_fifo(CONTROL_PRIORITY):  # libzmq aborts where it is not permitted
@@ -130,7 +128,8 @@ class Front:
         sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "ctl": ctl, "pub": self._pub, "stream": self._stream}
         try:
             for key, socket in sockets.items():
-                bind(socket, key, getattr(config.endpoints, key), keys)
+                bounds = {"most_bytes": MOST_BYTES, "queue": RECEIVE_QUEUE} if key == "pub" else {}
+                bind(socket, key, getattr(config.endpoints, key), keys, **bounds)
         except BaseException:
             for doorkeeper in self._doorkeepers:
                 doorkeeper.close()
@@ -138,6 +137,9 @@ class Front:
                 socket.close(0)
             self._ctl_context.term()
             raise
+        self._guard = ConnectionGuard({key: (socket, SHARES[key]) for key, socket in sockets.items()})
+        self._cmd_inbox, self._stream_inbox = Inbox(self._cmd, self._guard), Inbox(self._stream, self._guard)
+        self._last_values = LastValues(TOPICS, Inbox(self._pub, self._guard), self._guard, self._publish_bytes)
         self._control = ControlThread(ctl, FrontControls(self, ctl.poll, estop_holds=config.estop == "hold"))
 
     @property
@@ -151,10 +153,11 @@ class Front:
         self._loop = asyncio.get_running_loop()
         self.view.begin()
         serve = (
-            self._serve_cmd, self._serve_subscriptions, self._serve_stream, self._tick_forever, self._publish_state_forever,
+            self._serve_cmd, self._last_values.serve, self._serve_stream, self._tick_forever, self._publish_state_forever,
             self._publish_health_forever,
         )  # fmt: skip
         self._tasks = [asyncio.create_task(s(), name=s.__name__) for s in serve]
+        self._guard.start()
         self._control.start()
 
     async def failure(self) -> None:
@@ -196,6 +199,7 @@ class Front:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         await asyncio.to_thread(self._control.close)
+        await asyncio.to_thread(self._guard.close)
         for doorkeeper in self._doorkeepers:
             await asyncio.to_thread(doorkeeper.close)
         self._ctl_context.destroy(linger=200)
@@ -279,16 +283,6 @@ class Front:
             self._publish("v1/health", encode(self.ledger.stamp(event)))
             await asyncio.sleep(HEALTH_EVERY_S)
 
-    async def _serve_subscriptions(self) -> None:
-        """Send the last value of each topic to whoever subscribes to it."""
-        while True:
-            asked = (await self._pub_inbox.receive()).parts[0]
-            if asked[:1] == b"\x01":
-                for topic, payload in list(self._last_values.items()):
-                    if topic.startswith(asked[1:]):
-                        self._overruns += not publish_now(self._pub, [topic, payload])
-            await asyncio.sleep(0)
-
     def _send(self, route: Route, event: Event) -> None:
         self._events_dropped += not send_now(self._cmd, [*route.frames, encode(event)])
 
@@ -309,10 +303,13 @@ class Front:
         self._publish("v1/log", encode(event))
 
     def _publish(self, topic: str, payload: bytes) -> None:
-        self._last_values[topic.encode()] = payload
+        self._last_values.keep(topic.encode(), payload)
         if self._record is not None:
             self._record(topic, payload)
-        self._overruns += not publish_now(self._pub, [topic.encode(), payload])
+        self._publish_bytes(topic.encode(), payload)
+
+    def _publish_bytes(self, topic: bytes, payload: bytes) -> None:
+        self._overruns += not publish_now(self._pub, [topic, payload])
 
     def state_event(self) -> StateEvent:
         """The robot and the daemon now; may be called from any thread."""
@@ -333,6 +330,7 @@ class Front:
                 "requests_dropped": self._rates.refused,
                 "events_dropped": self._events_dropped,
                 "subscribers_overrun": self._overruns,
+                "connections_shut": self._guard.shut.total(),
             },
             recording=self.recording,
             uptime_s=round(time.monotonic() - self._started_s, 2),

@@ -23,7 +23,15 @@ _SERVO_COUNTERS = {
     "retries": "questions that were asked again",
     "alerts": "hardware alerts that began",
 }
-_COUNTERS = ("cycles", "cycles_lost", "underruns", "requests_dropped", "events_dropped", "subscribers_overrun")
+_COUNTERS = (
+    "cycles",
+    "cycles_lost",
+    "underruns",
+    "requests_dropped",
+    "events_dropped",
+    "subscribers_overrun",
+    "connections_shut",
+)
 
 
 def exposition(state: StateEvent, events: Mapping[str, int], servos: Sequence[ServoHealth] = ()) -> str:

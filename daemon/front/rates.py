@@ -22,12 +22,12 @@ class Rates:
         self._left: OrderedDict[bytes, tuple[float, float]] = OrderedDict()
         self.refused = 0
 
-    def allows(self, client: bytes, now_s: float) -> bool:
-        """Whether a client may ask now; counts it."""
+    def allows(self, client: bytes, now_s: float, cost: float = 1.0) -> bool:
+        """Whether a client may ask now for what counts as `cost` requests; counts it."""
         left, at_s = self._left.pop(client, (float(self._burst), now_s))
         left = min(float(self._burst), left + (now_s - at_s) * self._rate_hz)
-        allowed = left >= 1.0
-        self._left[client] = (left - 1.0 if allowed else left, now_s)
+        allowed = left >= cost
+        self._left[client] = (left - cost if allowed else left, now_s)
         while len(self._left) > KEPT:
             self._left.popitem(last=False)
         self.refused += not allowed

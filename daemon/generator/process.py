@@ -47,6 +47,8 @@ log = logging.getLogger(__name__)
 
 NICENESS = 5
 POLL_MS = 200
+MOST_REQUEST_BYTES = 1 << 20
+"""Bytes of a request: it may carry the motion that is to be edited."""
 MOST_BEGUN = 8
 """Motions of which only the draft is made; with so many the oldest is made before anything else."""
 
@@ -143,7 +145,7 @@ def run(
     folder = KeyFolder(keys) if keys is not None else None
     doorkeeper = Doorkeeper(context, folder) if folder is not None else None
     try:
-        bind_socket(socket, "bind", bind, folder)
+        bind_socket(socket, "bind", bind, folder, most_bytes=MOST_REQUEST_BYTES)
         log.info("generator ready on %s with checkpoint %s", bind, checkpoint_hash[:12])
         serve(socket, maker, checkpoint_hash, lambda: parent_pid is None or os.getppid() == parent_pid)
     finally:

@@ -18,7 +18,9 @@ _MB = 1e6
 
 
 class RotatingLog:
-    """Writes NAME.mcap, NAME.1.mcap, NAME.2.mcap, ...; each is a whole log by itself.
+    """Writes NAME.mcap, NAME.1.mcap, NAME.2.mcap, ...; each is a whole log by itself, and none takes the place of a file.
+
+    A number whose file is there already, from an earlier run, is passed over.
 
     Args:
         path: of the first file.
@@ -26,6 +28,9 @@ class RotatingLog:
         size_mb: a file that has grown beyond is finished; 0 for never.
         total_mb: beyond so much together the oldest finished files are removed; 0 for never.
         settings: of the daemon, as JSON; stands in each file.
+
+    Raises:
+        FileExistsError: there is a file at `path`.
 
     Attributes:
         cycles_dropped: cycles that could not be recorded so far; whoever counts them sets it.
@@ -93,8 +98,16 @@ class RotatingLog:
         self._writer.finish(self.cycles_dropped, self.messages_dropped)
 
     def _begin(self) -> tuple[IO[bytes], LogWriter]:
-        file = self._current.open("wb")
-        return file, LogWriter(file, self._robot, self._settings)
+        while True:
+            is_device = self._current.exists() and not self._current.is_file()
+            try:
+                file = self._current.open("wb" if is_device else "xb")
+            except FileExistsError:
+                if not self._number:
+                    raise
+                self._number += 1
+            else:
+                return file, LogWriter(file, self._robot, self._settings)
 
     def _remove_oldest(self) -> None:
         if not self._total_bytes:

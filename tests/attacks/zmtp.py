@@ -17,8 +17,12 @@ def connected(endpoint: str) -> socket.socket:
     """A connection to a tcp:// or ipc:// endpoint, without a word said."""
     if endpoint.startswith("ipc://"):
         peer = socket.socket(socket.AF_UNIX)
+        try:
+            peer.connect(endpoint.removeprefix("ipc://"))
+        except OSError:
+            peer.close()
+            raise
         peer.settimeout(TIMEOUT_S)
-        peer.connect(endpoint.removeprefix("ipc://"))
         return peer
     parts = urlsplit(endpoint)
     return socket.create_connection((parts.hostname, parts.port or 0), TIMEOUT_S)
@@ -42,12 +46,11 @@ class RawPeer:
 
     def __init__(self, endpoint: str, kind: str) -> None:
         self.socket = connected(endpoint)
-        self.socket.sendall(_GREETING)
-        self._read(64)
-        name, value = b"Socket-Type", kind.encode()
-        ready = b"\x05READY" + bytes([len(name)]) + name + struct.pack(">I", len(value)) + value
-        self.socket.sendall(frame(ready, command=True))
-        self._read(self._read(2)[1])
+        try:
+            self._shake_hands(kind)
+        except OSError:
+            self.socket.close()
+            raise
 
     def __enter__(self) -> Self:
         return self
@@ -64,6 +67,14 @@ class RawPeer:
         except OSError:
             return False
         return True
+
+    def _shake_hands(self, kind: str) -> None:
+        self.socket.sendall(_GREETING)
+        self._read(64)
+        name, value = b"Socket-Type", kind.encode()
+        ready = b"\x05READY" + bytes([len(name)]) + name + struct.pack(">I", len(value)) + value
+        self.socket.sendall(frame(ready, command=True))
+        self._read(self._read(2)[1])
 
     def _read(self, n: int) -> bytes:
         data = b""

@@ -139,9 +139,9 @@ def result_of(answer: dict) -> str:
     return answer["result"]["content"][0]["text"]
 
 
-def calling(request_id: int, name: str, /, **arguments) -> str:
+def calling(request_id: int, name: str, /, **arguments) -> bytes:
     params = {"name": name, "arguments": arguments}
-    return json.dumps({"jsonrpc": "2.0", "id": request_id, "method": "tools/call", "params": params})
+    return json.dumps({"jsonrpc": "2.0", "id": request_id, "method": "tools/call", "params": params}).encode()
 
 
 def test_a_language_model_can_say_look_and_stop(running):
@@ -151,7 +151,9 @@ def test_a_language_model_can_say_look_and_stop(running):
             await client.arm()
 
             async def ask(method: str, **parameters) -> dict:
-                return (await server.answer(json.dumps({"id": 1, "method": method, "params": parameters})))["result"]
+                return (await server.answer(json.dumps({"id": 1, "method": method, "params": parameters}).encode()))[
+                    "result"
+                ]
 
             async def call(name: str, /, **arguments) -> dict:
                 return (await server.answer(calling(1, name, **arguments)))["result"]
@@ -180,13 +182,13 @@ def test_a_halt_does_not_wait_for_what_is_said_and_ends_what_has_not_begun(runni
             await client.reset()
             await client.arm()
             inlet, outlet = os.pipe()
-            with os.fdopen(inlet) as source, os.fdopen(outlet, "w", buffering=1) as host:
+            with os.fdopen(inlet, "rb") as source, os.fdopen(outlet, "wb", buffering=0) as host:
                 serving = asyncio.create_task(server.serve(source, out))
-                host.write(calling(1, "say", text="wave", seconds=9.0) + "\n")
+                host.write(calling(1, "say", text="wave", seconds=9.0) + b"\n")
                 while (now := await client.status()).command is None or now.state != "moving":
                     await asyncio.sleep(0.01)
                 host.write(
-                    "\n".join([calling(2, "say", text="left wave"), calling(3, "status"), calling(4, halt)]) + "\n"
+                    b"\n".join([calling(2, "say", text="left wave"), calling(3, "status"), calling(4, halt)]) + b"\n"
                 )
                 host.close()
                 await serving
@@ -277,7 +279,7 @@ def test_a_second_ctrl_c_says_what_goes_on(running):
 def test_what_is_no_request_is_answered_with_its_error(line, code):
     async def main() -> None:
         async with AsyncClient() as client:
-            assert (await McpServer(client).answer(line))["error"]["code"] == code
+            assert (await McpServer(client).answer(line.encode()))["error"]["code"] == code
 
     asyncio.run(main())
 
@@ -287,7 +289,7 @@ def test_notifications_get_no_answer():
         async with AsyncClient() as client:
             out = io.StringIO()
             lines = ['{"method": "notifications/initialized"}', "", '{"id": 7, "method": "ping"}']
-            await McpServer(client).serve(io.StringIO("\n".join(lines) + "\n"), out)
+            await McpServer(client).serve(io.BytesIO(("\n".join(lines) + "\n").encode()), out)
             assert [json.loads(x) for x in out.getvalue().splitlines()] == [{"jsonrpc": "2.0", "id": 7, "result": {}}]
 
     asyncio.run(main())

@@ -216,6 +216,23 @@ def test_logs_go_on_in_the_next_file_and_the_oldest_go(tmp_path):
     assert numbers == list(range(numbers[0], 3000)) and numbers[0] > 0  # whole files, nothing lost between them
 
 
+def test_logs_of_an_earlier_run_are_not_overwritten(tmp_path):
+    """`run.mcap` had been removed or moved away; `run.1.mcap` of that run was then written over."""
+    path, theirs = tmp_path / "run.mcap", [tmp_path / f"run.{n}.mcap" for n in (1, 2, 4)]
+    for file in theirs:
+        file.write_bytes(b"of an earlier run")
+    with RotatingLog(path, load_robot("reference"), size_mb=0.05, total_mb=0) as log:
+        for i, row in enumerate(records(1500)):
+            log.cycle(row)
+            if i % 100 == 99:
+                log.flush()
+    assert all(file.read_bytes() == b"of an earlier run" for file in theirs)
+    mine = [path, tmp_path / "run.3.mcap", *(tmp_path / f"run.{n}.mcap" for n in range(5, 100))]
+    assert [c.cycle for p in mine if p.exists() for c in read_log(p).cycles] == list(range(1500))
+    with pytest.raises(FileExistsError):
+        RotatingLog(path, load_robot("reference"), 0, 0)
+
+
 def test_a_log_that_does_not_rotate_is_one_file(tmp_path):
     with RotatingLog(tmp_path / "run.mcap", load_robot("reference"), 0, 0) as log:
         for row in records(500):
