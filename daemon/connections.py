@@ -76,12 +76,18 @@ class ConnectionGuard:
 
     Args:
         sockets: what is guarded, by name, with its share; each is bound already.
+        most_growth_bytes: see `MOST_GROWTH_BYTES`; infinite for a process that needs more memory itself.
 
     Attributes:
         shut: connections that were shut down so far, by reason.
     """
 
-    def __init__(self, sockets: Mapping[str, tuple[zmq.Socket[Any], Share]]) -> None:
+    def __init__(
+        self,
+        sockets: Mapping[str, tuple[zmq.Socket[Any], Share]],
+        most_growth_bytes: float = MOST_GROWTH_BYTES,
+    ) -> None:
+        self._most_growth_bytes = most_growth_bytes
         self._places: dict[object, str] = {}
         self._shares = {name: share for name, (_, share) in sockets.items()}
         for name, (bound, _) in sockets.items():
@@ -182,12 +188,10 @@ class ConnectionGuard:
             found = f"{together} bytes of all together; allowed: {MOST_UNREAD_TOGETHER_BYTES}"
             self._shut(most, NO_MESSAGE, found)
         grown = resident_bytes() - self._calm_bytes
-        if grown > MOST_GROWTH_BYTES:
+        if grown > self._most_growth_bytes:
             for connection in guarded:
                 if not connection.tcp and connection.fd not in delivered:
-                    self._shut(
-                        connection, NO_MESSAGE, f"{grown >> 20} MiB of memory; allowed: {MOST_GROWTH_BYTES >> 20}"
-                    )
+                    self._shut(connection, NO_MESSAGE, f"{grown >> 20} MiB of memory more")
             give_memory_back()
             self._calm_bytes = resident_bytes()
 
@@ -204,6 +208,14 @@ class ConnectionGuard:
         if time.monotonic() - told_s > TELL_EVERY_S:
             self._told[kind] = (time.monotonic(), self.shut[kind])
             log.warning("shut down %d connections to %s (%s)", self.shut[kind] - told, kind, found)
+
+
+def connection_of(frame: zmq.Frame) -> int:
+    """Descriptor of the connection that a frame came through; -1 for what ZeroMQ made itself."""
+    try:
+        return frame.get(zmq.SRCFD)
+    except zmq.ZMQError:
+        return -1
 
 
 def _place(last_endpoint: bytes) -> int | str:

@@ -1,4 +1,4 @@
-"""What a process holds of the system: descriptors of sockets that ZeroMQ owns, and memory. Linux."""
+"""What a process has from the system: descriptors of sockets that ZeroMQ owns, memory, its parent's life. Linux."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ import ctypes
 import errno
 import os
 import resource
+import signal
 import socket
 import struct
 
 MOST_DESCRIPTORS = 65536
 """File descriptors that a process asks for at most; the shares of its sockets together are far below."""
+_PR_SET_PDEATHSIG = 1
 _BYTES_RECEIVED = 128
 """Offset of tcpi_bytes_received in `struct tcp_info` (linux/tcp.h)."""
 
@@ -85,3 +87,9 @@ def give_memory_back() -> None:
     """Return what was freed to the system, where the C library can (glibc)."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).malloc_trim(0)
+
+
+def die_with_parent() -> None:
+    """Let the system kill the calling process when its parent ends, however that ends."""
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)

@@ -8,7 +8,7 @@ from typing import NamedTuple, cast
 import zmq
 import zmq.asyncio
 
-from daemon.connections import ConnectionGuard
+from daemon.connections import ConnectionGuard, connection_of
 
 MOST_PARTS = 8
 """Parts of a message that are kept: an address, an empty delimiter, and more than any request of ours has."""
@@ -64,11 +64,10 @@ class Inbox:
 
     async def receive(self) -> Message:
         """The next message."""
-        while True:
-            await self._discard()
-            frame = await cast("asyncio.Future[zmq.Frame]", self._socket.recv(copy=False))
-            if (message := self._message(frame)) is not None:
-                return message
+        while (message := await self.waiting()) is None:
+            # Not `recv`: another task could take the second part before this one has gone on with the first.
+            await cast("asyncio.Future[int]", self._socket.poll())
+        return message
 
     async def waiting(self) -> Message | None:
         """The next message that is there already, else None."""
@@ -91,7 +90,7 @@ class Inbox:
             assert following is not None, "the parts of a message come together"
             parts.append(following)
         self._discarding, self._discarded = parts[-1].more, 0
-        fd = _fd(frame)
+        fd = connection_of(frame)
         self._guard.received(fd)
         return Message([part.bytes for part in parts], fd, frame)
 
@@ -112,7 +111,7 @@ class Inbox:
         self._discarding = frame.more
         self._discarded += 1
         if self._discarded == MOST_DISCARDED:
-            self._guard.shut_down(_fd(frame), "a message of too many parts", f"more than {MOST_DISCARDED}")
+            self._guard.shut_down(connection_of(frame), "a message of too many parts", f"more than {MOST_DISCARDED}")
 
     def _next(self) -> zmq.Frame | None:
         """The next frame that is there, else None."""
@@ -120,10 +119,3 @@ class Inbox:
             return self._at_once.recv(zmq.DONTWAIT, copy=False)
         except zmq.Again:
             return None
-
-
-def _fd(frame: zmq.Frame) -> int:
-    try:
-        return frame.get(zmq.SRCFD)
-    except zmq.ZMQError:
-        return -1

@@ -11,9 +11,9 @@ from daemon.config import config_error
 from daemon.keys import KeyFolder, serve_curve
 from daemon.probe import listening
 
-MAX_RECEIVE_BYTES = 128 << 10
+MAX_RECEIVE_BYTES = 256 << 10
 """Bytes of a frame. ZeroMQ drops the connection of a peer that sends more; below it the peer is told what is allowed."""
-RECEIVE_QUEUE = 16
+RECEIVE_QUEUE = 8
 RECEIVE_BUFFER_BYTES = 256 << 10
 """Bytes that the system keeps of each peer besides."""
 HANDSHAKE_MS = 3000

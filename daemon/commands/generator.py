@@ -1,15 +1,27 @@
-"""`mmmd generator`: the process that holds the model, alone."""
+"""`mmmd generator`: the process that holds the model, kept running."""
 
 from __future__ import annotations
 
 import logging
+import os
+import subprocess
+import sys
+import time
 from pathlib import Path
+
+log = logging.getLogger(__name__)
+
+FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
+GOOD_LIFE_S = 60.0
+"""Seconds after which a process that ended did not fail to start: the wait before the next start is short again."""
+TOLD = (0, 1, 2)
+"""Exit statuses of an end that was asked for or has been explained; any other one is a crash or a kill."""
 
 
 def generator(
     bind: str = "tcp://127.0.0.1:5874", model: Path | None = None, threads: int = 1, keys: Path | None = None
 ) -> int:
-    """Serve motions to daemons that were started with --generator, until interrupted.
+    """Serve motions to daemons that were started with --generator, until interrupted; killed or crashed, it starts again.
 
     Example: mmmd generator --bind tcp://127.0.0.1:5874
 
@@ -21,11 +33,22 @@ def generator(
         threads: CPU threads.
         keys: folder of CURVE keys (`mmmd keys`): only allowed daemons are served.
     """
-    from daemon.generator.process import run
-
     logging.basicConfig(level=logging.INFO, format="generator: %(message)s")
+    command = [sys.executable, "-m", "daemon.generator.process", "--bind", bind, "--threads", str(threads)]
+    command += ["--parent-pid", str(os.getpid())]
+    command += ["--model", str(model)] if model is not None else []
+    command += ["--keys", str(keys)] if keys is not None else []
+    back_off_s = FIRST_BACK_OFF_S
     try:
-        run(bind, model, threads, keys=keys)
+        while True:
+            began_s = time.monotonic()
+            with subprocess.Popen(command) as process:
+                status = process.wait()
+            if status in TOLD:
+                return status
+            back_off_s = FIRST_BACK_OFF_S if time.monotonic() - began_s > GOOD_LIFE_S else back_off_s
+            log.error("ended with status %d; starts again in %g s", status, back_off_s)
+            time.sleep(back_off_s)
+            back_off_s = min(2 * back_off_s, LONGEST_BACK_OFF_S)
     except KeyboardInterrupt:
-        pass
-    return 0
+        return 0

@@ -10,7 +10,7 @@ from daemon.connections import ConnectionGuard
 from daemon.front.rates import Rates
 from daemon.inbox import Inbox
 
-RECEIVE_QUEUE = 1
+RECEIVE_QUEUE = 4
 """Subscriptions that ZeroMQ reads ahead of each peer: before it does anything else it enters all that are there into its tree."""
 MOST_BYTES = 2048
 """Bytes of a frame on `pub`: of a handshake with keys, which is longer than any topic."""

@@ -12,7 +12,6 @@ import logging
 import time
 from collections.abc import Sequence
 
-import msgspec
 import zmq
 import zmq.asyncio
 
@@ -37,10 +36,13 @@ from daemon.generator.messages import (
     generated_from,
 )
 from daemon.keys import KeyFolder, connect_curve
+from daemon.wire.showing import shortened
 from mmm_core.motion.motion import Motion
 
 log = logging.getLogger(__name__)
 
+MOST_ANSWER_BYTES = 8 << 20
+"""Bytes of an answer: a motion of five minutes."""
 START_TIMEOUT_S = 10.0
 """Longest wait of a text for a generator that is being started."""
 
@@ -62,6 +64,7 @@ class GeneratorClient:
         if keys is not None and endpoint.startswith("tcp://"):
             connect_curve(self._socket, keys, "generator")
         self._socket.setsockopt(zmq.LINGER, 0)
+        self._socket.setsockopt(zmq.MAXMSGSIZE, MOST_ANSWER_BYTES)
         self._socket.setsockopt(zmq.RECONNECT_IVL, 20)
         self._socket.setsockopt(zmq.RECONNECT_IVL_MAX, 200)
         self._socket.connect(endpoint)
@@ -255,8 +258,8 @@ class GeneratorClient:
             frame = await self._socket.recv()
             try:
                 reply = decode_reply(frame)
-            except msgspec.MsgspecError as error:
-                log.warning("the generator sent what is no message: %s", error)
+            except Exception as error:  # RecursionError among them: one frame must not end the reader of all answers
+                log.warning("the generator sent what is no message: %s", shortened(error))
                 continue
             for waiting in (self._open.get(reply.id), self._follows.get(reply.id)):
                 if waiting is not None and not waiting.done():

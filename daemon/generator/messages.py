@@ -9,10 +9,11 @@ killed, restarted or changed in the middle of one.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
 import numpy as np
+from msgspec import Meta
 from numpy.typing import NDArray
 
 from daemon.errors import DaemonError
@@ -20,6 +21,10 @@ from mmm_core.motion.motion import N_FEATURES, N_JOINTS, Motion
 from mmm_core.recognition.seen import Scene
 
 GENERATION_VERSION = 4
+MOST_TEXT_CHARS, MOST_TIMES, MOST_PARTS, MOST_TOLD_BYTES = 2000, 64, 16, 256 << 10
+"""Bounds of a request; those of `cmd` are inside them. A generator may be reached by more than one daemon."""
+Text = Annotated[str, Meta(max_length=MOST_TEXT_CHARS)]
+Seconds = Annotated[float, Meta(ge=0.0, le=60.0)]
 MIN_FRAMES = 2
 """A motion of fewer frames is no motion."""
 
@@ -69,11 +74,11 @@ class GenerateMessage(msgspec.Struct, tag="generate", kw_only=True):
 
     v: int = GENERATION_VERSION
     id: int
-    text: str
+    text: Text
     seed: int = 0
-    seconds: float | None = None
+    seconds: Seconds | None = None
     before: MotionArrays | None = None
-    prefix_s: float = 0.0
+    prefix_s: Seconds = 0.0
     draft: bool = False
 
 
@@ -90,10 +95,10 @@ class SceneMessage(msgspec.Struct, tag="scene", kw_only=True):
 
     v: int = GENERATION_VERSION
     id: int
-    text: str | None
-    seconds: float | None = None
+    text: Text | None
+    seconds: Seconds | None = None
     seed: int = 0
-    told: bytes = b""
+    told: Annotated[bytes, Meta(max_length=MOST_TOLD_BYTES)] = b""
     last: bool = False
 
 
@@ -111,9 +116,9 @@ class EditMessage(msgspec.Struct, tag="edit", kw_only=True):
     v: int = GENERATION_VERSION
     id: int
     motion: MotionArrays
-    text: str
+    text: Text
     seed: int = 0
-    parts: list[str] = []
+    parts: Annotated[list[Text], Meta(max_length=MOST_PARTS)] = []
     start_s: float = 0.0
     end_s: float | None = None
 
@@ -130,8 +135,8 @@ class BetweenMessage(msgspec.Struct, tag="between", kw_only=True):
     v: int = GENERATION_VERSION
     id: int
     poses: MotionArrays
-    at_s: list[float]
-    text: str = ""
+    at_s: Annotated[list[float], Meta(max_length=MOST_TIMES)]
+    text: Text = ""
     seed: int = 0
 
 
@@ -214,6 +219,7 @@ def decode_request(frame: bytes) -> ToGenerator:
 
     Raises:
         msgspec.MsgspecError: no such message.
+        RecursionError: it is nested too deeply.
     """
     return _TO_DECODER.decode(frame)
 
@@ -223,6 +229,7 @@ def decode_reply(frame: bytes) -> FromGenerator:
 
     Raises:
         msgspec.MsgspecError: no such message.
+        RecursionError: it is nested too deeply.
     """
     return _FROM_DECODER.decode(frame)
 

@@ -15,10 +15,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Protocol
 
-import msgspec
 import zmq
 
 from daemon.config import check_endpoint
+from daemon.connections import ConnectionGuard, Share, connection_of
+from daemon.descriptors import die_with_parent
 from daemon.errors import ConfigError
 from daemon.generator.messages import (
     GENERATION_VERSION,
@@ -42,6 +43,7 @@ from daemon.keys import Doorkeeper, KeyFolder
 from daemon.log_feed import send_logs
 from daemon.logs import start_logging
 from daemon.sockets import bind as bind_socket
+from daemon.wire.showing import shortened, shown
 
 log = logging.getLogger(__name__)
 
@@ -49,6 +51,7 @@ NICENESS = 5
 POLL_MS = 200
 MOST_REQUEST_BYTES = 1 << 20
 """Bytes of a request: it may carry the motion that is to be edited."""
+MOST_CONNECTIONS = 128
 MOST_BEGUN = 8
 """Motions of which only the draft is made; with so many the oldest is made before anything else."""
 
@@ -87,8 +90,8 @@ def answers(request: ToGenerator, maker: Maker, checkpoint_hash: str) -> Iterato
         except UnfitRequestError as error:
             yield FailureMessage(id=request.id, code=error.code, found=error.found, allowed=error.allowed)
         except Exception as error:  # whatever the model raises, the next text must still be answered
-            log.exception("generating %r failed", request.text)
-            yield FailureMessage(id=request.id, code="generator_error", found=str(error), allowed="a motion")
+            log.exception("generating %s failed", shown(request.text))
+            yield FailureMessage(id=request.id, code="generator_error", found=shortened(error), allowed="a motion")
 
 
 def _made(request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage, maker: Maker) -> Iterator[Generated]:
@@ -102,17 +105,33 @@ def _made(request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage
         yield from maker.generate(request)
 
 
-def serve(socket: zmq.Socket[bytes], maker: Maker, checkpoint_hash: str, alive: Callable[[], bool]) -> None:
-    """Answer requests on a ROUTER socket while `alive()`: what is asked anew comes before what follows a draft."""
+def serve(
+    socket: zmq.Socket[bytes],
+    maker: Maker,
+    checkpoint_hash: str,
+    alive: Callable[[], bool],
+    received: Callable[[int], None] = lambda _fd: None,
+) -> None:
+    """Answer requests on a ROUTER socket while `alive()`: what is asked anew comes before what follows a draft.
+
+    Args:
+        socket: bound.
+        maker: makes the motions.
+        checkpoint_hash: told in answer to a ping.
+        alive: whether to go on.
+        received: called with the descriptor of the connection of each message, see `ConnectionGuard.received`.
+    """
     begun: deque[tuple[list[bytes], Iterator[FromGenerator]]] = deque()
     while alive():
         asked = socket.poll(0 if begun else POLL_MS)
         if asked and len(begun) < MOST_BEGUN:
-            *route, frame = socket.recv_multipart()
+            frames = socket.recv_multipart(copy=False)
+            received(connection_of(frames[0]))
+            *route, frame = (part.bytes for part in frames)
             try:
                 request = decode_request(frame)
-            except (msgspec.MsgspecError, UnicodeDecodeError) as error:
-                log.warning("dropped a frame that is no request: %s", error)
+            except Exception as error:  # RecursionError among them: whatever a peer can make a decoder raise
+                log.warning("dropped a frame that is no request: %s", shortened(error))
                 continue
             replies = answers(request, maker, checkpoint_hash)
         elif begun:
@@ -144,11 +163,16 @@ def run(
     socket = context.socket(zmq.ROUTER)
     folder = KeyFolder(keys) if keys is not None else None
     doorkeeper = Doorkeeper(context, folder) if folder is not None else None
+    guard: ConnectionGuard | None = None
     try:
         bind_socket(socket, "bind", bind, folder, most_bytes=MOST_REQUEST_BYTES)
+        guard = ConnectionGuard({"generator": (socket, Share(MOST_CONNECTIONS))}, most_growth_bytes=float("inf"))
+        guard.start()
         log.info("generator ready on %s with checkpoint %s", bind, checkpoint_hash[:12])
-        serve(socket, maker, checkpoint_hash, lambda: parent_pid is None or os.getppid() == parent_pid)
+        serve(socket, maker, checkpoint_hash, lambda: parent_pid is None or os.getppid() == parent_pid, guard.received)
     finally:
+        if guard is not None:
+            guard.close()
         if doorkeeper is not None:
             doorkeeper.close()
         socket.close(0)
@@ -162,13 +186,16 @@ def main() -> int:
     parser.add_argument("--model", type=Path)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--parent-pid", type=int)
+    parser.add_argument("--keys", type=Path)
     options = parser.parse_args()
     start_logging("generator")
     send_logs("generator")
+    if options.parent_pid is not None:
+        die_with_parent()
     from mmm_core.errors import MmmError
 
     try:
-        run(options.bind, options.model, options.threads, options.parent_pid)
+        run(options.bind, options.model, options.threads, options.parent_pid, options.keys)
     except (ConfigError, MmmError) as error:
         sys.stderr.write(f"generator: {error}\n")
         return 1

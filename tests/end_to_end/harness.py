@@ -58,6 +58,7 @@ class RunningDaemon:
         if tcp:
             cmd, ctl, pub, stream = (f"tcp://127.0.0.1:{port}" for port in free_ports(4))
             self.endpoints = Endpoints(cmd, ctl, pub, stream=stream)
+            options = ("--stream", stream, *options)
         self.peer = None if model else KinematicGenerator(f"ipc://{self.folder}/gen", answer)
         self.audit = self.folder / "audit.json"
         if bus == "sim://":
