@@ -12,6 +12,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 
 from daemon.driving.cores import on_all_cores
+from daemon.parent import PARENT_VARIABLE
 
 log = logging.getLogger(__name__)
 
@@ -72,6 +73,7 @@ class Child:
     async def start(self) -> None:
         """Start it (again)."""
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", **self._environment}
+        environment[PARENT_VARIABLE] = str(os.getpid())
         self.said.clear()
         self._started_s = time.monotonic()
         with on_all_cores():

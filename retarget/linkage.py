@@ -42,14 +42,18 @@ class Linkage:
         return cls(np.append(joint.ravel(), joint_rad[-1]), np.append(servo.ravel(), servo_rad[-1]))
 
     def to_servo(self, joint_rad: Array) -> Array:
-        """Servo angles for joint angles; beyond the table its ends."""
-        return np.interp(joint_rad, self.joint_rad, self.servo_rad)
+        """Servo angles for joint angles; beyond the table it goes on as steep as it ends."""
+        return _straight_on(joint_rad, self.joint_rad, self.servo_rad)
 
     def to_joint(self, servo_rad: Array) -> Array:
-        """Joint angles for servo angles; beyond the table its ends."""
+        """Joint angles for servo angles; beyond the table it goes on as steep as it ends.
+
+        So a servo found beyond it stands at an angle of its own there, from which it is led back; were it taken for one at the
+        table's end, its first goal would be a jump to that end.
+        """
         if self.servo_rad[0] > self.servo_rad[-1]:
-            return np.interp(servo_rad, self.servo_rad[::-1], self.joint_rad[::-1])
-        return np.interp(servo_rad, self.servo_rad, self.joint_rad)
+            return _straight_on(servo_rad, self.servo_rad[::-1], self.joint_rad[::-1])
+        return _straight_on(servo_rad, self.servo_rad, self.joint_rad)
 
     @property
     def steepest(self) -> float:
@@ -64,3 +68,9 @@ class Linkage:
 
     def _slope(self) -> Array:
         return np.diff(self.servo_rad) / np.diff(self.joint_rad)
+
+
+def _straight_on(x: Array, xs: Array, ys: Array) -> Array:
+    """Values at `x` between the samples (N,) of a curve, and on straight lines beyond them; `xs` rises."""
+    first, last = (ys[1] - ys[0]) / (xs[1] - xs[0]), (ys[-1] - ys[-2]) / (xs[-1] - xs[-2])
+    return np.interp(x, xs, ys) + first * np.minimum(x - xs[0], 0.0) + last * np.maximum(x - xs[-1], 0.0)

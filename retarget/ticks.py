@@ -53,7 +53,7 @@ class JointServoMap:
         ticks = np.rint(self.to_ticks(q_rad)).astype(np.int32)
         return np.clip(ticks, self.position_min_tick, self.position_max_tick, dtype=np.int32)
 
-    def tick_to_rad(self, ticks: NDArray[np.integer]) -> Array:
+    def tick_to_rad(self, ticks: NDArray[np.integer] | Array) -> Array:
         """(..., S) ticks -> (..., J) radians; the mean where several servos drive a joint."""
         angle = (ticks - self.zero_tick) / self.ticks_per_rad
         for i, linkage in self._linkages:

@@ -100,6 +100,15 @@ class World:
         for servo in self.all:
             servo.watch(t_s)
 
+    def lead_by_hand(self, pose_rad: Sequence[float]) -> None:
+        """Put limp joints (J,) where a person leads them, and switch servos that count turns off and on there."""
+        ticks = JointServoMap(self.robot).to_ticks(np.array(pose_rad, np.float64))
+        for servo, tick in zip(self.servos.values(), ticks.tolist(), strict=True):
+            self.drives.place(servo.index, tick)
+            if servo.spec.extended:
+                servo.lose_power()
+                servo.restore_power()
+
     def _judge(self, t_s: float) -> None:
         """Every 20 ms: power, latches, watchdogs, and what outlasts no fault."""
         self._keep_up(t_s)

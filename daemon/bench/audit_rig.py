@@ -11,6 +11,7 @@ from daemon.bus import packet
 from daemon.bus.servo_bus import ServoBus
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.streamer import Streamer
+from daemon.driving.turns import TURNS_UNKNOWN
 from retarget.paths import JointState
 from retarget.robot import RobotModel
 from sim.bus import SimBus
@@ -137,7 +138,11 @@ class AuditRig:
                 self.repairs += 1
                 self._cycles(_REPAIR_CYCLES)
                 self._reboot_latched()
+                turns_unknown = TURNS_UNKNOWN in self._link.text
                 self._request(BusRequest.RESET)
+                if turns_unknown:
+                    self._bus.world.lead_by_hand(self.robot.park_rad.tolist())
+                    self._cycles(_REBOOT_CYCLES)
             self._settle()
             if self._streamer.state is BusState.LIMP:
                 self._request(BusRequest.ARM)

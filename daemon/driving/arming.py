@@ -18,6 +18,7 @@ from daemon.bus.multi import RobotBus
 from daemon.clock import Clock
 from daemon.driving.derating import ServoLimits, read_limits
 from daemon.driving.pinning import pin_where_they_stand, reading_at_rest, refuse_hardware_errors
+from daemon.driving.turns import TurnWatch
 from daemon.errors import LinkTimeoutError
 from retarget.robot import RobotModel
 
@@ -40,7 +41,9 @@ class Armed:
     limits: ServoLimits
 
 
-def arm_in_steps(robot: RobotModel, bus: RobotBus, clock: Clock, effort: float) -> Generator[None, None, Armed]:
+def arm_in_steps(
+    robot: RobotModel, bus: RobotBus, clock: Clock, effort: float, turns: TurnWatch
+) -> Generator[None, None, Armed]:
     """Arm a limp robot. Whoever breaks off, or catches an error, has to cut torque.
 
     Args:
@@ -48,10 +51,11 @@ def arm_in_steps(robot: RobotModel, bus: RobotBus, clock: Clock, effort: float) 
         bus: its servos.
         clock: time of the cycles.
         effort: share of full torque that it begins with.
+        turns: what is known of the servos' whole turns.
 
     Raises:
         BusMismatchError: servos or their settings are not what the robot file needs; they may have been changed since.
-        ServoFaultError: one reports an error, moves, or does not take its goal.
+        ServoFaultError: one reports an error, moves, does not take its goal, or may stand elsewhere than it says.
         LinkError: no answer, or the port is gone.
     """
     bus.verify()
@@ -67,6 +71,8 @@ def arm_in_steps(robot: RobotModel, bus: RobotBus, clock: Clock, effort: float) 
         silent = ", ".join(str(i) for i, ok in zip(bus.ids, reading.valid, strict=True) if not ok)
         raise LinkTimeoutError(f"no fresh position of servo {silent}; check cable and power")
     refuse_hardware_errors(bus, reading)
+    turns.update(reading, clock.now_s())
+    turns.require_one_pose(reading.position_tick)
     present = yield from pin_where_they_stand(bus, clock, reading, effort)
     bus.write_all("torque_enable", 1)
     without = bus.arm_watchdog(WATCHDOG_UNITS)

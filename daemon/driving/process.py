@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import logging
-import os
 import signal
 import sys
 import threading
@@ -20,6 +19,7 @@ from daemon.driving.starting import start
 from daemon.driving.streamer import Streamer
 from daemon.log_feed import send_logs
 from daemon.logs import start_logging
+from daemon.parent import Parent
 from retarget.robot import load_robot
 
 log = logging.getLogger(__name__)
@@ -39,6 +39,7 @@ def main() -> int:
     parser.add_argument("--after-loss", action="store_true")
     parser.add_argument("--core", type=int)
     arguments = parser.parse_args()
+    parent = Parent()
     start_logging("bus")
     send_logs("bus")
     robot = load_robot(arguments.robot)
@@ -61,7 +62,7 @@ def main() -> int:
     # The front parks the robot and then asks for shutdown; Ctrl-C reaches the whole group and is the front's to handle.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, stop)
-    threading.Thread(target=_end_with_parent, args=(streamer, os.getppid()), daemon=True).start()
+    threading.Thread(target=_end_with_parent, args=(streamer, parent), daemon=True).start()
     try:
         streamer.run()
     finally:
@@ -70,9 +71,9 @@ def main() -> int:
     return 0
 
 
-def _end_with_parent(streamer: Streamer, parent_pid: int) -> None:
+def _end_with_parent(streamer: Streamer, parent: Parent) -> None:
     """Give the port back once the front is gone for good: when the robot is parked, or nobody came in a while."""
-    while os.getppid() == parent_pid:
+    while not parent.gone:
         time.sleep(ORPHAN_CHECK_S)
     orphaned_s = time.monotonic()
     while not streamer.made_limp and time.monotonic() - orphaned_s < ORPHAN_END_S:

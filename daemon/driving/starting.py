@@ -10,7 +10,7 @@ from daemon.bus.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.bus.multi import RobotBus
 from daemon.clock import Clock
 from daemon.driving.request_words import ESTOPS, BusRequest
-from daemon.driving.shared import BusLink, BusState, Readiness
+from daemon.driving.shared import BusLink, Readiness
 from daemon.driving.streamer import Streamer
 from daemon.errors import DaemonError
 from retarget.robot import RobotModel
@@ -75,7 +75,7 @@ def start(
     why = AFTER_LOSS if after_loss else _HELD_BEFORE.format(holding) if holding else ""
     if why:
         log.error("fault: %s", why)
-        streamer.state = BusState.FAULT
+        streamer.found_holding()
     link.set_ready(Readiness.READY, why)
     return streamer
 

@@ -22,11 +22,13 @@ from daemon.driving.arming import Armed, arm_in_steps
 from daemon.driving.derating import Derating
 from daemon.driving.gate import Gate
 from daemon.driving.judging import MAY_HAVE_TRIPPED_S, Judge
+from daemon.driving.leading_back import LeadingBack
 from daemon.driving.pace import Pace, SlowedSetpoints
 from daemon.driving.ramp import EFFORT_START, TorqueRamp
 from daemon.driving.request_words import ESTOPS, Asked
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.slow_move import SlowMove
+from daemon.driving.turns import TurnWatch
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from retarget.collision import SelfContact
 from retarget.robot import RobotModel
@@ -61,6 +63,8 @@ class Streamer:
     ) -> None:
         self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
         self._ticks = JointServoMap(robot)
+        self._turns = TurnWatch(robot, self._ticks, bus)
+        self._leading = LeadingBack(self._ticks, np.array([s.model.ticks_per_turn for s in robot.servos]))
         contact = SelfContact(robot)
         self._gate = Gate(robot, contact=contact)
         self._slow = SlowMove(robot, contact, self._gate)
@@ -80,7 +84,7 @@ class Streamer:
         self._cycle, self._told_s, self._late_cycles = 0, clock.now_s(), 0
         self._front_lost_s: float | None = None
         self._torque_off_left = 0
-        self._made_limp = self._limp_at_rest = False
+        self._made_limp = self._limp_at_rest = self._may_hold = False
         self._arming: Generator[None, None, Armed] | None = None
         self._judge, self._ramp = Judge(robot, bus), TorqueRamp(bus, robot.bus.period_s)
         self._derating = Derating(robot.n_servos, robot.bus.period_s)
@@ -101,6 +105,10 @@ class Streamer:
             self.cycle()
             due_s = self._waited_until(due_s + self._period_s)
         self._cut_torque()
+
+    def found_holding(self) -> None:
+        """Servos may have torque that this process did not give them: a latched fault, and they are not forgotten in it."""
+        self.state, self._may_hold = BusState.FAULT, True
 
     def close(self) -> None:
         """Release the port."""
@@ -127,10 +135,11 @@ class Streamer:
             self._go_on_arming()
             self._check_stall()
             goal_rad = self._next_goal()
-            if goal_rad is not None and self._goal_tick is not None:
-                self._goal_tick = np.rint(self._ticks.to_ticks(goal_rad)).astype(np.int32)
+            if goal_rad is not None and self._goal_tick is not None and not self._ramp.holds_goals:
+                self._goal_tick = self._leading.goal_tick(goal_rad)
             self._told_s = self._clock.now_s()
             reading = self._bus.exchange(None if self._ramp.holds_goals or not self._torque else self._goal_tick)
+            self._turns.update(reading, self._clock.now_s())
             if self._torque and self.state in (BusState.FAULT, BusState.ESTOP):
                 self._judge.withhold_tripped(reading)
             elif self._torque and (why := self._judge.fault(reading)):
@@ -180,7 +189,7 @@ class Streamer:
             if self.state is BusState.LIMP:
                 self._link.drop_queued()
                 self._link.set_text("")
-                self._arming = arm_in_steps(self.robot, self._bus, self._clock, EFFORT_START)
+                self._arming = arm_in_steps(self.robot, self._bus, self._clock, EFFORT_START, self._turns)
                 self._enter(BusState.ARMING)
         else:
             self.stopping = True
@@ -199,7 +208,7 @@ class Streamer:
         self._forget_way()
         if not holds or self._arming is not None or self.state not in _ARMED:
             self._torque, self._goal_tick, self._arming = False, None, None
-            self._made_limp = True
+            self._made_limp, self._may_hold = True, False
             self._torque_off_left = TORQUE_OFF_REPEATS  # the first goes out in this cycle
         self._enter(BusState.ESTOP)
 
@@ -221,7 +230,7 @@ class Streamer:
         self._fed_s = self._clock.now_s()
         self._judge.armed()
         self._ramp.begin()
-        self._gate.reset(self._ticks.tick_to_rad(armed.goal_tick))
+        self._gate.reset(self._leading.begin(armed.goal_tick))
         self._forget_way()
 
     def _go_limp(self) -> None:
@@ -238,7 +247,7 @@ class Streamer:
             return None
         if self.state in _ARMED:
             self._ramp.step()
-        if self._ramp.holds_goals and self.state is not BusState.STOPPING:
+        if (self._ramp.holds_goals or not self._leading.done) and self.state is not BusState.STOPPING:
             return self._gate.brake()  # where it was pinned
         if self.state in (BusState.ARMING, BusState.PARKING):
             return self._move_slowly()
@@ -317,7 +326,8 @@ class Streamer:
     # Judgement.
 
     def _watch_heartbeat(self) -> None:
-        if not self._watch_front or not (self._torque or self._arming) or self.state is BusState.PARKING:
+        has_torque = self._torque or self._arming is not None or self._may_hold
+        if not self._watch_front or not has_torque or self.state is BusState.PARKING:
             self._front_lost_s = None
             return
         age_s = self._link.heartbeat_age_s
@@ -388,6 +398,7 @@ class Streamer:
         except LinkError as error:
             log.error("torque off not sent: %s", error)
         self._torque, self._goal_tick, self._made_limp, self._arming = False, None, True, None
+        self._may_hold = False
         self._torque_off_left = TORQUE_OFF_REPEATS
 
     def _repeat_torque_off(self) -> None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import logging
-import os
 import signal
 import sys
 import time
@@ -20,6 +19,7 @@ import zmq
 from daemon.driving.shared import N_CYCLES, BusLink
 from daemon.log_feed import send_logs
 from daemon.logs import start_logging
+from daemon.parent import Parent
 from daemon.recording.rotation import RotatingLog
 from daemon.recording.schemas import DROPPED_TOPIC, Dropped
 from retarget.robot import load_robot
@@ -41,6 +41,7 @@ def main() -> int:
         parser.add_argument(name, type=float, default=0.0)
     parser.add_argument("--settings", default="", help="of the daemon, as JSON; kept in the log")
     arguments = parser.parse_args()
+    parent = Parent()
     start_logging("recorder")
     send_logs("recorder")
     robot = load_robot(arguments.robot)
@@ -53,12 +54,11 @@ def main() -> int:
     events.setsockopt(zmq.RCVHWM, EVENT_QUEUE)
     events.bind(arguments.events)
     index, flushed_s = max(0, link.n_cycles - N_CYCLES // 2), time.monotonic()  # what is still there
-    parent = os.getppid()
     try:
         bounds = (arguments.size_mb, arguments.total_mb)
         with RotatingLog(Path(arguments.out), robot, *bounds, arguments.settings) as writer:
             while True:
-                last_round = bool(stopping) or os.getppid() != parent
+                last_round = bool(stopping) or parent.gone
                 events.poll(0 if last_round else round(POLL_S * 1e3))
                 records, index, lost = link.cycles_since(index)
                 if lost:

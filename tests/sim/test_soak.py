@@ -22,6 +22,7 @@ import pytest
 from daemon.bus import packet
 from daemon.driving.process import SLOW_EVERY
 from daemon.driving.shared import BusLink, BusRequest, BusState
+from daemon.driving.turns import TURNS_UNKNOWN
 from retarget.robot import RobotModel, load_robot
 from sim.faults import INSTANT_KINDS, PACKET_KINDS, Fault
 from tests.daemon.rig import Rig, rig, swing
@@ -150,8 +151,12 @@ class Person:
             self._cycles(20)
             assert self.r.state is BusState.FAULT, "a fault stays until a person resets it"
             assert {s.spec.servo_id for s in self.r.sim.world.all if s.torque} <= had_torque, "torque came on by itself"
+        turns_unknown = TURNS_UNKNOWN in self.r.link.text
         self.r.link.request(BusRequest.RESET)
         self._cycles(10)
+        if turns_unknown:
+            self.r.sim.world.lead_by_hand(self.r.robot.park_rad.tolist())
+            self._cycles(40)
         for servo in self.r.sim.world.all:
             if servo.alert():
                 self.r.sim.world.drives.temperature_c[servo.index] = 30.0  # it had time to cool
