@@ -101,6 +101,15 @@ def rig(name: str = "reference", *faults: Fault, **options) -> Iterator[Rig]:
         link.close()
 
 
+def with_known_turns(robot: RobotModel, q_rad: np.ndarray) -> np.ndarray:
+    """(..., J) poses with ToddlerBot's waist turned no further than that its servos' whole turns are known at the start."""
+    q_rad = q_rad.copy()
+    if robot.name == "toddlerbot":
+        yaw = robot.joint_names.index("waist_yaw")
+        q_rad[..., yaw] = np.clip(q_rad[..., yaw], -0.5, 0.5)
+    return q_rad
+
+
 def swing(robot: RobotModel, seconds: float, share: float = 0.4) -> np.ndarray:
     """(T, J) a smooth motion about rest inside every limit, from rest and back."""
     t = np.arange(int(seconds * robot.bus.rate_hz)) / len(np.arange(int(seconds * robot.bus.rate_hz)))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rig import Rig, rig
+from rig import Rig, rig, with_known_turns
 
 from daemon.driving.pace import WAIT_S
 from daemon.driving.shared import BusRequest, BusState
@@ -25,9 +25,9 @@ seeds = st.integers(0, 2**32 - 1)
 
 
 def drawn(name: str, draw: np.random.Generator) -> np.ndarray:
-    """(J,) any pose inside the limits."""
+    """(J,) any pose inside the limits in which it can be armed."""
     limits = JointLimits.of(load_robot(name))
-    return draw.uniform(limits.position_min_rad, limits.position_max_rad)
+    return with_known_turns(load_robot(name), draw.uniform(limits.position_min_rad, limits.position_max_rad))
 
 
 def assert_never_in_itself(r: Rig) -> None:

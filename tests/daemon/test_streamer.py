@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rig import assert_brakes_within_limits, rig, swing
+from rig import assert_brakes_within_limits, rig, swing, with_known_turns
 
 from daemon.bus.models import CONTROL_TABLES
 from daemon.driving.shared import BusRequest, BusState
@@ -36,6 +36,7 @@ def test_arming_pins_then_goes_slowly_to_rest(name, seed):
     """From any pose in which it is not in itself; those are in `test_park.py`."""
     robot = load_robot(name)
     drawn = np.random.default_rng(seed).uniform(robot.position_min_rad, robot.position_max_rad, (100, robot.n_joints))
+    drawn = with_known_turns(robot, drawn)
     start_rad = drawn[SelfContact(robot).clearance_m(drawn) > 0][0]
     with rig(name, start_rad=start_rad) as r:
         r.arm()
