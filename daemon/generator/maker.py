@@ -27,6 +27,7 @@ from mmm_core.generate.keyframes import Keyframe, between, features_of
 from mmm_core.generate.result import GenerationResult, no_motion
 from mmm_core.generate.story import Scene, StoryState, continue_story
 from mmm_core.language.scope import ScopeVerdict
+from mmm_core.motion.features import RestPose
 from mmm_core.motion.motion import Motion
 
 HALVES = {"upper": ("left_arm", "right_arm"), "lower": ("rest",)}
@@ -60,7 +61,7 @@ class EngineMaker:
         """
         text, seed, seconds = request.text, request.seed, request.seconds
         if request.before is not None:
-            before = _with_features(motion_from(request.before))
+            before = _with_features(motion_from(request.before), self._engine.model.rest_pose)
             yield self._of(continue_motion(self._engine, before, request.prefix_s, text, seed=seed, seconds=seconds))
             return
         generation = self._engine.begin(text, seed=seed, seconds=seconds)
@@ -88,7 +89,7 @@ class EngineMaker:
         what = Edit(request.start_s, request.end_s, parts or None)
 
         def made() -> Motion:
-            motion = _with_features(motion_from(request.motion))
+            motion = _with_features(motion_from(request.motion), self._engine.model.rest_pose)
             return edit(self._engine, motion, what, request.text, seed=request.seed)
 
         return self._unless_rejected(request.text, request.seed, made, "bad_edit")
@@ -135,11 +136,11 @@ class EngineMaker:
         return tuple(dict.fromkeys(found))
 
 
-def _with_features(motion: Motion) -> Motion:
-    """The same, with the features of its joints where it came with neither features nor ids."""
+def _with_features(motion: Motion, rest_pose: RestPose) -> Motion:
+    """The same, with the features of its joints, as a model knows them, where it came with neither features nor ids."""
     if motion.features.any() or len(motion.tokens):
         return motion
-    return replace(motion, features=features_of(motion).numpy())
+    return replace(motion, features=features_of(motion, rest_pose).numpy())
 
 
 def _frame(motion: Motion, i: int) -> Motion:

@@ -20,7 +20,8 @@ from mmm_core.generate.motion_model import check_seed
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.model.sampling import empty_row, fill
 from mmm_core.model.tokens import MAX_TOKENS, frames_for_seconds, tokens_for_frames
-from mmm_core.motion.features import features_from_joints
+from mmm_core.motion.features import RestPose, features_from_joints
+from mmm_core.motion.humanml3d_features import humanml3d_features_from_joints
 from mmm_core.motion.motion import FPS, Motion
 from mmm_core.motion.skeleton import matrix_from_quat
 
@@ -85,7 +86,7 @@ def between(engine: Engine, keyframes: Sequence[Keyframe], text: str = "", *, se
 
 def still_ids(engine: Engine, pose: Motion) -> Tensor:
     """(C,) ids of a person who holds a pose."""
-    features = features_of(pose)[:1].repeat(STILL_FRAMES, 1)
+    features = features_of(pose, engine.model.rest_pose)[:1].repeat(STILL_FRAMES, 1)
     features[:, :3] = 0.0  # the root stays
     features[:, 193:259] = 0.0
     features[:, 259:263] = 1.0
@@ -94,11 +95,16 @@ def still_ids(engine: Engine, pose: Motion) -> Tensor:
     return ids[len(ids) // 2]
 
 
-def features_of(motion: Motion) -> Tensor:
-    """(T, 263) features: the motion's own, or those of its joints, with the lowest one on the floor."""
+def features_of(motion: Motion, rest_pose: RestPose = "mmmd") -> Tensor:
+    """(T, 263) features: the motion's own, or those of its joints, with the lowest one on the floor.
+
+    Those of the joints are of the definition that a model of this `rest_pose` was trained on: ours, or HumanML3D's.
+    """
     if motion.features.any():
         return torch.from_numpy(motion.features.copy())
     joints = motion.joints_m.astype("float64")
+    if rest_pose == "humanml3d":
+        return torch.from_numpy(humanml3d_features_from_joints(joints))
     joints[..., 1] -= joints[..., 1].min()
     head = matrix_from_quat(motion.head_quat_wxyz.astype("float64"))
     return torch.from_numpy(features_from_joints(joints, head, motion.forearm_twist_rad.astype("float64")))

@@ -27,7 +27,8 @@ from numpy.typing import NDArray
 
 from mmm_core.errors import TrainingDataError
 from mmm_core.imports.kit import KIT, KIT_FPS, kit_facing_yaw_rad
-from mmm_core.motion.features import HUMANML3D, FeatureLayout, features_from_joints, features_from_rotations
+from mmm_core.motion.features import HUMANML3D, FeatureLayout, features_from_rotations
+from mmm_core.motion.humanml3d_features import humanml3d_features_from_joints
 from mmm_core.motion.motion import FPS
 
 log = logging.getLogger(__name__)
@@ -143,7 +144,7 @@ class MotionFolder:
             raise TrainingDataError(self.path, name, _MISSING, f"new_joint_vecs/{name}.npy or new_joints/{name}.npy")
         joints = _array(path, (None, self.layout.n_joints, 3)).astype(np.float64)
         if self.layout is HUMANML3D:
-            return features_from_joints(joints)
+            return humanml3d_features_from_joints(joints)
         identity = np.broadcast_to(np.eye(3), (len(joints), self.layout.n_joints - 1, 3, 3))
         return features_from_rotations(joints, kit_facing_yaw_rad(joints), identity, KIT)
 

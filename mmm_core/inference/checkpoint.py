@@ -12,7 +12,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import torch
 from safetensors import SafetensorError, safe_open
@@ -29,6 +29,7 @@ from mmm_core.model.text import MiniLm, MiniLmConfig
 from mmm_core.model.tokenizer import PartConfig, Tokenizer, TokenizerConfig
 from mmm_core.model.transformer import MotionTransformer, TransformerConfig
 from mmm_core.model.vqvae import VqVae, VqVaeConfig
+from mmm_core.motion.features import RestPose
 
 FORMAT = 1
 WEIGHTS_DIR = Path(__file__).parents[1] / "weights"
@@ -49,8 +50,9 @@ class Model:
         scope: texts in and out of scope; None in imported models, which accept everything.
         provenance: where the weights come from.
         text: CLIP's text tower, in imported models; None means the packed MiniLM.
-        rest_pose: rest directions of the rotation channels. "mmmd": joints come from the rotations;
-            "humanml3d": from the position channels, as the reference recovers them.
+        rest_pose: definition of the features it takes and gives, above all the rest directions of the rotation channels.
+            "mmmd": `features_from_joints`, joints come back from the rotations; "humanml3d":
+            `humanml3d_features_from_joints`, joints come back from the position channels, as the reference recovers them.
     """
 
     tokenizer: Tokenizer | VqVae
@@ -59,7 +61,7 @@ class Model:
     scope: ScopeIndex | None
     provenance: dict[str, Any]
     text: ClipText | None = None
-    rest_pose: Literal["mmmd", "humanml3d"] = "mmmd"
+    rest_pose: RestPose = "mmmd"
 
     @property
     def is_ours(self) -> bool:

@@ -9,6 +9,7 @@ sums shifted by one frame. Row T - 1 has no next frame and repeats the step befo
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,8 @@ from mmm_core.motion.skeleton import (
     twist_about_bone_rad,
 )
 
+RestPose = Literal["mmmd", "humanml3d"]
+"""Whose definition a model's features follow: this module's, or that of `humanml3d_features`."""
 CONTACT_SPEED_M = 0.045
 """A foot joint that moves less than this in a frame, per axis sum of squares 0.002 as in HumanML3D, stands."""
 
