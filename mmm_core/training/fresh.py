@@ -149,8 +149,7 @@ class FreshClips:
         return Round(kept["ids"], kept["caption_rows"], kept["captions"], states)
 
     def _made(self, k: int) -> Round:
-        how, weights = self._how, read_weights(self._folder / WEIGHTS_FILE)
-        clips = [self._clip(k, i, weights) for i in range(how.clips if k else how.first)]
+        clips = self._clips(k)
         captions = sorted({c for clip in clips for c in clip.captions})
         row = {caption: i for i, caption in enumerate(captions)}
         rows = [[row[c] for c in clip.captions] for clip in clips]
@@ -158,6 +157,14 @@ class FreshClips:
         return Round(
             encode_clips(clips, self._tokenizer), rows, captions, CaptionStates.encode(captions, self._encoder)
         )
+
+    def clips(self, step: int) -> list[Clip]:
+        """The motions of the newest round at `step`, made again: a round keeps their ids alone."""
+        return self._clips(step // self._how.every)
+
+    def _clips(self, k: int) -> list[Clip]:
+        weights = read_weights(self._folder / WEIGHTS_FILE)
+        return [self._clip(k, i, weights) for i in range(self._how.clips if k else self._how.first)]
 
     def _clip(self, k: int, i: int, weights: Mapping[str, float]) -> Clip:
         rng = np.random.default_rng((self._seed, 77, k, i))

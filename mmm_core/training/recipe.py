@@ -73,6 +73,7 @@ class TokenizerRecipe:
         schedule: how long.
         decoder: further training of the decoder alone; 0 steps for none (layout "parts").
         gate: stop unless it keeps the corpus's motions (layout "parts"; `mmmd eval tokenizer`).
+        tune_start: train the decoder further of the model, too, that the recipe goes on from; its ids stay what they are.
     """
 
     layout: Literal["parts", "whole", "halves"] = "parts"
@@ -87,6 +88,7 @@ class TokenizerRecipe:
     schedule: Schedule = field(default_factory=lambda: Schedule(steps=2600, learning_rate=1e-3))
     decoder: Schedule = field(default_factory=lambda: Schedule(steps=2500, learning_rate=1e-3))
     gate: bool = False
+    tune_start: bool = False
 
     def config(self, n_features: int) -> TokenizerConfig | VqVaeConfig:
         """Sizes for features of that width."""

@@ -287,8 +287,10 @@ class Stages:
     def model(self) -> Model:
         """All stages, as a model to be saved."""
         transformer, length, tokenizer = self.transformer, self.length, self.tokenizer
-        if isinstance(tokenizer, Tokenizer) and self.recipe.tokenizer.decoder.steps and self.start is None:
-            tune_decoder(tokenizer, self.clips, self.recipe.tokenizer.decoder, self.run)
+        how = self.recipe.tokenizer
+        if isinstance(tokenizer, Tokenizer) and how.decoder.steps and (self.start is None or how.tune_start):
+            newest = [] if self.fresh is None else self.fresh.clips(self.recipe.transformer.schedule.steps - 1)
+            tune_decoder(tokenizer, [*self.clips, *newest], how.decoder, self.run)
         synthesised = self._has_gestures
         text = self.text if isinstance(self.text, ClipText) else None
         pose = "humanml3d" if self.folder is not None else "mmmd"

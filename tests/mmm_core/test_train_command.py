@@ -121,13 +121,22 @@ def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path
 
 
 def test_a_recipe_makes_clips_while_it_trains(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Rounds are made when their first step comes; lengths are learnt from the newest; layers of words cannot be tuned beside."""
+    """Rounds are made when their first step comes; lengths and, where asked for, the decoder of a start learn from the newest."""
     config, run = small(tmp_path / "fresh.toml"), tmp_path / "run"
     fresh = "[data.fresh]\nclips = 2\nfirst = 4\nevery = 4\nrounds = 1\ncaptions = 1\n"
     config.write_text(config.read_text().replace("[tokenizer]", fresh + "[tokenizer]", 1))
     assert main(["train", "--config", str(config), "--run", str(run), "--sample-every", "0"]) == 0
     assert sorted(p.name for p in (run / "fresh").iterdir()) == ["round_0000.pt", "round_0001.pt"]
     assert load_model(run / "model.safetensors").provenance["recipe"]["data"]["fresh"]["clips"] == 2
+    more = tmp_path / "more.toml"
+    more.write_text(
+        f'start = "{run / "model.safetensors"}"\n'
+        + config.read_text().replace("layout =", "tune_start = true\nlayout =")
+    )
+    assert main(["train", "--config", str(more), "--run", str(tmp_path / "more"), "--sample-every", "0"]) == 0
+    old, new = (load_model(folder / "model.safetensors").tokenizer for folder in (run, tmp_path / "more"))
+    changed = {name.split(".")[0] for name, t in old.state_dict().items() if not torch.equal(t, new.state_dict()[name])}
+    assert changed == {"decoder"}, "its ids stay what they are"
     tuned = tmp_path / "tuned.toml"
     tuned.write_text(config.read_text() + "[text]\ntuned_layers = 1\n")
     assert main(["train", "--config", str(tuned), "--run", str(tmp_path / "tuned")]) == 1
