@@ -35,7 +35,7 @@ from daemon.client.errors import (
     waited_in_vain,
 )
 from daemon.client.lines import Line, within
-from daemon.client.streams import AsyncStream, LeaseNews, begun
+from daemon.client.streams import AsyncStream, LeaseNews, begun, new_lease
 from daemon.config import Endpoints
 from daemon.keys import KeyFolder, connect_curve
 from daemon.wire.codec import decode_event
@@ -47,7 +47,6 @@ from daemon.wire.requests import (
     Estop,
     Gesture,
     Idle,
-    Lease,
     Look,
     Park,
     Play,
@@ -179,8 +178,8 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         self, holder: str = "", *, silence_s: float | None = None, timeout_s: float = MOTION_TIMEOUT_S
     ) -> AsyncGenerator[AsyncStream]:
         """A lease on the robot's joints, once it has begun; arguments and errors as for `daemon.client.Client.stream`."""
-        request, cmd = Lease(id=uuid.uuid4().hex, holder=holder, silence_s=silence_s), self.endpoints.cmd
-        news, socket = LeaseNews(request.id), self._context.socket(zmq.PUB)
+        request, cmd = new_lease(holder, silence_s), self.endpoints.cmd
+        news, socket = LeaseNews(request), self._context.socket(zmq.PUB)
         try:
             self._secure(socket, self.endpoints.stream)
             socket.connect(self.endpoints.stream)

@@ -19,7 +19,7 @@ from daemon.client.compositions import (
 )
 from daemon.client.controls import ControlCalls
 from daemon.client.errors import CancelledByError, NoAnswerError, RefusedError, Said, unexpected
-from daemon.client.streams import LeaseNews, Stream, begun
+from daemon.client.streams import LeaseNews, Stream, begun, new_lease
 from daemon.wire.codec import decode_event
 from daemon.wire.events import Ack, AnyEvent, Done, Refusal
 from daemon.wire.requests import (
@@ -27,7 +27,6 @@ from daemon.wire.requests import (
     Capabilities,
     Gesture,
     Idle,
-    Lease,
     Look,
     Play,
     PlayOptions,
@@ -171,8 +170,8 @@ class Client(ControlCalls, CompositionCalls[Said]):
             CancelledByError: a stop or another command ended it.
             NoAnswerError: not in time.
         """
-        request = Lease(id=uuid.uuid4().hex, holder=holder, silence_s=silence_s)
-        news, cmd = LeaseNews(request.id), self._connect(self.endpoints.cmd)
+        request = new_lease(holder, silence_s)
+        news, cmd = LeaseNews(request), self._connect(self.endpoints.cmd)
         socket = self._context.socket(zmq.PUB)
         try:
             self._secure(socket, self.endpoints.stream)

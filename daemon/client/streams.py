@@ -7,7 +7,9 @@ releases the lease; one that ends in an exception cancels it.
 from __future__ import annotations
 
 import asyncio
+import secrets
 import time
+import uuid
 from collections.abc import Callable, Mapping, Sequence
 
 import zmq
@@ -16,7 +18,7 @@ import zmq.asyncio
 from daemon.client.errors import CancelledByError, NoAnswerError, RefusedError
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.events import AnyEvent, Cancelled, Progress, Refusal
-from daemon.wire.requests import Target
+from daemon.wire.requests import Lease, Target
 
 Angles = Sequence[float] | Mapping[str, float]
 """For every joint in the robot's order, or for some joints by name; radians."""
@@ -26,13 +28,14 @@ class LeaseNews:
     """What a holder has heard of its lease.
 
     Attributes:
-        id: of the lease, for those who send targets by other means.
+        id: of the lease.
+        secret: of the lease, for those who send targets by other means.
         events: all of them so far.
         held_by: self-collision, silence, or nothing; what keeps the robot from its target, as last heard.
     """
 
-    def __init__(self, lease_id: str) -> None:
-        self.id = lease_id
+    def __init__(self, lease: Lease) -> None:
+        self.id, self.secret = lease.id, lease.secret
         self.events: list[AnyEvent] = []
         self.held_by = ""
         self._sent = 0
@@ -66,7 +69,12 @@ class LeaseNews:
         """A target as it goes over the wire."""
         self._sent += 1
         angles = {k: float(v) for k, v in q_rad.items()} if isinstance(q_rad, Mapping) else [float(v) for v in q_rad]
-        return encode(Target(id=self.id, q_rad=angles, seq=self._sent, t_mono=time.monotonic()))
+        return encode(Target(id=self.id, secret=self.secret, q_rad=angles, seq=self._sent, t_mono=time.monotonic()))
+
+
+def new_lease(holder: str, silence_s: float | None) -> Lease:
+    """A request for a lease, with an id and a secret of its own."""
+    return Lease(id=uuid.uuid4().hex, secret=secrets.token_urlsafe(32), holder=holder, silence_s=silence_s)
 
 
 def begun(event: AnyEvent) -> bool:

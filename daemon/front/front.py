@@ -25,7 +25,7 @@ from daemon.driving.shared import BusLink, BusRequest
 from daemon.front.control import ControlThread
 from daemon.front.controls import FrontControls
 from daemon.front.desk import TOPICS, Desk
-from daemon.front.rates import RATE_HZ, Rates
+from daemon.front.rates import RATE_HZ, RequestLimits
 from daemon.front.stop_texts import stops
 from daemon.front.stream_desk import TargetDesk
 from daemon.front.subscriptions import MOST_BYTES, RECEIVE_QUEUE, LastValues
@@ -46,6 +46,7 @@ from daemon.state.machine import RobotState, StateMachine
 from daemon.wire.codec import WireError, decode_cmd, encode, error_event, only_frame
 from daemon.wire.event_base import Event
 from daemon.wire.events import Rejected
+from daemon.wire.lease_requests import Lease, without_secret
 from daemon.wire.status import HealthEvent, LogEvent, StateEvent
 from retarget.robot import RobotModel
 
@@ -104,7 +105,7 @@ class Front:
         self._desk = Desk(config, robot, self.performer, sources, self.ledger, generator, self.state_event)
         self._started_s = time.monotonic()
         self.recording = str(config.log) if config.log else ""
-        self._rates = Rates()
+        self._rates = RequestLimits()
         self._tasks: list[asyncio.Task[None]] = []
         self._loop: asyncio.AbstractEventLoop | None = None
         self._events_dropped = self._overruns = 0
@@ -225,21 +226,22 @@ class Front:
                     break
             for parts in newest.values():
                 if self._record is not None:
-                    self._record("stream", parts[0])
+                    self._record("stream", without_secret(parts[0], self._targets.secret))
                 self._targets.take(parts)
             await asyncio.sleep(STREAM_PAUSE_S)
 
     def _take_message(self, message: Message) -> None:
         t_received_ns = time.monotonic_ns()
         route, parts = split_route(message.parts)
-        if not self._rates.allows(route.frames[0], t_received_ns * 1e-9) and not stops(parts):
+        allowed = self._rates.allows(route.frames[0], message.peer, t_received_ns * 1e-9)
+        if not allowed and not stops(parts):
             self._refuse_rate(route)
             return
         try:
             frame = only_frame(parts)
             request = decode_cmd(frame)
             if self._record is not None:
-                self._record("cmd", frame)
+                self._record("cmd", without_secret(frame, request.secret if isinstance(request, Lease) else ""))
             self._desk.take(request, route, t_received_ns)
         except WireError as error:
             event = error_event(error)

@@ -1,4 +1,4 @@
-"""How much one client may ask: a bucket of requests that fills at a rate. Sans-I/O."""
+"""How much may be asked: a bucket of requests for each client and for each peer, which fills at a rate. Sans-I/O."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections import OrderedDict
 
 RATE_HZ = 400.0
 BURST = 4000
+PEER_RATE_HZ, PEER_BURST = 2000.0, 20_000
+"""Requests of all clients of one peer together: of one key, else of one address. A client that connects anew gets a new name."""
 KEPT = 1024
 """Clients that are remembered; the one that asked least recently is forgotten first."""
 
@@ -32,3 +34,19 @@ class Rates:
             self._left.popitem(last=False)
         self.refused += not allowed
         return allowed
+
+
+class RequestLimits:
+    """Requests of each client, and of all clients of each peer together."""
+
+    def __init__(self) -> None:
+        self._clients, self._peers = Rates(), Rates(PEER_RATE_HZ, PEER_BURST)
+
+    @property
+    def refused(self) -> int:
+        """Requests that were dropped."""
+        return self._clients.refused + self._peers.refused
+
+    def allows(self, client: bytes, peer: str, now_s: float) -> bool:
+        """Whether a client of a peer may ask now; counts it."""
+        return self._clients.allows(client, now_s) and self._peers.allows(peer.encode(), now_s)

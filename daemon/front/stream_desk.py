@@ -35,12 +35,19 @@ class TargetDesk:
         self._performer, self._ledger, self._publish = performer, ledger, publish
         self._inbox = StreamInbox(robot)
 
+    @property
+    def secret(self) -> str:
+        """Of the lease that is held; empty for none."""
+        lease = self._performer.lease
+        return lease.request.secret if lease is not None and isinstance(lease.request, Lease) else ""
+
     def take(self, parts: list[bytes]) -> None:
         """Read a message; what is wrong with it moves nothing and does not count as a sign of life."""
-        lease = self._performer.lease
-        lease_id, holder = (lease.id, lease.request.words) if lease is not None else ("", "")
+        lease, lease_id, holder = self._performer.lease, "", ""
+        if lease is not None:
+            lease_id, holder = lease.id, lease.request.words
         try:
-            q_rad = self._inbox.read(parts, lease_id, holder)
+            q_rad = self._inbox.read(parts, lease_id, holder, self.secret)
         except WireError as error:
             self._tell(error)
             return

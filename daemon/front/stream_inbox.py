@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hmac
 from collections import Counter
 
 import numpy as np
@@ -31,20 +32,21 @@ class StreamInbox:
         self.bad: Counter[str] = Counter()
         self._told: dict[str, tuple[float, int]] = {}
 
-    def read(self, parts: list[bytes], lease_id: str, holder: str) -> Array:
+    def read(self, parts: list[bytes], lease_id: str, holder: str, secret: str) -> Array:
         """(J,) radians, NaN for joints that are not named.
 
         Args:
             parts: of the message that came.
             lease_id: of the lease that is held, empty for none.
             holder: whose it is, in words.
+            secret: what shows that a target is its holder's.
 
         Raises:
             WireError: it is no target of this lease.
         """
         try:
             target = decode_target(only_frame(parts))
-            self._check_lease(target, lease_id, holder)
+            self._check_lease(target, lease_id, holder, secret)
             return self._angles(target)
         except WireError as error:
             self.bad[error.code] += 1
@@ -58,9 +60,14 @@ class StreamInbox:
         self._told[code] = (now_s, self.bad[code])
         return self.bad[code] - told
 
-    def _check_lease(self, target: Target, lease_id: str, holder: str) -> None:
-        if target.id == lease_id:
-            return
+    def _check_lease(self, target: Target, lease_id: str, holder: str, secret: str) -> None:
+        if lease_id and target.id == lease_id:
+            if hmac.compare_digest(target.secret.encode(), secret.encode()):
+                return
+            raise WireError(
+                "wrong_secret", "target", f"another secret than that of the lease, which {holder} holds",
+                "the `secret` of the `lease` request", "show the secret, or wait until the lease has ended",
+            )  # fmt: skip
         found = f"id {target.id[:40]!r}; " + (
             f"{holder} holds lease {lease_id!r}" if lease_id else "nobody holds a lease"
         )

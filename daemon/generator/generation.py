@@ -17,6 +17,7 @@ import zmq.asyncio
 
 from daemon.generator.messages import (
     MIN_FRAMES,
+    MOST_REQUEST_BYTES,
     BetweenMessage,
     EditMessage,
     FailureMessage,
@@ -238,6 +239,10 @@ class GeneratorClient:
                 await asyncio.wait_for(self._ready.wait(), 0.1)
 
     async def _ask(self, request: ToGenerator, timeout_s: float, asked: str) -> FromGenerator:
+        frame = encode(request)
+        if len(frame) > MOST_REQUEST_BYTES:  # the generator would drop the connection, and be taken for dead
+            found, allowed = f"a motion of {len(frame)} bytes", f"at most {MOST_REQUEST_BYTES}, about 35 s"
+            raise GeneratorError("bad_edit", asked, found, allowed, "edit a shorter motion")
         if self._reader is None:
             self._reader = asyncio.create_task(self._read())
         answer: asyncio.Future[FromGenerator] = asyncio.get_running_loop().create_future()
@@ -245,7 +250,7 @@ class GeneratorClient:
         life = self._lives
         try:
             async with asyncio.timeout(timeout_s):
-                await self._socket.send(encode(request))
+                await self._socket.send(frame)
                 return await answer
         except TimeoutError:
             self.timeouts += life == self._lives  # one that was started since is not to blame

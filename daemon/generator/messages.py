@@ -21,6 +21,8 @@ from mmm_core.motion.motion import N_FEATURES, N_JOINTS, Motion
 from mmm_core.recognition.seen import Scene
 
 GENERATION_VERSION = 4
+MOST_REQUEST_BYTES = 1 << 20
+"""Bytes of a request: it may carry half a minute of motion that is to be edited."""
 MOST_TEXT_CHARS, MOST_TIMES, MOST_PARTS, MOST_TOLD_BYTES = 2000, 64, 16, 256 << 10
 """Bounds of a request; those of `cmd` are inside them. A generator may be reached by more than one daemon."""
 Text = Annotated[str, Meta(max_length=MOST_TEXT_CHARS)]

@@ -23,6 +23,7 @@ from daemon.descriptors import die_with_parent
 from daemon.errors import ConfigError
 from daemon.generator.messages import (
     GENERATION_VERSION,
+    MOST_REQUEST_BYTES,
     BetweenMessage,
     EditMessage,
     FailureMessage,
@@ -49,8 +50,6 @@ log = logging.getLogger(__name__)
 
 NICENESS = 5
 POLL_MS = 200
-MOST_REQUEST_BYTES = 1 << 20
-"""Bytes of a request: it may carry the motion that is to be edited."""
 MOST_CONNECTIONS = 128
 MOST_BEGUN = 8
 """Motions of which only the draft is made; with so many the oldest is made before anything else."""

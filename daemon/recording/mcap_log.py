@@ -19,8 +19,7 @@ from typing import IO, Any
 
 import msgspec
 import numpy as np
-import zstandard
-from mcap.exceptions import EndOfFile, McapError
+from mcap.exceptions import EndOfFile
 from mcap.records import Channel, Chunk, Header, McapRecord, Message, Metadata
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import Writer
@@ -198,16 +197,9 @@ def read_log(path: Path) -> Log:
                     _take(path, inner, topics, log)
                 except (EndOfFile, struct.error):
                     log.problem = "is cut off (recorder killed or disk full)"
-                except (
-                    McapError,
-                    msgspec.DecodeError,
-                    zstandard.ZstdError,
-                    ValueError,
-                    KeyError,
-                    OverflowError,
-                ) as error:
-                    if isinstance(error, LogError):
-                        raise
+                except (LogError, OSError):
+                    raise
+                except Exception as error:  # whatever a damaged file can lead to
                     log.problem = f"is damaged before byte {f.tell()} ({type(error).__name__}: {error})"
     except FileNotFoundError:
         raise LogError(f"{path}: no such file; logs are written by `mmmd run --log FILE`") from None

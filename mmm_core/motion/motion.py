@@ -6,7 +6,6 @@ Frame: metres, y up, z forward, x to the person's left; see `mmm_core.motion.ske
 from __future__ import annotations
 
 import os
-import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,9 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.errors import MotionFileError
+from mmm_core.motion.arrays import ArraysError, read_npz
 
 FPS = 20.0
 """Frames per second of every motion of the model (HumanML3D's rate)."""
+MOST_FRAMES = 24_000
+"""Frames of a motion file that are read at most: each takes 7 kB on the way to a robot."""
 N_JOINTS = 22
 N_FEATURES = 263
 
@@ -144,13 +146,11 @@ def load_npz(path: Path | str) -> Motion:
     """
     path = Path(path)
     try:
-        with np.load(path, allow_pickle=False) as data:
-            fields = {key: data[key] for key in data.files}
+        fields = read_npz(path)
     except FileNotFoundError:
         raise MotionFileError(path, "", "no such file", "an .npz written by `mmmd generate`") from None
-    except (OSError, ValueError, EOFError, KeyError) as error:
-        found = f"not a readable npz ({error})" if zipfile.is_zipfile(path) else "no npz: not even a zip archive"
-        raise MotionFileError(path, "", found, "an .npz without pickled objects") from error
+    except (OSError, ArraysError) as error:
+        raise MotionFileError(path, "", str(error), "an .npz without pickled objects") from error
     for key in ("joints", "fps"):
         if key not in fields:
             raise MotionFileError(path, key, f"missing; found {sorted(fields)}", "joints (T,22,3) in metres and fps")
@@ -167,6 +167,12 @@ def load_npz(path: Path | str) -> Motion:
         raise MotionFileError(
             path, "joints", found, "finite metres in every frame; cut those frames out or fill them in"
         )
+    if len(joints_m) > MOST_FRAMES:
+        found, allowed = (
+            f"{len(joints_m)} frames",
+            f"at most {MOST_FRAMES}, which are {MOST_FRAMES / FPS / 60:.0f} minutes at {FPS:g} fps",
+        )
+        raise MotionFileError(path, "joints", found, allowed)
     T = len(joints_m)
     identity = np.tile(np.array([1, 0, 0, 0], np.float32), (T, 1))
     try:
@@ -174,13 +180,13 @@ def load_npz(path: Path | str) -> Motion:
             joints_m=joints_m.astype(np.float32),
             fps=float(fields["fps"]),
             head_quat_wxyz=fields.get("head_quat_wxyz", identity).astype(np.float32),
-            forearm_twist_rad=fields.get("forearm_twist_rad", np.zeros((T, 2))).astype(np.float32),
-            features=fields.get("features", np.zeros((T, N_FEATURES))).astype(np.float32),
+            forearm_twist_rad=fields.get("forearm_twist_rad", np.zeros((T, 2), np.float32)).astype(np.float32),
+            features=fields.get("features", np.zeros((T, N_FEATURES), np.float32)).astype(np.float32),
             tokens=fields.get("tokens", np.zeros(0)).astype(np.int32),
             text=str(fields.get("text", "")),
             seed=int(fields.get("seed", 0)),
             status=str(fields.get("status", "accepted")),  # type: ignore[arg-type]  # checked by Motion
             scope_score=float(fields.get("scope_score", 1.0)),
         )
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, OverflowError) as error:
         raise MotionFileError(path, "", str(error), "finite arrays of one length") from error

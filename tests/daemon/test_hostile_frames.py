@@ -87,7 +87,7 @@ def test_no_hostile_frame_ends_the_reader_of_stream():
     inbox = StreamInbox(load_robot("reference"))
     for text in HOSTILE.values():
         with pytest.raises(wire.WireError) as caught:
-            inbox.read([text.encode()], "lease", "nobody")
+            inbox.read([text.encode()], "lease", "nobody", "a-secret-of-a-lease")
         assert len(str(caught.value)) < MOST_ERROR_BYTES
     assert sum(inbox.bad.values()) == len(HOSTILE)
 

@@ -21,7 +21,7 @@ from daemon.client import Client, NoAnswerError, RefusedError
 from daemon.config import Endpoints
 from daemon.demo import free_endpoints
 from daemon.errors import ConfigError
-from daemon.front.rates import BURST, RATE_HZ, Rates
+from daemon.front.rates import BURST, PEER_BURST, PEER_RATE_HZ, RATE_HZ, Rates, RequestLimits
 from daemon.generator.messages import Generated
 from daemon.keys import ZAP, Doorkeeper, KeyFolder, as_hex, checked_key
 from tests.daemon.kinematic import generate
@@ -343,6 +343,15 @@ def test_another_checkpoint_than_agreed_is_not_used():
         assert daemon.terminate() == 0
     finally:
         daemon.close()
+
+
+def test_ever_new_clients_of_one_peer_share_its_limit():
+    """The limit was that of each name, and a client that connects anew has a new one."""
+    limits = RequestLimits()
+    allowed = sum(limits.allows(b"%d" % n, "laptop", 0.0) for n in range(2 * PEER_BURST))
+    assert allowed == PEER_BURST and limits.refused == PEER_BURST
+    assert limits.allows(b"1", "another machine", 0.0)
+    assert sum(limits.allows(b"new %d" % n, "laptop", 1.0) for n in range(5000)) == PEER_RATE_HZ
 
 
 def test_rates_bound_each_client_apart():

@@ -14,15 +14,16 @@ from daemon.wire.codec import WireError
 from retarget.robot import load_robot
 
 ROBOT = load_robot("reference")
+SECRET = "of-the-holder-alone"
 N, NAMES = ROBOT.n_joints, ROBOT.joint_names
 
 
 def target(**fields) -> bytes:
-    return json.dumps({"type": "target", "id": "L", **fields}).encode()
+    return json.dumps({"type": "target", "id": "L", "secret": SECRET, **fields}).encode()
 
 
 def read(frame: bytes, inbox: StreamInbox | None = None) -> np.ndarray:
-    return (inbox or StreamInbox(ROBOT)).read([frame], "L", "stream of me")
+    return (inbox or StreamInbox(ROBOT)).read([frame], "L", "stream of me", SECRET)
 
 
 def test_all_joints_in_order_or_some_by_name():
@@ -49,6 +50,10 @@ def test_all_joints_in_order_or_some_by_name():
         (target(q_rad=[0.0] * N, speed=9), "unknown_field"),
         (target(q_rad=[0.0] * N, v=2), "version"),
         (target(q_rad=[0.0] * N).replace(b'"L"', b'"other"'), "no_lease"),
+        (target(q_rad=[0.0] * N, secret="another-secret-1"), "wrong_secret"),
+        (target(q_rad=[0.0] * N, secret="L"), "bad_value"),
+        (target(q_rad=[0.0] * N, secret=""), "bad_value"),
+        (json.dumps({"type": "target", "id": "L", "q_rad": [0.0] * N}).encode(), "bad_value"),
         (b'{"type": "target", "q_rad": [0]}', "bad_value"),
         (b'{"type": "say", "id": "L", "text": "wave"}', "unknown_type"),
         (b'{"type": "target", "id": "L", "q_rad": [NaN]}', "bad_json"),
@@ -70,9 +75,9 @@ def test_what_is_wrong_has_a_name_and_is_counted(frame, code):
 def test_a_stranger_is_told_who_holds_the_lease_or_that_nobody_does():
     inbox = StreamInbox(ROBOT)
     with pytest.raises(WireError, match="stream of me holds lease 'L'"):
-        inbox.read([target(q_rad=[0.0] * N).replace(b'"L"', b'"X"')], "L", "stream of me")
+        inbox.read([target(q_rad=[0.0] * N).replace(b'"L"', b'"X"')], "L", "stream of me", SECRET)
     with pytest.raises(WireError, match="nobody holds a lease"):
-        inbox.read([target(q_rad=[0.0] * N)], "", "")
+        inbox.read([target(q_rad=[0.0] * N)], "", "", "")
 
 
 def test_a_flood_of_bad_messages_is_named_once_a_second_with_its_number():

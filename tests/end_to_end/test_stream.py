@@ -235,7 +235,7 @@ def test_bad_messages_are_counted_and_named_and_move_nothing(robot, running):
         with robot.stream("careful") as stream:
             rest = robot.status().goal_rad
             n, name = len(rest), robot.status().joint_names[0]
-            good = {"type": "target", "id": stream.news.id}
+            good = {"type": "target", "id": stream.news.id, "secret": stream.news.secret}
             for frame in (
                 b"wave", b'{"type": "target"}', {**good, "q_rad": [0.0] * (n + 1)}, {**good, "q_rad": {"tail": 1.0}},
                 {**good, "q_rad": {name: 5000.0}}, {**good, "id": "stolen", "q_rad": rest},
@@ -257,6 +257,35 @@ def test_bad_messages_are_counted_and_named_and_move_nothing(robot, running):
         told = [e for e in stream.news.events if isinstance(e, ev.Progress) and e.stage == "bad_target"]
         assert {e.status for e in told} >= {"wrong_number", "unknown_joint", "not_finite"}
         assert all(e.reason for e in told)
+    finally:
+        context.destroy(linger=0)
+
+
+def test_who_reads_the_id_of_a_lease_on_pub_cannot_lead_the_robot(robot, running):
+    """Ids of leases are published, and a target needed no more than that: anybody who reads `pub` could steer."""
+    context = zmq.Context()
+    thief, listener = context.socket(zmq.PUB), context.socket(zmq.SUB)
+    thief.connect(running.endpoints.stream)
+    listener.connect(running.endpoints.pub)
+    listener.subscribe(b"")
+    heard = b""
+    try:
+        with robot.stream("owner") as stream, fed(stream, rest := robot.status().goal_rad):
+            away, secret = [q + 0.3 for q in rest], stream.news.secret
+            before, tries = robot.status().stream.bad.get("wrong_secret", 0), 0
+            while robot.status().stream.bad.get("wrong_secret", 0) < before + 20:
+                status = robot.status()
+                guess = f"guess-number-{tries:08}"
+                frame = {"type": "target", "id": status.stream.lease.id, "secret": guess, "q_rad": away}
+                thief.send(json.dumps(frame).encode())
+                tries += 1
+                assert tries < 5000
+                time.sleep(0.005)
+            assert robot.status().goal_rad == pytest.approx(rest, abs=1e-3)
+            while listener.poll(0):
+                heard += b"".join(listener.recv_multipart())
+            assert stream.news.id.encode() in heard and secret.encode() not in heard
+            assert secret not in running.said
     finally:
         context.destroy(linger=0)
 

@@ -10,6 +10,7 @@ from mmm_core.errors import MotionFileError
 from mmm_core.imports.recordings.asf_amc import read_amc
 from mmm_core.imports.recordings.bvh import read_bvh
 from mmm_core.imports.recordings.skeletons import motion_of
+from mmm_core.motion.arrays import ArraysError, read_npy, read_npz
 from mmm_core.motion.features import joints_from_positions
 from mmm_core.motion.motion import FPS, N_FEATURES, Motion, load_npz
 from mmm_core.motion.skeleton import JOINT_NAMES
@@ -53,9 +54,9 @@ def find_motions(folder: Path) -> list[Path]:
 
 def _read_npy(path: Path, fps: float) -> Motion:
     try:
-        data = np.asarray(np.load(path, allow_pickle=False))
-    except (OSError, ValueError, EOFError) as error:
-        raise MotionFileError(path, "", f"not a readable npy ({error})", "an array without pickled objects") from error
+        data = read_npy(path)
+    except (OSError, ArraysError) as error:
+        raise MotionFileError(path, "", str(error), "an array without pickled objects") from error
     if data.ndim == 2 and data.shape[1] == N_FEATURES and data.dtype.kind == "f":
         if not np.isfinite(data).all():
             raise MotionFileError(path, "frames", "NaN or infinite values", "numbers")
@@ -69,8 +70,7 @@ def _read_npy(path: Path, fps: float) -> Motion:
 
 def _read_npz(path: Path, fps: float | None) -> Motion:
     motion = load_npz(path)
-    with np.load(path, allow_pickle=False) as data:
-        has_head = "head_quat_wxyz" in data.files
+    has_head = "head_quat_wxyz" in read_npz(path)
     rate = fps or motion.fps
     if has_head and rate == FPS:
         return motion
