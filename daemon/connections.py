@@ -18,6 +18,7 @@ import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import isinf
 from typing import Any, Literal, cast
 
 import zmq
@@ -52,10 +53,12 @@ class Share:
         connections: at most so many at a time.
         gives_way: which ones are shut down when there are more: the newest, so that who is served goes on being served;
             or the oldest, so that a newcomer always gets in.
+        most_unread_bytes: see `MOST_UNREAD_BYTES`; infinite for a socket of which nobody tells what was received.
     """
 
     connections: int
     gives_way: Literal["newest", "oldest"] = "newest"
+    most_unread_bytes: float = MOST_UNREAD_BYTES
 
 
 @dataclass
@@ -175,14 +178,17 @@ class ConnectionGuard:
         delivered, self._delivered = self._delivered, set()
         together = 0
         for connection in (c for c in guarded if c.tcp):
+            most = self._shares[connection.place or ""].most_unread_bytes
+            if isinf(most):
+                continue
             with Held(connection.fd, connection.inode) as held:
                 received = bytes_received(held) if held is not None else 0
             if connection.fd in delivered:
                 connection.read_up_to = received
             connection.unread = received - connection.read_up_to
             together += connection.unread
-            if connection.unread > MOST_UNREAD_BYTES:
-                self._shut(connection, NO_MESSAGE, f"{connection.unread} bytes; allowed: {MOST_UNREAD_BYTES}")
+            if connection.unread > most:
+                self._shut(connection, NO_MESSAGE, f"{connection.unread} bytes; allowed: {most:g}")
         if together > MOST_UNREAD_TOGETHER_BYTES:
             most = max(guarded, key=lambda c: c.unread)
             found = f"{together} bytes of all together; allowed: {MOST_UNREAD_TOGETHER_BYTES}"

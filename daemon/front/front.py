@@ -62,7 +62,7 @@ MOST_TARGETS = 256
 """Targets that are received at one look, so that a flood of them does not keep the event loop."""
 SWITCH_S = 0.001
 """Longest that the event loop keeps the interpreter from the ctl thread."""
-SHARES = {"cmd": Share(256), "ctl": Share(64, gives_way="oldest"), "pub": Share(256), "stream": Share(64)}
+SHARES = {"cmd": Share(256), "ctl": Share(64, "oldest", float("inf")), "pub": Share(256), "stream": Share(64)}
 """Connections of each socket. Who connects to `ctl` gets in whatever waits there: it may be for an e-stop."""
 SCHED_FIFO = 1
 """As in sched.h; ZeroMQ takes the number."""

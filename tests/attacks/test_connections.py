@@ -67,6 +67,25 @@ def test_1500_connections_to_a_socket_keep_no_new_client_out(running, name):
             time.sleep(0.1)
 
 
+@pytest.mark.parametrize("name", ["cmd", "ctl"])
+def test_a_client_that_sends_whole_messages_is_never_cut_off(running, name):
+    """However much they are together: 6 MB here, in messages that are answered."""
+    context = zmq.Context()
+    peer = context.socket(zmq.DEALER)
+    peer.setsockopt(zmq.RCVTIMEO, 20_000)
+    peer.connect(getattr(running.endpoints, name))
+    monitor = peer.get_monitor_socket(zmq.EVENT_DISCONNECTED)
+    try:
+        for _ in range(150):
+            peer.send(b'{"type": "status", "id": "' + b" " * 40_000 + b'"}')
+            assert peer.recv()
+        assert not monitor.poll(200)
+        peer.disable_monitor()
+        monitor.close(0)
+    finally:
+        context.destroy(linger=0)
+
+
 def test_connections_that_never_shake_hands_end_by_themselves(running):
     with crowd(running.endpoints.cmd, 3) as sockets:
         for one in sockets:
