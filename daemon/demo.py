@@ -23,8 +23,8 @@ from daemon.errors import DaemonError
 from daemon.recording.mcap_log import Log, read_log
 from daemon.wire.events import Accepted, AnyEvent, Cancelled, Done, Progress, Refusal
 from daemon.wire.requests import Say
-from retarget.robot import RobotModel
-from sim.audit import Audit
+from retarget.robot.robot import RobotModel
+from sim.audit.audit import Audit
 
 if TYPE_CHECKING:
     from daemon.pictures.performance import Performance

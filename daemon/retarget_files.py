@@ -22,11 +22,11 @@ from mmm_core.imports.recordings.files import read_motion
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import quat_wxyz
 from retarget.errors import MotionError, RetargetError
-from retarget.paths import JointPath
+from retarget.human.poser import ArmsFollow
+from retarget.path.paths import JointPath
 from retarget.pipeline import Retargeter
-from retarget.posing import ArmsFollow
-from retarget.robot import load_robot
-from retarget.ticks import JointServoMap
+from retarget.robot.loading import load_robot
+from retarget.robot.ticks import JointServoMap
 
 MANIFEST = "retarget.json"
 _DASK_BATCH = 16

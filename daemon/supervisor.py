@@ -36,7 +36,8 @@ from daemon.notify import Notifier
 from daemon.recording.feed import RecorderFeed
 from daemon.settings import settings_of
 from daemon.state.machine import RobotState
-from retarget.robot import RobotModel, load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
 

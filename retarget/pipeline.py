@@ -13,19 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion.motion import Motion
-from retarget.arm_chain import ArmChain
-from retarget.avoidance import STRENGTHS, Avoidance, stretches
-from retarget.collision import Allowed, SelfContact
 from retarget.errors import MotionError
-from retarget.following import limit_path
-from retarget.hands import Hands, HumanContacts, read_contacts
-from retarget.human import HumanPose, read_human
-from retarget.kinematics import Kinematics
-from retarget.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
-from retarget.paths import JointPath, JointState
-from retarget.posing import ArmsFollow, Poser, Poses
-from retarget.report import BONES, Comparison
-from retarget.robot import RobotModel
+from retarget.human.arm_chain import ArmChain
+from retarget.human.hand_contacts import Hands, HumanContacts, read_contacts
+from retarget.human.human import HumanPose, read_human
+from retarget.human.poser import ArmsFollow, Poser, Poses
+from retarget.path.avoidance import STRENGTHS, Avoidance, stretches
+from retarget.path.collision import Allowed, SelfContact
+from retarget.path.limit_path import limit_path
+from retarget.path.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
+from retarget.path.paths import JointPath, JointState
+from retarget.path.report import BONES, Comparison
+from retarget.robot.kinematics import Kinematics
+from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 _SETTLE_FRAMES = 16

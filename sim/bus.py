@@ -14,14 +14,14 @@ from collections.abc import Callable, Sequence
 from daemon.bus import packet, packet1
 from daemon.bus.packet import ALERT_BIT, BROADCAST_ID, Access, Instruction, Packet, Part
 from daemon.bus.registers import RETURN_DELAY_UNIT_S
-from retarget.robot import RobotModel
-from sim.audit import Audit
-from sim.fast_reply import share_as, shares_of
+from retarget.robot.robot import RobotModel
+from sim.audit.audit import Audit
 from sim.faults import FaultSchedule
-from sim.instructions import Instructions, accesses_of
-from sim.servo import SimServo
-from sim.spoil import Piece, spoil
-from sim.wire import Wire, WireSettings
+from sim.servos.instructions import Instructions, accesses_of
+from sim.servos.servo import SimServo
+from sim.wire.fast_reply import share_as, shares_of
+from sim.wire.packet_faults import Piece, spoil
+from sim.wire.wire import Wire, WireSettings
 from sim.world import World
 
 _BAUD_TOLERANCE = 0.03

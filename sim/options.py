@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 from sim.errors import SimSettingError
 from sim.faults import FaultSchedule
-from sim.wire import WireSettings
+from sim.wire.wire import WireSettings
 from sim.world import World
 
 BODIES = ("plain", "mujoco")
@@ -56,7 +56,7 @@ def world_of(
         raise SimSettingError("body", f"'{body}'", ", ".join(BODIES))
     maker = None
     if body == "mujoco":
-        from sim.mujoco_body import MujocoBody
+        from sim.bodies.mujoco_body import MujocoBody
 
         maker = MujocoBody
     world = World(robot, faults, start_rad, body=maker)

@@ -13,8 +13,8 @@ from sim.bus import SimBus
 from sim.clock import TrueTime, VirtualClock
 from sim.errors import FaultFileError
 from sim.faults import FaultSchedule
-from sim.machine_time import machine_time
 from sim.options import wire_settings, world_of
+from sim.steal_time import machine_time
 
 
 class SimPort:

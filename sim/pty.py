@@ -17,10 +17,10 @@ from pathlib import Path
 
 from daemon.bus.tty_speed import tty_speed
 from daemon.errors import CommandError
-from sim.audit import TTY_GOALS
+from sim.audit.audit import TTY_GOALS
 from sim.bus import SimBus
 from sim.errors import FaultFileError
-from sim.machine_time import machine_time
+from sim.steal_time import machine_time
 
 log = logging.getLogger(__name__)
 

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bus.servo_bus import ServoBus
-from retarget.robot import RobotModel
-from retarget.ticks import JointServoMap
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.options import world_of

@@ -10,18 +10,18 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from daemon.bus.models import MODELS
-from retarget.robot import RobotModel, ServoSpec
-from retarget.ticks import JointServoMap
-from sim.audit import Audit
-from sim.body import Body, PlainBody
-from sim.drive import STEP_S, Drives
+from retarget.robot.robot import RobotModel, ServoSpec
+from retarget.robot.ticks import JointServoMap
+from sim.audit.audit import Audit
+from sim.bodies.body import Body, PlainBody
+from sim.bodies.motors import motor_of
 from sim.errors import FaultFileError
 from sim.faults import Fault, FaultSchedule
-from sim.motors import motor_of
-from sim.servo import SimServo
-from sim.servo1 import SimServo1
-from sim.servo_power import ENCODER_BIT, OVERLOAD_BIT, RESET_SHARE
-from sim.servo_yp import SimServoP, SimServoY
+from sim.servos.drives import STEP_S, Drives
+from sim.servos.servo import SimServo
+from sim.servos.servo_power import ENCODER_BIT, OVERLOAD_BIT, RESET_SHARE
+from sim.servos.servo_protocol1 import SimServo1
+from sim.servos.servo_series_y_p import SimServoP, SimServoY
 
 log = logging.getLogger(__name__)
 

@@ -12,7 +12,7 @@ import threading
 import time
 from pathlib import Path
 
-from sim.machine_time import STAT, stolen_s
+from sim.steal_time import STAT, stolen_s
 
 LOOK_S = 0.02
 LEAST_S = 0.1

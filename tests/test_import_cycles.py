@@ -8,7 +8,6 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("mmm_core", "retarget", "daemon", "sim")
 KNOWN = {
-    frozenset({"retarget.robot", "retarget.robot_drives", "retarget.robot_file"}),
     frozenset({"daemon.front.controls", "daemon.front.front"}),
 }
 """Circles that are still to be untied."""

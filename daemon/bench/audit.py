@@ -21,7 +21,8 @@ from daemon.bench.texts import draw_texts
 from daemon.bus.models import MODELS
 from daemon.errors import CommandError
 from retarget.pipeline import Retargeter
-from retarget.robot import RobotModel, list_robots, load_robot
+from retarget.robot.loading import list_robots, load_robot
+from retarget.robot.robot import RobotModel
 from sim.faults import PACKET_KINDS, Fault
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from daemon.bus.servo_bus import ServoBus
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.streamer import Streamer
 from daemon.driving.turns import TURNS_UNKNOWN
-from retarget.paths import JointState
-from retarget.robot import RobotModel
+from retarget.path.paths import JointState
+from retarget.robot.robot import RobotModel
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule

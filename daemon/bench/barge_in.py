@@ -21,7 +21,7 @@ from daemon.recording.mcap_log import LoggedCycle, read_log
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.events import AnyEvent, Failed, Progress
 from daemon.wire.requests import Say
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 SHORTEST_GAP_S, LONGEST_GAP_S = 0.03, 0.6
 STOP_EVERY = 10

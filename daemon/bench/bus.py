@@ -23,8 +23,8 @@ from daemon.bus.reading import BusReading
 from daemon.bus.serial_port import SerialPort
 from daemon.bus.servo_bus import ServoBus
 from daemon.clock import RealClock
-from retarget.robot import ServoSpec
-from retarget.servos import servo_models
+from retarget.robot.robot import ServoSpec
+from retarget.robot.servos import servo_models
 
 N_SERVOS = 20
 IDS = list(range(1, N_SERVOS + 1))

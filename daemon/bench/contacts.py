@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 mujoco: Any = importlib.import_module("mujoco")
 

@@ -21,10 +21,10 @@ from mmm_core.corpus.heldout import PROBE_SETS
 from mmm_core.evaluation.probes import judge
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
-from retarget.as_human import as_motion
-from retarget.paths import JointPath
+from retarget.path.paths import JointPath
 from retarget.pipeline import Retargeter
-from retarget.ticks import JointServoMap
+from retarget.robot.ticks import JointServoMap
+from retarget.robot_to_human import as_motion
 from sim.faults import Fault
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.machine_time import stolen_s
+from sim.steal_time import stolen_s
 
 _PACKAGES = ("mmmd", "torch", "numpy", "mujoco", "pyzmq")
 

@@ -19,12 +19,13 @@ from daemon.bench.report import context
 from daemon.bench.retarget_peers import mink_figures
 from daemon.bench.whole_clip import best_of_clip
 from mmm_core.motion.motion import FPS, Motion
-from retarget.human import read_human
-from retarget.limits import limit_step
-from retarget.paths import JointPath, JointState
+from retarget.human.human import read_human
+from retarget.path.limits import limit_step
+from retarget.path.paths import JointPath, JointState
 from retarget.pipeline import Retargeter
-from retarget.robot import RobotModel, list_robots, load_robot
-from retarget.ticks import JointServoMap
+from retarget.robot.loading import list_robots, load_robot
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 
 Array = NDArray[np.float64]
 _CHUNK_FRAMES, _BATCH_FRAMES = 20, 4096

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mmm_core.motion.motion import Motion
-from retarget.human import SIDES, HumanPose, read_human
+from retarget.human.human import SIDES, HumanPose, read_human
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 Array = NDArray[np.float64]
 _ROBOT = "reference"

@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 from daemon.bench.motions import bench_motions
 from daemon.bench.retarget import causal_path, with_common_limits, wrist_speed_m_s
 from mmm_core.motion.motion import FPS, Motion
-from retarget.collision import Allowed, SelfContact
-from retarget.human import read_human
+from retarget.human.human import read_human
+from retarget.path.collision import Allowed, SelfContact
 from retarget.pipeline import Retargeter
-from retarget.robot import RobotModel, list_robots, load_robot
+from retarget.robot.loading import list_robots, load_robot
+from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 _CLIPS = 21

@@ -19,9 +19,9 @@ from daemon.playing.sources import PREFIX_FRAMES
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import FPS, Motion
-from retarget.paths import JointState
+from retarget.path.paths import JointState
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 if TYPE_CHECKING:
     from mmm_core.generate.engine import Engine

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bench.banded_program import Program, least
-from retarget.paths import JointPath
+from retarget.human.poser import Poses
+from retarget.path.paths import JointPath
 from retarget.pipeline import Retargeter
-from retarget.posing import Poses
 
 _sparse: Any = importlib.import_module("scipy.sparse")  # has no types
 Array = NDArray[np.float64]
@@ -48,7 +48,7 @@ class WholeClip:
     """What a whole clip allows.
 
     Attributes:
-        errors_deg: (4, T) direction errors, in the order of `retarget.report.BONES`.
+        errors_deg: (4, T) direction errors, in the order of `retarget.path.report.BONES`.
         control_rad: (N, J) control points of the path that has them.
         lack_m: metres that the nearest pair of bodies lacks of its margin in the worst frame, 0 where it lacks none.
     """

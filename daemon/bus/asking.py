@@ -17,7 +17,7 @@ from daemon.bus.reading import UNKNOWN, BusReading
 from daemon.bus.timing import MARGIN_S, SETUP_MARGIN_S, Timing
 from daemon.clock import Clock
 from daemon.errors import CommandError, ConfigError, LinkGarbledError, LinkLostError, LinkTimeoutError, ServoFaultError
-from retarget.robot import ServoSpec
+from retarget.robot.robot import ServoSpec
 
 TRIES = 3
 _REOPEN_EVERY_S = 0.5

@@ -15,7 +15,8 @@ from daemon.bus.multi import RobotBus
 from daemon.bus.reading import BusReading
 from daemon.errors import CommandError
 from retarget.errors import RobotFileError
-from retarget.robot import RobotModel, ServoSpec, load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel, ServoSpec
 
 _TRIES = 30
 MOVED_TICKS = 100

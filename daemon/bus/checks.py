@@ -8,8 +8,8 @@ from daemon.bus.identity import identity_text
 from daemon.bus.multi import RobotBus
 from daemon.bus.rules import ADVISED, NEEDED, Finding, findings_of, items_of
 from daemon.errors import BusMismatchError, CommandError, MismatchRow
-from retarget.robot import RobotModel
-from retarget.ticks import JointServoMap
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 
 
 def check_servos(bus: RobotBus, robot: RobotModel) -> list[Finding]:

@@ -17,7 +17,7 @@ from daemon.bus.probing import Probing
 from daemon.bus.reading import NEVER_CYCLES, BusReading
 from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
-from retarget.robot import ServoSpec
+from retarget.robot.robot import ServoSpec
 
 _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
 """Through a long answer we sleep, and wake so long before its computed end: one wake-up, not one for every chunk."""

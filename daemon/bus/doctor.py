@@ -16,7 +16,7 @@ from daemon.bus.port import Port
 from daemon.bus.rules import ADVISED, NEEDED, Finding
 from daemon.clock import Clock
 from daemon.errors import BusMismatchError, ConfigError, DaemonError, PortError
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 GOOD, ADVICE, BAD = "good", "advice", "bad"
 _FEW = 2

@@ -17,7 +17,7 @@ from daemon.bus.registers import POSITION_MODE, WATCHDOG_TRIPPED, Item
 from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
 from daemon.errors import CommandError, ServoFaultError
-from retarget.robot import ServoSpec
+from retarget.robot.robot import ServoSpec
 
 _GAP_BYTES = 12
 """Items no farther apart are read in one question."""

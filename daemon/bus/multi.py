@@ -18,7 +18,7 @@ from daemon.bus.servo_bus import ServoBus
 from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
 from daemon.errors import BusMismatchError, CommandError, DaemonError, LinkTimeoutError, MismatchRow
-from retarget.robot import RobotModel, ServoSpec
+from retarget.robot.robot import RobotModel, ServoSpec
 
 _FIELDS = tuple(field.name for field in dataclasses.fields(BusReading))
 

@@ -10,7 +10,7 @@ from urllib.parse import SplitResult, urlsplit
 from daemon.bus.port import Port
 from daemon.clock import Clock
 from daemon.errors import CommandError
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 
 @dataclass(frozen=True)

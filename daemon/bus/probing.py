@@ -15,7 +15,7 @@ from daemon.bus.slow import SlowReader, Span
 from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
 from daemon.errors import LinkTimeoutError, ServoFaultError, two_of
-from retarget.robot import ServoSpec
+from retarget.robot.robot import ServoSpec
 
 
 class Probing(Items):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from daemon.bus.models import BusModel
 from daemon.bus.registers import EXTENDED_POSITION_MODE, POSITION_MODE
-from retarget.robot import ServoSpec
+from retarget.robot.robot import ServoSpec
 
 ITEMS = (
     "return_delay_time", "drive_mode", "operating_mode", "homing_offset", "temperature_limit", "max_position_limit",

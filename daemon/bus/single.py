@@ -12,8 +12,8 @@ from daemon.bus.registers import Item
 from daemon.bus.servo_bus import ServoBus
 from daemon.clock import Clock
 from daemon.errors import CommandError, LinkTimeoutError
-from retarget.robot import ServoSpec
-from retarget.servos import servo_models
+from retarget.robot.robot import ServoSpec
+from retarget.robot.servos import servo_models
 
 MOVES = (
     "goal_position", "goal_velocity", "goal_pwm", "goal_current", "moving_speed", "goal_torque", "torque_enable",

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from daemon.bus.calibration import Calibrated, Ranges
-    from retarget.robot import RobotModel
+    from retarget.robot.robot import RobotModel
 
 _REFRESH_S = 0.05
 
@@ -52,8 +52,8 @@ def calibrate(
     from daemon.errors import CommandError
     from daemon.picture_files import check_picture
     from daemon.pictures.robot_picture import Pose, robot_picture
-    from retarget.pose_words import pose_in_words
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
+    from retarget.robot.pose_words import pose_in_words
 
     if picture is not None:
         check_picture(picture, "--picture")

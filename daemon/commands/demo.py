@@ -46,7 +46,7 @@ def demo(
         wait_until_ready,
     )
     from daemon.errors import CommandError
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
 
     if texts and len(texts) != len(TEXTS):
         raise CommandError(f"{len(texts)} texts; the demo takes {len(TEXTS)}, or none for its own")

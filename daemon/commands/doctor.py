@@ -29,7 +29,7 @@ def doctor(robot: str = "reference", bus: str = "dxl:///dev/ttyUSB0", fix: bool 
     from daemon.bus.multi import open_ports
     from daemon.bus.open import PortContext
     from daemon.clock import RealClock
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
 
     model, clock, console = load_robot(robot), RealClock(), Console()
     diagnosis = diagnose(model, lambda: open_ports(bus, PortContext(model, clock)), clock, correct=fix)

@@ -156,9 +156,9 @@ def _probes(
     from mmm_core.evaluation.probes import evaluate
     from mmm_core.evaluation.robot_capability import showable
     from mmm_core.generate.engine import Engine
-    from retarget.as_human import shown_on_a_person
     from retarget.pipeline import Retargeter
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
+    from retarget.robot_to_human import shown_on_a_person
 
     probes = PROBE_SETS[which]
     retargeters = {name: Retargeter(load_robot(name)) for name in robots}
@@ -200,8 +200,8 @@ def _probes(
     figures["mirrored"] = mirrored_figures(again, [p.text for p in probes], range(min(seeds, MIRRORED_SEEDS)))
     method = (
         f"held-out probes, {which} set (mmm_core/corpus/heldout.py), kinematic checks on generated joints, and on the joints "
-        "that a robot's path shows (retarget/as_human.py); refused counts as wrong; executed: on positions measured by simulated "
-        "servos with the robot's body in MuJoCo behind them (daemon/bench/executed.py)"
+        "that a robot's path shows (retarget/robot_to_human.py); refused counts as wrong; executed: on positions measured by "
+        "simulated servos with the robot's body in MuJoCo behind them (daemon/bench/executed.py)"
     )
     figures |= {
         "n": figures["generated"]["n"],

@@ -87,7 +87,7 @@ def plot(file: Annotated[Path, tyro.conf.Positional], out: Path, robot: str | No
     from daemon.picture_files import check_picture
     from daemon.pictures.joints import joint_plot
     from daemon.recording.mcap_log import read_log
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
 
     check_picture(out, "--out")
     log = read_log(file)

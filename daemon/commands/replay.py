@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from daemon.bus.port import Port
     from daemon.clock import Clock
     from daemon.recording.mcap_log import Log
-    from retarget.robot import RobotModel
+    from retarget.robot.robot import RobotModel
 
 
 def replay(
@@ -43,7 +43,7 @@ def replay(
     from daemon.recording.mcap_log import read_log
     from daemon.recording.replay import check_robot, robot_changed
     from daemon.recording.replay import replay as play
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
 
     notes = Console(stderr=True)
     found = read_log(log)
@@ -78,7 +78,7 @@ def _open(bus: str, robot: RobotModel, log: Log) -> tuple[Port, Clock]:
 
     from daemon.bus.open import PortContext, open_port
     from daemon.clock import RealClock
-    from retarget.ticks import JointServoMap
+    from retarget.robot.ticks import JointServoMap
     from sim.bus import SimBus
     from sim.clock import VirtualClock
     from sim.port import SimPort

@@ -95,7 +95,7 @@ def _folder(settings: Settings, folder: Path, out: Path, jobs: int, dask: str | 
     from daemon.errors import CommandError
     from daemon.retarget_files import on_cores, on_dask, start_folder
     from mmm_core.imports.recordings.files import KINDS, find_motions
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
 
     load_robot(settings.robot)  # a wrong name is one error, not one a file
     motions = find_motions(folder)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import tyro
 
 if TYPE_CHECKING:
-    from retarget.proposal import Proposal
-    from retarget.robot import RobotModel
+    from retarget.robot.robot import RobotModel
+    from retarget.setup.scaffold import Proposal
 
 _NEEDS_NAME = {"new": "the description, an .xml or .urdf", "check": "a robot", "show": "a robot"}
 
@@ -45,7 +45,7 @@ def robot(
 
     from daemon.errors import CommandError
     from daemon.picture_files import check_picture
-    from retarget.robot import list_robots, load_robot
+    from retarget.robot.loading import list_robots, load_robot
 
     console = Console(soft_wrap=True, highlight=False)
     if verb == "list":
@@ -67,7 +67,7 @@ def robot(
 
 def _new(console: Any, description: Path, out: Path | None, servo: str) -> int:
     from daemon.errors import CommandError
-    from retarget.proposal import propose
+    from retarget.setup.scaffold import propose
 
     if not description.is_file():
         raise CommandError(f"no file {description}; give an MJCF (.xml) or a URDF (.urdf)")
@@ -104,7 +104,7 @@ def _print_rows(console: Any, rows: Sequence[tuple[str, ...]]) -> None:
 def _check(console: Any, model: RobotModel) -> int:
     import numpy as np
 
-    from retarget.inspection import inspect_robot
+    from retarget.setup.inspection import inspect_robot
 
     found = inspect_robot(model)
     console.print(f"{model.name}: {model.bus.baud} baud, {model.bus.rate_hz:g} Hz, protocol {model.bus.protocol}")
@@ -160,7 +160,7 @@ def _show(console: Any, model: RobotModel, out: Path, text: str, seed: int) -> i
     from daemon.pictures.robot_picture import Pose, robot_picture
     from mmm_core.generate.engine import Engine
     from retarget.pipeline import Retargeter
-    from retarget.standing import standing_pose
+    from retarget.setup.standing_pose import standing_pose
 
     retargeter = Retargeter(model)
     poses = [

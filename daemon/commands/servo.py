@@ -51,7 +51,7 @@ def servo(
     from daemon.bus.single import find
     from daemon.clock import RealClock
     from daemon.errors import CommandError
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
 
     counts = {"get": None, "set": 2, "reboot": 0, "id": 1, "baud": 1}
     if counts[verb] is not None and len(arguments) != counts[verb]:

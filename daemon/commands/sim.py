@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from retarget.robot import RobotModel
+    from retarget.robot.robot import RobotModel
 
 
 def sim(
@@ -57,7 +57,7 @@ def sim(
     """
     from rich.console import Console
 
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
     from sim.faults import FaultSchedule
     from sim.options import world_of
 
@@ -138,7 +138,7 @@ def _compare(path: Path, robot: str | None, body: str, *, as_json: bool) -> int:
 
     from daemon.recording.mcap_log import read_log
     from daemon.recording.replay import check_robot, stretches
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
     from sim.replay import Stretch, compare
 
     log = read_log(path)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from ruckig import InputParameter, Result, Ruckig, Synchronization, Trajectory
 
-from retarget.limits import JointLimits
+from retarget.path.limits import JointLimits
 
 Array = NDArray[np.float64]
 SPEED_RAD_S = 0.9

@@ -20,7 +20,7 @@ from daemon.driving.derating import ServoLimits, read_limits
 from daemon.driving.pinning import pin_where_they_stand, reading_at_rest, refuse_hardware_errors
 from daemon.driving.turns import TurnWatch
 from daemon.errors import LinkTimeoutError
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
 

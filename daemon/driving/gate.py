@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.collision import SelfContact
-from retarget.guarded_steps import GuardedSteps
-from retarget.limits import JointLimits, brake, limit_step
-from retarget.robot import RobotModel
+from retarget.path.collision import SelfContact
+from retarget.path.limits import JointLimits, brake, limit_step
+from retarget.path.safety_filter import GuardedSteps
+from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 

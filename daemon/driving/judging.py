@@ -16,7 +16,7 @@ from daemon.bus.reading import BusReading
 from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.driving.arming import WATCHDOG_UNITS
 from daemon.driving.pinning import refuse_hardware_errors
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
 

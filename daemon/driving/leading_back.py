@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.ticks import JointServoMap
+from retarget.robot.ticks import JointServoMap
 
 STEP_TICK, _TICKS_PER_TURN = 1, 4096
 """Ticks a cycle by which a servo of so many a turn is led; one of finer ticks as many degrees."""

@@ -20,7 +20,7 @@ from daemon.driving.streamer import Streamer
 from daemon.log_feed import send_logs
 from daemon.logs import start_logging
 from daemon.parent import Parent
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 log = logging.getLogger(__name__)
 

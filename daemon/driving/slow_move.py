@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from daemon.driving.approach import Approach
 from daemon.driving.gate import Gate
-from retarget.collision import SelfContact
-from retarget.free_way import WaySearch
-from retarget.robot import RobotModel
+from retarget.path.collision import SelfContact
+from retarget.path.rrt_connect import WaySearch
+from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
 

@@ -13,7 +13,7 @@ from daemon.driving.request_words import ESTOPS, BusRequest
 from daemon.driving.shared import BusLink, Readiness
 from daemon.driving.streamer import Streamer
 from daemon.errors import DaemonError
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
 

@@ -30,9 +30,9 @@ from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.slow_move import SlowMove
 from daemon.driving.turns import TurnWatch
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
-from retarget.collision import SelfContact
-from retarget.robot import RobotModel
-from retarget.ticks import JointServoMap
+from retarget.path.collision import SelfContact
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 
 log = logging.getLogger(__name__)
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from daemon.bus.multi import RobotBus
 from daemon.bus.reading import BusReading
 from daemon.errors import ServoFaultError
-from retarget.robot import RobotModel
-from retarget.ticks import JointServoMap
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 
 PAUSE_S = 0.15
 """Seconds of silence in which a servo may have lost its power and started again (which takes longer)."""

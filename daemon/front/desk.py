@@ -41,7 +41,7 @@ from daemon.wire.requests import (
     tag_of,
 )
 from daemon.wire.status import CapabilitiesEvent, JointInfo, StateEvent
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 TOPICS = {
     "v1/state": "the robot and the daemon, several times a second; the last one at once on subscribing",

@@ -48,7 +48,7 @@ from daemon.wire.event_base import Event
 from daemon.wire.events import Rejected
 from daemon.wire.lease_requests import Lease, without_secret
 from daemon.wire.status import HealthEvent, LogEvent, StateEvent
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
 event_log = logging.getLogger(EVENT_LOGGER)

@@ -14,7 +14,7 @@ from daemon.wire.event_base import Event
 from daemon.wire.events import Progress
 from daemon.wire.requests import Lease
 from daemon.wire.status import LeaseInfo, StreamInfo
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
 

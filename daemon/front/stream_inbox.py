@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from daemon.wire.codec import WireError, decode_target, only_frame
 from daemon.wire.requests import Target
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 NAMED_EVERY_S = 1.0

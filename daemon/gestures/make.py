@@ -21,7 +21,7 @@ from daemon.playing.score import marks_of
 from mmm_core.corpus.heldout import Probe
 from mmm_core.motion.motion import Motion
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 log = logging.getLogger(__name__)
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.recording.mcap_log import Log
-from retarget.robot import RobotModel
-from retarget.ticks import JointServoMap
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 
 Array = NDArray[np.float64]
 

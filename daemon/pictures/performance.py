@@ -13,8 +13,9 @@ from daemon.recording.mcap_log import Log, read_log
 from mmm_core.motion.motion import Motion, load_npz
 from mmm_core.motion.skeleton import matrix_from_quat
 from retarget.pipeline import Retargeter
-from retarget.robot import RobotModel, load_robot
-from retarget.ticks import JointServoMap
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 
 Array = NDArray[np.float64]
 RUN_FPS = 20.0

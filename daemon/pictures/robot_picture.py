@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.description import load_description, mujoco
-from retarget.robot import RobotModel
+from retarget.robot.description import load_description, mujoco
+from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 _COLOURS = {"left": "#c0392b", "right": "#2471a3", "head": "#7d6608", "": "#7f8c8d"}

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from daemon.pictures.errors import NoOpenGLError
 from daemon.pictures.person import Bone, Stand, bones
-from retarget.description import description_spec, load_description, mujoco
-from retarget.kinematics import Kinematics
-from retarget.robot import RobotModel
+from retarget.robot.description import description_spec, load_description, mujoco
+from retarget.robot.kinematics import Kinematics
+from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

@@ -11,7 +11,7 @@ from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
 from mmm_core.recognition.checks import HEAD_MOVED_DEG, reach_deg
 from mmm_core.recognition.seen import Act
-from retarget.human import read_human
+from retarget.human.human import read_human
 from retarget.pipeline import Retargeter
 
 _AXES = {

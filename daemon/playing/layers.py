@@ -6,7 +6,7 @@ import numpy as np
 
 from daemon.playing.idle import looking
 from daemon.playing.posture import Posture
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 
 class Layers:

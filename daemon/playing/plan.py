@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from daemon.playing.plan_statistics import PlanStatistics
 from daemon.playing.posture import Posture, joined
-from retarget.paths import JointPath, JointState
+from retarget.path.paths import JointPath, JointState
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.wire.events import Done
-from retarget.report import RetargetReport
-from retarget.robot import RobotModel
+from retarget.path.report import RetargetReport
+from retarget.robot.robot import RobotModel
 
 SAMPLED_HZ = 20.0
 LONGEST_SAMPLED_S = 20.0

@@ -24,11 +24,11 @@ from daemon.playing.stream_plan import StreamPlan
 from daemon.playing.stream_score import StreamScore
 from daemon.state.bus_view import BusView
 from mmm_core.motion.motion import FPS
-from retarget.as_human import joints_of_path
-from retarget.human import read_human
-from retarget.paths import JointState
+from retarget.human.human import read_human
+from retarget.path.paths import JointState
 from retarget.pipeline import BLOCK_FRAMES, Retargeter
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
+from retarget.robot_to_human import joints_of_path
 
 FIRST_RETARGET_S = 0.03
 """Assumed time until the first piece of the first path is there; later ones are measured."""

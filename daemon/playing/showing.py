@@ -13,9 +13,9 @@ from daemon.playing.lacking import instead, lacking
 from daemon.playing.posture import Posture
 from mmm_core.recognition.named import families_named
 from mmm_core.recognition.seen import HARDLY, NOTHING_MOVES, Scene, lost, scenes_seen, sentence
-from retarget.as_human import as_motion
 from retarget.pipeline import Retargeter
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
+from retarget.robot_to_human import as_motion
 
 Array = NDArray[np.float64]
 SHOWN, IN_PART, NOT_SHOWN = "shown", "in part", "not shown"

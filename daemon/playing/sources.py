@@ -37,8 +37,8 @@ from daemon.wire.requests import Command, Edit, Gesture, Inbetween, Lease, Play,
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.motion.motion import Motion
 from mmm_core.recognition.seen import Scene
-from retarget.guarded_steps import GuardedSteps
-from retarget.robot import RobotModel
+from retarget.path.safety_filter import GuardedSteps
+from retarget.robot.robot import RobotModel
 
 OUT_OF_SCOPE_DO = "ask for gestures of head, arms and torso, in English, e.g. 'wave with your right hand'"
 PREFIX_FRAMES = 32

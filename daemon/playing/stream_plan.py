@@ -12,7 +12,7 @@ from daemon.playing.plan import KEPT_FRAMES, Plan
 from daemon.playing.plan_statistics import PlanStatistics
 from daemon.playing.posture import Posture
 from daemon.playing.stream_score import StreamScore
-from retarget.paths import JointState
+from retarget.path.paths import JointState
 
 Array = NDArray[np.float64]
 

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.state.lease import LeaseClock, LeaseState
-from retarget.guarded_steps import GuardedSteps
-from retarget.paths import JointState
-from retarget.robot import RobotModel
+from retarget.path.paths import JointState
+from retarget.path.safety_filter import GuardedSteps
+from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 LONGEST_GLIDE_S = 0.1

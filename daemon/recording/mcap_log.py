@@ -27,7 +27,7 @@ from mcap.writer import Writer
 from daemon.driving.shared import BusState
 from daemon.errors import LogError
 from daemon.recording.schemas import schema_of
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 FORMAT = 1
 """Grows when an older reader would misread the log; new channels and fields do not count."""

@@ -22,7 +22,7 @@ from daemon.logs import start_logging
 from daemon.parent import Parent
 from daemon.recording.rotation import RotatingLog
 from daemon.recording.schemas import DROPPED_TOPIC, Dropped
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 log = logging.getLogger(__name__)
 

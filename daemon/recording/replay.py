@@ -21,7 +21,7 @@ from daemon.driving.streamer import Streamer
 from daemon.errors import DaemonError, LogError
 from daemon.recording.mcap_log import Log, LoggedCycle
 from daemon.recording.wiretap import Wiretap
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 _LONGEST_APPROACH_S = 30.0
 

@@ -10,7 +10,7 @@ from typing import IO, Self
 import numpy as np
 
 from daemon.recording.mcap_log import LogWriter
-from retarget.robot import RobotModel
+from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
 

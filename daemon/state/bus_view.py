@@ -12,8 +12,8 @@ from daemon.bus.health import Health
 from daemon.driving.derating import DeratedBy
 from daemon.driving.shared import BusLink, BusState
 from daemon.wire.status import ServoHealth
-from retarget.robot import RobotModel
-from retarget.ticks import JointServoMap
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 
 Array = NDArray[np.float64]
 

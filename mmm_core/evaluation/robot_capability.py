@@ -29,7 +29,7 @@ def showable(
     """The expectations that a robot can show, by the text of each probe.
 
     Args:
-        on_robot: maps a motion to a person in the robot's poses (`retarget.as_human.shown_on_a_person`).
+        on_robot: maps a motion to a person in the robot's poses (`retarget.robot_to_human.shown_on_a_person`).
         progress: told how many probes are done.
         probes: those that are performed.
     """

@@ -10,7 +10,8 @@ import numpy as np
 from daemon.bus.servo_bus import ServoBus
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.streamer import Streamer
-from retarget.robot import RobotModel, load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from daemon.driving.approach import ACCELERATION_RAD_S2, SPEED_RAD_S, Approach
 from daemon.driving.gate import Gate
-from retarget.limits import JointLimits
-from retarget.robot import list_robots, load_robot
+from retarget.path.limits import JointLimits
+from retarget.robot.loading import list_robots, load_robot
 
 ROBOT = load_robot("reference")
 LIMITS = JointLimits.of(ROBOT)

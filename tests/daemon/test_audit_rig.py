@@ -12,7 +12,7 @@ from rig import swing
 from daemon.bench.audit_rig import AuditRig
 from daemon.cli import main
 from daemon.driving.shared import BusRequest, BusState
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.faults import Fault
 
 ROBOT = load_robot("op3")
@@ -78,8 +78,8 @@ def test_what_cannot_be_repaired_is_said():
 def test_contacts_that_are_commanded_are_reported(monkeypatch):
     """With the gate's knowledge of the body taken away a plan into the body shows in the report."""
     from daemon.driving.gate import Gate
-    from retarget.collision import SelfContact
-    from retarget.limits import JointLimits
+    from retarget.path.collision import SelfContact
+    from retarget.path.limits import JointLimits
 
     limits, body = JointLimits.of(ROBOT), SelfContact(ROBOT, margin_m=0.0)
     draw = np.random.default_rng(0)

@@ -6,7 +6,7 @@ from rig import rig, swing
 
 from daemon.driving.approach import SPEED_RAD_S
 from daemon.driving.shared import BusRequest, BusState
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.faults import Fault
 
 SERVO = 13

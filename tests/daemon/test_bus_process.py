@@ -14,7 +14,7 @@ from daemon.bus.servo_bus import ServoBus
 from daemon.clock import RealClock
 from daemon.driving.arming import WATCHDOG_UNITS
 from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.pty import PtyServer
 from tests.end_to_end.harness import served

@@ -14,8 +14,8 @@ from daemon.bus.events import BusEventKind
 from daemon.bus.multi import bus_on
 from daemon.bus.servo_bus import ServoBus
 from daemon.bus.timing import MARGIN_S as RUN_MARGIN_S
-from retarget.pose_words import pose_in_words
-from retarget.robot import ROBOTS_DIR, load_robot
+from retarget.robot.loading import ROBOTS_DIR, load_robot
+from retarget.robot.pose_words import pose_in_words
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule

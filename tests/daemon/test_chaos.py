@@ -17,7 +17,7 @@ import pytest
 
 from daemon.client import CancelledByError, Client, NoAnswerError, RefusedError
 from daemon.wire import events as ev
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.faults import Fault, FaultSchedule
 from sim.pty import PtyServer

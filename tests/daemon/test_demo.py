@@ -6,8 +6,8 @@ import numpy as np
 
 from daemon.demo import audited_plans
 from daemon.recording.mcap_log import Log, LoggedCycle
-from retarget.robot import load_robot
-from retarget.ticks import JointServoMap
+from retarget.robot.loading import load_robot
+from retarget.robot.ticks import JointServoMap
 from tests.daemon.rig import swing
 
 ROBOT = load_robot("reference")

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from rig import rig, swing
 
-from retarget.robot import ROBOTS_DIR, load_robot
+from retarget.robot.loading import ROBOTS_DIR, load_robot
 
 
 def test_two_servos_of_a_joint_turn_against_each_other(tmp_path: Path):

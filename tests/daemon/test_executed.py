@@ -8,7 +8,7 @@ from mmm_core.corpus.heldout import PROBES
 from mmm_core.evaluation.reconstruction import performed
 from mmm_core.evaluation.robot_capability import as_motion
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.faults import Fault
 
 PROBE = next(p for p in PROBES if p.family == "wave" and p.side == "right" and p.count is None and p.then is None)

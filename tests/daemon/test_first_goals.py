@@ -18,8 +18,9 @@ from daemon.driving.leading_back import LeadingBack
 from daemon.driving.shared import BusRequest, BusState
 from daemon.driving.turns import TurnWatch
 from daemon.errors import ServoFaultError
-from retarget.robot import ROBOTS_DIR, RobotModel, list_robots, load_robot
-from retarget.ticks import JointServoMap
+from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 from sim.bus import SimBus
 from sim.port import SimPort
 

@@ -9,7 +9,7 @@ from daemon.playing.follower import BUS_SILENT_S, Follower
 from daemon.playing.planner import Planner
 from daemon.state.bus_view import BusView
 from daemon.state.machine import RobotState, StateMachine
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from tests.daemon.rig import Rig, lead_to, rig
 
 ROBOT = load_robot("reference")

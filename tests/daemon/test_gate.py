@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from daemon.driving.gate import Gate
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 ROBOT = load_robot("reference")
 LOW, HIGH = Gate(ROBOT).limits.position_min_rad, Gate(ROBOT).limits.position_max_rad

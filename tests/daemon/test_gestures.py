@@ -14,7 +14,7 @@ from daemon.playing.score import marks_of
 from mmm_core.evaluation.probes import judge
 from mmm_core.motion.posture_features import posture_features
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from tests.daemon.kinematic import raised_arm
 
 CLIPS = load_clips(SHIPPED)

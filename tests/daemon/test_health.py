@@ -17,7 +17,7 @@ from daemon.driving.shared import BusLink
 from daemon.front.metrics import exposition
 from daemon.state.bus_view import BusView
 from daemon.wire.status import ServoHealth, StateEvent
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule

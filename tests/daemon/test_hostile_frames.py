@@ -11,7 +11,7 @@ from daemon.recording.mcap_log import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.wire import codec as wire
 from daemon.wire.events import Ack
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from tests.daemon.test_control import Ctl
 
 DEEP = 991

@@ -15,7 +15,7 @@ from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.starting import start
 from daemon.driving.streamer import FAULT_LIMP_S
 from daemon.parent import PARENT_VARIABLE
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 _FRONT_KILLED_AT_ONCE = """
 import os, subprocess, sys

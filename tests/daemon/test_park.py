@@ -11,12 +11,12 @@ from rig import Rig, rig, with_known_turns
 from daemon.driving.pace import WAIT_S
 from daemon.driving.shared import BusRequest, BusState
 from daemon.driving.streamer import NO_WAY_LIMP_S
-from retarget import free_way
-from retarget.collision import SelfContact
-from retarget.limits import JointLimits
-from retarget.paths import JointState
+from retarget.path import rrt_connect
+from retarget.path.collision import SelfContact
+from retarget.path.limits import JointLimits
+from retarget.path.paths import JointState
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from tests.retarget.gestures import gesture
 
 ROBOTS = ("op2", "reference", "toddlerbot")
@@ -150,7 +150,7 @@ def test_without_a_free_way_to_park_it_holds_says_so_and_goes_limp_in_time(monke
     with rig("reference", start_rad=start) as r:
         r.streamer.rest_rad = start
         r.arm()
-        monkeypatch.setattr(free_way, "TRIES", 0)
+        monkeypatch.setattr(rrt_connect, "TRIES", 0)
         held = r.goals_rad()[-1]
         r.link.request(BusRequest.PARK)
         r.cycle()

@@ -20,8 +20,9 @@ from daemon.pictures.scene import VIEWS, Scene
 from daemon.recording.mcap_log import Log, LoggedCycle
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import JOINT_NAMES
-from retarget.robot import RobotModel, load_robot
-from retarget.ticks import JointServoMap
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 
 SIZE = (240, 200)
 SHIPPED = Path(__file__).parents[2] / "daemon" / "gestures" / "shipped.npz"

@@ -7,7 +7,7 @@ from rig import Rig, rig, swing
 
 from daemon.driving.shared import BusRequest, BusState
 from sim.faults import Fault
-from sim.servo_power import OVERLOAD_BIT
+from sim.servos.servo_power import OVERLOAD_BIT
 
 ID = 13
 

@@ -16,8 +16,8 @@ from daemon.playing.lead import Lead
 from daemon.playing.planner import Planner
 from daemon.playing.posture import at_tempo, distance_deg, posture_of, standing
 from daemon.state.bus_view import BusView
-from retarget.limits import JointLimits
-from retarget.robot import load_robot
+from retarget.path.limits import JointLimits
+from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.port import SimPort

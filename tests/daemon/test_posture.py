@@ -19,9 +19,9 @@ from daemon.playing.posture import (
     standing,
 )
 from mmm_core.motion.skeleton import matrix_from_quat, rotation_y
-from retarget.human import read_human
+from retarget.human.human import read_human
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from tests.daemon.kinematic import motion_of, raised_arm
 
 RIGHT = raised_arm("right", 1.5, 1.3, "right")

@@ -10,7 +10,7 @@ from rig import rig
 
 from daemon.driving.shared import BusRequest, BusState
 from sim.faults import Fault
-from sim.servo1 import OVERLOAD_ERROR, SimServo1
+from sim.servos.servo_protocol1 import OVERLOAD_ERROR, SimServo1
 
 SERVOS = {"poppy_torso": 41, "op2": 5, "reachy_2021": 13, "op3": 5, "toddlerbot": 16}
 RAMP_S = 0.65

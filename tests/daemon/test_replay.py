@@ -11,7 +11,7 @@ from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.errors import LogError
 from daemon.recording.mcap_log import Log, LogWriter, read_log
 from daemon.recording.replay import ReplayFaultError, replay, stretches
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule

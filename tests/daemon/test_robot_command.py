@@ -12,7 +12,7 @@ from matplotlib.image import imread
 from rig import rig
 
 from daemon.cli import main
-from retarget.robot import ROBOTS_DIR, list_robots, load_robot
+from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
 
 
 def description(tmp_path: Path) -> Path:

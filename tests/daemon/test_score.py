@@ -12,7 +12,7 @@ from daemon.playing.score import ClipScore, Marks, marks_of
 from daemon.wire.requests import Say
 from mmm_core.motion.motion import FPS
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from tests.daemon.kinematic import DOWN, motion_of, raised_arm
 from tests.daemon.kinematic import FPS as KINEMATIC_FPS
 

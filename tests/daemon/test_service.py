@@ -28,7 +28,7 @@ from daemon.recording.mcap_log import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.settings import DEFAULTS, config_of, resolve
 from daemon.supervisor import BUS_END_TIMEOUT_S
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from tests.end_to_end.harness import RunningDaemon, mmmd
 
 pytestmark = [pytest.mark.timeout(90), pytest.mark.realtime]

@@ -14,7 +14,7 @@ from daemon.playing.showing import Showing, Verdict
 from mmm_core.motion.motion import FPS
 from mmm_core.recognition.seen import Scene
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 
 @cache

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from daemon.front.stream_inbox import NAMED_EVERY_S, StreamInbox
 from daemon.wire.codec import WireError
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 ROBOT = load_robot("reference")
 SECRET = "of-the-holder-alone"

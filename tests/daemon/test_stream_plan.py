@@ -16,9 +16,9 @@ from daemon.playing.stream_plan import StreamPlan
 from daemon.playing.stream_score import StreamScore
 from daemon.state.bus_view import BusView
 from daemon.state.lease import LeaseClock, LeaseState
-from retarget.collision import SelfContact
-from retarget.guarded_steps import GuardedSteps
-from retarget.robot import load_robot
+from retarget.path.collision import SelfContact
+from retarget.path.safety_filter import GuardedSteps
+from retarget.robot.loading import load_robot
 from tests.daemon.rig import Rig, rig
 
 BODIES = {name: SelfContact(load_robot(name), margin_m=0.0) for name in ("reference", "toddlerbot")}

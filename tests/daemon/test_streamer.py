@@ -8,8 +8,8 @@ from rig import assert_brakes_within_limits, rig, swing, with_known_turns
 
 from daemon.bus.models import CONTROL_TABLES
 from daemon.driving.shared import BusRequest, BusState
-from retarget.collision import SelfContact
-from retarget.robot import list_robots, load_robot
+from retarget.path.collision import SelfContact
+from retarget.robot.loading import list_robots, load_robot
 
 ROBOTS = [
     name

@@ -8,7 +8,7 @@ from rig import rig, swing
 from daemon.driving import shared
 from daemon.driving.shared import BusRequest, BusState
 from daemon.driving.streamer import HEARTBEAT_LOST_S, PARK_AFTER_S
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.faults import Fault
 
 

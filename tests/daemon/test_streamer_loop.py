@@ -8,7 +8,8 @@ from daemon.driving.shared import BusLink, BusRequest, Readiness
 from daemon.driving.starting import start
 from daemon.driving.streamer import LOOK_S
 from daemon.errors import PortMissingError
-from retarget.robot import RobotModel, load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.port import SimPort

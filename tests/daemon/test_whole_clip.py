@@ -7,9 +7,9 @@ from scipy.optimize import LinearConstraint, minimize
 from daemon.bench.motions import cut
 from daemon.bench.retarget import _fidelity, with_common_limits
 from daemon.bench.whole_clip import best_of_clip
-from retarget.human import read_human
+from retarget.human.human import read_human
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from tests.retarget.gestures import gesture
 
 

@@ -50,7 +50,7 @@ def tty(tmp_path):
 
 
 def baud_of(robot: str) -> int:
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
 
     return load_robot(robot).bus.baud
 

@@ -20,9 +20,9 @@ from mmm_core.motion.features import mirror
 from mmm_core.motion.posture_features import PostureFeatures
 from mmm_core.recognition import checks
 from mmm_core.recognition.signs import shows
-from retarget.as_human import shown_on_a_person
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot_to_human import shown_on_a_person
 
 LIMB_FAMILIES = (
     "wave", "raise", "point", "clap", "bow", "nod", "shake_head", "look", "tilt_head", "lean",

@@ -12,7 +12,7 @@ from mmm_core.imports.recordings.asf_amc import read_amc
 from mmm_core.imports.recordings.files import find_motions, read_motion
 from mmm_core.motion.bvh import save_bvh
 from mmm_core.motion.motion import Motion
-from retarget.human import read_human
+from retarget.human.human import read_human
 from tests.retarget.gestures import gesture
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 UP, LEFT, FORWARD = np.array([0.0, 0, 1]), np.array([0.0, 1, 0]), np.array([1.0, 0, 0])
 HANGING, SIDEWAYS, AHEAD = -UP, LEFT, FORWARD

@@ -10,15 +10,15 @@ from hypothesis import strategies as st
 from made_robots import FAMILIES, made_robot
 from random_motions import random_motion
 
-from retarget.arm_chain import read_arm
-from retarget.arms import Arms
-from retarget.branches import choose, fill_unseen
 from retarget.errors import RobotFileError
-from retarget.human import read_human
-from retarget.kinematics import Kinematics
-from retarget.limits import JointLimits
+from retarget.human.arm_chain import read_arm
+from retarget.human.arms import Arms
+from retarget.human.branches import choose, fill_unseen
+from retarget.human.human import read_human
+from retarget.human.poser import Poser
+from retarget.path.limits import JointLimits
 from retarget.pipeline import Retargeter
-from retarget.posing import Poser
+from retarget.robot.kinematics import Kinematics
 
 REACHES_ALL = [name for name in FAMILIES if int(name[0]) >= 4]
 LEAST_ERROR = [name for name in FAMILIES if int(name[0]) < 4]
@@ -220,7 +220,7 @@ def test_arms_that_cannot_be_used_are_named(tmp_path):
     ):
         text = text.replace(f'role = "{old}"', f'role = "{new}"')
     toml.write_text(text)
-    from retarget.robot import load_robot
+    from retarget.robot.loading import load_robot
 
     arms = Arms([read_arm(Kinematics(load_robot(str(tmp_path))), "right")])
     assert arms.reaches_all

@@ -7,10 +7,10 @@ import pytest
 
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import matrix_from_quat, standing_joints
-from retarget.as_human import joints_of_path
-from retarget.human import read_human
+from retarget.human.human import read_human
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot_to_human import joints_of_path
 from tests.retarget.random_motions import random_motion
 
 

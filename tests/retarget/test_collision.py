@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from retarget.collision import SelfContact
-from retarget.robot import list_robots, load_robot
+from retarget.path.collision import SelfContact
+from retarget.robot.loading import list_robots, load_robot
 
 mujoco: Any = importlib.import_module("mujoco")
 CONTACTS = {name: SelfContact(load_robot(name)) for name in list_robots()}

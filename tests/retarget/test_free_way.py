@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from retarget import free_way
-from retarget.collision import KEPT, SelfContact
-from retarget.free_way import WaySearch
-from retarget.limits import JointLimits
-from retarget.robot import list_robots, load_robot
+from retarget.path import rrt_connect
+from retarget.path.collision import KEPT, SelfContact
+from retarget.path.limits import JointLimits
+from retarget.path.rrt_connect import WaySearch
+from retarget.robot.loading import list_robots, load_robot
 
 ROBOTS = {name: load_robot(name) for name in ("reference", "toddlerbot", "op2")}
 CONTACTS = {name: SelfContact(robot) for name, robot in ROBOTS.items()}
@@ -107,7 +107,7 @@ def test_without_a_way_it_says_so_and_the_same_search_gives_the_same_way(monkeyp
     first, second = searched("reference", start, goal), searched("reference", start, goal)
     assert first.way is not None and second.way is not None
     assert np.array(first.way).tobytes() == np.array(second.way).tobytes()
-    monkeypatch.setattr(free_way, "TRIES", 0)
+    monkeypatch.setattr(rrt_connect, "TRIES", 0)
     assert searched("reference", start, goal).way is None
 
 

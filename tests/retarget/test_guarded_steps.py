@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from retarget.collision import SelfContact
-from retarget.guarded_steps import GuardedSteps
-from retarget.limits import brake
-from retarget.robot import RobotModel, load_robot
+from retarget.path.collision import SelfContact
+from retarget.path.limits import brake
+from retarget.path.safety_filter import GuardedSteps
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
 
 ROBOTS = {name: load_robot(name) for name in ("reference", "toddlerbot", "op2")}
 GUARDS = {name: GuardedSteps(robot) for name, robot in ROBOTS.items()}

@@ -7,10 +7,10 @@ import pytest
 from gestures import gesture
 
 from mmm_core.motion.motion import Motion
-from retarget.hands import read_contacts
-from retarget.paths import JointPath
+from retarget.human.hand_contacts import read_contacts
+from retarget.path.paths import JointPath
 from retarget.pipeline import Retargeter
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 
 CLAPPING = ("reference", "toddlerbot", "poppy_torso", "op3")
 """Robots whose arms are long and fast enough for a person's tempo."""

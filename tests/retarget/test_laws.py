@@ -14,11 +14,11 @@ from test_pipeline import at_rest, check_bounds
 from daemon.bench.contacts import ContactCheck
 from daemon.bench.motions import cut
 from mmm_core.motion.motion import Motion
-from retarget.as_human import joints_of_path
-from retarget.human import read_human
-from retarget.paths import JointState
+from retarget.human.human import read_human
+from retarget.path.paths import JointState
 from retarget.pipeline import BLOCK_FRAMES, Retargeter
-from retarget.robot import list_robots, load_robot
+from retarget.robot.loading import list_robots, load_robot
+from retarget.robot_to_human import joints_of_path
 
 RETARGETERS = {name: Retargeter(load_robot(name)) for name in list_robots()}
 CHECKS = {name: ContactCheck(r.robot) for name, r in RETARGETERS.items()}

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from retarget.following import limit_path
-from retarget.limits import JointLimits, brake, keeps, limit_step
-from retarget.robot import load_robot
+from retarget.path.limit_path import limit_path
+from retarget.path.limits import JointLimits, brake, keeps, limit_step
+from retarget.robot.loading import load_robot
 
 LIMITS = JointLimits.of(load_robot("reference"))
 J = len(LIMITS.position_min_rad)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import LinearConstraint, minimize
 
-from retarget.following import limit_path
-from retarget.limits import JointLimits
-from retarget.lookahead import Bounds, Wish, frames_between, nearer_path
-from retarget.robot import load_robot
+from retarget.path.limit_path import limit_path
+from retarget.path.limits import JointLimits
+from retarget.path.lookahead_qp import Bounds, Wish, frames_between, nearer_path
+from retarget.robot.loading import load_robot
 
 T, W = 10, 3
 BOUNDS = Bounds(*(np.full((1, W), x) for x in (-1.0, 1.2, 0.24, 0.1)))

@@ -18,7 +18,8 @@ import pytest
 from mmm_core.generate.engine import Engine
 from mmm_core.motion.motion import Motion
 from retarget.pipeline import Retargeter
-from retarget.robot import RobotModel, list_robots, load_robot
+from retarget.robot.loading import list_robots, load_robot
+from retarget.robot.robot import RobotModel
 from tests.retarget.random_motions import random_motion
 from tests.retarget.test_pipeline import RATES_HZ, at_rest, check_bounds
 

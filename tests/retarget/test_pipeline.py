@@ -15,11 +15,11 @@ from random_motions import mirrored, random_motion, real_motions
 
 from mmm_core.motion.motion import Motion
 from retarget.errors import MotionError
-from retarget.kinematics import Kinematics
-from retarget.limits import limit_step
-from retarget.paths import JointPath, JointState
+from retarget.path.limits import limit_step
+from retarget.path.paths import JointPath, JointState
 from retarget.pipeline import BLOCK_FRAMES, Retargeter
-from retarget.robot import load_robot
+from retarget.robot.kinematics import Kinematics
+from retarget.robot.loading import load_robot
 
 RETARGETERS = {name: Retargeter(load_robot(name)) for name in ("reference", "op3")}
 kinds = st.sampled_from(["noise", "teleport", "smooth"])

@@ -13,8 +13,8 @@ import pytest
 
 from retarget.errors import RobotFileError, UnknownRobotError
 from retarget.pipeline import Retargeter
-from retarget.robot import ROBOTS_DIR, list_robots, load_robot
-from retarget.ticks import JointServoMap
+from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
+from retarget.robot.ticks import JointServoMap
 from tests.retarget.robot_files import joint, write_robot
 
 

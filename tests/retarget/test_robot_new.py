@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 
 from mmm_core.generate.engine import Engine
-from retarget.anatomy import find_anatomy
-from retarget.description import rotation_to_standard
 from retarget.errors import RobotFileError
-from retarget.inspection import inspect_robot
-from retarget.kinematics import Kinematics
 from retarget.pipeline import Retargeter
-from retarget.proposal import propose
-from retarget.robot import list_robots, load_robot
-from retarget.standing import Direction, standing_pose
+from retarget.robot.description import rotation_to_standard
+from retarget.robot.kinematics import Kinematics
+from retarget.robot.loading import list_robots, load_robot
+from retarget.setup.inspection import inspect_robot
+from retarget.setup.limb_detection import find_anatomy
+from retarget.setup.scaffold import propose
+from retarget.setup.standing_pose import Direction, standing_pose
 from tests.retarget.test_pipeline import RATES_HZ, at_rest, check_bounds
 
 SHARED = Path(__file__).parents[3] / "shared" / "robots"

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from retarget.robot import list_robots, load_robot
-from retarget.servos import servo_models
+from retarget.robot.loading import list_robots, load_robot
+from retarget.robot.servos import servo_models
 
 PAGE = (Path(__file__).parents[2] / "docs" / "robots.md").read_text()
 EXAMPLES = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from retarget.collision import SelfContact
-from retarget.robot import list_robots, load_robot
+from retarget.path.collision import SelfContact
+from retarget.robot.loading import list_robots, load_robot
 
 CONTACTS = {name: SelfContact(load_robot(name)) for name in list_robots()}
 

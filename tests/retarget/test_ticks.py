@@ -12,9 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from retarget.limits import JointLimits
-from retarget.robot import RobotModel, list_robots, load_robot
-from retarget.ticks import JointServoMap
+from retarget.path.limits import JointLimits
+from retarget.robot.loading import list_robots, load_robot
+from retarget.robot.robot import RobotModel
+from retarget.robot.ticks import JointServoMap
 from tests.retarget.robot_files import joint, write_robot
 
 WAIST = (

@@ -7,11 +7,12 @@ import pytest
 from numpy.typing import NDArray
 
 from daemon.driving.gate import GATE_SHARE, Gate
-from retarget.collision import KEPT, SelfContact
-from retarget.limits import JointLimits
-from retarget.paths import JointState
+from retarget.path.collision import KEPT, SelfContact
+from retarget.path.limits import JointLimits
+from retarget.path.paths import JointState
 from retarget.pipeline import Retargeter
-from retarget.robot import RobotModel, load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
 from tests.retarget.gestures import gesture
 
 ROBOTS = ("reference", "op3", "toddlerbot")

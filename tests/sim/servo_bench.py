@@ -8,12 +8,12 @@ from pathlib import Path
 from daemon.bus import packet
 from daemon.bus.models import MODELS
 from daemon.bus.packet import Packet, PacketDecoder
-from retarget.robot import BusSettings, JointSpec, RobotModel, ServoSpec
-from retarget.servos import servo_models
+from retarget.robot.robot import BusSettings, JointSpec, RobotModel, ServoSpec
+from retarget.robot.servos import servo_models
 from sim.bus import SimBus
 from sim.faults import Fault, FaultSchedule
-from sim.servo import SimServo
-from sim.wire import WireSettings
+from sim.servos.servo import SimServo
+from sim.wire.wire import WireSettings
 from sim.world import World
 
 

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from servo_bench import Bench
 
 from daemon.bus import packet
-from retarget.collision import SelfContact
-from retarget.robot import load_robot
-from retarget.ticks import JointServoMap
-from sim.audit import ANSWERS_TOLD, TTY_GOALS, Audit
-from sim.contact_audit import ContactAudit
+from retarget.path.collision import SelfContact
+from retarget.robot.loading import load_robot
+from retarget.robot.ticks import JointServoMap
+from sim.audit.audit import ANSWERS_TOLD, TTY_GOALS, Audit
+from sim.audit.contact_audit import ContactAudit
 from sim.faults import Fault
 
 ROBOT = load_robot("reference")

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from daemon.bus.models import MODELS
-from retarget.robot import list_robots, load_robot
-from retarget.ticks import JointServoMap
+from retarget.robot.loading import list_robots, load_robot
+from retarget.robot.ticks import JointServoMap
+from sim.bodies.mujoco_body import MujocoBody
 from sim.errors import SimSettingError
 from sim.faults import Fault, FaultSchedule
-from sim.mujoco_body import MujocoBody
 from sim.options import world_of
 from sim.world import World
 

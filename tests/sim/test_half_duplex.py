@@ -11,11 +11,11 @@ from servo_bench import Bench
 
 from daemon.bus import packet
 from daemon.bus.packet import PacketDecoder
-from sim.bursts import Burst
 from sim.clock import VirtualClock
 from sim.errors import SimSettingError
 from sim.port import SimPort
-from sim.wire import Wire, WireSettings
+from sim.wire.wire import Wire, WireSettings
+from sim.wire.wire_bytes import Burst
 
 TWENTY = ("XM430-W350",) * 20
 

@@ -11,8 +11,8 @@ from servo_bench import Bench
 
 from daemon.bus import packet
 from sim.clock import VirtualClock
-from sim.machine_time import LEAST_PAUSE_S, LOOK_EVERY_S, STAT, MachineTime, stolen_s
 from sim.port import SimPort
+from sim.steal_time import LEAST_PAUSE_S, LOOK_EVERY_S, STAT, MachineTime, stolen_s
 
 TICK_S = 0.01
 

@@ -13,7 +13,7 @@ from test_servo1 import Bench as Bench1
 
 from daemon.bus import packet, packet1
 from daemon.bus.packet import ErrorCode
-from sim.servo1 import CHECKSUM_ERROR, INSTRUCTION_ERROR, RANGE_ERROR
+from sim.servos.servo_protocol1 import CHECKSUM_ERROR, INSTRUCTION_ERROR, RANGE_ERROR
 
 INDIRECT_DATA_1, INDIRECT_DATA_29 = 224, 634
 

@@ -23,7 +23,7 @@ from daemon.bus.serial_port import SerialPort
 from daemon.bus.tty_speed import tty_speed
 from daemon.clock import RealClock
 from daemon.errors import CommandError, LinkLostError, PortBaudError
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule

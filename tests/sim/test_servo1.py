@@ -9,7 +9,7 @@ from daemon.bus import packet, packet1
 from daemon.bus.models import MODELS
 from daemon.bus.packet import Packet
 from sim.faults import Fault
-from sim.servo1 import ANGLE_ERROR, INSTRUCTION_ERROR, OVERLOAD_ERROR, RANGE_ERROR
+from sim.servos.servo_protocol1 import ANGLE_ERROR, INSTRUCTION_ERROR, OVERLOAD_ERROR, RANGE_ERROR
 
 PROTOCOL_1 = [m.name for m in MODELS.values() if m.protocol == 1.0]
 

@@ -8,8 +8,8 @@ from servo_bench import Bench
 
 from daemon.bus import packet
 from daemon.bus.packet import ErrorCode
+from sim.bodies.motors import MOTORS
 from sim.faults import Fault
-from sim.motors import MOTORS
 
 Y, P = "YM070-210-R099-RH", "PH42-020-S300-R"
 BOTH = pytest.mark.parametrize("name", [Y, P])

@@ -23,7 +23,8 @@ from daemon.bus import packet
 from daemon.driving.process import SLOW_EVERY
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.turns import TURNS_UNKNOWN
-from retarget.robot import RobotModel, load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
 from sim.faults import INSTANT_KINDS, PACKET_KINDS, Fault
 from tests.daemon.rig import Rig, rig, swing
 from tests.sim.soak_witness import EXPECTED, Witness

@@ -11,7 +11,7 @@ from daemon.bus import packet
 from daemon.bus.crc import crc16
 from daemon.bus.packet import PacketDecoder
 from sim.faults import Fault
-from sim.wire import Wire, WireSettings
+from sim.wire.wire import Wire, WireSettings
 
 THREE = ("XM430-W350",) * 3
 ROWS = [(2, 132, 4), (1, 132, 4), (3, 132, 4)]

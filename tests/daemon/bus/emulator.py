@@ -14,8 +14,8 @@ from daemon.bus.models import MODEL_NUMBERS, MODELS, BusModel
 from daemon.bus.packet import BROADCAST_ID, ErrorCode, Instruction, Packet, Part
 from daemon.bus.registers import WATCHDOG_TRIPPED
 from daemon.errors import LinkLostError, PacketError
-from retarget.robot import ServoSpec
-from retarget.servos import servo_models
+from retarget.robot.robot import ServoSpec
+from retarget.robot.servos import servo_models
 from sim.clock import VirtualClock
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from daemon.bus.servo_bus import ServoBus
-from retarget.robot import RobotModel, load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule

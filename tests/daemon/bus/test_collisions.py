@@ -10,7 +10,7 @@ from daemon.bus.events import BusEventKind
 from daemon.bus.health import Health
 from daemon.bus.servo_bus import ServoBus
 from daemon.errors import BusMismatchError, LinkGarbledError
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule

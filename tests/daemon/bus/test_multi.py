@@ -13,8 +13,8 @@ from daemon.bus.servo_bus import ServoBus
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.streamer import Streamer
 from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTimeoutError
-from retarget.robot import load_robot
-from retarget.ticks import JointServoMap
+from retarget.robot.loading import load_robot
+from retarget.robot.ticks import JointServoMap
 from sim.clock import VirtualClock
 from tests.daemon.rig import swing
 

@@ -19,7 +19,7 @@ from daemon.bus.port import Port
 from daemon.bus.serial_port import SerialPort, open_dxl
 from daemon.clock import RealClock
 from daemon.errors import CommandError, LinkLostError, PortBusyError, PortMissingError, PortPermissionError
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.port import SimPort
 from sim.pty import PtyServer

@@ -23,7 +23,8 @@ from daemon.bus.servo_bus import ServoBus
 from daemon.bus.single import find
 from daemon.cli import main
 from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTimeoutError, PortMissingError
-from retarget.robot import RobotModel, load_robot
+from retarget.robot.loading import load_robot
+from retarget.robot.robot import RobotModel
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.port import SimPort

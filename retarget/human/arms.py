@@ -1,0 +1,320 @@
+"""Arms in closed form: joint angles from the directions of upper arm and forearm.
+
+Families by the joints from chest to elbow, with any axes, signs, order and zero pose (`arm_chain`):
+
+- three shoulder axes and an elbow (arms of 4 to 7 joints): the angle between the bones gives the elbow, two ways; the
+  shoulder's rotation then follows from both directions and splits into its three angles, two ways (Paden-Kahan
+  subproblems; Murray, Li, Sastry 1994, sec. 3.2). Any pair of directions is reached, in up to four ways.
+- two shoulder axes and an elbow (3 joints), one and an elbow, or two without an elbow (2 joints): most pairs cannot be
+  reached. From several closed-form starts Gauss-Newton steps within the limits find the least weighted error.
+
+Where an axis misses the shoulder, the directions follow the true points and a few damped steps take up what the closed
+form left. Arms of one kind are solved together: G arms, M poses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from retarget.human.arm_chain import ArmChain
+from retarget.human.branches import UNSEEN, fill_unseen
+from retarget.human.subproblems import Reach, Turn, angle_about, frame, unit
+from retarget.robot.kinematics import cross, skew
+
+Array = NDArray[np.float64]
+UPPER_WEIGHT, FORE_WEIGHT = 1.0, 1.0
+_LEAST_ERROR_STEPS, _CUT_STEPS, _OFFSET_STEPS = 7, 3, 3
+_DONE_RAD = 1e-4
+_DAMPING = 1e-3
+_LARGEST_STEP_RAD = 0.6
+_LIMIT_COST, _ERROR_COST = 5.0, 4.0
+"""Per radian outside a limit and per radian of direction error, against per radian of joint motion."""
+_SEEN_ACROSS, _SEEN_BENT = 0.15, 0.05
+"""Squared sines from which on the first and the third shoulder joint count as fully seen."""
+_SPREAD = {2: 21, 3: 9}
+"""Poses for each joint among which a start for the least error is looked for, by number of joints."""
+_EYE = np.eye(3)
+_STRAIGHT = 1e-6
+"""Sine below which two directions count as parallel."""
+
+
+@dataclass(frozen=True)
+class Bones:
+    """Directions of both bones in poses (G, M), and how they change.
+
+    Attributes:
+        upper: (G, M, 3) unit directions.
+        fore: (G, M, 3) unit directions.
+        slope: (G, M, n, 6) change of both per radian of each joint.
+    """
+
+    upper: Array
+    fore: Array
+    slope: Array
+
+    def hessian(self) -> Array:
+        """(G, M, n, n) of half the squared error of both directions."""
+        return self.slope @ np.swapaxes(self.slope, -1, -2)
+
+    def towards(self, upper: Array, fore: Array) -> Array:
+        """(G, M, n) how fast half the squared error against directions (G, M, 3) falls with each joint."""
+        error = np.concatenate([upper - self.upper, fore - self.fore], -1)
+        return (self.slope @ error[..., None])[..., 0]
+
+
+class Arms:
+    """G arms of one kind."""
+
+    def __init__(self, chains: Sequence[ArmChain]) -> None:
+        self.chains = tuple(chains)
+        one = self.chains[0]
+        self.n_joints = len(one.joints)
+        self._n_shoulder, self.eye = self.n_joints - one.has_elbow, np.eye(self.n_joints)
+        self._has_elbow, self._has_offsets = one.has_elbow, bool(one.beside_m.any())
+        self.reaches_all = self._n_shoulder == 3 and one.has_elbow
+        self.low, self.high = np.stack([c.low for c in chains])[:, None], np.stack([c.high for c in chains])[:, None]
+        self._middle = (self.low + self.high) / 2
+        self.axes = np.stack([c.axes for c in chains])  # (G, n, 3)
+        self._skews = np.array([[skew(a) for a in c.axes] for c in chains])  # (G, n, 3, 3)
+        self._skews_squared = self._skews @ self._skews
+        self._upper_m, self._beside_m = np.stack([c.upper_m for c in chains]), np.stack([c.beside_m for c in chains])
+        self.upper0, self.fore0 = unit(self._upper_m), unit(np.stack([c.fore_m for c in chains]))
+        if self.reaches_all:
+            a1, a2, a3, a4 = np.moveaxis(self.axes, 1, 0)
+            self._elbow_turn = Turn(a4, self.fore0)
+            self._third_turn, self._first_turn = Turn(a2, a3), Turn(a2, a1)
+            self._elbow_reach, self._roll_reach = Reach(self._elbow_turn, self.upper0), Reach(self._third_turn, a1)
+            self._skew_upper = np.array([skew(u) for u in self.upper0])
+        else:
+            self._spread_out()
+
+    def _spread_out(self) -> None:
+        steps = _SPREAD[self.n_joints]
+        share = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, steps)] * self.n_joints), -1).reshape(-1, self.n_joints)
+        self._poses = self.low + share * (self.high - self.low)  # (G, S, n)
+        upper, fore = self.directions(self._poses)
+        self._pose_directions = np.concatenate([UPPER_WEIGHT * upper, FORE_WEIGHT * fore], -1)
+
+    def ways(self, upper: Array, fore: Array) -> tuple[Array, Array]:
+        """Angles of each way to unit directions (G, M, 3), and how much each joint shows there, both (G, M, C, n).
+
+        Ways of arms that reach all directions may lie outside the limits. What shows is 0 to 1: with the third axis along
+        the first only their sum does, with the arm straight the third does not.
+        """
+        if not self.reaches_all:
+            ways = self._refine(self._starts(upper, fore), upper, fore, _LEAST_ERROR_STEPS)
+            return ways, np.ones_like(ways)
+        ways, seen = self._every_pair(upper, fore)
+        if self._has_offsets:
+            ways = self._refine(ways, upper, fore, _OFFSET_STEPS)
+        return self._nearest_turn(ways), seen
+
+    def own_cost(self, ways: Array, upper: Array, fore: Array, seen: Array) -> Array:
+        """(G, M, C) what each way costs by itself, in radians of movement: what lies outside limits, directions missed."""
+        outside = np.abs(ways - np.minimum(np.maximum(ways, self.low[:, None]), self.high[:, None]))
+        cost = _LIMIT_COST * np.einsum("gmcn,gmcn->gmc", outside, seen)
+        if not self.reaches_all or self._has_offsets:
+            found = self.directions(ways.reshape(len(ways), -1, self.n_joints))
+            for f, wanted in zip(found, (upper, fore), strict=True):
+                missed = f.reshape(*ways.shape[:3], 3) - wanted[:, :, None]
+                cost = cost + _ERROR_COST * np.linalg.norm(missed, axis=-1)
+        return cost
+
+    def within_limits(self, q: Array, upper: Array, fore: Array) -> Array:
+        """(G, M, n) angles within the limits; where one is cut off, the other joints make up for it as far as they can."""
+        inside = np.minimum(np.maximum(q, self.low), self.high)
+        cut = (inside != q).any((0, 2))
+        if cut.any():
+            better = self._refine(q[:, cut, None], upper[:, cut], fore[:, cut], _CUT_STEPS)[:, :, 0]
+            some = (inside != q).any(2)[:, cut]
+            inside[:, cut] = np.where(some[..., None], better, inside[:, cut])
+        return inside
+
+    def rested(self, q: Array, seen: Array, upper: Array, fore: Array, previous: Array) -> Array:
+        """(G, M, n) angles near which those of `q` that do not show may rest, from `previous` (G, n) on.
+
+        With the first and the third axis in line only the sum of their angles shows, which stays as it is.
+        """
+        if not (seen < UNSEEN).any():
+            return q
+        x = q.copy()
+        straight = (1 - np.einsum("gmi,gmi->gm", upper, fore) ** 2) / _SEEN_BENT
+        in_line = np.sign(self._third_turn.at(np.cos(q[..., 1]), np.sin(q[..., 1])) @ self.axes[:, 0, :, None])[..., 0]
+        for g in range(len(q)):
+            fill_unseen(x[g, :, 0], seen[g, :, 0], previous[g, 0])
+            x[g, :, 2] += in_line[g] * (q[g, :, 0] - x[g, :, 0])
+            fill_unseen(x[g, :, 2], straight[g], previous[g, 2])
+        return x
+
+    def directions(self, q: Array) -> tuple[Array, Array]:
+        """Unit directions of upper arm and forearm, each (G, M, 3), for angles (G, M, n)."""
+        R = self._rotations(q)
+        shoulder = R[:, :, 0]
+        for j in range(1, self._n_shoulder):
+            shoulder = shoulder @ R[:, :, j]
+        if self._has_offsets:
+            upper = unit(self._levers(R)[0])
+        else:
+            upper = (shoulder @ self.upper0[:, None, :, None])[..., 0]
+        if not self._has_elbow:
+            return upper, upper
+        return upper, (shoulder @ (R[:, :, -1] @ self.fore0[:, None, :, None]))[..., 0]
+
+    def bones(self, q: Array) -> Bones:
+        """Directions of both bones for angles (G, M, n), and how they change."""
+        R = self._rotations(q)
+        turned = above = R[:, :, 0]
+        axes = np.empty((*q.shape, 3))
+        axes[:, :, 0] = self.axes[:, None, 0]
+        for j in range(1, self.n_joints):
+            axes[:, :, j] = (turned @ self.axes[:, None, j, :, None])[..., 0]
+            turned, above = turned @ R[:, :, j], turned
+        fore = (turned @ self.fore0[:, None, :, None])[..., 0]
+        upper = (above @ self.upper0[:, None, :, None])[..., 0] if self._has_elbow else fore
+        slope = np.zeros((*q.shape, 6))
+        n = self._n_shoulder
+        if self._has_offsets:
+            upper, slope[:, :, :n, :3] = self._upper_with_offsets(R, axes)
+        else:
+            slope[:, :, :n, :3] = cross(axes[:, :, :n], upper[:, :, None])
+        slope[..., 3:] = cross(axes, fore[:, :, None])
+        return Bones(upper, fore, slope)
+
+    def _rotations(self, q: Array) -> Array:
+        """(G, M, n, 3, 3) rotation of each joint."""
+        sine, versine = np.sin(q)[..., None, None], (1 - np.cos(q))[..., None, None]
+        return _EYE + sine * self._skews[:, None] + versine * self._skews_squared[:, None]
+
+    def _levers(self, R: Array) -> tuple[Array, list[Array]]:
+        """(G, M, 3) shoulder to elbow, and for each shoulder joint the vector that it turns to move the elbow."""
+        levers: list[Array] = []
+        v: Array = np.broadcast_to(self._upper_m[:, None], (*R.shape[:2], 3))
+        for j in range(self._n_shoulder - 1, -1, -1):
+            beside = self._beside_m[:, None, j]
+            lever = (R[:, :, j] @ (v - beside)[..., None])[..., 0]
+            levers = [lever, *((R[:, :, j] @ w[..., None])[..., 0] for w in levers)]
+            v = lever + beside
+        return v, levers
+
+    def _upper_with_offsets(self, R: Array, axes: Array) -> tuple[Array, Array]:
+        """Direction of the upper arm, (G, M, 3), and its change per radian of each shoulder joint, (G, M, n, 3)."""
+        v, levers = self._levers(R)
+        length = np.linalg.norm(v, axis=-1, keepdims=True)
+        upper = v / length
+        moved = cross(axes[:, :, : len(levers)], np.stack(levers, 2))
+        along = (moved * upper[:, :, None]).sum(-1, keepdims=True)
+        return upper, (moved - along * upper[:, :, None]) / length[:, :, None]
+
+    def _every_pair(self, upper: Array, fore: Array) -> tuple[Array, Array]:
+        """The four ways of three shoulder axes and an elbow, where bones turn about the shoulder, and what shows."""
+        G, M = upper.shape[:2]
+        a1, _, a3, _ = np.moveaxis(self.axes, 1, 0)
+        cosine = np.einsum("gmi,gmi->gm", upper, fore)
+        elbow = self._elbow_reach.angles(cosine)  # (G, M, 2)
+        bent = self._elbow_turn.at(np.cos(elbow), np.sin(elbow))  # forearm in the upper arm's zero frame
+        R = frame(upper, fore)[:, :, None] @ np.swapaxes(self._zero_frame(bent), -1, -2)  # (G, M, 2, 3, 3)
+        third = np.einsum("gmeij,gj->gmei", R, a3)
+        first = np.einsum("gmeij,gi->gmej", R, a1)
+        height = np.einsum("gmei,gi->gme", third, a1)
+        q2 = self._roll_reach.angles(height)  # (G, M, 2, 2)
+        c2, s2 = np.cos(q2), np.sin(q2)
+        q1, lost = angle_about(a1, self._third_turn.at(c2, s2), third)
+        q3, _ = angle_about(a3, first, self._first_turn.at(c2, -s2), first_has_ways=False)
+        ways = np.empty((G, M, 2, 2, 4))
+        ways[..., 0], ways[..., 1], ways[..., 2], ways[..., 3] = q1, q2, q3, elbow[..., None]
+        if lost.any():  # the first and the third axis in line: their sum alone counts, and must be right
+            ways[..., 2] = np.where(lost, self._third_alone(ways, R), q3)
+        seen = np.ones((G, M, 2, 2, 4))
+        across = np.minimum(np.maximum(1 - height**2, 0.0) / _SEEN_ACROSS, 1)
+        seen[..., 0] = across[..., None]
+        seen[..., 2] = (across * np.minimum(np.maximum(1 - cosine**2, 0.0) / _SEEN_BENT, 1)[:, :, None])[..., None]
+        return ways.reshape(G, M, 4, 4), seen.reshape(G, M, 4, 4)
+
+    def _zero_frame(self, bent: Array) -> Array:
+        """(..., 3, 3) frames of the zero pose with the elbow bent: upper arm, across both bones, across those."""
+        across = bent @ np.swapaxes(self._skew_upper, -1, -2)[:, None]
+        length = np.linalg.norm(across, axis=-1, keepdims=True)
+        straight = length < _STRAIGHT
+        if straight.any():
+            other = cross(self.upper0, np.eye(3)[np.abs(self.upper0).argmin(-1)])[:, None, None]
+            across = np.where(straight, other, across)
+            length = np.linalg.norm(across, axis=-1, keepdims=True)
+        across = across / length
+        columns = np.empty((*bent.shape, 3))
+        columns[..., 0] = self.upper0[:, None, None]
+        columns[..., 1] = across
+        columns[..., 2] = across @ np.swapaxes(self._skew_upper, -1, -2)[:, None]
+        return columns
+
+    def _third_alone(self, ways: Array, R: Array) -> Array:
+        """(G, M, 2, 2) the third angle that completes the first two to the rotation `R` (G, M, 2, 3, 3)."""
+        a3 = self.axes[:, 2]
+        probe = unit(cross(a3, np.eye(3)[np.abs(a3).argmin(-1)]))
+        turns = self._rotations(ways.reshape(len(ways), -1, 4)).reshape(*ways.shape, 3, 3)
+        left = np.swapaxes(turns[..., 0, :, :] @ turns[..., 1, :, :], -1, -2) @ R[:, :, :, None]
+        moved = np.einsum("gmewij,gj->gmewi", left, probe)
+        sine = np.einsum("gmewi,gi->gmew", moved, cross(a3, probe))
+        return np.arctan2(sine, np.einsum("gmewi,gi->gmew", moved, probe))
+
+    def _starts(self, upper: Array, fore: Array) -> Array:
+        """(G, M, C, n) angles from which to look for the least error."""
+        # The nearest of poses spread over the range: limits make valleys that the others may miss.
+        aim = np.concatenate([upper, fore], -1)
+        nearest = (aim @ np.swapaxes(self._pose_directions, -1, -2)).argmax(-1)  # (G, M)
+        starts = [np.take_along_axis(self._poses, nearest[..., None], 1)]
+        between = unit(upper + fore)
+        for aim in (upper, between) if self._has_elbow else (between,):
+            if self._n_shoulder == 2:
+                a1, a2 = self.axes[:, 0], self.axes[:, 1]
+                turn = Turn(a2, self.upper0)
+                q2 = Reach(turn, a1).angles(np.einsum("gmi,gi->gm", aim, a1))  # (G, M, 2)
+                q1, _ = angle_about(a1, turn.at(np.cos(q2), np.sin(q2)), aim)
+                shoulders = [np.stack([q1[..., w], q2[..., w]], -1) for w in range(2)]
+            else:
+                q1, _ = angle_about(self.axes[:, 0], self.upper0[:, None, None], aim)
+                shoulders = [q1]
+            starts += [self._with_elbow(shoulder, fore) for shoulder in shoulders]
+        return np.stack(starts, 2)
+
+    def _with_elbow(self, shoulder: Array, fore: Array) -> Array:
+        """(G, M, n) shoulder angles with the elbow that brings the forearm nearest to `fore`."""
+        if not self._has_elbow:
+            return shoulder
+        R = self._rotations(np.concatenate([shoulder, np.zeros((*shoulder.shape[:2], 1))], -1))
+        local = fore[..., None]
+        for j in range(self._n_shoulder):
+            local = np.swapaxes(R[:, :, j], -1, -2) @ local
+        elbow, _ = angle_about(self.axes[:, -1], self.fore0[:, None, None], local[..., 0])
+        return np.concatenate([shoulder, elbow], -1)
+
+    def _refine(self, ways: Array, upper: Array, fore: Array, steps: int) -> Array:
+        """Gauss-Newton on both direction errors from angles (G, M, C, n), kept inside their limits."""
+        G, M, C, n = ways.shape
+        q = self._nearest_turn(ways).reshape(G, M * C, n)
+        q = np.minimum(np.maximum(q, self.low), self.high)
+        upper, fore = np.repeat(upper, C, 1), np.repeat(fore, C, 1)
+        damping = _DAMPING * np.eye(n)
+        weight = np.array([UPPER_WEIGHT] * 3 + [FORE_WEIGHT] * 3) ** 0.5
+        for _ in range(steps):
+            b = self.bones(q)
+            error = weight * np.concatenate([upper - b.upper, fore - b.fore], -1)
+            slope = weight * b.slope
+            fall = (slope @ error[..., None])[..., 0]
+            # A joint at its limit that is pushed further out stays; the others make up for it.
+            stuck = ((q <= self.low) & (fall < 0)) | ((q >= self.high) & (fall > 0))
+            slope = np.where(stuck[..., None], 0.0, slope)
+            normal = slope @ np.swapaxes(slope, -1, -2) + damping
+            step = np.linalg.solve(normal, np.where(stuck, 0.0, fall)[..., None])[..., 0]
+            q = q + np.minimum(np.maximum(step, -_LARGEST_STEP_RAD), _LARGEST_STEP_RAD)
+            q = np.minimum(np.maximum(q, self.low), self.high)
+            if step.size and np.abs(step).max() < _DONE_RAD:
+                break
+        return q.reshape(G, M, C, n)
+
+    def _nearest_turn(self, ways: Array) -> Array:
+        """Whole turns added where that brings an angle into its limits."""
+        return ways - 2 * np.pi * np.round((ways - self._middle[:, None]) / (2 * np.pi))

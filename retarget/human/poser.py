@@ -1,0 +1,175 @@
+"""Poses from a human motion: waist, neck, arms, and joints that rest where their turning cannot be seen.
+
+Where an arm points along one of its axes, or is straight, some joint turns without being seen. The closed form says
+nothing of use for it there; what is wanted then is the path of least movement that shows the same directions: a least-
+squares problem over all frames, solved by a few Gauss-Newton steps on one banded matrix.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from retarget.human.arm_chain import ArmChain, read_arm
+from retarget.human.arms import Arms
+from retarget.human.branches import choose
+from retarget.human.human import SIDES, HumanPose
+from retarget.human.objective import ArmMatters, PoseMatters
+from retarget.human.trunk import Trunk
+from retarget.path.limit_path import Angles
+from retarget.path.limits import JointLimits
+from retarget.path.lookahead_qp import Wish, least_moving
+from retarget.robot.kinematics import Kinematics
+
+Array = NDArray[np.float64]
+ArmsFollow = Literal["chest", "world"]
+_REST_PULL = 0.004
+"""Weight of squared steps against squared direction errors: a tenth of a degree for human motion, all for an unseen joint."""
+_REST_STEPS = 3
+_SEEN_RAD = 0.004
+"""Direction error that resting may leave before it is tried again from where it came to."""
+_NEARBY = 0.01
+"""Weight of squared steps from one such trial to the next: directions are linear in angles nearby only."""
+_MOST_LOST_RAD = 0.03
+"""A frame in which resting still costs more than this keeps its closed-form pose."""
+
+
+@dataclass(frozen=True)
+class Poses:
+    """What a robot should do, before limits in time and contacts.
+
+    Attributes:
+        q_rad: (T, J) angles within the position limits.
+        outside: (T, J) whether a position limit changed one.
+        upper: (2, T, 3) directions of left and right upper arm, in the robot's chest frame, that they are for.
+        fore: (2, T, 3) of the forearms.
+    """
+
+    q_rad: Array
+    outside: NDArray[np.bool_]
+    upper: Array
+    fore: Array
+
+    def part(self, frames: slice) -> Poses:
+        """Some of the frames."""
+        return Poses(self.q_rad[frames], self.outside[frames], self.upper[:, frames], self.fore[:, frames])
+
+    def stretched(self, times: float) -> Poses:
+        """The same, so many times slower."""
+        T = len(self.q_rad)
+        at = np.linspace(0, T - 1, max(2, round(T * times)) if T > 1 else 1)
+        low = np.minimum(at.astype(np.int64), T - 1)
+        high, share = np.minimum(low + 1, T - 1), (at - low)[:, None]
+
+        def between(x: Array) -> Array:
+            return x[..., low, :] * (1 - share) + x[..., high, :] * share
+
+        upper, fore = (d / np.linalg.norm(d, axis=-1, keepdims=True) for d in map(between, (self.upper, self.fore)))
+        return Poses(between(self.q_rad), self.outside[low], upper, fore)
+
+
+class Poser:
+    """Solves the poses of one robot."""
+
+    def __init__(self, kinematics: Kinematics, limits: JointLimits, arms_follow: ArmsFollow = "chest") -> None:
+        robot = kinematics.robot
+        self._limits, self._rest_rad, self._arms_follow = limits, robot.rest_rad, arms_follow
+        self._trunk = Trunk(kinematics)
+        self.chains: tuple[ArmChain, ...] = tuple(read_arm(kinematics, side) for side in SIDES)
+        kinds = sorted({chain.kind for chain in self.chains})
+        self._sides = [[i for i, chain in enumerate(self.chains) if chain.kind == kind] for kind in kinds]
+        self._arms = [Arms([self.chains[i] for i in sides]) for sides in self._sides]
+        self._joints = [np.array([self.chains[i].joints for i in sides], np.int64) for sides in self._sides]  # (G, n)
+        in_arms = {j for chain in self.chains for j in chain.joints}
+        self._others = [j for j in range(robot.n_joints) if j not in in_arms]
+        self._twists: list[tuple[int, int, float]] = []
+        for i, chain in enumerate(self.chains):
+            twist = robot.joint_with_role(f"{chain.side}_forearm_yaw")
+            if twist is not None:
+                self._twists.append((i, twist, float(np.sign(kinematics.axes[twist] @ chain.fore_m))))
+
+    def solve(self, human: HumanPose, before_rad: Array | None) -> Poses:
+        """Poses for each frame, the first near `before_rad` (J,), or near the rest pose."""
+        low, high = self._limits.position_min_rad, self._limits.position_max_rad
+        before = self._rest_rad if before_rad is None else before_rad
+        q = np.tile(self._rest_rad, (human.upper.shape[1], 1))
+        outside = np.zeros(q.shape, bool)
+        if self._trunk.has_waist:
+            self._trunk.solve_waist(human.chest_rotation, q)
+            outside |= (q < low) | (q > high)
+            q = np.minimum(np.maximum(q, low), high)
+        self._trunk.solve_neck(human.head_rotation, q)
+        upper, fore = human.upper, human.fore
+        if self._arms_follow == "world":
+            turned = np.swapaxes(self._trunk.into_chest(q) @ human.chest_rotation, -1, -2)
+            upper, fore = ((d[:, :, None] @ turned)[:, :, 0] for d in (upper, fore))
+        for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
+            angles, cut = self._arm_angles(arms, upper[sides], fore[sides], before[joints])
+            q[:, joints], outside[:, joints] = angles.transpose(1, 0, 2), cut.transpose(1, 0, 2)
+        for i, joint, sense in self._twists:
+            q[:, joint] = sense * human.forearm_twist_rad[i]
+        outside |= (q < low) | (q > high)
+        return Poses(np.minimum(np.maximum(q, low), high), outside, upper, fore)
+
+    def directions(self, q_rad: Array) -> tuple[Array, Array]:
+        """(2, T, 3) directions of the upper arms and of the forearms, left and right, in poses (T, J)."""
+        upper, fore = np.empty((2, 2, len(q_rad), 3))
+        for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
+            upper[sides], fore[sides] = arms.directions(q_rad[:, joints].transpose(1, 0, 2))
+        return upper, fore
+
+    def stiffness(self, q_rad: Array) -> Array:
+        """(T, J, J) what a small movement away from poses (T, J) changes: bone directions, and every angle as much."""
+        T, J = q_rad.shape
+        every = np.zeros((T, J, J))
+        every[:, np.arange(J), np.arange(J)] = 1.0
+        for arms, joints in zip(self._arms, self._joints, strict=True):
+            hessian = arms.bones(q_rad[:, joints].transpose(1, 0, 2)).hessian()
+            for g, of in enumerate(joints):
+                every[:, of[:, None], of] += hessian[g]
+        return every
+
+    def shown(self, poses: Poses, q_rad: Array) -> tuple[Array, Array]:
+        """(T, J, J), (T, J): see `Retargeter.shown`."""
+        T, J = q_rad.shape
+        every, falls = np.zeros((T, J, J)), np.zeros((T, J))
+        for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
+            bones = arms.bones(q_rad[:, joints].transpose(1, 0, 2))
+            hessian, fall = bones.hessian(), bones.towards(poses.upper[sides][:, :T], poses.fore[sides][:, :T])
+            for g, of in enumerate(joints):
+                every[:, of[:, None], of] += hessian[g]
+                falls[:, of] += fall[g]
+        return every, falls
+
+    def matters(self, q_rad: Array, led_rad: Array) -> PoseMatters:
+        """What matters of the wish to show poses (T, J): directions for arms, angles for the rest.
+
+        Where poses were led round a contact by `led_rad` (T, J), going less far that way matters too.
+        """
+        arms = [ArmMatters(a, j, q_rad, led_rad) for a, j in zip(self._arms, self._joints, strict=True)]
+        return PoseMatters(arms, Angles(q_rad, self._others) if self._others else None)
+
+    def _arm_angles(self, arms: Arms, upper: Array, fore: Array, before: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Angles of arms of one kind for directions (G, T, 3), from `before` (G, n) on, and which were cut, (G, T, n)."""
+        ways, seen = arms.ways(upper, fore)
+        chosen, seen = choose(ways, arms.own_cost(ways, upper, fore, seen), seen, before)
+        cut = (chosen < arms.low) | (chosen > arms.high)
+        closed = arms.within_limits(chosen, upper, fore) if cut.any() else chosen
+        bones = arms.bones(closed)
+        shown = bones.upper, bones.fore
+        x = arms.rested(closed, seen, *shown, before)
+        if x is not closed:
+            bones = arms.bones(x)
+        lost = np.zeros(0)
+        for _ in range(_REST_STEPS):
+            hessian = bones.hessian() + arms.eye * _NEARBY
+            linear = (hessian @ x[..., None])[..., 0] + bones.towards(*shown)
+            x = np.minimum(np.maximum(least_moving(Wish(hessian, linear, _REST_PULL), before), arms.low), arms.high)
+            bones = arms.bones(x)
+            lost = np.maximum(np.abs(bones.upper - shown[0]), np.abs(bones.fore - shown[1])).max(-1)
+            if lost.max() < _SEEN_RAD:
+                return x, cut
+        return np.where((lost > _MOST_LOST_RAD)[..., None], closed, x), cut

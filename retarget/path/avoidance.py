@@ -1,0 +1,124 @@
+"""Leading a robot round itself: poses pushed out of contact, and a path's targets pushed where the path still touches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from retarget.path.collision import SelfContact
+from retarget.path.limits import JointLimits
+from retarget.robot.robot import RobotModel
+
+Array = NDArray[np.float64]
+STRENGTHS = (0.0, 0.0, 0.0, 0.1, 0.3, 0.6, 1.0)
+"""Share drawn towards the rest pose around what a path touches, one attempt after another; first by pushes alone."""
+_AIM_M = 0.002
+"""A pose led round keeps so much more than the margin, for what limits in time then cut off."""
+_PUSHED_ON_M = 0.004
+"""A path that touches is pushed so much further than the margin."""
+_PUSHES = 6
+_MOST_PUSHED_RAD = 0.15
+_DAMPING = 1e-5
+_AROUND = (1.0, 0.85, 0.5, 0.2)
+"""How much of a push reaches the frames 0, 1, 2, 3 away."""
+
+
+class Avoidance:
+    """Keeps one robot off itself. The arms give way; head and waist go where they are meant to."""
+
+    def __init__(
+        self, robot: RobotModel, contact: SelfContact, limits: JointLimits, stiffness: Callable[[Array], Array]
+    ) -> None:
+        """Set up for a robot.
+
+        Args:
+            robot: the robot.
+            contact: its distances to itself.
+            limits: its position limits.
+            stiffness: (T, J, J) for poses (T, J), what moving away from each costs: half of x' K x.
+        """
+        self._contact, self._stiffness = contact, stiffness
+        self._low, self._high = limits.position_min_rad, limits.position_max_rad
+        self._rest_rad = robot.rest_rad
+        self._mobility = np.array([j.role.startswith(("left_", "right_")) for j in robot.joints], np.float64)
+
+    def lead_round(self, wanted_rad: Array, before_rad: Array) -> tuple[Array, int]:
+        """Poses (T, J) clear of the robot, each near the wanted one; how many stretches of them were changed."""
+        clear = wanted_rad.copy()
+        touching = self._contact.frames(clear, 1.0)
+        some = np.flatnonzero(touching)
+        if len(some):
+            clear[some], free = self._pushed_out(clear[some], _AIM_M)
+            lost = some[~free]
+            if len(lost):  # too deep to see the way out: go from the pose before to the pose after
+                clear[lost] = _between(clear, lost, before_rad)
+                clear[lost] = self._pushed_out(clear[lost], _AIM_M)[0]
+        return clear, stretches(touching)
+
+    def push(self, eased_rad: Array, path_rad: Array, hit: NDArray[np.bool_], strength: float) -> Array:
+        """Targets (T, J) changed where the path made of them, (N, J) control points, touches in segments `hit` (N - 2,)."""
+        T = len(eased_rad)
+        pushes = np.zeros_like(eased_rad)
+        segments = np.flatnonzero(hit)
+        c0, c1, c2 = path_rad[segments], path_rad[segments + 1], path_rad[segments + 2]
+        poses = np.stack([(c0 + c1) / 2, (c0 + 6 * c1 + c2) / 8, (c1 + c2) / 2], 1)  # (S, 3, J)
+        clearance = self._contact.clearance_m(poses.reshape(-1, path_rad.shape[1])).reshape(-1, 3)
+        worst = poses[np.arange(len(segments)), clearance.argmin(1)]
+        out = self._pushed_out(worst, _PUSHED_ON_M)[0] - worst
+        for k, push in zip(segments, out, strict=True):  # segment k runs from frame k - 1 to frame k
+            for t in {min(max(int(k) - 1, 0), T - 1), min(int(k), T - 1)}:
+                pushes[t] = _larger(pushes[t], push)
+        spread = np.zeros_like(pushes)
+        near = np.zeros((T, 1))
+        touched = np.zeros(T, bool)
+        touched[np.minimum(np.flatnonzero(hit), T - 1)] = True
+        for away, share in enumerate(_AROUND[:T]):
+            for shift in {away, -away}:
+                to, of = slice(max(shift, 0), T + min(shift, 0)), slice(max(-shift, 0), T - max(shift, 0))
+                spread[to] = _larger(spread[to], share * pushes[of])
+                near[to] = np.maximum(near[to], share * touched[of, None])
+        changed = eased_rad + spread
+        changed = changed + strength * near * (self._rest_rad - changed)
+        return np.clip(changed, self._low, self._high)
+
+    def _pushed_out(self, q_rad: Array, aim_m: float) -> tuple[Array, NDArray[np.bool_]]:
+        """Poses (T, J) moved little until they keep the margin and `aim_m` more, and which of them keep the margin.
+
+        The worst pair of each is pushed apart by the movement that costs least, again and again.
+        """
+        q = q_rad.copy()
+        yielding = np.linalg.inv(self._stiffness(q_rad))
+        rows = np.arange(len(q))
+        free = np.zeros(len(q), bool)
+        for _ in range(_PUSHES):
+            lack, way = self._contact.worst(q[rows], aim_m)
+            free[rows] = lack <= aim_m
+            rows, lack, way = rows[lack > 0], lack[lack > 0, None], way[lack > 0]
+            if not len(rows):
+                break
+            way = way * self._mobility
+            along = (yielding[rows] @ way[..., None])[..., 0]
+            push = lack * along / (np.vecdot(way, along)[:, None] + _DAMPING)
+            push = np.minimum(np.maximum(push, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
+            q[rows] = np.minimum(np.maximum(q[rows] + push, self._low), self._high)
+        return q, free
+
+
+def stretches(of: NDArray[np.bool_]) -> int:
+    """Number of separate runs of true."""
+    return int(of[0]) + int((of[1:] & ~of[:-1]).sum())
+
+
+def _between(q_rad: Array, frames: NDArray[np.int64], before_rad: Array) -> Array:
+    """(n, J) poses on lines between those of `q_rad` (T, J) beside `frames` (n,); the last known stays."""
+    kept = np.setdiff1d(np.arange(len(q_rad)), frames)
+    at = np.concatenate([[0], kept + 1])
+    known = np.concatenate([before_rad[None], q_rad[kept]])
+    return np.stack([np.interp(frames + 1, at, known[:, j]) for j in range(q_rad.shape[1])], 1)
+
+
+def _larger(a: Array, b: Array) -> Array:
+    """Element by element what is further from zero."""
+    return np.where(np.abs(b) > np.abs(a), b, a)

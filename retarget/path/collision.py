@@ -1,0 +1,236 @@
+"""Self-contact: how near a robot comes to itself, along a whole path, and which way leads out.
+
+Between two poses no distance changes by more than what the shapes move, which bounds it from below: a path found free is
+free at every instant, not at samples.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from retarget.path.continuous_bounds import Known, Spans
+from retarget.path.distances import MARGIN_M, MEASURED_M, Array, Indices, PairDistances
+from retarget.robot.description import mujoco
+from retarget.robot.kinematics import cross
+from retarget.robot.robot import RobotModel
+
+KEPT = 0.8
+"""Share of the margin that is proved for every instant of a path."""
+_FROM_WITHIN = 0.1
+"""A path that begins within a margin may come nearer by this share of it while it turns away."""
+_DEEPEST = 8
+"""Halvings of a segment after which it counts as touching; distances that near and movements that small do not occur."""
+_ROUNDING_M = 1e-6
+Allowed = tuple[Array, Array]
+"""(P,) metres that each pair keeps at the borders of segments, and at every instant."""
+
+
+class SelfContact(PairDistances):
+    """Where one robot comes near itself."""
+
+    def __init__(self, robot: RobotModel, margin_m: float = MARGIN_M) -> None:
+        super().__init__(robot, margin_m)
+        self._sweep_m = self._sweeps()
+        above = self._above[self._model.geom_bodyid]
+        self._spans = Spans(self._pairs, above, self._half_m, self._radii_m, self._sweep_m)
+        self._bounded = self._exact & self._spans.known
+
+    def frames(self, q_rad: Array, share: float = KEPT) -> NDArray[np.bool_]:
+        """(T,) whether each frame of (T, J) comes closer to itself than a share of the margin, what paths keep of it."""
+        return np.asarray((self.distances_m(q_rad) < share * self._margin_m).any(1), bool)
+
+    def clearance_m(self, q_rad: Array) -> Array:
+        """(T,) smallest distance of each frame of (T, J)."""
+        return self.distances_m(q_rad).min(1, initial=np.inf)
+
+    def rooms_m(self, q_rad: Array, share: float = KEPT) -> Array:
+        """(T, P) what each pair has beyond a share of its margin, what paths keep of it, in each pose of (T, J)."""
+        return self.distances_m(q_rad) - share * self._margin_m
+
+    def room_m(self, q_rad: Array, share: float = KEPT) -> Array:
+        """(P,) the same in one pose (J,)."""
+        return self.rooms_m(q_rad[None], share)[0]
+
+    def within_room(self, room_m: Array, moved_rad: Array) -> bool:
+        """Whether every pair keeps that share wherever the joints are within (J,) `moved_rad` of where it has `room_m` (P,)."""
+        return bool((room_m > self._sweep_m @ moved_rad).all())
+
+    def pairs(self, q_rad: Array) -> list[tuple[str, str]]:
+        """Names of the bodies that touch in one pose (J,)."""
+        touching = self._pairs[self.distances_m(q_rad[None])[0] < self._margin_m]
+        bodies = self._model.geom_bodyid[touching]
+        return sorted({(str(self._model.body(a).name), str(self._model.body(b).name)) for a, b in bodies})
+
+    def worst(self, q_rad: Array, aim_m: float) -> tuple[Array, Array]:
+        """What the worst pair of each pose (T, J) lacks of its margin and `aim_m` more, (T,), and the way out, (T, J).
+
+        The way out is how its distance grows with each joint.
+        """
+        beyond, way = self.nearest(q_rad, self._every)
+        return aim_m - beyond, way
+
+    def nearest(self, q_rad: Array, of: Indices) -> tuple[Array, Array]:
+        """What lies between the nearest of some pairs beyond its margin, (T,), and how that grows with each joint, (T, J)."""
+        placed = self._placed(q_rad, with_joints=True)
+        distance, s, t = self._distances(q_rad, placed, of)
+        beyond = distance - self._margin_m[of]
+        rows, worst = np.arange(len(q_rad)), beyond.argmin(1)
+        pair = of[worst]
+        a, b = self._pairs[pair].T
+        point1 = placed.centre[rows, a] + s[rows, worst, None] * placed.axis[rows, a]
+        point2 = placed.centre[rows, b] + t[rows, worst, None] * placed.axis[rows, b]
+        apart = point2 - point1  # of segments, which have a direction even where capsules overlap
+        for i in np.flatnonzero(~self._exact[pair] & (beyond[rows, worst] < MEASURED_M)):
+            self._place(q_rad[i])
+            overlap = self._measured(int(pair[i])) < 0
+            point1[i], point2[i] = self._points[:3], self._points[3:]
+            apart[i] = (point1[i] - point2[i]) if overlap else (point2[i] - point1[i])
+        normal = apart / np.maximum(np.linalg.norm(apart, axis=1, keepdims=True), 1e-9)
+        lever = ((point1 + point2) / 2)[:, None] - placed.anchor
+        turned = np.einsum("tji,ti->tj", cross(placed.joint_axis, lever), normal)
+        body = self._model.geom_bodyid
+        return beyond.min(1), turned * (self._above[body[b]] - self._above[body[a]])
+
+    def pairs_between(self, some: Indices, others: Indices) -> Indices:
+        """Which pairs have one shape of `some` and one of `others`."""
+        a, b = self._pairs.T
+        crossed = (np.isin(a, some) & np.isin(b, others)) | (np.isin(a, others) & np.isin(b, some))
+        return np.flatnonzero(crossed)
+
+    def shapes_moved_by(self, some_of: list[int], none_of: list[int]) -> Indices:
+        """Shapes that can touch, moved by a joint of `some_of` (any shape when empty) and by none of `none_of`."""
+        model, above = self._model, self._above[self._model.geom_bodyid]
+        solid = (model.geom_contype | model.geom_conaffinity) != 0
+        solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
+        moved = above[:, some_of].any(1) if some_of else solid
+        return np.flatnonzero(solid & moved & ~above[:, none_of].any(1))
+
+    def allowed_from(self, q_rad: Array) -> Allowed | None:
+        """What a path that begins in a pose (J,) within a margin keeps of it; None where the pose keeps them all."""
+        distance_m = self.distances_m(q_rad[None])[0]
+        within = distance_m < self._margin_m
+        if not within.any():
+            return None
+        least_m = np.minimum(KEPT * self._margin_m, distance_m - _FROM_WITHIN * self._margin_m)
+        return np.where(within, distance_m - _ROUNDING_M, self._margin_m), np.where(
+            within, least_m, KEPT * self._margin_m
+        )
+
+    def along(self, control_rad: Array, allowed: Allowed | None = None) -> NDArray[np.bool_]:
+        """(N - 2,) whether the robot may touch itself in each segment of a quadratic spline of N control points.
+
+        `allowed` is that of a pose within a margin in which a path began: nobody could ever leave such a pose otherwise.
+        """
+        margin_m, kept_m = (self._margin_m, KEPT * self._margin_m) if allowed is None else allowed
+        known = self._known((control_rad[:-1] + control_rad[1:]) / 2, self._every)
+        border = known.distance
+        touching = np.asarray((border < margin_m).any(1), bool)
+        hit = touching[:-1] | touching[1:]
+        step_rad = np.abs(control_rad[1:] - control_rad[:-1])
+        step = step_rad @ self._sweep_m.T  # (N - 1, P)
+        # Speed changes in a straight line, so a segment moves by no more than the mean of the speeds at its ends.
+        near = np.asarray(border[:-1] + border[1:] - (step[:-1] + step[1:]) / 2 < 2 * kept_m, bool) & ~hit[:, None]
+        segment, of = np.flatnonzero(near.any(1)), np.flatnonzero(near.any(0))
+        if not len(segment):
+            return hit
+        # From here on only those pairs that may come near, each half of a segment moving by half of its fastest.
+        moved = np.maximum(step[:-1], step[1:])
+        bend_rad = np.abs(control_rad[2:] - 2 * control_rad[1:-1] + control_rad[:-2])
+        bent = self._spans.bends_m(step_rad, bend_rad, moved)[segment][:, of]
+        moved, near, kept_m, margin_m = moved[segment][:, of], near[segment][:, of], kept_m[of], margin_m[of]
+        known, ends = known.of(of), np.stack([segment, segment + 1])
+        u = np.tile((0.0, 1.0), (len(segment), 1))
+        for _ in range(_DEEPEST):
+            near = self._still_near(near, known, ends, of, bent, kept_m)
+            unsure = near.any(1) & ~hit[segment]
+            if not unsure.any():
+                return hit
+            segment, u, ends, near = segment[unsure], u[unsure], ends[:, unsure], near[unsure]
+            moved, bent = moved[unsure], bent[unsure]
+            middle = u.mean(1)
+            between = self._known(_spline(control_rad, segment, middle), of)
+            hit[segment[(between.distance < margin_m).any(1)]] = True
+            at = len(known.distance) + np.arange(len(segment))
+            known = known.and_also(between)
+            ends = np.concatenate([np.stack([ends[0], at]), np.stack([at, ends[1]])], 1)
+            u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
+            segment, near = np.concatenate([segment, segment]), np.concatenate([near, near])
+            moved, bent = np.concatenate([moved, moved]) / 2, np.concatenate([bent, bent]) / 4
+            near &= known.distance[ends[0]] + known.distance[ends[1]] - moved < 2 * kept_m
+        hit[segment[near.any(1)]] = True
+        return hit
+
+    def clear_along(self, way_rad: Array, share: float = KEPT, first_room_m: Array | None = None) -> bool:
+        """Whether straight lines from pose to pose of (N, J) keep a share of every margin at every instant.
+
+        On a stretch whose ends have the rooms a and b and on which a pair moves by m, it has at least (a + b - m) / 2;
+        stretches on which that is not enough are halved. `first_room_m` (P,) is the room at the first pose where it is known.
+        """
+        gone = np.zeros_like(way_rad)  # (N, J) what each joint has turned so far
+        np.cumsum(np.abs(np.diff(way_rad, axis=0)), 0, out=gone[1:])
+        kept_m, of, sweep_m = share * self._margin_m, self._every, self._sweep_m
+        first = (self.room_m(way_rad[0], share) if first_room_m is None else first_room_m)[None]
+        last = self.rooms_m(way_rad[-1:], share)
+        if (first <= 0).any() or (last <= 0).any():
+            return False
+        u = np.array([[0.0, len(way_rad) - 1.0]])
+        for _ in range(_DEEPEST + len(way_rad).bit_length()):
+            moved = (_on_lines(gone, u[:, 1]) - _on_lines(gone, u[:, 0])) @ sweep_m.T
+            unsure = np.asarray(first + last <= moved, bool)
+            if not unsure.any():
+                return True
+            segment, pairs = np.flatnonzero(unsure.any(1)), np.flatnonzero(unsure.any(0))
+            of, sweep_m = of[pairs], sweep_m[pairs]
+            u, first, last = u[segment], first[segment][:, pairs], last[segment][:, pairs]
+            middle = u.mean(1)
+            q = _on_lines(way_rad, middle)
+            between = self._distances(q, self._placed(q, with_joints=False), of)[0] - kept_m[of]
+            if (between <= 0).any():
+                return False
+            u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
+            first, last = np.concatenate([first, between]), np.concatenate([between, last])
+        return False
+
+    def _known(self, q_rad: Array, of: Indices) -> Known:
+        placed = self._placed(q_rad, with_joints=False)
+        return Known(placed.centre, placed.axis, placed.turn, *self._distances(q_rad, placed, of))
+
+    def _still_near(
+        self, near: NDArray[np.bool_], known: Known, ends: Indices, of: Indices, bent: Array, kept_m: Array
+    ) -> NDArray[np.bool_]:
+        """(n, m) which of m pairs are still `near` in n spans when what is curved about their movement is bounded too."""
+        span, at = np.nonzero(near & self._bounded[of])
+        least = self._spans.least_m(known, ends[:, span], at, of[at]) - bent[span, at]
+        near[span, at] = least < kept_m[at]
+        return near
+
+    def _sweeps(self) -> Array:
+        """(P, J) metres that the shapes of each pair move against each other at most, per radian of each joint."""
+        model = self._model
+        reach = np.zeros((model.ngeom, len(self._joint_ids)))  # of each shape from each joint above it
+        for g in range(model.ngeom):
+            up = int(model.geom_bodyid[g])
+            far = float(np.linalg.norm(model.geom_pos[g])) + self._half_m[g] + self._radius_m[g]
+            while up:
+                moved_by = np.flatnonzero(model.jnt_bodyid[self._joint_ids] == up)
+                anchors_m = np.linalg.norm(model.jnt_pos[self._joint_ids[moved_by]], axis=1)
+                reach[g, moved_by] = far + anchors_m.max(initial=0.0)  # of joints in one place none reaches further
+                far += float(np.linalg.norm(model.body_pos[up]))
+                up = int(model.body_parentid[up])
+        a, b = self._pairs.T
+        both = self._above[model.geom_bodyid[a]] == self._above[model.geom_bodyid[b]]
+        return np.where(both, 0.0, np.maximum(reach[a], reach[b]))
+
+
+def _spline(control: Array, segment: Indices, u: Array) -> Array:
+    """(n, J) places on segments of a quadratic spline."""
+    c0, c1, c2 = control[segment], control[segment + 1], control[segment + 2]
+    u = u[:, None]
+    return (c0 + c1) / 2 + (c1 - c0) * u + (c2 - 2 * c1 + c0) * (u * u / 2)
+
+
+def _on_lines(points: Array, u: Array) -> Array:
+    """(n, J) places on the lines between (N, J) points, `u` counting points."""
+    at = np.minimum(u.astype(np.int64), len(points) - 2)
+    return points[at] + (u - at)[:, None] * (points[at + 1] - points[at])

@@ -1,0 +1,166 @@
+"""Paths near a wish that keep every limit, with all that is known of the future in view.
+
+What already keeps the limits is left alone, bit for bit. For the rest `lookahead` finds the best path inside them, with
+what matters linearised at the wish, then once more where that led (Gauss-Newton); where a start breaks a limit, so that
+there is none, exact causal steps (`limits.limit_step`) lead back first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from retarget.path.limits import JointLimits, keeps, limit_step
+from retarget.path.lookahead_qp import Bounds, Wish, frames_between, nearer_path
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+_WINDOW_FRAMES, _AHEAD_FRAMES = 36, 10
+"""A long reference is solved in windows, each with so many frames after it in view."""
+_TAIL_WEIGHT = 1e-3
+"""Weight of the frames after the last known one, in which the joints come to rest."""
+_PULL = 1e-3
+_LINEARISED = 2
+"""Times that what matters is linearised; the second brings a twentieth of the direction error, more bring little."""
+
+
+@dataclass(frozen=True)
+class Importance:
+    """What matters of a group of joints: angles q in a frame cost q' H q / 2 - b' q.
+
+    Attributes:
+        joints: (G, w) indices of the joints of G groups.
+        hessian: (G, T, w, w).
+        linear: (G, T, w), b.
+    """
+
+    joints: Indices
+    hessian: Array
+    linear: Array
+
+
+class Matters(Protocol):
+    """What matters of T frames, for groups that hold every joint once."""
+
+    def around(self, first: int, q_rad: Array | None) -> Sequence[Importance]:
+        """Linearised around frames (n, J) from frame `first` on; None: around all that are wished for from there."""
+        ...
+
+
+class Angles:
+    """Joints of which the angles (T, J) matter, all alike."""
+
+    def __init__(self, q_rad: Array, joints: Sequence[int]) -> None:
+        """Of (T, J) angles those of some joints."""
+        self._joints = np.array(joints, np.int64)[:, None]
+        self._wish: Array = q_rad[:, joints].T[..., None]  # (G, T, 1)
+
+    def around(self, first: int, q_rad: Array | None) -> Sequence[Importance]:
+        """The same everywhere."""
+        wish = self._wish[:, first : None if q_rad is None else first + len(q_rad)]
+        return (Importance(self._joints, np.ones((*wish.shape, 1)), wish),)
+
+
+def limit_path(
+    reference_rad: Array,
+    position_rad: Array,
+    velocity_rad_s: Array,
+    limits: JointLimits,
+    period_s: float,
+    ask: Callable[[], Matters] | None = None,
+) -> Array:
+    """(T, J) path near `reference_rad` (T, J) that keeps every limit, from the given position and velocity.
+
+    Both are control points of splines. Only when a limit is passed `ask` is asked what matters in the frames half way
+    between them; None: every joint alike.
+    """
+    T, J = reference_rad.shape
+    path = np.minimum(np.maximum(reference_rad, limits.position_min_rad), limits.position_max_rad)
+    kept = _kept(path, position_rad, velocity_rad_s, limits, period_s)
+    if kept.all():
+        return path
+    matters = ask() if ask else Angles(frames_between(reference_rad[None], position_rad[None])[0], range(J))
+    position, velocity = position_rad, velocity_rad_s
+    for k in range(0, T, _WINDOW_FRAMES):
+        n = min(_WINDOW_FRAMES, T - k)
+        part = path[k : k + n + _AHEAD_FRAMES]
+        if k or len(part) < T:
+            kept = _kept(part, position, velocity, limits, period_s)
+        if not kept.all():
+            near = reference_rad[k : k + n + _AHEAD_FRAMES]
+            _solve(matters, k, near, kept, part, position, velocity, limits, period_s)
+            np.clip(part[:n], limits.position_min_rad, limits.position_max_rad, out=part[:n])
+            part[:n] = _follow(part[:n], position, velocity, limits, period_s)
+        before = path[k + n - 2] if n > 1 else position
+        position, velocity = path[k + n - 1].copy(), (path[k + n - 1] - before) / period_s
+        # What was planned beyond this window is planned anew from where it ends.
+        part[n:] = np.clip(reference_rad[k + n : k + len(part)], limits.position_min_rad, limits.position_max_rad)
+    return path
+
+
+def _solve(
+    matters: Matters,
+    first: int,
+    near: Array,
+    kept: NDArray[np.bool_],
+    path: Array,
+    position: Array,
+    velocity: Array,
+    limits: JointLimits,
+    period_s: float,
+) -> None:
+    """Make a path (n, J), whose frames begin with frame `first`, the best for all groups of which a joint is not `kept`."""
+    inside = kept.copy()
+    for linearised in range(_LINEARISED):
+        at = None if not linearised else frames_between(path[None], position[None])[0]
+        for group in matters.around(first, at):
+            some = np.flatnonzero(~kept[group.joints].all(1))
+            if not len(some):
+                continue
+            joints = group.joints[some]
+            bounds = Bounds(
+                limits.position_min_rad[joints], limits.position_max_rad[joints],
+                (limits.velocity_rad_s * period_s)[joints], (limits.acceleration_rad_s2 * period_s**2)[joints],
+            )  # fmt: skip
+            tail = int(np.ceil((bounds.step / bounds.bend).max())) + 1
+            hessian, linear = group.hessian[some, : len(path)], group.linear[some, : len(path)]
+            # After the last frame in view the joints come to rest.
+            points, target = path[:, joints].transpose(1, 0, 2), near[:, joints].transpose(1, 0, 2)
+            points, target, hessian, linear = (_held(x, tail) for x in (points, target, hessian, linear))
+            hessian[:, -tail:] *= _TAIL_WEIGHT
+            linear[:, -tail:] *= _TAIL_WEIGHT
+            step = (velocity * period_s)[joints]
+            wish = Wish(hessian, linear, _PULL)
+            if nearer_path(wish, points, target, position[joints], step, bounds, inside[joints]):
+                path[:, joints.ravel()] = points[:, : len(path)].transpose(1, 0, 2).reshape(len(path), -1)
+                inside[joints] = True
+
+
+def _held(x: Array, n: int) -> Array:
+    """(G, T + n, ...) the last of (G, T, ...) held."""
+    return np.concatenate([x, np.repeat(x[:, -1:], n, 1)], 1)
+
+
+def _kept(path: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> NDArray[np.bool_]:
+    """(J,) whether each joint may follow `path` (T, J) from a state as it is."""
+    before = np.concatenate([position[None], path])
+    speed = (path - before[:-1]) / period_s
+    came, ahead = np.concatenate([velocity[None], speed[:-1]]), np.concatenate([speed[1:], speed[-1:]])
+    return np.asarray(keeps(path, before[:-1], came, limits, period_s, ahead).all(0), bool)
+
+
+def _follow(reference: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> Array:
+    """Causal following of `reference`, each step knowing the velocity of the reference after it."""
+    if _kept(reference, position, velocity, limits, period_s).all():
+        return reference
+    ahead = np.diff(reference, axis=0, append=2 * reference[-1:] - reference[-2:-1]) / period_s
+    path = np.empty_like(reference)
+    for k in range(len(reference)):
+        following = limit_step(reference[k], position, velocity, limits, period_s, ahead[k])
+        velocity = (following - position) / period_s
+        path[k] = position = following
+    return path

@@ -1,0 +1,70 @@
+"""What a robot still lacks before it may be run, and what its owner should look at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from retarget.pipeline import Retargeter
+from retarget.robot.description import load_description, read_spec
+from retarget.robot.robot import RobotModel
+
+_BEYOND_DEG = 0.51
+"""Limits of the file may be rounded to whole degrees."""
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """What was found.
+
+    Attributes:
+        missing: without these it cannot be run, or would touch itself; each with what to do.
+        doubts: what the description does not tell.
+    """
+
+    missing: tuple[str, ...]
+    doubts: tuple[str, ...]
+
+
+def inspect_robot(robot: RobotModel) -> Inspection:
+    """Look at a robot read with `blanks=True`.
+
+    Raises:
+        RobotFileError: the description cannot be used.
+    """
+    model = load_description(robot)
+    missing = [f'{key} is blank ("?")' for key in robot.blanks]
+    contact = Retargeter(robot).contact
+    for name, q in (("rest", robot.rest_rad), ("park", robot.park_rad)):
+        missing += [f"{name} pose: {a} touches {b}; change {name}_deg" for a, b in contact.pairs(q)]
+    return Inspection(tuple(missing), (*_ranges(robot, model), *_shapes(robot, model)))
+
+
+def _ranges(robot: RobotModel, model: Any) -> list[str]:
+    doubts: list[str] = []
+    for joint in robot.joints:
+        found = model.joint(joint.name)
+        if not model.jnt_limited[found.id]:
+            doubts.append(f"{joint.name}: the description has no range; position_limit_deg is all there is")
+            continue
+        low, high = np.rad2deg(found.range).tolist()
+        own = np.rad2deg([joint.position_min_rad, joint.position_max_rad])
+        if own[0] < low - _BEYOND_DEG or own[1] > high + _BEYOND_DEG:
+            beyond = f"[{own[0]:.0f}, {own[1]:.0f}] is wider than the description's [{low:.0f}, {high:.0f}]"
+            doubts.append(f"{joint.name}: position_limit_deg {beyond}")
+    return doubts
+
+
+def _shapes(robot: RobotModel, model: Any) -> list[str]:
+    _, meshes = read_spec(robot.description_path)
+    doubts = [f"no file of mesh {name}: its shape is not checked for contacts" for name in meshes]
+    solid = {
+        int(model.geom_bodyid[g]) for g in range(model.ngeom) if model.geom_contype[g] or model.geom_conaffinity[g]
+    }
+    for side in ("left", "right"):
+        joints = [j.name for j in robot.joints if j.role.startswith(side)]
+        if joints and not any(int(model.jnt_bodyid[model.joint(name).id]) in solid for name in joints):
+            doubts.append(f"{side} arm: no shapes in the description, so its contacts cannot be seen")
+    return doubts
