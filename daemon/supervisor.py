@@ -12,7 +12,6 @@ import json
 import logging
 import os
 import signal
-import tempfile
 import time
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -33,6 +32,7 @@ from daemon.generator.messages import GeneratorError
 from daemon.keys import KeyFolder
 from daemon.log_feed import SOCKET_VARIABLE, LogFeed
 from daemon.notify import Notifier
+from daemon.own_folder import OwnFolder
 from daemon.recording.feed import RecorderFeed
 from daemon.settings import settings_of
 from daemon.state.machine import RobotState
@@ -69,7 +69,7 @@ class Supervisor:
         self._config = config
         self._robot: RobotModel = load_robot(config.robot)
         self._link = BusLink.create(self._robot.n_joints, self._robot.n_servos)
-        self._folder = tempfile.TemporaryDirectory(prefix="mmmd-")
+        self._folder = OwnFolder()
         self._context = zmq.asyncio.Context()
         self._children: list[Child] = []
         self._tasks: list[asyncio.Task[None]] = []
@@ -82,7 +82,7 @@ class Supervisor:
         self._core = CoreClaim() if may_fifo(BUS_PRIORITY) else CoreClaim(frozenset())
         if self._core.core is not None:
             arguments += ["--core", str(self._core.core)]
-        self._log_path = Path(self._folder.name) / "log"
+        self._log_path = self._folder.path / "log"
         self._environment = {SOCKET_VARIABLE: str(self._log_path)}
         self._bus = Child("bus process", "daemon.driving.process", arguments, self._environment)
 
@@ -93,14 +93,12 @@ class Supervisor:
             DaemonError: a port is taken, the bus cannot be opened, other servos were found.
         """
         try:
-            endpoint = self._config.generator or f"ipc://{self._folder.name}/generator"
+            endpoint = self._config.generator or f"ipc://{self._folder.path}/generator"
             keys = KeyFolder(self._config.endpoints.keys) if self._config.endpoints.keys is not None else None
             generator = GeneratorClient(self._context, endpoint, keys, self._config.model_hash)
-            recorder = RecorderFeed(f"ipc://{self._folder.name}/events") if self._config.log else None
+            recorder = RecorderFeed(f"ipc://{self._folder.path}/events") if self._config.log else None
             front = Front(self._config, self._robot, self._link, self._context, generator, recorder)
-            if recorder is not None:
-                self._watch(self._watch_recorder(recorder, front))
-            return await self._serve(front, generator, endpoint)
+            return await self._serve(front, generator, endpoint, recorder)
         finally:
             for task in self._tasks:
                 task.cancel()
@@ -110,9 +108,11 @@ class Supervisor:
             self._context.destroy(linger=200)
             self._link.close()
             self._core.close()
-            self._folder.cleanup()
+            self._folder.close()
 
-    async def _serve(self, front: Front, generator: GeneratorClient, endpoint: str) -> int:
+    async def _serve(
+        self, front: Front, generator: GeneratorClient, endpoint: str, recorder: RecorderFeed | None
+    ) -> int:
         loop = asyncio.get_running_loop()
         self._core.keep_off()
         logs = LogFeed(self._log_path, front.publish_log)
@@ -131,6 +131,8 @@ class Supervisor:
                 self._watch(self._follow_generator(generator))
             ends = self._config.endpoints
             await self._start_extras(front)
+            if recorder is not None:  # a start that fails leaves no log
+                self._watch(self._watch_recorder(recorder, front))
             log.info("ready: robot %s on %s", self._robot.name, self._config.bus)
             log.info("cmd %s, ctl %s, pub %s, stream %s", ends.cmd, ends.ctl, ends.pub, ends.stream)
             failure = asyncio.create_task(front.failure())

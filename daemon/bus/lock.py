@@ -1,16 +1,34 @@
-"""One owner of a port: an advisory lock that also holds against root, and who has it."""
+"""One owner of a port: an advisory lock that also holds against root, and who has it.
+
+The lock file lies in a folder to which everybody may write, so what is found under its name may have been put there: nothing
+but a plain file of that one name is locked, and only one's own is written to.
+"""
 
 from __future__ import annotations
 
 import fcntl
 import os
+import stat
 import sys
 import tempfile
 from pathlib import Path
 
 
+class LockFileError(OSError):
+    """Something else is where the lock file of a port should be."""
+
+    def __init__(self, path: Path, found: str) -> None:
+        self.path = path
+        super().__init__(f"its lock file {path} {found}; somebody may have put it there")
+
+
 class PortLock:
-    """Holds a lock file for a device; the file names the owner."""
+    """Holds a lock file for a device; the file names the owner.
+
+    Raises:
+        BlockingIOError: somebody else holds it; the text says who.
+        LockFileError: what is there under its name is no lock file.
+    """
 
     def __init__(self, device: str) -> None:
         name = str(Path(device).resolve()).strip("/").replace("/", "-")
@@ -28,10 +46,19 @@ class PortLock:
 
     def _open(self) -> tuple[int, bool]:
         """The lock file, and whether the owner's name can be written: not into a file that another user made."""
+        how = os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
         try:
-            return os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644), True
-        except PermissionError:
-            return os.open(self.path, os.O_RDONLY | os.O_CLOEXEC), False
+            try:
+                fd = os.open(self.path, os.O_RDWR | os.O_CREAT | how, 0o644)
+            except PermissionError:
+                fd = os.open(self.path, os.O_RDONLY | how)
+        except OSError as error:
+            raise LockFileError(self.path, f"cannot be opened ({error.strerror})") from error
+        found = os.fstat(fd)
+        if not stat.S_ISREG(found.st_mode) or found.st_nlink != 1:
+            os.close(fd)
+            raise LockFileError(self.path, "is no plain file of that one name")
+        return fd, found.st_uid == os.geteuid()
 
     def release(self) -> None:
         """Give the lock up; may be called twice."""

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
+import fcntl
 import getpass
 import os
 import select
+import termios
 from urllib.parse import SplitResult, parse_qs
 
 import serial
 
 from daemon.bus.adapter import adapter_at, device_of
-from daemon.bus.lock import PortLock, process_holding
+from daemon.bus.lock import LockFileError, PortLock, process_holding
 from daemon.bus.open import PortContext
 from daemon.bus.tty_speed import tty_speed
 from daemon.errors import (
@@ -49,6 +52,8 @@ class SerialPort:
             lock = PortLock(device)
         except BlockingIOError as error:
             raise PortBusyError(self.name, f"in use by {error}", "stop it, or ask it: mmmd status") from None
+        except LockFileError as error:
+            raise PortError(self.name, str(error), f"look at it, then remove it: ls -l {error.path}") from error
         try:
             self._serial = _open(device, self.baud, self.name)
         except BaseException:
@@ -56,6 +61,7 @@ class SerialPort:
             raise
         self._lock, self.device = lock, device
         self._fd = self._serial.fileno()
+        keep_others_out(self._fd)
         self._poll = select.poll()
         self._poll.register(self._fd, select.POLLIN)
 
@@ -110,12 +116,30 @@ class SerialPort:
 
     def _release(self) -> None:
         try:
+            if self._serial.is_open:
+                fcntl.ioctl(self._fd, termios.TIOCNXCL)
             self._serial.close()
         except OSError:
             pass  # a device that is gone cannot be told to go
         self._lock.release()
 
 
+def keep_others_out(fd: int) -> None:
+    """From now on the system opens the tty for nobody else but root, also for programs that ask no lock (TIOCEXCL).
+
+    Not of a pseudo terminal: the simulator at its other end keeps it open, so this would outlive a killed owner.
+    """
+    if not is_pseudo(fd):
+        with contextlib.suppress(OSError):  # a device that does not know it: the locks are left
+            fcntl.ioctl(fd, termios.TIOCEXCL)
+
+
+def is_pseudo(fd: int) -> bool:
+    """Whether an open tty is a pseudo terminal (Linux, Documentation/admin-guide/devices.txt)."""
+    return os.major(os.fstat(fd).st_rdev) in _PSEUDO_MAJORS
+
+
+_PSEUDO_MAJORS = range(136, 144)
 _MOST_OFF_SHARE = 0.03
 """Share by which a port's speed may differ from the one asked for: servos and adapters still understand each other."""
 _USUAL = "57600, 115200, 1000000, 2000000, 3000000 or 4000000"

@@ -32,7 +32,9 @@ class CoreClaim:
         for core in sorted(cores, reverse=True)[: max(0, len(cores) - 1)]:
             with contextlib.suppress(OSError):  # no such folder, another user's link, or claimed
                 fd = os.open(
-                    folder / f"mmmd-core-{core}", os.O_RDONLY | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644
+                    folder / f"mmmd-core-{core}",
+                    os.O_RDONLY | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC,
+                    0o644,
                 )
                 try:
                     fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from retarget.errors import RobotFileError
 from retarget.robot.linkage import Linkage
@@ -20,6 +21,10 @@ from retarget.robot.tables import BLANK, JointTable, LinkageTable, RobotTable, S
 
 _UNKNOWN_MODEL = ServoModel(BLANK, 0, 2.0, 4096, 2048, 0, 4095, 5.0, False, True)
 """Stands for a servo whose model is still blank, when the file is only looked at."""
+_MOST_CONDITION, _MOST_COUPLING = 1e3, 1000.0
+"""A differential nearer to none than so, or geared higher, is a slip of the pen."""
+_STEEPEST = 50.0
+"""Beyond that a linkage is at its dead point, where a servo moves its joint by nothing, or a tick by degrees."""
 
 
 @dataclass(frozen=True)
@@ -74,10 +79,10 @@ def _differentials(path: Path, table: RobotTable, found: list[Drive]) -> set[int
             taken.add(index[name])
         rows = differential.joint_per_servo
         square = len(rows) == len(names) == len(differential.servos) and all(len(row) == len(names) for row in rows)
-        if not square or abs(np.linalg.det(np.array(rows))) < 1e-6:
+        if not square or not _has_inverse(np.array(rows, np.float64)):
             raise RobotFileError(
                 path, f"{key}.joint_per_servo", f"{rows} for {len(names)} joints and {len(differential.servos)} servos",
-                "a row for each joint, a column for each servo, with an inverse",
+                f"a row for each joint, a column for each servo, with an inverse of numbers up to {_MOST_COUPLING:g}",
             )  # fmt: skip
         servo_per_joint = np.linalg.inv(np.array(rows, np.float64))
         for k, servo in enumerate(differential.servos):
@@ -85,6 +90,12 @@ def _differentials(path: Path, table: RobotTable, found: list[Drive]) -> set[int
             couplings = tuple(sorted((i, float(c)) for i, c in pairs if abs(c) > 1e-12))
             found.append(Drive(f"{key}.servos[{k}]", servo, couplings))
     return taken
+
+
+def _has_inverse(joint_per_servo: NDArray[np.float64]) -> bool:
+    if np.linalg.cond(joint_per_servo) > _MOST_CONDITION:
+        return False
+    return bool(np.abs(np.linalg.inv(joint_per_servo)).max() <= _MOST_COUPLING)
 
 
 def servo_of(path: Path, drive: Drive, table: RobotTable, n: int) -> ServoSpec:
@@ -98,8 +109,6 @@ def servo_of(path: Path, drive: Drive, table: RobotTable, n: int) -> ServoSpec:
         raise RobotFileError(path, f"{key}.id", repr(s.id), "0 to 252")
     if s.direction not in (1, -1):
         raise RobotFileError(path, f"{key}.direction", str(s.direction), "1 or -1")
-    if not s.gear_ratio > 0:
-        raise RobotFileError(path, f"{key}.gear_ratio", str(s.gear_ratio), "more than 0; the sign is `direction`")
     model = _model(path, key, s.model)
     if s.model != BLANK and model.protocol != table.bus.protocol:
         found = f"{model.name} speaks protocol {model.protocol}, the bus {table.bus.protocol}"
@@ -133,6 +142,10 @@ def _linkage(path: Path, key: str, table: LinkageTable, joint: JointTable) -> Li
     steps = np.diff(servo_deg)
     if not (np.diff(joint_deg) > 0).all() or not ((steps > 0).all() or (steps < 0).all()):
         raise RobotFileError(path, key, "angles that do not all rise", "joint_deg rising, servo_deg rising or falling")
+    steepness = np.abs(steps / np.diff(joint_deg))
+    if steepness.min() < 1 / _STEEPEST or steepness.max() > _STEEPEST:
+        found = f"{steepness.min():g} to {steepness.max():g} degrees of the servo for one of the joint"
+        raise RobotFileError(path, key, found, f"{1 / _STEEPEST:g} to {_STEEPEST:g} between any two rows")
     low, high = joint.position_limit_deg
     if joint_deg[0] > low or joint_deg[-1] < high:
         found = f"rows from {joint_deg[0]:g} to {joint_deg[-1]:g} degrees"

@@ -14,9 +14,11 @@ from pathlib import Path
 import msgspec
 
 from retarget.errors import RobotFileError
+from retarget.robot.bounds import require_bounds
 from retarget.robot.drives import read_drives, refuse_beyond_servo, servo_of, with_speeds
 from retarget.robot.robot import DIRECTIONS, ROLES, BusSettings, JointSpec, PointSpec, RobotModel
 from retarget.robot.tables import FORMAT, JointTable, MotionTable, RobotTable, keys_at, walk
+from retarget.robot.ticks import JointServoMap
 
 _MOST_RAD = 6.3
 """A file whose joints all end within so many "degrees" was written in radians."""
@@ -52,10 +54,23 @@ def read_robot_file(path: Path, blanks: bool = False) -> RobotModel:
         for name, p in msgspec.structs.asdict(table.points).items()
         if p is not None
     )
-    return RobotModel(
+    robot = RobotModel(
         table.name, joints, servos, bus, description, path, table.licence, table.frame.forward, table.frame.up, points,
         missing,
     )  # fmt: skip
+    _refuse_no_room(path, robot)
+    return robot
+
+
+def _refuse_no_room(path: Path, robot: RobotModel) -> None:
+    """A joint moves by whole ticks of its servos: there must be some within its range."""
+    low, high = JointServoMap(robot).position_range_rad
+    for joint, room_rad in zip(robot.joints, (high - low).tolist(), strict=True):
+        if not room_rad > 0:
+            found = f"[{math.degrees(joint.position_min_rad):g}, {math.degrees(joint.position_max_rad):g}]"
+            raise RobotFileError(
+                path, f"joint '{joint.name}': position_limit_deg", found, "a range of more than two ticks of its servos"
+            )
 
 
 def _parse(path: Path) -> RobotTable:
@@ -69,6 +84,7 @@ def _parse(path: Path) -> RobotTable:
             raise RobotFileError(path, f"{where}{key}", "radians", f"degrees in this file: '{right}'")
         if isinstance(value, float) and not math.isfinite(value):
             raise RobotFileError(path, f"{where}{key}", str(value), "a finite number")
+    require_bounds(path, raw)
     try:
         return msgspec.convert(raw, RobotTable)
     except msgspec.ValidationError as error:
@@ -82,14 +98,8 @@ def _check_whole(path: Path, table: RobotTable) -> None:
         raise RobotFileError(path, "format", str(table.format), str(FORMAT))
     if not table.joint:
         raise RobotFileError(path, "joint", "none", "at least one [[joint]]")
-    if not 1 <= table.bus.rate_hz <= 1000:
-        raise RobotFileError(path, "bus.rate_hz", str(table.bus.rate_hz), "1 to 1000")
     if table.bus.protocol not in (1.0, 2.0):
         raise RobotFileError(path, "bus.protocol", str(table.bus.protocol), "1.0 or 2.0")
-    if not 0 < table.motion.velocity_margin <= 1:
-        raise RobotFileError(
-            path, "motion.velocity_margin", str(table.motion.velocity_margin), "more than 0, at most 1"
-        )
     forward, up = table.frame.forward, table.frame.up
     for key, value in (("forward", forward), ("up", up)):
         if value not in DIRECTIONS:
@@ -116,8 +126,6 @@ def _joint(path: Path, i: int, j: JointTable, motion: MotionTable) -> JointSpec:
         if not low <= value <= high:
             raise RobotFileError(path, f"{key}: {field}", str(value), f"within position_limit_deg [{low}, {high}]")
     speed, acceleration = j.velocity_limit_deg_s, j.acceleration_limit_deg_s2 or motion.acceleration_limit_deg_s2
-    if not (acceleration > 0 and (speed is None or speed > 0)):
-        raise RobotFileError(path, key, "a velocity or acceleration limit that is not positive", "more than 0")
     return JointSpec(
         j.name, j.role, math.radians(low), math.radians(high), math.nan if speed is None else math.radians(speed),
         math.radians(acceleration), math.radians(j.rest_deg), math.radians(j.park_deg),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import shutil
 import subprocess
 import sys
@@ -10,7 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from daemon.driving.gate import Gate
 from retarget.errors import RobotFileError, UnknownRobotError
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
@@ -45,10 +49,15 @@ CHANGES = [
     ("no description", 'description = "robot.xml"', 'description = "none.xml"', ["description", "none.xml"]),
     ("newer format", "format = 1", "format = 9", ["format", "9", "1"]),
     ("direction", "direction = 1 }", "direction = 2 }", ["direction", "2", "1 or -1"]),
-    ("rate", "rate_hz = 100", "rate_hz = 0", ["bus.rate_hz", "1 to 1000"]),
+    ("rate", "rate_hz = 100", "rate_hz = 0", ["bus.rate_hz", "20 to 1000"]),
     ("not a number", "rest_deg = 0", "rest_deg = nan", ["rest_deg", "nan", "a finite number"]),
     ("infinite", "acceleration_limit_deg_s2 = 2300", "acceleration_limit_deg_s2 = inf", ["motion.acceleration", "inf"]),
-    ("speed not positive", "rest_deg = 0", "rest_deg = 0\nvelocity_limit_deg_s = 0", ["head_yaw", "not positive"]),
+    (
+        "speed not positive",
+        "rest_deg = 0",
+        "rest_deg = 0\nvelocity_limit_deg_s = 0",
+        ["joint[0].velocity_limit_deg_s", "1 to 10000"],
+    ),
     ("margin", "velocity_margin = 0.9", "velocity_margin = 1.2", ["velocity_margin", "1.2", "at most 1"]),
     ("no servo", "servo = { id = 1, ", "# servo = { id = 1, ", ["head_yaw", "no servo", "[[differential]]"]),
     ("gear against", "direction = 1 }", "gear_ratio = -2 }", ["gear_ratio", "-2", "the sign is `direction`"]),
@@ -84,6 +93,64 @@ def test_each_mistake_is_named_with_what_is_allowed(tmp_path: Path, old: str, ne
     assert "robot.toml" in message
     for part in said:
         assert part in message, message
+
+
+NUMBER = re.compile(r"(?<![\w.\"-])-?\d+(?:\.\d+)?(?![\w.\"])")
+ABSURD = [
+    "1e300",
+    "-1e300",
+    "1e-300",
+    "0",
+    "-1",
+    "9" * 400,
+    "-" + "9" * 400,
+    "1e9",
+    "1e-9",
+    "1",
+    "0.001",
+    "nan",
+    "true",
+]
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Copies of packaged robots with gears, a linkage and a differential, and with fine ticks."""
+    folder = tmp_path_factory.mktemp("absurd")
+    return {name: Path(shutil.copytree(ROBOTS_DIR / name, folder / name)) for name in ("toddlerbot", "ffw_bg2")}
+
+
+@given(data=st.data())
+@settings(max_examples=200, deadline=None)
+def test_an_absurd_number_anywhere_is_refused_or_leaves_a_robot_whose_figures_are_sound(
+    files: dict[str, Path], data: st.DataObject
+) -> None:
+    """1e300 as an acceleration or a coupling was taken, and the limiter's sums were no numbers any more."""
+    name = data.draw(st.sampled_from(sorted(files)))
+    lines = (ROBOTS_DIR / name / "robot.toml").read_text().splitlines()
+    places = [(i, m.span()) for i, line in enumerate(lines) if line[:1] != "#" for m in NUMBER.finditer(line)]
+    i, (start, end) = data.draw(st.sampled_from(places))
+    lines[i] = lines[i][:start] + data.draw(st.sampled_from(ABSURD)) + lines[i][end:]
+    (files[name] / "robot.toml").write_text("\n".join(lines))
+    try:
+        robot = load_robot(str(files[name]))
+    except RobotFileError as error:
+        assert len(str(error)) < 3000
+        return
+    ticks, gate = JointServoMap(robot), Gate(robot)
+    low, high = ticks.position_range_rad
+    assert (low < high).all() and np.abs([low, high]).max() < 13
+    for figures in (
+        ticks.ticks_per_rad, ticks.velocity_limit_tick_s, ticks.acceleration_limit_tick_s2, robot.velocity_limit_rad_s,
+        robot.acceleration_limit_rad_s2, ticks.to_ticks(low), ticks.to_ticks(high),
+    ):  # fmt: skip
+        assert np.isfinite(figures).all() and np.abs(figures).max() < 2**31
+    assert (robot.velocity_limit_rad_s > 0).all() and 20 <= robot.bus.rate_hz <= 1000
+    for target in (low, high, np.zeros_like(low)):
+        for _ in range(20):
+            goal = gate.step(target)
+            assert np.isfinite(goal).all() and (np.abs(gate.velocity_rad_s) <= robot.velocity_limit_rad_s + 1e-9).all()
+    assert np.abs(ticks.to_ticks(ticks.tick_to_rad(ticks.position_min_tick)) - ticks.position_min_tick).max() < 0.01
 
 
 def test_a_description_that_mujoco_cannot_read_is_named(tmp_path: Path) -> None:
