@@ -18,6 +18,8 @@ from tests.end_to_end.harness import RunningDaemon
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 CONNECTIONS = 1500
+STANDS = ("idle", "holding")
+"""States of an armed robot that nobody moves; a daemon that an attack holds up for long lets it park, or ends in a fault."""
 MOST_GROWTH_BYTES = 500 << 20
 
 
@@ -25,7 +27,8 @@ MOST_GROWTH_BYTES = 500 << 20
 def running(request):
     daemon = RunningDaemon(tcp=request.param == "tcp")
     try:
-        yield daemon.until_ready()
+        with daemon.until_ready().armed():
+            yield daemon
         assert daemon.terminate() == 0 and "Traceback" not in daemon.said, daemon.said
     finally:
         daemon.close()
@@ -59,7 +62,7 @@ def test_1500_connections_to_a_socket_keep_no_new_client_out(running, name):
     with crowd(getattr(running.endpoints, name), CONNECTIONS) as sockets:
         assert len(sockets) > 1000
         with running.client() as client:
-            assert client.status().state == "limp"
+            assert client.status().state in STANDS
             assert client.stop().verb == "stop"
         end_s = time.monotonic() + 20
         while descriptors(running) > 400:
@@ -115,7 +118,7 @@ def test_a_message_of_endlessly_many_parts_takes_no_memory(running, name, kind):
             assert time.monotonic() < end_s, f"it goes on and on: {most >> 20} MiB"
     with running.client() as client:
         status = client.status()
-        assert status.state == "limp" and status.bus_info["connections_shut"] > 0
+        assert status.state in STANDS and status.bus_info["connections_shut"] > 0
     assert most - before < MOST_GROWTH_BYTES, most
 
 

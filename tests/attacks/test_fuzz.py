@@ -109,9 +109,7 @@ def still_obeys(robot: Client) -> None:
 def fuzz(seed: int, rounds: int) -> None:
     rng, daemon = random.Random(seed), RunningDaemon(tcp=True)
     try:
-        with daemon.until_ready().client() as robot:
-            robot.arm()
-            robot.wait_for("idle", "holding", timeout_s=20)
+        with daemon.until_ready().armed() as robot:
             for _ in range(rounds):
                 robot.gesture("wave_right", loop=True, wait=False)
                 attack(daemon, rng)

@@ -113,12 +113,13 @@ class RunningDaemon:
             assert status.state != "fault", status.reason
 
     def until_ready(self) -> RunningDaemon:
-        """Wait until it answers and its generator does."""
+        """Wait until it answers, its generator does, and its bus process cycles."""
         end_s = time.monotonic() + START_TIMEOUT_S
         while time.monotonic() < end_s and self.process.poll() is None:
             with contextlib.suppress(NoAnswerError), self.client() as client:
                 while time.monotonic() < end_s:
-                    if client.status().generator.startswith("ready"):
+                    now = client.status()
+                    if now.generator.startswith("ready") and now.bus_info["cycles"]:
                         return self
                     time.sleep(0.05)
             time.sleep(0.05)
