@@ -7,6 +7,7 @@ traceback.
 from __future__ import annotations
 
 import contextlib
+import difflib
 import importlib
 import importlib.metadata
 import io
@@ -91,7 +92,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if name in ("-V", "--version"):
         _out(f"mmmd {importlib.metadata.version('mmmd')}")
         return GOOD
-    return _failed(f"unknown command '{name}'; known: {', '.join(COMMANDS)}; `mmmd --help` describes them", BAD_USE)
+    like = difflib.get_close_matches(name, COMMANDS, 2, 0.5)
+    meant = f"did you mean {' or '.join(like)}? " if like else ""
+    return _failed(f"unknown command '{name}'; {meant}`mmmd --help` describes all", BAD_USE)
 
 
 def _spell_out_what_cannot_be_shown() -> None:
@@ -142,6 +145,11 @@ def _load(name: str) -> Callable[..., int | None]:
 def _run(name: str, command: Callable[..., int | None], arguments: list[str]) -> int:
     import tyro
 
+    if "-h" in arguments or "--help" in arguments:
+        from daemon.help_text import plain_help
+
+        with plain_help():
+            tyro.cli(command, prog=f"mmmd {name}", args=arguments)
     status = tyro.cli(command, prog=f"mmmd {name}", args=arguments)
     return GOOD if status is None else int(status)
 
@@ -158,13 +166,26 @@ def _explain(error: Exception) -> int:
     from mmm_core.errors import MmmError
     from retarget.errors import RetargetError, RobotFileError, UnknownRobotError
 
-    if isinstance(error, (CommandError, ConfigError, RobotFileError, UnknownRobotError)):
-        return _failed(str(error), BAD_USE)
+    bad_use = isinstance(error, (CommandError, ConfigError, RobotFileError, UnknownRobotError)) or _names_no_file(error)
     if isinstance(error, (DaemonError, MmmError, RetargetError)):
-        return _failed(str(error), int(getattr(error, "exit_status", FAILED)))
+        return _failed(str(error), int(getattr(error, "exit_status", BAD_USE if bad_use else FAILED)))
     if isinstance(error, OSError):
-        return _failed(str(error), FAILED)
+        return _failed(str(error), BAD_USE if bad_use else FAILED)
     return _failed(f"internal error ({type(error).__name__}: {error}); MMMD_DEBUG=1 shows where", FAILED)
+
+
+def _names_no_file(error: BaseException) -> bool:
+    """Whether a file that the command line names is not there, or is a folder; a device that is not there is not meant."""
+    from daemon.errors import PortError
+
+    cause: BaseException | None = error
+    while cause is not None and not isinstance(cause, PortError):
+        if isinstance(cause, (FileNotFoundError, IsADirectoryError, NotADirectoryError)):
+            return True
+        if getattr(cause, "found", "") == "no such file":
+            return True
+        cause = cause.__cause__ or cause.__context__
+    return False
 
 
 def _overview() -> str:

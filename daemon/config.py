@@ -15,6 +15,12 @@ ESTOP_WAYS = ("cut", "hold")
 CMD_PORT, CTL_PORT, PUB_PORT, STREAM_PORT = 5871, 5872, 5873, 5875
 
 
+class EndpointInUseError(ConfigError):
+    """An endpoint that somebody else has: nothing is wrong with what was asked, so a service tries it again."""
+
+    exit_status = 1
+
+
 def config_error(key: str, found: str, allowed: str, do: str) -> ConfigError:
     """The error of a setting with a value that is not allowed."""
     return ConfigError(f"{key}: found {found}; allowed: {allowed}; {do}")

@@ -12,6 +12,7 @@ import time
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -189,7 +190,7 @@ def describe(one: Shown, audited: dict[int, tuple[int, int]]) -> list[str]:
         first = "-" if last.first_motion_ms is None else f"{last.first_motion_ms:.0f} ms"
         lines.append(f"  first moving servo frame {first} after the text; duration {last.duration_s:.2f} s")
         lines.append(
-            f"  peak speed {last.peak_speed_rad_s:.2f} rad/s of {last.peak_speed_limit_rad_s:.2f} allowed"
+            f"  peak speed {degrees(last.peak_speed_rad_s):.0f} deg/s of {degrees(last.peak_speed_limit_rad_s):.0f} allowed"
             f" ({last.peak_speed_joint}); clipped frames {last.clipped_frames}; direction error {last.direction_error_deg} deg"
         )
     elif isinstance(last, Cancelled):

@@ -41,4 +41,5 @@ def start_logging(process: str, *, level: int = logging.INFO, as_json: bool | No
     elif stamp:
         logging.basicConfig(level=level, format="%(asctime)s %(message)s", datefmt="%H:%M:%S")
     else:
-        logging.basicConfig(level=level, format=f"{process}: %(levelname)s %(message)s")
+        form = f"%(asctime)s {process}: %(levelname)s %(message)s"
+        logging.basicConfig(level=level, format=form, datefmt="%H:%M:%S")

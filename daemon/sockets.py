@@ -7,7 +7,7 @@ from typing import Any, cast
 import zmq
 import zmq.asyncio
 
-from daemon.config import config_error
+from daemon.config import EndpointInUseError, config_error
 from daemon.keys import KeyFolder, serve_curve
 from daemon.probe import listening
 
@@ -51,11 +51,17 @@ def bind(
         serve_curve(socket, keys)
     do = "stop the other daemon (`mmmd status` shows it), or choose another endpoint"
     if endpoint.startswith("ipc://") and listening(endpoint):  # ZeroMQ would take the path from it
-        raise config_error(key, f"{endpoint}: Address already in use", "a free endpoint", do)
+        raise _in_use(key, endpoint, "Address already in use", do)
     try:
         socket.bind(endpoint)
     except zmq.ZMQError as error:
+        if error.errno == zmq.EADDRINUSE:
+            raise _in_use(key, endpoint, str(error), do) from error
         raise config_error(key, f"{endpoint}: {error}", "a free endpoint", do) from error
+
+
+def _in_use(key: str, endpoint: str, why: str, do: str) -> EndpointInUseError:
+    return EndpointInUseError(f"{key}: found {endpoint}: {why}; allowed: a free endpoint; {do}")
 
 
 def send_now(socket: zmq.asyncio.Socket, frames: list[bytes]) -> bool:

@@ -24,7 +24,7 @@ from daemon.config import DaemonConfig, config_error
 from daemon.driving.cores import CoreClaim
 from daemon.driving.realtime import BUS_PRIORITY, may_fifo
 from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
-from daemon.errors import DaemonError
+from daemon.errors import ConfigError, DaemonError
 from daemon.front.front import Front
 from daemon.front.metrics import MetricsServer, exposition
 from daemon.generator.generation import GeneratorClient
@@ -52,6 +52,9 @@ GOOD_LIFE_S = 2.0
 """A process that lived so long did not fail to start: the wait before its next start is short again."""
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
 GOOD, ROBOT_FAULT = 0, 3
+NO_TORCH = "PyTorch is not installed: `mmmd install-torch`, or `--generator` names one elsewhere"
+SAFETENSORS_HEAD_BYTES = 9
+"""Length of the header, eight bytes, and the brace that the header begins with."""
 
 
 class BusStartError(DaemonError):
@@ -62,10 +65,9 @@ class Supervisor:
     """One daemon, from start to park."""
 
     def __init__(self, config: DaemonConfig) -> None:
-        if config.generator is None and importlib.util.find_spec("torch") is None:
-            do = "install it with `mmmd install-torch`, or name a generator elsewhere with --generator"
-            raise config_error("generator", "none, and torch is not installed", "one of the two", do)
         check_scheme(config.bus)
+        if config.model is not None:
+            check_model(config.model)
         self._config = config
         self._robot: RobotModel = load_robot(config.robot)
         self._link = BusLink.create(self._robot.n_joints, self._robot.n_servos)
@@ -125,10 +127,13 @@ class Supervisor:
             front.start()
             logs.start()
             self._watch(self._keep_bus(front, bus))
-            if self._config.generator is None:
-                self._watch(self._keep_generator(generator, endpoint))
-            else:
+            if self._config.generator is not None:
                 self._watch(self._follow_generator(generator))
+            elif importlib.util.find_spec("torch") is None:
+                generator.mark_down(NO_TORCH)
+                log.warning("generator %s; gestures, replay, look, idle and stream work without it", generator.state)
+            else:
+                self._watch(self._keep_generator(generator, endpoint))
             ends = self._config.endpoints
             await self._start_extras(front)
             if recorder is not None:  # a start that fails leaves no log
@@ -192,6 +197,8 @@ class Supervisor:
             await asyncio.sleep(0.01)
         if self._link.readiness is Readiness.READY:
             return
+        if self._link.readiness is Readiness.REFUSED:
+            raise ConfigError(f"--bus {self._config.bus}: {self._link.text}")
         if self._link.readiness is Readiness.FAILED:
             raise BusStartError(self._link.text)
         if not bus.running:
@@ -217,7 +224,7 @@ class Supervisor:
             bus.add_argument("--after-loss")
             try:
                 await self._start_bus(bus)
-            except BusStartError as error:
+            except (BusStartError, ConfigError) as error:
                 log.error("the bus process could not be started again: %s", error)
                 continue
             front.view.begin(BusState.FAULT)
@@ -340,6 +347,23 @@ def check_scheme(bus: str) -> None:
     if bus.partition(":")[0] not in known:
         allowed = ", ".join(f"{name}://" for name in known)
         raise config_error("bus", f"'{bus}', an unknown scheme", allowed, "for example dxl:///dev/ttyUSB0?baud=1000000")
+
+
+def check_model(path: Path) -> None:
+    """Refuse a checkpoint that cannot be one, before a generator is started again and again for it.
+
+    Raises:
+        ConfigError: there is no such file, it cannot be read, or it is no safetensors file.
+    """
+    do = "write one with `mmmd train`, or leave --model out for the shipped one"
+    try:
+        with path.open("rb") as file:
+            head = file.read(SAFETENSORS_HEAD_BYTES)
+    except OSError as error:
+        raise config_error("model", f"{path}: {error.strerror}", "a checkpoint (.safetensors)", do) from error
+    length = int.from_bytes(head[:8], "little")
+    if head[8:] != b"{" or not 0 < length <= path.stat().st_size - 8:
+        raise config_error("model", f"{path}, which is no safetensors file", "a checkpoint (.safetensors)", do)
 
 
 def log_file(path: Path) -> Path:

@@ -8,6 +8,7 @@ RetargetError
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -21,7 +22,12 @@ class UnknownRobotError(RetargetError, LookupError):
 
     def __init__(self, name: str, known: Sequence[str]) -> None:
         self.name, self.known = name, tuple(known)
-        super().__init__(f"unknown robot '{name}'; known: {', '.join(known)}; or give the path of a robot.toml")
+        if "/" in name or name.endswith(".toml"):
+            found = f"robot '{name}': no such file, and no folder with a robot.toml"
+        else:
+            like = difflib.get_close_matches(name, known, 1)
+            found = f"unknown robot '{name}'{f', did you mean {like[0]}?' if like else ''}"
+        super().__init__(f"{found}; known: {', '.join(known)}; or give the path of a robot.toml")
 
 
 class RobotFileError(RetargetError, ValueError):

@@ -8,10 +8,13 @@ from dataclasses import dataclass
 from daemon.clock import clock_id
 from daemon.errors import DaemonError
 from daemon.wire.event_base import Event
-from daemon.wire.events import AnyEvent, Done, Refusal
+from daemon.wire.events import AnyEvent, Done, ErrorEvent, Refusal
 from daemon.wire.requests import Request, tag_of
+from daemon.wire.showing import in_words
 from daemon.wire.status import StateEvent
 
+_BAD_NAMES = ("unknown_gesture", "unknown_motion", "bad_file")
+"""Codes of refusals that say that a request names what there is not."""
 ARMING_ENDS = ("idle", "moving", "holding", "fault", "estop")
 """States in which arming has come to an end; once it has begun it may end in limp as well, when something breaks it off."""
 
@@ -33,8 +36,15 @@ class RefusedError(DaemonError):
     def __init__(self, event: Refusal) -> None:
         self.event = event
         self.code = event.code
-        self.exit_status = 3 if event.code == "fault" else 1
+        self.exit_status = exit_status(event)
         super().__init__(event.message)
+
+
+def exit_status(event: Refusal) -> int:
+    """The exit status of a command that is refused: 3 for a robot in fault, 2 for a bad request or name, else 1."""
+    if event.code == "fault":
+        return 3
+    return 2 if isinstance(event, ErrorEvent) or event.code in _BAD_NAMES else 1
 
 
 class CancelledByError(DaemonError):
@@ -72,7 +82,9 @@ def stamp(request: Request) -> None:
 def waited_in_vain(endpoint: str, states: tuple[str, ...], status: StateEvent, timeout_s: float) -> NoAnswerError:
     """The error of a robot that came to none of `states` in time."""
     why = f": {status.reason}" if status.reason else ""
-    return NoAnswerError(endpoint, f"wait for {' or '.join(states)} (the robot is in {status.state}{why})", timeout_s)
+    return NoAnswerError(
+        endpoint, f"wait for {' or '.join(states)} (the robot is {in_words(status.state)}{why})", timeout_s
+    )
 
 
 def unexpected(event: Event, asked: str) -> DaemonError:

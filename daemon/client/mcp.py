@@ -34,7 +34,7 @@ from daemon.client.json_rpc import (
 from daemon.errors import DaemonError
 from daemon.wire.codec import MOST_NAMED
 from daemon.wire.requests import LEAST_AMPLITUDE, LEAST_TEMPO, LONGEST_S, MOST_AMPLITUDE, MOST_TEMPO, SHORTEST_S
-from daemon.wire.showing import shortened, shown
+from daemon.wire.showing import in_words, shortened, shown
 from mmm_core.language.stop_words import means_stop
 
 log = logging.getLogger(__name__)
@@ -196,11 +196,11 @@ class McpServer:
 
     async def _stop(self, _: dict[str, Any]) -> str:
         self._halts, self._halted_by = self._halts + 1, "stop"
-        return f"stopped; before, the robot was in {(await self._client.stop()).state}"
+        return f"stopped; before, the robot was {in_words((await self._client.stop()).state)}"
 
     async def _estop(self, _: dict[str, Any]) -> str:
         self._halts, self._halted_by = self._halts + 1, "estop"
-        return f"e-stop is latched; before, the robot was in {(await self._client.estop()).state}"
+        return f"e-stop is latched; before, the robot was {in_words((await self._client.estop()).state)}"
 
     async def _gestures(self, _: dict[str, Any]) -> str:
         return "\n".join(f"{g.name}: {g.text}" for g in (await self._client.capabilities()).gestures)
@@ -213,9 +213,7 @@ class McpServer:
         s = await self._client.status()
         doing = f"playing {s.command.text!r}" if s.command else "playing nothing"
         needs = "; a person has to arm it first" if s.must_arm else ""
-        return (
-            f"{s.robot} is in {s.state}{': ' + s.reason if s.reason else ''}, {doing}{needs}; generator {s.generator}"
-        )
+        return f"{s.robot} is {in_words(s.state)}{': ' + s.reason if s.reason else ''}, {doing}{needs}; generator {s.generator}"
 
 
 def _told(events: tuple[Any, ...]) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from tyro.conf import OmitArgPrefixes, Positional
 
 from daemon.commands.connection import Connection
+from daemon.wire.showing import in_words
 
 if TYPE_CHECKING:
     from daemon.client import Client
@@ -109,5 +110,9 @@ def _tell(robot: Client, ack: Ack, json: bool) -> int:
         sys.stdout.write(encode(after).decode() + "\n")
     else:
         reason = after.reason or ("arming was broken off, see the daemon's log; `mmmd arm` again" if broken_off else "")
-        sys.stdout.write(f"{ack.verb}: {ack.state} -> {after.state}{f': {reason}' if reason else ''}\n")
+        now = in_words(after.state)
+        told = (
+            f"the robot is {now}" if ack.state == after.state else f"the robot was {in_words(ack.state)} and is {now}"
+        )
+        sys.stdout.write(f"{ack.verb}: {told}{f': {reason}' if reason else ''}\n")
     return 3 if after.state == "fault" else int(broken_off)

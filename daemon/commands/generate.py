@@ -99,8 +99,12 @@ def generate(
     problem = _problem(prompt)
     if problem:
         raise CommandError(f"generate: {problem}")
-    for path in filter(None, (out, bvh)):
-        if not path.parent.is_dir():
+    for path, suffix in ((out, ".npz"), (bvh, ".bvh")):
+        if path is not None and path.suffix != suffix:
+            raise CommandError(
+                f"generate: {path}: written is a {suffix} file; name it so, for example {path.stem}{suffix}"
+            )
+        if path is not None and not path.parent.is_dir():
             raise CommandError(f"generate: {path}: no folder '{path.parent}'; make it, or choose another")
     made = _load(model, threads, precision).generate(prompt.text, seed=seed, seconds=seconds, candidates=candidates)
     made.motion.save_npz(out)
@@ -122,9 +126,22 @@ def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candida
     from rich.progress import track
 
     folder.mkdir(parents=True, exist_ok=True)
-    rejected = 0
+    rejected = refused = 0
     console = Console(stderr=True)
     for prompt in track(prompts, "generating", console=console, disable=not console.is_terminal):
+        if problem := _problem(prompt):
+            refused += 1
+            sys.stderr.write(f"mmmd: {prompt.id}: refused: {problem}\n")
+            if json:
+                refusal = {
+                    "id": prompt.id,
+                    "text": prompt.text,
+                    "seed": prompt.seed,
+                    "status": "rejected",
+                    "reason": problem,
+                }
+                _say(refusal, json)
+            continue
         made = engine.generate(prompt.text, seed=prompt.seed, seconds=prompt.seconds, candidates=candidates)
         path = folder / f"{prompt.id}.npz"
         made.motion.save_npz(path)
@@ -132,8 +149,11 @@ def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candida
         if json:
             _say(_summary(prompt, made, path), json)
     if not json:
-        sys.stdout.write(f"{len(prompts)} motions in {folder}, {rejected} of them rejected as out of scope\n")
-    return 0
+        told = f", {refused} lines refused" if refused else ""
+        sys.stdout.write(
+            f"{len(prompts) - refused} motions in {folder}, {rejected} of them rejected as out of scope{told}\n"
+        )
+    return int(refused == len(prompts))
 
 
 def _tell(path: Path, out: Path, bvh: Path | None, seed: int, engine: Engine) -> int:
@@ -163,12 +183,12 @@ def _load(model: Path | None, threads: int, precision: Precision | None) -> Engi
 
 
 def _prompts(path: Path) -> list[Prompt]:
-    """The lines of a batch file, all checked before the first is generated."""
+    """The lines of a batch file; ids, which name files, are checked before the first is generated."""
     seen: set[str] = set()
     lines = _lines(path, "--batch", Prompt)
     for number, prompt in lines:
-        problem = _problem(prompt)
-        if not problem and not _FILE_ID.fullmatch(prompt.id):
+        problem = ""
+        if not _FILE_ID.fullmatch(prompt.id):
             problem = f"id {prompt.id!r} is no file name; allowed: letters, digits, '.', '_', '-', at most 120"
         if not problem and prompt.id in seen:
             problem = f"id {prompt.id!r} stands twice in the file"

@@ -13,6 +13,9 @@ from daemon.commands.connection import Connection
 from daemon.commands.playing import PlayFlags, built, play
 from daemon.errors import CommandError
 
+WIDE = 100
+"""Columns of a terminal in which the whole table has room."""
+
 
 def gesture(
     verb: Annotated[Literal["play", "list", "record", "add"], tyro.conf.Positional],
@@ -74,13 +77,17 @@ def _list(folder: Path | None, json: bool) -> int:
     from rich.console import Console
     from rich.table import Table
 
+    console = Console()
+    columns = ("name", "shows", "s", "goes round", "held at", "other side", "own")
+    shown = columns if console.width >= WIDE else columns[:3]  # a name that is cut cannot be typed
     table = Table(title=f"{len(infos)} gestures")
-    for column in ("name", "shows", "s", "goes round", "held at", "other side", "own"):
-        table.add_column(column)
+    for column in shown:
+        table.add_column(column, overflow="fold", no_wrap=column in ("name", "other side"))
     for i in infos:
         loop, own = "in part" if i.loop else "as a whole", "yes" if i.own else ""
-        table.add_row(i.name, i.text, f"{i.seconds:.1f}", loop, f"{i.hold_s:.1f} s", i.mirror, own)
-    Console().print(table)
+        row = (i.name, i.text, f"{i.seconds:.1f}", loop, f"{i.hold_s:.1f} s", i.mirror, own)
+        table.add_row(*row[: len(shown)])
+    console.print(table)
     return 0
 
 

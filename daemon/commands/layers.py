@@ -9,6 +9,8 @@ import tyro
 from tyro.conf import OmitArgPrefixes
 
 from daemon.commands.connection import Connection
+from daemon.commands.status import gaze_words
+from daemon.wire.showing import in_words
 
 
 def look(
@@ -27,7 +29,11 @@ def look(
     """
     with at.client() as robot:
         ack = robot.look(yaw, pitch)
-    sys.stdout.write(f"look: in {ack.state}" + (f"; {ack.note}" if ack.note else "") + "\n")
+    if yaw is None and pitch is None:
+        told = "the head is free again"
+    else:
+        told = f"{gaze_words(yaw or 0.0, pitch or 0.0)}, held until `mmmd look` without angles"
+    sys.stdout.write(f"look: {told}{f'; {ack.note}' if ack.note else ''}\n")
     return 0
 
 
@@ -45,7 +51,8 @@ def idle(
     """
     with at.client() as robot:
         ack = robot.idle(style != "off", "lively" if style == "lively" else "calm")
-    sys.stdout.write(f"idle {style}: in {ack.state}\n")
+    on = "no idle movements any more" if style == "off" else "moves a little while there is nothing to play"
+    sys.stdout.write(f"idle {style}: {on}; the robot is {in_words(ack.state)}\n")
     return 0
 
 
@@ -63,7 +70,7 @@ def cancel(
     """
     with at.client() as robot:
         ack = robot.cancel(command)
-    sys.stdout.write(f"cancel: in {ack.state}\n")
+    sys.stdout.write(f"cancel: ended {command or 'all commands'}; the robot was {in_words(ack.state)}\n")
     return 0
 
 

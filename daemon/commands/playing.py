@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import uuid
 from dataclasses import dataclass
+from math import degrees
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from daemon.commands.connection import Connection
@@ -91,8 +92,9 @@ def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
 def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
     """Send a request and print its events; the exit status."""
     from daemon.client.compositions import FIRST_REPLY_TIMEOUT_S, patience_s
+    from daemon.client.errors import exit_status
     from daemon.wire.codec import encode
-    from daemon.wire.events import Accepted, Cancelled, Failed, Refusal
+    from daemon.wire.events import Accepted, Cancelled, Refusal
 
     status = 0
     timeout_s = patience_s(request) if wait else FIRST_REPLY_TIMEOUT_S
@@ -106,7 +108,7 @@ def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
             if isinstance(event, Refusal):
                 if not json:
                     sys.stderr.write(f"mmmd: {event.message}\n")
-                status = 3 if isinstance(event, Failed) and event.code == "fault" else 1
+                status = exit_status(event)
             elif isinstance(event, Cancelled):
                 status = 1
             if not wait and isinstance(event, Accepted):
@@ -140,6 +142,7 @@ def _interrupted(request: Play, at: Connection) -> int:
 def describe(event: object) -> str:
     """One line about an event, for people."""
     from daemon.wire.events import Accepted, Ack, Cancelled, Done, Progress, Refusal
+    from daemon.wire.showing import in_words
 
     if isinstance(event, Accepted):
         reason = f" ({event.reason})" if event.reason else ""
@@ -158,14 +161,14 @@ def describe(event: object) -> str:
         missing = f", but {event.missing}" if event.missing else ""
         verdict = f"{event.shown}: {event.seen}{missing}; " if event.shown else ""
         return (
-            f"done: {verdict}{event.duration_s:.2f} s; peak {event.peak_speed_joint} at {100 * event.peak_speed_share:.0f} % of "
-            f"its {event.peak_speed_limit_rad_s:.2f} rad/s; {event.clipped_frames} of {event.frames} frames clipped; "
+            f"done: {verdict}{event.duration_s:.2f} s; fastest {event.peak_speed_joint}, {degrees(event.peak_speed_rad_s):.0f} of "
+            f"{degrees(event.peak_speed_limit_rad_s):.0f} deg/s; {event.clipped_frames} of {event.frames} frames clipped; "
             f"direction error {event.direction_error_deg:.1f} deg"
         )
     if isinstance(event, Cancelled):
         return f"cancelled by {event.by}"
     if isinstance(event, Ack):
-        return f"{event.verb}: in {event.state}" + (f"; {event.note}" if event.note else "")
+        return f"{event.verb}: the robot was {in_words(event.state)}" + (f"; {event.note}" if event.note else "")
     if isinstance(event, Refusal):
         return event.message
     return str(event)

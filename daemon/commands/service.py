@@ -59,15 +59,20 @@ auto_arm = false
 """
 
 
-def install_service(root: Path = Path("/"), user: str = "", config: Path = Path("/etc/mmmd/mmmd.toml")) -> int:
-    """Write a systemd unit, a udev rule and a first configuration, and say what to do next.
+def install_service(
+    root: Path = Path("/"), user: str = "", config: Path = Path("/etc/mmmd/mmmd.toml"), yes: bool = False
+) -> int:
+    """Write a systemd unit, a udev rule and a first configuration, and say what to do next. It asks before it writes.
 
     Example: sudo mmmd install-service --user pi
+
+    Example, to look at the files: mmmd install-service --root trial
 
     Args:
         root: folder to write below, for packages and trials.
         user: who runs the daemon; you when it is not given. Must be in group dialout.
         config: configuration that the service reads; one that exists is kept.
+        yes: write without asking; below another --root nothing is asked.
     """
     user = user or getpass.getuser()
     found = Path(shutil.which("mmmd") or sys.argv[0]).absolute()
@@ -78,6 +83,8 @@ def install_service(root: Path = Path("/"), user: str = "", config: Path = Path(
         Path("etc/udev/rules.d/60-mmmd.rules"): _RULE,
         Path(*config.parts[1:]): _CONFIG,
     }
+    if root == Path("/") and not yes and not _agreed([root / relative for relative in files]):
+        return 1
     for relative, text in files.items():
         path = root / relative
         if text is _CONFIG and path.exists():
@@ -91,3 +98,19 @@ def install_service(root: Path = Path("/"), user: str = "", config: Path = Path(
     sys.stdout.write("next: edit the configuration, then\n  sudo udevadm control --reload && sudo udevadm trigger\n")
     sys.stdout.write("  sudo systemctl daemon-reload && sudo systemctl enable --now mmmd\n")
     return 0
+
+
+def _agreed(paths: list[Path]) -> bool:
+    """Whether a person says yes to files in the system's folders.
+
+    Raises:
+        CommandError: nobody can be asked.
+    """
+    named = "\n".join(f"  {path}" for path in paths)
+    if not sys.stdin.isatty():
+        raise CommandError(
+            f"install-service: it would write\n{named}\nand nobody can be asked here; --yes agrees, --root DIR tries it"
+        )
+    sys.stdout.write(f"This writes\n{named}\n(a configuration that exists is kept). Go on? [y/N] ")
+    sys.stdout.flush()
+    return sys.stdin.readline().strip().lower() in ("y", "yes")

@@ -39,16 +39,17 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
     )
     rows = {
         "robot": f"{now.robot} on {now.bus}",
-        "state": now.state
-        + (" (needs `mmmd arm`)" if now.must_arm else "")
-        + (f": {now.reason}" if now.reason else ""),
+        "state": f"{now.state}{_needs(now)}{f': {now.reason}' if now.reason else ''}",
         "playing": playing,
+        "looking": "as the motion does"
+        if now.gaze_deg is None
+        else f"{gaze_words(*now.gaze_deg)}, held until `mmmd look`",
         "stream": _stream(now),
-        "in hand": f"{now.queued_ms:.0f} ms of setpoints",
+        "buffer": f"{now.queued_ms:.0f} ms of setpoints",
         "generator": now.generator,
         "recording": now.recording or "-",
-        "servos": "; ".join(_servo(s) for s in now.servos_not_ok) or "-",
-        "bus": ", ".join(f"{k} {v}" for k, v in now.bus_info.items()),
+        "servos": "; ".join(_servo(s) for s in now.servos_not_ok) or "all ok",
+        "bus": ", ".join(f"{k.replace('_', ' ')} {v}" for k, v in now.bus_info.items()),
         "up": f"{now.uptime_s:.0f} s",
     }
     table = Table(show_header=False, box=None)
@@ -56,6 +57,20 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
         table.add_row(f"[bold]{key}[/bold]", value)
     Console().print(table)
     return 3 if now.state == "fault" else 0
+
+
+def gaze_words(yaw_deg: float, pitch_deg: float) -> str:
+    """Where the head looks, in words: "30 degrees left, 10 down"."""
+    sides = ((yaw_deg, "left", "right"), (pitch_deg, "down", "up"))
+    named = [f"{abs(angle):g} degrees {one if angle > 0 else other}" for angle, one, other in sides if angle]
+    return ", ".join(named) or "straight ahead"
+
+
+def _needs(now: StateEvent) -> str:
+    """What leads out of a state, in the order in which it is to be done."""
+    if now.state in ("fault", "estop"):
+        return " (needs `mmmd reset`, then `mmmd arm`)"
+    return " (needs `mmmd arm`)" if now.must_arm else ""
 
 
 def _servo(servo: ServoHealth) -> str:

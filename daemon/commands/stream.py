@@ -25,10 +25,12 @@ def stream(
 ) -> int:
     """Lead the joints by targets from standard input, one JSON line each, under a lease; its end releases it.
 
-    A line is an array of radians in the robot's order (`mmmd capabilities`), or an object of some joints by name. Whoever
+    A line is an array of radians in the robot's order (`mmmd capabilities --json`), or an object of some joints by name. Whoever
     writes the lines has to keep writing: after `lease_s` without one the robot brakes and holds, later it parks.
 
     Example: my_tracker | mmmd stream --holder tracker
+
+    Exit status 1 when targets were refused and none moved the robot.
 
     Example: mmmd stream --rate 50 < path.jsonl
 
@@ -51,9 +53,11 @@ def stream(
                 due_s += 1 / rate
                 time.sleep(max(0.0, due_s - time.monotonic()))
             lease.send(_target(line, number))
+    stages: set[str] = set()
     for event in lease.news.events:
+        stages.add(getattr(event, "stage", ""))
         sys.stdout.write((encode(event).decode() if json else describe(event)) + "\n")
-    return 0
+    return int("bad_target" in stages and "moving" not in stages)
 
 
 def _target(line: str, number: int) -> Angles:

@@ -67,6 +67,8 @@ class Readiness(IntEnum):
     STARTING = 0
     READY = 1
     FAILED = 2
+    REFUSED = 3
+    """What was asked for cannot be: the URL of the bus names an option or a value that there is not."""
 
 
 def setpoint_dtype(n_joints: int) -> np.dtype[np.void]:

@@ -12,7 +12,7 @@ from daemon.clock import Clock
 from daemon.driving.request_words import ESTOPS, BusRequest
 from daemon.driving.shared import BusLink, Readiness
 from daemon.driving.streamer import Streamer
-from daemon.errors import DaemonError
+from daemon.errors import CommandError, ConfigError, DaemonError
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
@@ -36,7 +36,8 @@ def start(
     try:
         bus = open_bus()
     except DaemonError as error:
-        link.set_ready(Readiness.FAILED, str(error))
+        refused = isinstance(error, (CommandError, ConfigError))  # before any byte: the URL is wrong, not the bus
+        link.set_ready(Readiness.REFUSED if refused else Readiness.FAILED, str(error))
         return None
     try:
         _cut_what_is_owed(bus, link)

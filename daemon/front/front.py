@@ -345,7 +345,8 @@ class Front:
 
 
 def _line(event: Event) -> str:
-    """An event as one line of the log, without what every event has."""
+    """An event as one line of the log, without what every event has and without fields that are empty."""
     skip = ("v", "seq", "t_mono", "id")
-    text = " ".join(f"{k}={v!r}" for k, v in msgspec.structs.asdict(event).items() if k not in skip)
+    fields = msgspec.structs.asdict(event).items()
+    text = " ".join(f"{k}={v!r}" for k, v in fields if k not in skip and v not in (None, "", [], {}))
     return f"{event.__struct_config__.tag} {event.id[:8]} {text}"

@@ -234,7 +234,8 @@ class GeneratorClient:
         while not self._ready.is_set():
             if self._down_reason or time.monotonic() - began_s > START_TIMEOUT_S:
                 found = f"the generator is {self.state}"
-                raise GeneratorError("generator_down", asked, found, "a generator that runs", "see the daemon's output")
+                do = "see the daemon's output; gestures (`mmmd gesture list`) need no generator"
+                raise GeneratorError("generator_down", asked, found, "a generator that runs", do)
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._ready.wait(), 0.1)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from enum import Enum
 
 from daemon.errors import DaemonError
+from daemon.wire.showing import in_words
 
 
 class RobotState(Enum):
@@ -110,7 +111,9 @@ class CommandRefusedError(DaemonError):
 
     def __init__(self, state: RobotState, command: Trigger, allowed: tuple[str, ...], do: str) -> None:
         self.state, self.command, self.allowed, self.do = state, command, allowed, do
-        super().__init__(f"{command.value}: the robot is in {state.value}; allowed now: {', '.join(allowed)}; {do}")
+        super().__init__(
+            f"{command.value}: the robot is {in_words(state.value)}; allowed now: {', '.join(allowed)}; {do}"
+        )
 
 
 class ImpossibleTransitionError(DaemonError):

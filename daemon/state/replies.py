@@ -11,6 +11,7 @@ from daemon.state.ledger import Entry
 from daemon.state.machine import CommandRefusedError
 from daemon.wire.events import Cancelled, Failed, Rejected
 from daemon.wire.requests import tag_of
+from daemon.wire.showing import in_words
 
 
 class NotPlayableError(Exception):
@@ -27,7 +28,7 @@ def refusal(request_id: str, error: CommandRefusedError) -> Rejected:
         id=request_id,
         code="wrong_state",
         asked=error.command.value,
-        found=f"the robot is in {error.state.value}",
+        found=f"the robot is {in_words(error.state.value)}",
         allowed=", ".join(error.allowed),
         do=error.do,
     )
@@ -35,7 +36,7 @@ def refusal(request_id: str, error: CommandRefusedError) -> Rejected:
 
 def refused_later(error: CommandRefusedError) -> Failed:
     """The event of an accepted command for which the robot did not get, or stay, ready."""
-    return failed("wrong_state", f"the robot is in {error.state.value}", ", ".join(error.allowed), error.do)
+    return failed("wrong_state", f"the robot is {in_words(error.state.value)}", ", ".join(error.allowed), error.do)
 
 
 def too_late(entry: Entry, found: str) -> NotPlayableError:

@@ -14,6 +14,7 @@ from typing import Any, TypeVar, cast
 import msgspec
 
 from daemon.errors import DaemonError
+from daemon.wire.allowed import refused_value
 from daemon.wire.event_base import Event
 from daemon.wire.events import EVENTS, AnyEvent, ErrorEvent
 from daemon.wire.requests import (
@@ -190,8 +191,23 @@ def _decode_json(text: str, types: tuple[type[Request], ...], union: Any, socket
             found = f"unknown field {', '.join(map(shown, unknown[:MOST_NAMED]))}{more}"
             allowed, do = f"fields {', '.join(known)}", "remove it; see docs/wire"
             raise WireError("unknown_field", f"'{name}' request", found, allowed, do, request_id) from None
-        allowed = f"what docs/wire/{name}.schema.json says"
-        raise WireError("bad_value", f"'{name}' request", shortened(error), allowed, "correct it", request_id) from None
+        raise _bad_value(error, asked, kind, request_id) from None
+
+
+def _bad_value(error: msgspec.ValidationError, raw: dict[str, Any], kind: type[Request], request_id: str) -> WireError:
+    """The error of a request whose fields are known and whose values cannot be taken."""
+    name = tag_of(kind)
+    if (refused := refused_value(error, raw, kind)) is not None:
+        place, value, allowed = refused
+        return WireError("bad_value", f"'{name}' request", f"{place} {shown(value)}", allowed, "correct it", request_id)
+    missing = [f.encode_name for f in msgspec.structs.fields(kind) if f.required and f.encode_name not in raw]
+    if missing:
+        found, do = f"no {', '.join(missing)}", "add it"
+        return WireError(
+            "bad_value", f"'{name}' request", found, f"a request with {', '.join(missing)}", do, request_id
+        )
+    found, allowed = shortened(error), "fields that go together"
+    return WireError("bad_value", f"'{name}' request", found, allowed, "correct it", request_id)
 
 
 def _check_version(raw: dict[str, Any], request_id: str) -> None:

@@ -8,6 +8,13 @@ LONGEST_REASON = 300
 """Characters of a decoder's own message that are kept; msgspec repeats the names of unknown fields whole."""
 _MOST_BITS = 128
 
+_STATES = {"fault": "in fault", "estop": "in e-stop"}
+
+
+def in_words(state: str) -> str:
+    """A state of the robot as it follows "the robot is": "limp", "in fault"."""
+    return _STATES.get(state, state)
+
 
 def shown(value: object) -> str:
     """A value as an error message shows it; containers by their kind alone, as repr() of a deep one raises RecursionError."""
@@ -21,7 +28,7 @@ def shown(value: object) -> str:
         return repr(value)
     if isinstance(value, dict):
         return "an object"
-    return "an array" if isinstance(value, list) else f"a {type(value).__name__}"
+    return f"an array of {len(value)}" if isinstance(value, list) else f"a {type(value).__name__}"
 
 
 def shortened(error: BaseException) -> str:

@@ -80,7 +80,7 @@ def test_every_printed_example_is_one_that_the_command_takes(arguments):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["dance"], "unknown command 'dance'; known: "),
+        (["dance"], "unknown command 'dance'; `mmmd --help`"),
         (["stop", "--now"], "--now"),
         (["say"], "STR"),
         (["say", "wave", "--seed", "x", *NOWHERE], "seed"),
@@ -116,7 +116,6 @@ def test_without_a_daemon_it_says_so_at_once(command, capsys):
         ("{", "line 1"),
         ('{"id": "a", "text": "nod", "speed": 2}', "speed"),
         ('{"id": "../a", "text": "nod"}', "no file name"),
-        ('{"id": "a", "text": ""}', "empty"),
         ('{"id": "a", "text": "nod"}\n{"id": "a", "text": "bow"}', "line 2: id 'a' stands twice"),
         ("", "no lines"),
     ],
@@ -127,6 +126,18 @@ def test_a_batch_is_checked_before_it_is_begun(line, says, tmp_path, capsys):
     assert main(["generate", "--batch", str(path), "--out", str(tmp_path / "out")]) == 2
     assert says in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_batch_answers_each_line_and_counts_the_refused(tmp_path, capsys):
+    """A file of two thousand lines was refused for one empty text."""
+    path = tmp_path / "prompts.jsonl"
+    lines = ['{"id": "a", "text": ""}', '{"id": "b", "text": "nod", "seconds": 0.4}']
+    path.write_text("\n".join([*lines, '{"id": "c", "text": "nod", "seconds": 99}']))
+    assert main(["generate", "--batch", str(path), "--out", str(tmp_path / "out")]) == 0
+    told = capsys.readouterr()
+    assert "a: refused: the text is empty" in told.err and "c: refused: seconds 99" in told.err
+    assert told.out.startswith("1 motions in ") and told.out.endswith("2 lines refused\n")
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["b.npz"]
 
 
 def test_a_batch_that_is_not_utf8(tmp_path, capsys):
