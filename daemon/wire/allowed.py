@@ -26,7 +26,7 @@ def refused_value(
         None where the error is of no single value: a missing field, or fields that contradict each other.
     """
     found = _PLACE.search(str(error))
-    if found is None or not found["path"]:
+    if found is None or not found["path"] or not str(error).startswith("Expected "):
         return None
     value, types = cast("Any", raw), [inspect.type_info(kind)]
     for match in _STEP.finditer(found["path"]):

@@ -80,7 +80,7 @@ def test_every_printed_example_is_one_that_the_command_takes(arguments):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["dance"], "unknown command 'dance'; `mmmd --help`"),
+        (["dance"], "unknown command 'dance'; "),
         (["stop", "--now"], "--now"),
         (["say"], "STR"),
         (["say", "wave", "--seed", "x", *NOWHERE], "seed"),
