@@ -10,7 +10,7 @@ import pytest
 
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.grammar import base_phrase, known_commands
-from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, TEST_PROBES, Probe
+from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, TEST_PROBES, Probe, read_sentences
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthesise_spec
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.evaluation.probes import evaluate, judge
@@ -121,6 +121,19 @@ def test_probes_name_families_limbs_and_directions_that_exist() -> None:
 def test_the_test_set_shares_no_sentence_with_the_development_set() -> None:
     assert len({p.text for p in TEST_PROBES}) == len(TEST_PROBES) >= 198
     assert not {p.text.lower() for p in TEST_PROBES} & {p.text.lower() for p in PROBES}
+
+
+def test_sentences_as_people_say_them_name_gestures_that_exist() -> None:
+    """The test set of sentences; like the test probes it was written without sight of any phrase of the corpus."""
+    sentences = read_sentences("words_test")
+    assert len({s.text for s in sentences}) == len(sentences) == 200
+    for s in sentences:
+        assert bool(s.commands) != s.nothing and bool(s.clean) == (s.kind == "slips"), s.text
+        assert set(s.denied) <= set(FAMILIES), s.text
+        for c in (c for at_once in s.commands for c in at_once):
+            family = FAMILIES[c.family]
+            assert c.limb == family.limb and c.side in ("", *family.sides), s.text
+            assert c.direction in ("", *family.directions) and c.size in ("", "small", "large"), s.text
 
 
 def test_both_sets_of_probes_can_be_measured() -> None:
