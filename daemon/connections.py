@@ -177,10 +177,9 @@ class ConnectionGuard:
     def _bound_unread(self, guarded: Sequence[_Connection]) -> None:
         delivered, self._delivered = self._delivered, set()
         together = 0
-        for connection in (c for c in guarded if c.tcp):
-            most = self._shares[connection.place or ""].most_unread_bytes
-            if isinf(most):
-                continue
+        counted = [c for c in guarded if not isinf(self._most_unread(c))]
+        for connection in (c for c in counted if c.tcp):
+            most = self._most_unread(connection)
             with Held(connection.fd, connection.inode) as held:
                 received = bytes_received(held) if held is not None else 0
             if connection.fd in delivered:
@@ -190,16 +189,19 @@ class ConnectionGuard:
             if connection.unread > most:
                 self._shut(connection, NO_MESSAGE, f"{connection.unread} bytes; allowed: {most:g}")
         if together > MOST_UNREAD_TOGETHER_BYTES:
-            most = max(guarded, key=lambda c: c.unread)
+            largest = max(counted, key=lambda c: c.unread)
             found = f"{together} bytes of all together; allowed: {MOST_UNREAD_TOGETHER_BYTES}"
-            self._shut(most, NO_MESSAGE, found)
+            self._shut(largest, NO_MESSAGE, found)
         grown = resident_bytes() - self._calm_bytes
         if grown > self._most_growth_bytes:
-            for connection in guarded:
+            for connection in counted:
                 if not connection.tcp and connection.fd not in delivered:
                     self._shut(connection, NO_MESSAGE, f"{grown >> 20} MiB of memory more")
             give_memory_back()
             self._calm_bytes = resident_bytes()
+
+    def _most_unread(self, connection: _Connection) -> float:
+        return self._shares[connection.place or ""].most_unread_bytes
 
     def _shut(self, connection: _Connection, reason: str, found: str) -> None:
         if connection.is_shut:  # ZeroMQ has not closed it yet

@@ -56,9 +56,8 @@ class Inbox:
 
     def __init__(self, socket: zmq.asyncio.Socket, guard: ConnectionGuard) -> None:
         self._socket, self._guard = socket, guard
-        self._at_once: zmq.Socket[bytes] = zmq.Socket(
-            shadow=socket
-        )  # as the asyncio socket does with DONTWAIT, without a future
+        # As the asyncio socket itself receives with DONTWAIT, but without a future.
+        self._at_once: zmq.Socket[bytes] = zmq.Socket(shadow=socket)
         self._discarding = False
         self._discarded = 0
 
