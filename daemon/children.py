@@ -70,8 +70,8 @@ class Child:
         if argument not in self._arguments:
             self._arguments.append(argument)
 
-    async def start(self) -> None:
-        """Start it (again)."""
+    async def start(self, pass_fds: Sequence[int] = ()) -> None:
+        """Start it (again); it inherits `pass_fds`."""
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", **self._environment}
         environment[PARENT_VARIABLE] = str(os.getpid())
         self.said.clear()
@@ -80,7 +80,7 @@ class Child:
             self._process = await asyncio.create_subprocess_exec(
                 sys.executable, "-m", self._module, *self._arguments,
                 stdin=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE if self._follow else None, env=environment,
-                start_new_session=True,
+                start_new_session=True, pass_fds=pass_fds,
             )  # fmt: skip
         if self._follow:
             self._forward = asyncio.create_task(self._forward_stderr(self._process))

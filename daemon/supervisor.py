@@ -21,9 +21,12 @@ import zmq.asyncio
 
 from daemon.children import Child
 from daemon.config import DaemonConfig, config_error
+from daemon.ctl.channel import Channel
+from daemon.ctl_keeper import CtlKeeper
 from daemon.driving.cores import CoreClaim
 from daemon.driving.realtime import BUS_PRIORITY, may_fifo
-from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
+from daemon.driving.request_words import ESTOPS, BusRequest
+from daemon.driving.shared import BusLink, BusState, Readiness
 from daemon.errors import ConfigError, DaemonError
 from daemon.front.front import Front
 from daemon.front.metrics import MetricsServer, exposition
@@ -45,6 +48,8 @@ BUS_START_TIMEOUT_S = 20.0
 BUS_END_TIMEOUT_S = 5.0
 BUS_FROZEN_S = 2.5
 """A bus process so long silent is killed and started again; from 1 s on the robot is in fault."""
+BUS_FROZEN_IN_AN_ESTOP_S = 1.0
+"""The same while an e-stop waits for it."""
 PING_EVERY_S, PING_TIMEOUT_S = 2.0, 5.0
 GENERATOR_START_TIMEOUT_S = 120.0
 """Loading torch and the model from a slow card."""
@@ -86,6 +91,8 @@ class Supervisor:
             arguments += ["--core", str(self._core.core)]
         self._log_path = self._folder.path / "log"
         self._environment = {SOCKET_VARIABLE: str(self._log_path)}
+        self._link.set_estop_holds(config.estop == "hold")
+        self._ctl = CtlKeeper(config, self._robot, self._link, self._environment)
         self._bus = Child("bus process", "daemon.driving.process", arguments, self._environment)
 
     async def run(self) -> int:
@@ -107,6 +114,7 @@ class Supervisor:
             await asyncio.gather(*self._tasks, return_exceptions=True)
             for child in reversed(self._children):
                 await child.end(BUS_END_TIMEOUT_S)
+            await self._ctl.close()  # last: it takes e-stops as long as there is somebody to carry them out
             self._context.destroy(linger=200)
             self._link.close()
             self._core.close()
@@ -123,8 +131,10 @@ class Supervisor:
         try:
             bus = self._bus
             self._children.append(bus)
-            await self._start_bus(bus)
+            channel = await self._start_bus_and_ctl(bus)
             front.start()
+            front.ctl.attach(channel)
+            self._watch(self._ctl.keep(front.ctl.attach))
             logs.start()
             self._watch(self._keep_bus(front, bus))
             if self._config.generator is not None:
@@ -186,6 +196,15 @@ class Supervisor:
     def _watch(self, work: object) -> None:
         self._tasks.append(asyncio.ensure_future(work))  # type: ignore[arg-type]
 
+    async def _start_bus_and_ctl(self, bus: Child) -> Channel:
+        """Both at a time; the channel to the process that takes e-stops."""
+        ctl_starts = asyncio.create_task(self._ctl.start())
+        try:
+            await self._start_bus(bus)
+            return await ctl_starts
+        finally:
+            ctl_starts.cancel()
+
     async def _start_bus(self, bus: Child) -> None:
         self._link.set_ready(Readiness.STARTING)
         await bus.start()
@@ -217,7 +236,7 @@ class Supervisor:
             if bus.lived_s > GOOD_LIFE_S:
                 back_off_s = FIRST_BACK_OFF_S
             log.error("the bus process ended with status %d; servos that have a bus watchdog stop by it", status)
-            await asyncio.sleep(back_off_s)
+            await self._back_off(back_off_s, 0.0 if bus.lived_s > GOOD_LIFE_S else FIRST_BACK_OFF_S)
             back_off_s = min(2 * back_off_s, LONGEST_BACK_OFF_S)
             if self._ending:
                 return
@@ -231,12 +250,21 @@ class Supervisor:
             front.follower.bus_alive = True
             log.warning("the bus process runs again, in fault: `mmmd reset`, then `mmmd arm`")
 
+    async def _back_off(self, seconds: float, least_s: float) -> None:
+        """Wait before the next start of the bus process; not longer than `least_s` while an e-stop waits for it."""
+        began_s = time.monotonic()
+        while (waited_s := time.monotonic() - began_s) < seconds:
+            if waited_s >= least_s and self._link.owes(*ESTOPS):
+                return
+            await asyncio.sleep(0.02)
+
     async def _lost_bus(self, front: Front, bus: Child) -> int:
         """Wait for the end of the bus process, which a frozen one is brought to; its status."""
         ended = asyncio.create_task(bus.ended())
         while not ended.done():
             await asyncio.wait({ended}, timeout=0.2)
-            if front.view.silent_s > BUS_FROZEN_S and not ended.done():
+            frozen_s = BUS_FROZEN_IN_AN_ESTOP_S if self._link.owes(*ESTOPS) else BUS_FROZEN_S
+            if front.view.silent_s > frozen_s and not ended.done():
                 log.error("the bus process has been silent for %.1f s and is killed", front.view.silent_s)
                 bus.kill()
         return ended.result()

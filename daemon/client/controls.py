@@ -30,6 +30,9 @@ class ControlCalls(Connection):
     def estop(self, *, wait: bool = True) -> Ack:
         """Cut torque at once (or hold, as the daemon is set), latched; with `wait`, return once the bus process has confirmed it.
 
+        Where `carried_out` of the reply is false (the bus process is dead, frozen or starting, its port is lost) it stays asked
+        for, and is carried out when the bus process is back; the state is `estop` then.
+
         Raises:
             NoAnswerError: not in time.
         """

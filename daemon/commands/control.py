@@ -101,18 +101,20 @@ def torque(
 
 
 def _tell(robot: Client, ack: Ack, json: bool) -> int:
-    """Print what the verb led to; 3 when the robot is in fault, 1 when it was to be armed and is limp again."""
+    """Print what the verb led to; 3 when the robot is in fault or a stop is not carried out yet, 1 when arming was broken off."""
     after = robot.status()
+    owed = ack.carried_out is False and after.state != "estop"
     broken_off = ack.verb == "arm" and after.state == "limp"
     if json:
         from daemon.wire.codec import encode
 
         sys.stdout.write(encode(after).decode() + "\n")
     else:
-        reason = after.reason or ("arming was broken off, see the daemon's log; `mmmd arm` again" if broken_off else "")
-        now = in_words(after.state)
+        waits = f"not carried out yet, stays asked for until the bus process is back; {after.reason}" if owed else ""
+        broken = "arming was broken off, see the daemon's log; `mmmd arm` again" if broken_off else ""
+        reason, now = waits or after.reason or broken, in_words(after.state)
         told = (
             f"the robot is {now}" if ack.state == after.state else f"the robot was {in_words(ack.state)} and is {now}"
         )
         sys.stdout.write(f"{ack.verb}: {told}{f': {reason}' if reason else ''}\n")
-    return 3 if after.state == "fault" else int(broken_off)
+    return 3 if after.state == "fault" or owed else int(broken_off)

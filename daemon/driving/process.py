@@ -44,15 +44,19 @@ def main() -> int:
     send_logs("bus")
     robot = load_robot(arguments.robot)
     link = BusLink.attach(Path(arguments.link), robot.n_joints, robot.n_servos)
+    link.hold()
     clock = RealClock()
 
     def opened() -> RobotBus:
         return open_bus(arguments.bus, robot, clock, slow_every=SLOW_EVERY)
 
+    locked = lock_memory()  # bringing all pages in takes long: not between the start and the first cycle
     streamer = start(robot, opened, link, clock, after_loss=arguments.after_loss)
     if streamer is None:
         return 1
-    link.set_realtime(*_take_rights())
+    fifo = take_fifo(BUS_PRIORITY)
+    link.set_realtime(fifo, locked)
+    log.info("FIFO priority %sgranted, locked memory %sgranted", "" if fifo else "not ", "" if locked else "not ")
     if arguments.core is not None and keep_to(arguments.core):
         log.info("keeps to core %d", arguments.core)
 
@@ -80,17 +84,6 @@ def _end_with_parent(streamer: Streamer, parent: Parent) -> None:
         time.sleep(ORPHAN_CHECK_S)
     log.warning("the front is gone; ending with the robot in %s", streamer.state.name)
     streamer.stopping = True
-
-
-def _take_rights() -> tuple[bool, bool]:
-    """FIFO priority and locked memory, as far as this user may; what was granted."""
-    locked, fifo = lock_memory(), take_fifo(BUS_PRIORITY)  # bringing all pages in takes long: not before others' cycles
-    log.info(
-        "FIFO priority %s, locked memory %s",
-        "granted" if fifo else "not granted",
-        "granted" if locked else "not granted",
-    )
-    return fifo, locked
 
 
 if __name__ == "__main__":

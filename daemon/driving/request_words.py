@@ -81,13 +81,16 @@ class RequestWords:
     def __init__(self, words: Words) -> None:
         parts = words.reshape(2, len(Asker), len(BusRequest))
         self._asked, self._done = parts[0], parts[1]
+        self._last_number = 0
         self._taken: Words = np.where(np.isin(np.arange(len(BusRequest)), LASTING), self._done, self._asked)
 
     # Who asks.
 
     def next_number(self, asker: Asker, now_ns: int) -> int:
         """A number above all that `asker` has given."""
-        return max(2 * now_ns, 2 * (int(self._asked[asker].max()) // 2 + 1)) + asker
+        last = max(int(self._asked[asker].max()), self._last_number)
+        self._last_number = max(2 * now_ns, 2 * (last // 2 + 1)) + asker
+        return self._last_number
 
     def ask(self, asker: Asker, kind: BusRequest, number: int) -> Asked:
         """Ask for `kind`; a number below that of a newer one of its kind is covered by that one."""

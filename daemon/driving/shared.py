@@ -7,6 +7,7 @@ never queues behind anything, and is owed until a cycle has carried it out.
 
 from __future__ import annotations
 
+import fcntl
 import os
 import tempfile
 import threading
@@ -59,6 +60,9 @@ class _Word(IntEnum):
     DERATED_BY = 27
     DERATED_SERVO = 28
     PARK_STAY_MS = 29
+    CTL_BEAT_NS = 30
+    ROBOT_STATE = 31
+    ESTOP_HOLDS = 32
 
 
 class Readiness(IntEnum):
@@ -179,6 +183,10 @@ class BusLink:
         """The front has been told of a halt that was asked for on `ctl`, and pushes nothing of before it any more."""
         self._known_halts[halt.kind] = max(halt.number, self._known_halts[halt.kind])
 
+    def knows_of(self, halt: Asked) -> bool:
+        """Whether the front has been told of a halt."""
+        return halt.number <= self._known_halts[halt.kind]
+
     @property
     def unknown_halts(self) -> list[Asked]:
         """Halts asked for on `ctl` of which the front has not been told."""
@@ -251,6 +259,50 @@ class BusLink:
         """Say that the front is alive."""
         self._words[_Word.HEARTBEAT_NS] = time.monotonic_ns()
 
+    def set_estop_holds(self, holds: bool) -> None:
+        """Whether an e-stop brakes and holds."""
+        self._words[_Word.ESTOP_HOLDS] = int(holds)
+
+    def show_robot_state(self, index: int) -> None:
+        """Place of the robot's state in `daemon.state.machine.RobotState`, for the process that serves `ctl`."""
+        self._words[_Word.ROBOT_STATE] = index
+
+    @property
+    def bus_lives(self) -> bool:
+        """Whether a bus process has these requests to carry out, be it frozen."""
+        try:
+            fd = os.open(self.path, os.O_RDONLY | os.O_CLOEXEC)
+        except OSError:
+            return False
+        try:
+            fcntl.flock(fd, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        finally:
+            os.close(fd)
+        return False
+
+    # The side of the process that serves `ctl`.
+
+    def ctl_beats(self) -> None:
+        """Say that somebody takes e-stops."""
+        self._words[_Word.CTL_BEAT_NS] = time.monotonic_ns()
+
+    @property
+    def ctl_beat(self) -> int:
+        """Changes as long as somebody takes e-stops; 0 before."""
+        return int(self._words[_Word.CTL_BEAT_NS])
+
+    @property
+    def estop_kind(self) -> BusRequest:
+        """What an e-stop asks for, as the daemon is set."""
+        return BusRequest.ESTOP_HOLD if self._words[_Word.ESTOP_HOLDS] else BusRequest.ESTOP
+
+    @property
+    def robot_state(self) -> int:
+        """As the front shows it."""
+        return int(self._words[_Word.ROBOT_STATE])
+
     @property
     def readiness(self) -> Readiness:
         """Whether the bus process has its port."""
@@ -274,6 +326,11 @@ class BusLink:
         return (permille / 1000 if permille else 1.0), by, servo_id
 
     # Bus process's side.
+
+    def hold(self) -> None:
+        """Show, to the end of this process, that there is one to carry out requests."""
+        self._held = os.open(self.path, os.O_RDONLY | os.O_CLOEXEC)
+        fcntl.flock(self._held, fcntl.LOCK_EX)
 
     @property
     def park_stay_s(self) -> float:

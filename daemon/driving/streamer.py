@@ -27,6 +27,7 @@ from daemon.driving.pace import Pace, SlowedSetpoints
 from daemon.driving.ramp import EFFORT_START, TorqueRamp
 from daemon.driving.request_words import ESTOPS, Asked
 from daemon.driving.shared import BusLink, BusRequest, BusState
+from daemon.driving.silence import Silence
 from daemon.driving.slow_move import SlowMove
 from daemon.driving.turns import TurnWatch
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
@@ -47,6 +48,11 @@ NO_WAY_LIMP_S = 10.0
 """Where no way to rest or park was found that keeps off the robot itself it holds in a fault, and goes limp after so long."""
 TORQUE_OFF_REPEATS = 5
 """Torque off is a packet that nobody answers: it is sent again, so that a spoilt one or a lost port costs nothing."""
+CTL_LOST_S = 0.18
+"""Cycles, in seconds, without a beat of the process that takes e-stops: with the next one 0.2 s."""
+CTL_LOST = (
+    "nobody took e-stops for 0.2 s, which counts as one: the ctl process was lost or held up; it is started again"
+)
 HELD_UP = "the bus process was silent for more than 1 s and is back; the robot holds: `mmmd reset` makes it limp"
 _COMES_TO = {
     BusRequest.STOP: BusState.STOPPING, BusRequest.TORQUE_OFF: BusState.STOPPING, BusRequest.PARK: BusState.PARKING,
@@ -90,6 +96,7 @@ class Streamer:
         self._derating = Derating(robot.n_servos, robot.bus.period_s)
         self._setpoints, self._pace = SlowedSetpoints(link), Pace(robot.bus.period_s)
         self._owed: list[Asked] = []
+        self._ctl_silence = Silence(CTL_LOST_S, robot.bus.period_s)
         self._fed_s = clock.now_s()
 
     def run(self) -> None:
@@ -129,6 +136,7 @@ class Streamer:
             if asked is not None:  # one a cycle, so that the front sees each state; an e-stop voids what came before it
                 self._owed.append(asked)
                 self._serve(asked.kind)
+            self._watch_ctl()
             self._repeat_torque_off()
             self._watch_heartbeat()
             self._limp_when_due()
@@ -324,6 +332,13 @@ class Streamer:
         self._limp_at_rest = False
 
     # Judgement.
+
+    def _watch_ctl(self) -> None:
+        """An e-stop when nobody takes e-stops any more; none can be reset before somebody does."""
+        if self._ctl_silence.lasts(self._link.ctl_beat) and self.state is not BusState.ESTOP:
+            log.error("the ctl process was silent for %g s: e-stop", CTL_LOST_S)
+            self._estop(holds=self._link.estop_kind is BusRequest.ESTOP_HOLD)
+            self._link.set_text(CTL_LOST)
 
     def _watch_heartbeat(self) -> None:
         has_torque = self._torque or self._arming is not None or self._may_hold

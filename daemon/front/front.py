@@ -1,13 +1,12 @@
 """The front: an asyncio shell around wire, ledger and performer. Holds no torch.
 
 `cmd` (ROUTER) takes texts and returns their events; `pub` (XPUB) carries state and events to all; `ctl` has its own
-thread (`daemon.front.control`), which reaches the bus process without this loop.
+process (`daemon.ctl`), which reaches the bus process without this one and hands over what is to be decided here.
 """
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import sys
 import time
@@ -20,10 +19,8 @@ import zmq.asyncio
 
 from daemon.config import DaemonConfig
 from daemon.connections import ConnectionGuard, Share
-from daemon.driving.realtime import CONTROL_PRIORITY, may_fifo
 from daemon.driving.shared import BusLink, BusRequest
-from daemon.front.control import ControlThread
-from daemon.front.controls import FrontControls
+from daemon.front.ctl_desk import CtlDesk
 from daemon.front.desk import TOPICS, Desk
 from daemon.front.rates import RATE_HZ, RequestLimits
 from daemon.front.stop_texts import stops
@@ -61,11 +58,9 @@ STREAM_PAUSE_S = 0.001
 MOST_TARGETS = 256
 """Targets that are received at one look, so that a flood of them does not keep the event loop."""
 SWITCH_S = 0.001
-"""Longest that the event loop keeps the interpreter from the ctl thread."""
-SHARES = {"cmd": Share(256), "ctl": Share(64, "oldest", float("inf")), "pub": Share(256), "stream": Share(64)}
-"""Connections of each socket. Who connects to `ctl` gets in whatever waits there: it may be for an e-stop."""
-SCHED_FIFO = 1
-"""As in sched.h; ZeroMQ takes the number."""
+"""Longest that a worker thread keeps the interpreter from the event loop."""
+SHARES = {"cmd": Share(256), "pub": Share(256), "stream": Share(64)}
+"""Connections of each socket."""
 Record = Callable[[str, bytes], None]
 
 
@@ -107,7 +102,6 @@ class Front:
         self.recording = str(config.log) if config.log else ""
         self._rates = RequestLimits()
         self._tasks: list[asyncio.Task[None]] = []
-        self._loop: asyncio.AbstractEventLoop | None = None
         self._events_dropped = self._overruns = 0
         self._cmd = context.socket(zmq.ROUTER)
         self._cmd.setsockopt(zmq.ROUTER_MANDATORY, 1)  # a peer that does not read is noticed
@@ -117,41 +111,27 @@ class Front:
         self._stream = context.socket(zmq.SUB)
         self._stream.subscribe(b"")  # not CONFLATE, with which libzmq aborts the process upon a message of two parts
         self._targets = TargetDesk(robot, self.performer, self.ledger, self._publish_event)
-        self._ctl_context = zmq.Context()  # its own I/O thread: a flood on the other sockets delays no stop
-        if may_fifo(CONTROL_PRIORITY):  # libzmq aborts where it is not permitted
-            self._ctl_context.set(zmq.THREAD_SCHED_POLICY, SCHED_FIFO)
-            self._ctl_context.set(zmq.THREAD_PRIORITY, CONTROL_PRIORITY)
+        self.ctl = CtlDesk(link, self.performer, self.ledger, self.drain_cmd, self.state_event, self._publish_event)
         sys.setswitchinterval(SWITCH_S)
-        ctl = self._ctl_context.socket(zmq.ROUTER)
         keys = KeyFolder(config.endpoints.keys) if config.endpoints.keys is not None else None
-        contexts = (context, self._ctl_context) if keys is not None else ()
-        self._doorkeepers = [Doorkeeper(c, keys) for c in contexts if keys is not None]
-        sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "ctl": ctl, "pub": self._pub, "stream": self._stream}
+        self._doorkeeper = Doorkeeper(context, keys) if keys is not None else None
+        sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "pub": self._pub, "stream": self._stream}
         try:
             for key, socket in sockets.items():
                 bounds = {"most_bytes": MOST_BYTES, "queue": RECEIVE_QUEUE} if key == "pub" else {}
                 bind(socket, key, getattr(config.endpoints, key), keys, **bounds)
         except BaseException:
-            for doorkeeper in self._doorkeepers:
-                doorkeeper.close()
+            if self._doorkeeper is not None:
+                self._doorkeeper.close()
             for socket in sockets.values():
                 socket.close(0)
-            self._ctl_context.term()
             raise
         self._guard = ConnectionGuard({key: (socket, SHARES[key]) for key, socket in sockets.items()})
         self._cmd_inbox, self._stream_inbox = Inbox(self._cmd, self._guard), Inbox(self._stream, self._guard)
         self._last_values = LastValues(TOPICS, Inbox(self._pub, self._guard), self._guard, self._publish_bytes)
-        self._control = ControlThread(ctl, FrontControls(self, ctl.poll, estop_holds=config.estop == "hold"))
-
-    @property
-    def loop(self) -> asyncio.AbstractEventLoop:
-        """The event loop the front runs in."""
-        assert self._loop is not None, "Front.start was not called"
-        return self._loop
 
     def start(self) -> None:
         """Begin to serve, in the running event loop."""
-        self._loop = asyncio.get_running_loop()
         self.view.begin()
         serve = (
             self._serve_cmd, self._last_values.serve, self._serve_stream, self._tick_forever, self._publish_state_forever,
@@ -159,7 +139,6 @@ class Front:
         )  # fmt: skip
         self._tasks = [asyncio.create_task(s(), name=s.__name__) for s in serve]
         self._guard.start()
-        self._control.start()
 
     async def failure(self) -> None:
         """Wait for a task of the front to end, which none should.
@@ -199,11 +178,10 @@ class Front:
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        await asyncio.to_thread(self._control.close)
+        self.ctl.detach()
         await asyncio.to_thread(self._guard.close)
-        for doorkeeper in self._doorkeepers:
-            await asyncio.to_thread(doorkeeper.close)
-        self._ctl_context.destroy(linger=200)
+        if self._doorkeeper is not None:
+            await asyncio.to_thread(self._doorkeeper.close)
         await self._generator.close()
         self._cmd.close(200)  # the last events still go out
         self._pub.close(200)
@@ -231,6 +209,7 @@ class Front:
             await asyncio.sleep(STREAM_PAUSE_S)
 
     def _take_message(self, message: Message) -> None:
+        self.ctl.take_waiting()  # a stop that came before it
         t_received_ns = time.monotonic_ns()
         route, parts = split_route(message.parts)
         allowed = self._rates.allows(route.frames[0], message.peer, t_received_ns * 1e-9)
@@ -270,6 +249,7 @@ class Front:
 
     async def _tick_forever(self) -> None:
         while True:
+            self.ctl.tick()
             self.performer.tick()
             await asyncio.sleep(TICK_S)
 
@@ -287,11 +267,6 @@ class Front:
 
     def _send(self, route: Route, event: Event) -> None:
         self._events_dropped += not send_now(self._cmd, [*route.frames, encode(event)])
-
-    def publish_from_thread(self, event: Event) -> None:
-        """Publish an event from another thread; dropped once the loop has ended."""
-        with contextlib.suppress(RuntimeError):
-            self.loop.call_soon_threadsafe(self._publish_event, event)
 
     def _publish_event(self, event: Event) -> None:
         self._publish("v1/event", encode(event))
@@ -314,7 +289,7 @@ class Front:
         self._overruns += not publish_now(self._pub, [topic, payload])
 
     def state_event(self) -> StateEvent:
-        """The robot and the daemon now; may be called from any thread."""
+        """The robot and the daemon now."""
         return StateEvent(
             robot=self._robot.name,
             bus=self._config.bus,

@@ -15,6 +15,7 @@ BUS_SILENT_S = 1.0
 """A bus process that publishes no cycle for so long is frozen."""
 SETTLING_CYCLES = 3
 """So many cycles after a stop the bus process has surely taken it."""
+_PLACES = {state: place for place, state in enumerate(RobotState)}
 REPORTS = {state: Trigger[f"BUS_{state.name}"] for state in BusState}
 
 
@@ -49,6 +50,7 @@ class Follower:
         if self.machine.state is RobotState.FAULT and self.bus_alive and self._view.message:
             self.fault_reason = self._view.message  # the bus process is back and knows better
         entered = [self._follow(self._report(state)) for state in self._view.passed or [self._view.state]]
+        self._link.show_robot_state(_PLACES[self.machine.state])
         return [state for state in entered if state is not None]
 
     @property
@@ -97,7 +99,7 @@ class Follower:
         log.info("state %s -> %s", before.value, state.value)
         self.fault_reason, own_estop, self._own_estop = "", self._own_estop, ""
         if state is RobotState.ESTOP:
-            self.fault_reason = own_estop
+            self.fault_reason = own_estop or self._view.message  # the bus process gives one as well
         elif state is RobotState.FAULT:
             self.fault_reason = self._reason(report)
             log.error("fault: %s", self.fault_reason)

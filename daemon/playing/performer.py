@@ -170,12 +170,17 @@ class Performer:
                 self._drop(pending, "cancel")
 
     def end_halted(self) -> None:
-        """End everything but what was sent after the halt, as its own clock says."""
+        """End everything but what was sent after the halt, as its own clock says.
+
+        Also what began to play before the halt was known of: the bus process has thrown its setpoints away.
+        """
         playing = self._player.entry
-        if playing is None or not self.halts.spares(playing):
+        if playing is None or not self.halts.spares(playing) or not self.planner.running:
             self._player.end(self.halts.by)
         for pending in self._waiting:
-            if not self.halts.spares(pending.entry):
+            if self.halts.spares(pending.entry):
+                pending.epoch = self.planner.epoch
+            else:
                 self._drop(pending, self.halts.by)
 
     def end_all(self, by: str, failure: Failed | None = None) -> None:

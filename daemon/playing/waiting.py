@@ -81,7 +81,7 @@ class Halts:
     """When a person last stopped, parked or cut torque, and what that means for a command.
 
     Times are compared only where they are of one clock: what was sent from this machine against when the halt came here,
-    what was sent from another against when a halt was sent from there. `note` is called by the ctl thread.
+    what was sent from another against when a halt was sent from there.
     """
 
     def __init__(self, clock: str | None = None) -> None:
@@ -91,11 +91,11 @@ class Halts:
         self._n_given = self._n_served = 0
         self.at_s, self.by = float("-inf"), ""
 
-    def note(self, by: str, request: Request | None = None) -> None:
-        """A halt was given, by a request that may say when it was sent."""
+    def note(self, by: str, request: Request | None = None, *, at_s: float | None = None) -> None:
+        """A halt was given, by a request that may say when it was sent; it came at `at_s`, now where that is None."""
         sent_s, clock = (None, None) if request is None else (request.t_mono, request.clock)
         self._n_given += 1
-        self.at_s, self.by, self._from = time.monotonic(), by, clock or ""
+        self.at_s, self.by, self._from = time.monotonic() if at_s is None else at_s, by, clock or ""
         if clock and clock != self._clock and sent_s is not None:
             stamp, before = _Stamp(sent_s, self.at_s), self._stamps.pop(clock, None)
             self._stamps[clock] = before if before is not None and stamp.sent_before(before) else stamp

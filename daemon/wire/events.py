@@ -177,19 +177,35 @@ class Ack(Event, tag="ack"):
         verb: the verb.
         state: the robot's state when it was handed over.
         note: what was changed about it, else empty.
+        carried_out: of a `stop` or an `estop` on `ctl`: whether a bus cycle has carried it out; where none has yet (the bus process
+            is dead, frozen or starting, its port is lost) it stays asked for, and `carried_out` follows. None of anything else.
     """
 
     terminal: ClassVar[bool] = True
     verb: str
     state: str
     note: str = ""
+    carried_out: bool | None = None
+
+
+class CarriedOut(Event, tag="carried_out"):
+    """A bus cycle has carried out a `stop` or an `estop` that was not carried out yet when it was acknowledged.
+
+    Attributes:
+        verb: which.
+        after_s: seconds since it was asked.
+    """
+
+    terminal: ClassVar[bool] = True
+    verb: str
+    after_s: float
 
 
 AnyEvent = (
-    Accepted | Progress | Done | Cancelled | Rejected | ErrorEvent | Failed | Ack | StateEvent | HealthEvent
+    Accepted | Progress | Done | Cancelled | Rejected | ErrorEvent | Failed | Ack | CarriedOut | StateEvent | HealthEvent
     | LogEvent | CapabilitiesEvent
 )  # fmt: skip
 EVENTS: tuple[type[Event], ...] = (
-    Accepted, Progress, Done, Cancelled, Rejected, ErrorEvent, Failed, Ack, StateEvent, HealthEvent,
+    Accepted, Progress, Done, Cancelled, Rejected, ErrorEvent, Failed, Ack, CarriedOut, StateEvent, HealthEvent,
     LogEvent, CapabilitiesEvent,
 )  # fmt: skip

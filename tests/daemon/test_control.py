@@ -1,90 +1,85 @@
-"""The `ctl` thread over real sockets: an e-stop goes before everything that waits, and what it voids stays undone."""
+"""What takes `ctl`, over real sockets and real shared memory: a stop reaches the bus process first, whatever else is asked.
+
+The test is the front at the other end of the channel, and the bus process at the other end of the words.
+"""
 
 from __future__ import annotations
 
-import asyncio
-import contextlib
-from types import SimpleNamespace
+import time
 
 import pytest
 import zmq
 
-from daemon.driving.shared import BusRequest
-from daemon.front.control import ControlThread
-from daemon.front.controls import FrontControls
-from daemon.playing.waiting import Halts
-from daemon.state.machine import RobotState, StateMachine
+from daemon.connections import ConnectionGuard
+from daemon.ctl.channel import Answered, Channel, Handed, Told, pair
+from daemon.ctl.taker import FRONT_ANSWERS_S, HALT_REPLY_S, Taker
+from daemon.driving.request_words import Asker
+from daemon.driving.shared import BusLink, BusRequest
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
-from daemon.wire.requests import Estop, Stop
 
-pytestmark = [pytest.mark.timeout(30), pytest.mark.realtime]
-
-
-class Robot:
-    """Writes down what it was told."""
-
-    def __init__(self) -> None:
-        self.told: list[str] = []
-
-    def _tell(self, verb: str) -> str:
-        self.told.append(verb)
-        return "idle"
-
-    def stop(self, request) -> str:
-        return self._tell("stop")
-
-    def estop(self, request) -> str:
-        return self._tell("estop")
-
-    def park(self, request) -> str:
-        return self._tell("park")
-
-    def reset(self) -> str:
-        return self._tell("reset")
-
-    def arm(self) -> str:
-        return self._tell("arm")
-
-    def torque_off(self, request) -> str:
-        return self._tell("torque off")
-
-    def status(self) -> ev.Event:
-        return ev.Ack(verb=self._tell("status"), state="idle")
-
-    def sent(self, event: ev.Event) -> ev.Event:
-        return event
+pytestmark = pytest.mark.timeout(30)
 
 
 class Ctl:
-    """A robot and its ctl thread, not yet begun; what is sent before waits in the socket."""
+    """A taker and its neighbours; nothing happens but in `turn`."""
 
-    def __init__(self) -> None:
-        self._context, self.robot = zmq.Context(), Robot()
-        server, self._client = self._context.socket(zmq.ROUTER), self._context.socket(zmq.DEALER)
+    def __init__(self, *, holds: bool = False) -> None:
+        self._context, self.now_s = zmq.Context(), 0.0
+        self.front_link = BusLink.create(2)
+        self.front_link.set_estop_holds(holds)
+        self.bus_link = BusLink.attach(self.front_link.path, 2)
+        self.link = BusLink.attach(self.front_link.path, 2, asker=Asker.CTL)
+        server, self.client = self._context.socket(zmq.ROUTER), self._context.socket(zmq.DEALER)
         server.bind("inproc://ctl")
-        self._client.setsockopt(zmq.RCVTIMEO, 10_000)
-        self._client.connect("inproc://ctl")
-        self._thread = ControlThread(server, self.robot)
+        self.client.connect("inproc://ctl")
+        ours, theirs = pair()
+        self.front, self._channel = Channel(ours), Channel(theirs)
+        self.taker = Taker(server, self.link, self._channel, ConnectionGuard({}), lambda: self.now_s)
+        self.handed: list[Handed] = []
+        self.told: list[ev.AnyEvent] = []
 
-    def answers(self, *verbs: str) -> dict[str, list[ev.Event]]:
-        """What became of requests that were all there when the thread began, by verb."""
-        for verb in verbs:
-            self._client.send(f'{{"type": "{verb}", "id": "{verb}"}}'.encode())
-        self._thread.start()
-        found: dict[str, list[ev.Event]] = {verb: [] for verb in verbs}
-        while not all(found.values()):
-            event = wire.decode_event(self._client.recv())
-            found.get(event.id, []).append(event)  # a frame that was none is answered without an id
-        return found
+    def ask(self, *frames: str | bytes) -> None:
+        """Send requests; a bare verb has itself as its id."""
+        for frame in frames:
+            text = frame if isinstance(frame, bytes) else f'{{"type": "{frame}", "id": "{frame}"}}'.encode()
+            self.client.send(text)
 
-    def send(self, frame: bytes) -> None:
-        """One more frame, whatever it is."""
-        self._client.send(frame)
+    def turn(self, n: int = 1, seconds: float = 0.0) -> list[ev.AnyEvent]:
+        """So many turns; the replies of them all."""
+        replies = []
+        for _ in range(n):
+            self.now_s += seconds
+            self.taker.turn()
+            while self.client.poll(0):
+                replies.append(wire.decode_event(self.client.recv()))
+            while (message := self.front.receive()) is not None:
+                if isinstance(message, Handed):
+                    self.handed.append(message)
+                elif isinstance(message, Told):
+                    self.told.append(wire.decode_event(message.event))
+        return replies
+
+    def verbs_handed(self) -> list[str]:
+        return [type(wire.decode_ctl(handed.frame)).__struct_config__.tag for handed in self.handed]
+
+    def bus_takes(self) -> list[BusRequest]:
+        """What the bus process carries out now."""
+        taken = []
+        while (asked := self.bus_link.take_request()) is not None:
+            taken.append(asked.kind)
+            self.bus_link.done(asked)
+        return taken
+
+    def front_answers(self, event: ev.Event | None = None) -> None:
+        for handed in self.handed:
+            self.front.send(Answered(handed.number, b"" if event is None else wire.encode(event)))
 
     def close(self) -> None:
-        self._thread.close()
+        self.front.close()
+        self._channel.close()
         self._context.destroy(linger=0)
+        self.front_link.close()
 
 
 @pytest.fixture
@@ -95,74 +90,130 @@ def ctl():
 
 
 def test_an_estop_goes_before_what_waits(ctl):
-    ctl.answers("stop", "status", "stop", "estop", "status")
-    assert ctl.robot.told == ["estop", "stop", "status", "stop", "status"]
+    ctl.ask("stop", "status", "estop", "status")
+    ctl.turn()
+    assert ctl.bus_takes() == [BusRequest.ESTOP] and ctl.verbs_handed() == ["estop"]
+    ctl.turn(3)
+    assert ctl.bus_takes() == [BusRequest.STOP] and ctl.verbs_handed() == ["estop", "stop", "status", "status"]
 
 
 def test_what_came_before_an_estop_does_not_undo_it(ctl):
     """Served after the e-stop that overtook them, a reset and an arm would switch the torque on again."""
-    answers = ctl.answers("stop", "reset", "arm", "park", "estop")
-    assert ctl.robot.told == ["estop", "stop"]
-    assert [a.code for verb in ("reset", "arm", "park") for a in answers[verb]] == ["overtaken"] * 3
+    ctl.ask("stop", "reset", "arm", "park", "estop")
+    replies = ctl.turn(5)
+    assert ctl.verbs_handed() == ["estop", "stop"]
+    assert {r.id: r.code for r in replies} == dict.fromkeys(("reset", "arm", "park"), "overtaken")
 
 
-def test_what_comes_after_an_estop_is_carried_out(ctl):
-    answers = ctl.answers("estop", "reset", "arm")
-    assert ctl.robot.told == ["estop", "reset", "arm"]
-    assert all(isinstance(a, ev.Ack) for [a] in answers.values())
+def test_a_reset_that_the_front_got_before_the_estop_is_void_at_the_bus_process(ctl):
+    """It was handed over, and the front hands it on after the e-stop was carried out."""
+    ctl.ask("reset", "arm")
+    ctl.turn(2)
+    ctl.ask("estop")
+    ctl.turn()
+    assert ctl.bus_takes() == [BusRequest.ESTOP]
+    for handed, kind in zip(ctl.handed, (BusRequest.RESET, BusRequest.ARM), strict=False):
+        ctl.front_link.request(kind, number=handed.number)
+    assert ctl.bus_takes() == []
 
 
-def test_only_the_last_of_several_estops_can_be_undone(ctl):
-    answers = ctl.answers("estop", "reset", "estop", "arm")
-    assert sorted(ctl.robot.told) == ["arm", "estop", "estop"] and ctl.robot.told[-1] == "arm"
-    assert answers["reset"][0].code == "overtaken"
+def test_what_comes_after_an_estop_is_handed_over(ctl):
+    ctl.ask("estop", "reset", "arm")
+    ctl.turn(3)
+    assert ctl.bus_takes() == [BusRequest.ESTOP] and ctl.verbs_handed() == ["estop", "reset", "arm"]
 
 
-def test_a_bad_frame_is_answered_in_its_turn(ctl):
-    answers = ctl.answers("stop", "dance", "status")
-    assert isinstance(answers["dance"][0], ev.ErrorEvent) and ctl.robot.told == ["stop", "status"]
+@pytest.mark.parametrize(("holds", "kind"), [(False, BusRequest.ESTOP), (True, BusRequest.ESTOP_HOLD)])
+def test_an_estop_cuts_or_holds_as_the_daemon_is_set(holds, kind):
+    ctl = Ctl(holds=holds)
+    try:
+        ctl.ask("estop")
+        ctl.turn()
+        assert ctl.bus_takes() == [kind]
+    finally:
+        ctl.close()
 
 
-@pytest.mark.parametrize("somebody_asks", [True, False])
-def test_a_stop_waits_for_a_stalled_event_loop_only_while_nobody_asks(somebody_asks):
-    """Ten stops before an e-stop delayed it by half a second."""
-    looks, asked = [], []
-
-    def next_request(_wait_ms: int) -> int:
-        looks.append(len(asked))
-        return zmq.POLLIN if somebody_asks else 0
-
-    machine, halts, follower = StateMachine(), Halts(), SimpleNamespace(stopped=False)
-    machine.state = RobotState.MOVING
-
-    async def drain_cmd() -> None:
-        asked.append("take what waits")
-
-    stalled = asyncio.new_event_loop()  # it runs nothing until the stop is answered
-    performer = SimpleNamespace(halts=halts, end_halted=lambda: asked.append("end what is played"))
-    front = SimpleNamespace(
-        machine=machine, performer=performer, follower=follower, loop=stalled,
-        link=SimpleNamespace(request=asked.append), drain_cmd=drain_cmd,
-    )  # fmt: skip
-    with contextlib.closing(stalled):
-        assert FrontControls(front, next_request).stop(Stop()) == "moving"
-        assert asked == [BusRequest.STOP] and follower.stopped and halts.by == "stop"
-        while len(asked) < 3:
-            stalled.run_until_complete(asyncio.sleep(0))
-    assert looks and set(looks) == {1}, "the bus process is told first"
-    assert (len(looks) == 1) == somebody_asks
+def test_the_reply_says_that_it_is_carried_out(ctl):
+    ctl.ask("estop")
+    assert ctl.turn() == [], "neither the bus process nor the front has said anything"
+    ctl.bus_takes()
+    ctl.front_answers()
+    [ack] = ctl.turn(2)
+    assert isinstance(ack, ev.Ack) and ack.carried_out and ack.verb == "estop"
+    ctl.turn()
+    assert [type(event) for event in ctl.told] == [ev.Ack], "whoever watches hears of it by way of the front"
 
 
-@pytest.mark.parametrize(("holds", "asked"), [(False, BusRequest.ESTOP), (True, BusRequest.ESTOP_HOLD)])
-def test_an_estop_cuts_or_holds_as_the_daemon_is_set(holds, asked):
-    told: list[BusRequest] = []
-    machine = StateMachine()
-    machine.state = RobotState.MOVING
-    closed = asyncio.new_event_loop()
-    closed.close()
-    front = SimpleNamespace(
-        machine=machine, performer=SimpleNamespace(halts=Halts(), end_halted=lambda: None),
-        follower=SimpleNamespace(stopped=False), loop=closed, link=SimpleNamespace(request=told.append), drain_cmd=None,
-    )  # fmt: skip
-    assert FrontControls(front, lambda _: 0, estop_holds=holds).estop(Estop()) == "moving"
-    assert told == [asked]
+@pytest.mark.parametrize("verb", ["stop", "estop"])
+def test_where_no_bus_cycle_has_carried_it_out_the_reply_says_so_and_a_second_event_says_when(ctl, verb):
+    """Four of four e-stops given within a second of the death of the bus process were acknowledged, and lost."""
+    ctl.ask(verb)
+    ctl.turn()
+    ctl.front_answers()
+    assert ctl.turn(10) == []
+    [ack] = ctl.turn(seconds=2 * HALT_REPLY_S)
+    assert isinstance(ack, ev.Ack) and ack.carried_out is False
+    assert ctl.turn(20, seconds=1.0) == [], "it stays asked for"
+    assert ctl.bus_takes() == [BusRequest[verb.upper()]]
+    [done] = ctl.turn()
+    assert isinstance(done, ev.CarriedOut) and done.id == ack.id and done.verb == verb
+
+
+def test_a_frozen_front_keeps_no_stop_from_the_bus_process_and_what_needs_it_is_refused(ctl):
+    ctl.ask("arm", "status", "stop")
+    ctl.turn(3)
+    assert ctl.bus_takes() == [BusRequest.STOP]
+    [ack] = ctl.turn(seconds=2 * HALT_REPLY_S)
+    assert isinstance(ack, ev.Ack) and ack.carried_out
+    [refused] = ctl.turn(seconds=FRONT_ANSWERS_S)
+    assert (refused.id, refused.code) == ("arm", "front_silent")
+
+
+def test_a_dead_front_keeps_no_stop_from_the_bus_process(ctl):
+    ctl.front.close()
+    for verb in ("stop", "estop"):
+        ctl.ask(verb)
+        ctl.taker.turn()
+        assert ctl.bus_takes() == [BusRequest[verb.upper()]]
+
+
+def test_a_front_that_takes_nothing_costs_bounded_memory_and_no_stop(monkeypatch):
+    monkeypatch.setattr("daemon.ctl.taker.MOST_OPEN", 300)
+    ctl = Ctl()
+    try:
+        ctl.ask(*["status"] * 1000)
+        for _ in range(1000):
+            ctl.taker.turn()
+        ctl.ask("estop")
+        ctl.taker.turn()
+        assert ctl.bus_takes() == [BusRequest.ESTOP]
+        assert len(ctl.taker._due) <= 300 + 1 and len(ctl.taker._to_front) <= 300
+    finally:
+        ctl.close()
+
+
+@pytest.mark.parametrize(
+    "frame", [b"dance", b"{", b"\xff", b'{"type": "stop", "v": ' + b"[" * 991 + b"]" * 991 + b"}", b"x" * 70_000]
+)
+def test_a_bad_frame_is_answered_and_ends_nothing(ctl, frame):
+    ctl.ask("stop", frame, "estop")
+    replies = ctl.turn(3)
+    assert any(isinstance(r, ev.ErrorEvent) for r in replies)
+    assert ctl.bus_takes() == [BusRequest.STOP] or ctl.verbs_handed() == ["estop", "stop"]
+
+
+def test_of_a_message_of_endlessly_many_parts_nothing_is_kept(ctl):
+    ctl.client.send_multipart([b"estop"] * 100_000)
+    ctl.ask("stop")
+    replies = ctl.turn(2)
+    assert any(isinstance(r, ev.ErrorEvent) and r.code == "frames" for r in replies)
+    assert ctl.bus_takes() == [BusRequest.STOP]
+
+
+def test_it_beats_however_much_there_is_to_read(ctl, monkeypatch):
+    beats = []
+    monkeypatch.setattr(ctl.link, "ctl_beats", lambda: beats.append(time.monotonic()))
+    ctl.ask(*["status"] * 300)
+    ctl.taker.turn()
+    assert len(beats) > 300

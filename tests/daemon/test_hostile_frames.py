@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.driving.shared import cycle_dtype
+from daemon.driving.shared import BusRequest, cycle_dtype
 from daemon.front.stream_inbox import StreamInbox
 from daemon.recording.mcap_log import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.wire import codec as wire
-from daemon.wire.events import Ack
+from daemon.wire.events import Ack, ErrorEvent
 from retarget.robot.loading import load_robot
 from tests.daemon.test_control import Ctl
 
@@ -93,14 +93,19 @@ def test_no_hostile_frame_ends_the_reader_of_stream():
 
 
 @pytest.mark.timeout(30)
-def test_no_hostile_frame_ends_the_thread_of_ctl():
+def test_no_hostile_frame_ends_what_takes_ctl():
     """After all of them an e-stop is still carried out and answered."""
     ctl = Ctl()
     try:
-        for text in HOSTILE.values():
-            ctl.send(text.encode())
-        answers = ctl.answers("estop")
-        assert "estop" in ctl.robot.told and isinstance(answers["estop"][0], Ack)
+        ctl.ask(*(text.encode() for text in HOSTILE.values()))
+        refused = ctl.turn(len(HOSTILE))
+        assert all(isinstance(event, ErrorEvent) for event in refused) and len(refused) == len(HOSTILE)
+        ctl.ask("estop")
+        ctl.turn()
+        assert ctl.bus_takes() == [BusRequest.ESTOP]
+        ctl.front_answers()
+        [answer] = ctl.turn(2)
+        assert isinstance(answer, Ack) and answer.carried_out
     finally:
         ctl.close()
 

@@ -1,0 +1,110 @@
+"""Entry of the process that serves `ctl`: it alone stands between a person's e-stop and the bus process.
+
+It shares no thread, interpreter lock, libzmq context or file descriptor table with what serves the public, and needs none of it:
+the front may be flooded, frozen or dead. It beats in shared memory; a bus process that misses the beat for 0.2 s makes an e-stop.
+"""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import logging
+import signal
+import socket
+import sys
+import time
+from pathlib import Path
+
+import zmq
+
+from daemon.connections import ConnectionGuard, Share
+from daemon.ctl.channel import Channel, Ready
+from daemon.ctl.taker import Taker
+from daemon.driving.realtime import CONTROL_PRIORITY, lock_memory, may_fifo, take_fifo
+from daemon.driving.request_words import Asker
+from daemon.driving.shared import BusLink
+from daemon.errors import ConfigError, EndpointInUseError
+from daemon.keys import Doorkeeper, KeyFolder
+from daemon.log_feed import send_logs
+from daemon.logs import start_logging
+from daemon.parent import Parent
+from daemon.sockets import bind
+
+log = logging.getLogger(__name__)
+
+SWITCH_S = 0.001
+"""Longest that the doorkeeper's thread keeps the interpreter from the one that takes e-stops."""
+SCHED_FIFO = 1
+"""As in sched.h; ZeroMQ takes the number."""
+SHARE = Share(64, "oldest", float("inf"))
+"""Connections to `ctl`: who connects gets in whatever waits there, as it may be for an e-stop."""
+ORPHAN_CHECK_S = 0.5
+
+
+def main() -> int:
+    """Serve until SIGTERM, or until front and bus process are both gone; 1 when the endpoint cannot be had."""
+    parser = argparse.ArgumentParser(description="serves the ctl socket of mmmd; started by `mmmd run`")
+    for name in ("--endpoint", "--link"):
+        parser.add_argument(name, required=True)
+    for name in ("--joints", "--servos", "--channel"):
+        parser.add_argument(name, type=int, required=True)
+    parser.add_argument("--keys", type=Path)
+    arguments = parser.parse_args()
+    parent = Parent()
+    start_logging("ctl")
+    send_logs("ctl")
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group and is the front's to handle
+    link = BusLink.attach(Path(arguments.link), arguments.joints, arguments.servos, asker=Asker.CTL)
+    channel = Channel(socket.socket(fileno=arguments.channel))
+    context: zmq.Context[zmq.Socket[bytes]] = zmq.Context()
+    if may_fifo(CONTROL_PRIORITY):  # libzmq aborts where it is not permitted
+        context.set(zmq.THREAD_SCHED_POLICY, SCHED_FIFO)
+        context.set(zmq.THREAD_PRIORITY, CONTROL_PRIORITY)
+    sys.setswitchinterval(SWITCH_S)
+    keys = KeyFolder(arguments.keys) if arguments.keys is not None else None
+    doorkeeper = Doorkeeper(context, keys) if keys is not None else None
+    ctl = context.socket(zmq.ROUTER)
+    try:
+        bind(ctl, "ctl", arguments.endpoint, keys)
+    except ConfigError as error:
+        channel.send(Ready(failed=str(error), in_use=isinstance(error, EndpointInUseError)))
+        context.destroy(linger=0)
+        return 1
+    guard = ConnectionGuard({"ctl": (ctl, SHARE)})
+    guard.start()
+    try:
+        _serve(Taker(ctl, link, channel, guard), link, channel, parent)
+    finally:
+        guard.close()
+        if doorkeeper is not None:
+            doorkeeper.close()
+        context.destroy(linger=200)  # the last replies still go out
+    return 0
+
+
+def _serve(taker: Taker, link: BusLink, channel: Channel, parent: Parent) -> None:
+    asked_to_end = False
+
+    def end(_number: int, _frame: object) -> None:
+        nonlocal asked_to_end
+        asked_to_end = True
+
+    signal.signal(signal.SIGTERM, end)
+    lock_memory()
+    if take_fifo(CONTROL_PRIORITY):
+        log.info("the ctl process has FIFO priority")
+    gc.collect()
+    gc.freeze()
+    link.ctl_beats()
+    channel.send(Ready())  # before anything that is handed over
+    checked_s = time.monotonic()
+    while not asked_to_end:
+        taker.turn()
+        if time.monotonic() - checked_s > ORPHAN_CHECK_S:
+            checked_s = time.monotonic()
+            asked_to_end = parent.gone and not link.bus_lives
+    log.info("ended")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

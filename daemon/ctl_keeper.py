@@ -1,0 +1,109 @@
+"""Keeps a process behind `ctl`: starts it, notices that it is lost or frozen, starts it again. Part of the supervisor."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable, Mapping
+
+from daemon.children import Child
+from daemon.config import DaemonConfig
+from daemon.ctl.channel import Channel, Ready, pair
+from daemon.driving.shared import BusLink
+from daemon.driving.silence import Silence
+from daemon.errors import ConfigError, DaemonError, EndpointInUseError
+from retarget.robot.robot import RobotModel
+
+log = logging.getLogger(__name__)
+
+START_TIMEOUT_S = 20.0
+LOOK_S = 0.04
+SILENT_S = 0.2
+"""Looks, in seconds, without a beat: it is killed. The bus process has made an e-stop of it by then."""
+FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.1, 5.0
+END_S = 2.0
+
+
+class CtlStartError(DaemonError):
+    """The process behind `ctl` could not be started."""
+
+
+class CtlKeeper:
+    """The process behind `ctl`, again and again.
+
+    Args:
+        config: endpoint and keys.
+        robot: the robot.
+        link: shared memory.
+        environment: set for the process.
+    """
+
+    def __init__(self, config: DaemonConfig, robot: RobotModel, link: BusLink, environment: Mapping[str, str]) -> None:
+        self._link, self._environment = link, environment
+        self._arguments = ["--endpoint", config.endpoints.ctl, "--link", str(link.path)]
+        self._arguments += ["--joints", str(robot.n_joints), "--servos", str(robot.n_servos)]
+        if config.endpoints.keys is not None:
+            self._arguments += ["--keys", str(config.endpoints.keys)]
+        self._child: Child | None = None
+
+    async def start(self) -> Channel:
+        """Start it; the channel to it, once it serves.
+
+        Raises:
+            ConfigError: the endpoint cannot be bound.
+            CtlStartError: it ended, or did not begin to serve in time.
+        """
+        ours, theirs = pair()
+        with theirs:
+            arguments = [*self._arguments, "--channel", str(theirs.fileno())]
+            self._child = child = Child("ctl process", "daemon.ctl.process", arguments, self._environment)
+            await child.start(pass_fds=(theirs.fileno(),))
+        channel = Channel(ours)
+        end_s = time.monotonic() + START_TIMEOUT_S
+        while time.monotonic() < end_s:
+            message = channel.receive()
+            if isinstance(message, Ready):
+                if message.failed:
+                    channel.close()
+                    raise EndpointInUseError(message.failed) if message.in_use else ConfigError(message.failed)
+                return channel
+            if channel.closed:
+                break
+            await asyncio.sleep(0.01)
+        channel.close()
+        child.kill()
+        raise CtlStartError(f"the process that takes e-stops did not start (status {await child.ended()})")
+
+    async def keep(self, attach: Callable[[Channel], None]) -> None:
+        """Start it again whenever it ends or freezes, and `attach` the new channel."""
+        back_off_s = FIRST_BACK_OFF_S
+        while True:
+            assert self._child is not None, "not started"
+            status = await self._lost(self._child)
+            log.error("the ctl process ended with status %d, which is an e-stop; it is started again", status)
+            if self._child.lived_s > LONGEST_BACK_OFF_S:
+                back_off_s = FIRST_BACK_OFF_S
+            await asyncio.sleep(back_off_s)
+            back_off_s = min(2 * back_off_s, LONGEST_BACK_OFF_S)
+            try:
+                attach(await self.start())
+            except DaemonError as error:
+                log.error("%s", error)
+                continue
+            log.warning("the ctl process serves again: `mmmd reset`, then `mmmd arm`")
+
+    async def close(self) -> None:
+        """End it."""
+        if self._child is not None:
+            await self._child.end(END_S)
+
+    async def _lost(self, child: Child) -> int:
+        """Wait for its end, which a frozen one is brought to; its status."""
+        silence, ended = Silence(SILENT_S, LOOK_S), asyncio.create_task(child.ended())
+        while not ended.done():
+            await asyncio.wait({ended}, timeout=LOOK_S)
+            if silence.lasts(self._link.ctl_beat) and not ended.done():
+                log.error("the ctl process has been silent for %g s and is killed", SILENT_S)
+                child.kill()
+        return ended.result()

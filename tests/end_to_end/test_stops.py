@@ -1,0 +1,152 @@
+"""Whole daemons: an e-stop is carried out whichever process is frozen or dead, and the loss of who takes e-stops is one.
+
+The servos are behind a real tty and outlive the daemon's processes; their audit watches all the time.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+import uuid
+
+import pytest
+import zmq
+
+from daemon.client import NoAnswerError
+from daemon.wire import codec as wire
+from daemon.wire import events as ev
+from daemon.wire.requests import Estop
+from tests.daemon.test_chaos import Servos, assert_works, bring_to, daemon_on, lead_to, within
+from tests.end_to_end.harness import RunningDaemon
+from tests.end_to_end.test_start_and_end import child_pid
+
+pytestmark = [pytest.mark.timeout(240), pytest.mark.realtime]
+BACK_WITHIN_S = 40.0
+"""Until a process that was lost serves again, on a machine that has much else to do."""
+
+
+@pytest.fixture
+def servos(tmp_path):
+    made = Servos(tmp_path)
+    yield made
+    made.close()
+
+
+class Person:
+    """Presses the button: one socket to `ctl`, which was connected before anything went wrong."""
+
+    def __init__(self, daemon: RunningDaemon) -> None:
+        self._context = zmq.Context()
+        self._socket = self._context.socket(zmq.DEALER)
+        self._socket.connect(daemon.endpoints.ctl)
+
+    def estop(self) -> str:
+        name = uuid.uuid4().hex
+        self._socket.send(wire.encode(Estop(id=name)))
+        return name
+
+    def hears(self, kind: type[ev.Event], name: str, within_s: float) -> ev.AnyEvent:
+        end_s = time.monotonic() + within_s
+        while self._socket.poll(max(0, int(1000 * (end_s - time.monotonic())))):
+            event = wire.decode_event(self._socket.recv())
+            if event.id == name and isinstance(event, kind):
+                return event
+        raise AssertionError(f"no {kind.__name__} within {within_s} s")
+
+    def close(self) -> None:
+        self._context.destroy(linger=0)
+
+
+@pytest.mark.parametrize("number", [signal.SIGSTOP, signal.SIGKILL], ids=["frozen", "killed"])
+def test_the_front_keeps_no_estop_from_the_bus_process(servos, number):
+    daemon = daemon_on(servos)
+    person = Person(daemon)
+    try:
+        with daemon.client() as client:
+            lead_to(client, servos, "moving")
+        bus, ctl = child_pid(daemon, "daemon.driving.process"), child_pid(daemon, "daemon.ctl.process")
+        daemon.process.send_signal(number)
+        ack = person.hears(ev.Ack, person.estop(), 5.0)
+        assert ack.carried_out
+        within(1.0, "no torque", lambda: not servos.torque)
+        if number == signal.SIGSTOP:
+            daemon.process.send_signal(signal.SIGCONT)
+            with daemon.client() as client:
+                client.wait_for("estop", timeout_s=5)
+                within(3.0, "its command ends", lambda: client.status().command is None)
+                client.reset()
+                client.wait_for("limp", timeout_s=5)
+                assert_works(client)
+            assert daemon.terminate() == 0
+        else:
+            daemon.process.wait(5)
+        within(40.0, "no process is left", lambda: _gone(bus) and _gone(ctl))
+        servos.assert_kept()
+    finally:
+        daemon.process.send_signal(signal.SIGCONT) if daemon.process.poll() is None else None
+        person.close()
+        daemon.close()
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
+def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(servos, number):
+    daemon = daemon_on(servos)
+    try:
+        with daemon.client() as client:
+            for state in ("moving", "limp"):
+                bring_to(client, state)
+                os.kill(child_pid(daemon, "daemon.ctl.process"), number)
+                within(1.0, "no torque", lambda: not servos.torque)
+                within(BACK_WITHIN_S, "estop", lambda: _state(client) == "estop")
+                assert "nobody took e-stops" in client.status().reason
+                client.reset()
+                client.wait_for("limp", timeout_s=5)
+                servos.assert_kept()
+            assert_works(client)
+        assert daemon.terminate() == 0
+        servos.assert_kept()
+    finally:
+        daemon.close()
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
+@pytest.mark.parametrize("after_s", [0.02, 0.6])
+def test_an_estop_without_a_bus_process_is_told_as_owed_and_carried_out_by_the_next_one(servos, number, after_s):
+    """Of nine e-stops given so all nine were acknowledged, and none was carried out."""
+    daemon = daemon_on(servos)
+    person = Person(daemon)
+    try:
+        with daemon.client() as client:
+            lead_to(client, servos, "moving")
+            os.kill(child_pid(daemon, "daemon.driving.process"), number)
+            time.sleep(after_s)
+            name = person.estop()
+            assert person.hears(ev.Ack, name, 5.0).carried_out is False
+            assert servos.torque, "nobody is there to cut it"
+            done = person.hears(ev.CarriedOut, name, BACK_WITHIN_S)
+            assert done.verb == "estop" and not servos.torque
+            client.wait_for("estop", timeout_s=5)
+            client.reset()
+            client.wait_for("limp", timeout_s=5)
+            assert_works(client)
+        assert daemon.terminate() == 0
+        servos.assert_kept()
+    finally:
+        person.close()
+        daemon.close()
+
+
+def _state(client) -> str:
+    try:
+        return client.status().state
+    except NoAnswerError:
+        return "no answer"
+
+
+def _gone(pid: int) -> bool:
+    try:
+        with open(f"/proc/{pid}/stat") as f:
+            return f.read().rsplit(")", 1)[1].split()[0] == "Z"
+    except OSError:
+        return True
