@@ -8,11 +8,11 @@ import time
 from collections.abc import Callable, Mapping
 
 from daemon.children import Child
-from daemon.config import DaemonConfig
+from daemon.config import DaemonConfig, EndpointInUseError
 from daemon.ctl.channel import Channel, Ready, pair
 from daemon.driving.shared import BusLink
 from daemon.driving.silence import Silence
-from daemon.errors import ConfigError, DaemonError, EndpointInUseError
+from daemon.errors import ConfigError, DaemonError
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)

@@ -17,13 +17,14 @@ from pathlib import Path
 
 import zmq
 
+from daemon.config import EndpointInUseError
 from daemon.connections import ConnectionGuard, Share
 from daemon.ctl.channel import Channel, Ready
 from daemon.ctl.taker import Taker
 from daemon.driving.realtime import CONTROL_PRIORITY, lock_memory, may_fifo, take_fifo
 from daemon.driving.request_words import Asker
 from daemon.driving.shared import BusLink
-from daemon.errors import ConfigError, EndpointInUseError
+from daemon.errors import ConfigError
 from daemon.keys import Doorkeeper, KeyFolder
 from daemon.log_feed import send_logs
 from daemon.logs import start_logging
