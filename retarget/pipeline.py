@@ -213,13 +213,18 @@ class Retargeter:
         return errors
 
     def missed(self, poses: Poses, q_rad: Array) -> Array:
-        """(4, T, 3) human less robot bone in poses (T, J), in the order of `report.BONES`."""
-        return np.concatenate([poses.upper, poses.fore])[:, : len(q_rad)] - np.concatenate(
-            self._poser.directions(q_rad)
-        )
+        """(4, T, 3) human less robot bone in poses (T, J), so weighted that the squares are what the poses are best in.
+
+        In the order of `report.BONES` where both bones count alike; else upper arm and forearm are mixed.
+        """
+        upper, fore = self._poser.directions(q_rad)
+        T = len(q_rad)
+        apart = np.stack([poses.upper[:, :T] - upper, poses.fore[:, :T] - fore], 2)  # (2, T, 2, 3)
+        root = np.linalg.cholesky(poses.weights[:, :T])
+        return (np.swapaxes(root, -1, -2) @ apart).transpose(2, 0, 1, 3).reshape(4, T, 3)
 
     def shown(self, poses: Poses, q_rad: Array) -> tuple[Array, Array]:
-        """Half the squared error of all bones linearised at poses (T, J): its hessian (T, J, J) and how fast it falls (T, J)."""
+        """Half the weighted squared error of all bones linearised at poses (T, J): hessian (T, J, J) and fall (T, J)."""
         return self._poser.shown(poses, q_rad)
 
     def _begin(self, wanted: Array, start: JointState | None) -> JointState:

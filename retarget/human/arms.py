@@ -26,7 +26,6 @@ from retarget.human.subproblems import Reach, Turn, angle_about, frame, unit
 from retarget.robot.kinematics import cross, skew
 
 Array = NDArray[np.float64]
-UPPER_WEIGHT, FORE_WEIGHT = 1.0, 1.0
 _LEAST_ERROR_STEPS, _CUT_STEPS, _OFFSET_STEPS = 7, 3, 3
 _DONE_RAD = 1e-4
 _DAMPING = 1e-3
@@ -56,14 +55,23 @@ class Bones:
     fore: Array
     slope: Array
 
-    def hessian(self) -> Array:
-        """(G, M, n, n) of half the squared error of both directions."""
-        return self.slope @ np.swapaxes(self.slope, -1, -2)
+    def hessian(self, weights: Array | None = None) -> Array:
+        """(G, M, n, n) of half the squared error of both directions, weighted by `weights` (G, M, 2, 2)."""
+        slope = self.slope if weights is None else weighted(self.slope, weights[:, :, None])
+        return slope @ np.swapaxes(self.slope, -1, -2)
 
-    def towards(self, upper: Array, fore: Array) -> Array:
+    def towards(self, upper: Array, fore: Array, weights: Array | None = None) -> Array:
         """(G, M, n) how fast half the squared error against directions (G, M, 3) falls with each joint."""
         error = np.concatenate([upper - self.upper, fore - self.fore], -1)
+        if weights is not None:
+            error = weighted(error, weights)
         return (self.slope @ error[..., None])[..., 0]
+
+
+def weighted(errors: Array, weights: Array) -> Array:
+    """(..., 6) errors of both directions times symmetric weights (..., 2, 2) of the bones."""
+    apart = errors.reshape(*errors.shape[:-1], 2, 3)
+    return (weights @ apart).reshape(errors.shape)
 
 
 class Arms:
@@ -97,39 +105,51 @@ class Arms:
         share = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, steps)] * self.n_joints), -1).reshape(-1, self.n_joints)
         self._poses = self.low + share * (self.high - self.low)  # (G, S, n)
         upper, fore = self.directions(self._poses)
-        self._pose_directions = np.concatenate([UPPER_WEIGHT * upper, FORE_WEIGHT * fore], -1)
+        self._pose_directions = np.concatenate([upper, fore], -1)
+        self._pose_cosines = np.vecdot(upper, fore)  # (G, S)
 
-    def ways(self, upper: Array, fore: Array) -> tuple[Array, Array]:
+    def ways(self, upper: Array, fore: Array, weights: Array | None = None) -> tuple[Array, Array]:
         """Angles of each way to unit directions (G, M, 3), and how much each joint shows there, both (G, M, C, n).
 
         Ways of arms that reach all directions may lie outside the limits. What shows is 0 to 1: with the third axis along
         the first only their sum does, with the arm straight the third does not.
         """
         if not self.reaches_all:
-            ways = self._refine(self._starts(upper, fore), upper, fore, _LEAST_ERROR_STEPS)
+            if weights is None:
+                weights = np.broadcast_to(np.eye(2), (*upper.shape[:2], 2, 2))
+            ways = self._refine(self._starts(upper, fore, weights), upper, fore, _LEAST_ERROR_STEPS, weights)
             return ways, np.ones_like(ways)
         ways, seen = self._every_pair(upper, fore)
         if self._has_offsets:
             ways = self._refine(ways, upper, fore, _OFFSET_STEPS)
         return self._nearest_turn(ways), seen
 
-    def own_cost(self, ways: Array, upper: Array, fore: Array, seen: Array) -> Array:
+    def own_cost(self, ways: Array, upper: Array, fore: Array, seen: Array, weights: Array | None = None) -> Array:
         """(G, M, C) what each way costs by itself, in radians of movement: what lies outside limits, directions missed."""
         outside = np.abs(ways - np.minimum(np.maximum(ways, self.low[:, None]), self.high[:, None]))
         cost = _LIMIT_COST * np.einsum("gmcn,gmcn->gmc", outside, seen)
         if not self.reaches_all or self._has_offsets:
             found = self.directions(ways.reshape(len(ways), -1, self.n_joints))
-            for f, wanted in zip(found, (upper, fore), strict=True):
-                missed = f.reshape(*ways.shape[:3], 3) - wanted[:, :, None]
-                cost = cost + _ERROR_COST * np.linalg.norm(missed, axis=-1)
+            missed = [
+                f.reshape(*ways.shape[:3], 3) - wanted[:, :, None]
+                for f, wanted in zip(found, (upper, fore), strict=True)
+            ]
+            if weights is None or self.reaches_all:
+                for m in missed:
+                    cost = cost + _ERROR_COST * np.linalg.norm(m, axis=-1)
+            else:
+                error = np.concatenate(missed, -1)
+                square = np.vecdot(weighted(error, weights[:, :, None]), error)
+                cost = cost + _ERROR_COST * np.sqrt(np.maximum(square, 0.0))
         return cost
 
-    def within_limits(self, q: Array, upper: Array, fore: Array) -> Array:
+    def within_limits(self, q: Array, upper: Array, fore: Array, weights: Array | None = None) -> Array:
         """(G, M, n) angles within the limits; where one is cut off, the other joints make up for it as far as they can."""
         inside = np.minimum(np.maximum(q, self.low), self.high)
         cut = (inside != q).any((0, 2))
         if cut.any():
-            better = self._refine(q[:, cut, None], upper[:, cut], fore[:, cut], _CUT_STEPS)[:, :, 0]
+            of = None if weights is None else weights[:, cut]
+            better = self._refine(q[:, cut, None], upper[:, cut], fore[:, cut], _CUT_STEPS, of)[:, :, 0]
             some = (inside != q).any(2)[:, cut]
             inside[:, cut] = np.where(some[..., None], better, inside[:, cut])
         return inside
@@ -260,11 +280,12 @@ class Arms:
         sine = np.einsum("gmewi,gi->gmew", moved, cross(a3, probe))
         return np.arctan2(sine, np.einsum("gmewi,gi->gmew", moved, probe))
 
-    def _starts(self, upper: Array, fore: Array) -> Array:
+    def _starts(self, upper: Array, fore: Array, weights: Array) -> Array:
         """(G, M, C, n) angles from which to look for the least error."""
         # The nearest of poses spread over the range: limits make valleys that the others may miss.
-        aim = np.concatenate([upper, fore], -1)
-        nearest = (aim @ np.swapaxes(self._pose_directions, -1, -2)).argmax(-1)  # (G, M)
+        aim = weighted(np.concatenate([upper, fore], -1), weights)
+        likeness = aim @ np.swapaxes(self._pose_directions, -1, -2) - weights[..., :1, 1] * self._pose_cosines[:, None]
+        nearest = likeness.argmax(-1)  # (G, M)
         starts = [np.take_along_axis(self._poses, nearest[..., None], 1)]
         between = unit(upper + fore)
         for aim in (upper, between) if self._has_elbow else (between,):
@@ -291,23 +312,22 @@ class Arms:
         elbow, _ = angle_about(self.axes[:, -1], self.fore0[:, None, None], local[..., 0])
         return np.concatenate([shoulder, elbow], -1)
 
-    def _refine(self, ways: Array, upper: Array, fore: Array, steps: int) -> Array:
+    def _refine(self, ways: Array, upper: Array, fore: Array, steps: int, weights: Array | None = None) -> Array:
         """Gauss-Newton on both direction errors from angles (G, M, C, n), kept inside their limits."""
         G, M, C, n = ways.shape
         q = self._nearest_turn(ways).reshape(G, M * C, n)
         q = np.minimum(np.maximum(q, self.low), self.high)
         upper, fore = np.repeat(upper, C, 1), np.repeat(fore, C, 1)
+        of = None if weights is None else np.repeat(weights, C, 1)
         damping = _DAMPING * np.eye(n)
-        weight = np.array([UPPER_WEIGHT] * 3 + [FORE_WEIGHT] * 3) ** 0.5
         for _ in range(steps):
             b = self.bones(q)
-            error = weight * np.concatenate([upper - b.upper, fore - b.fore], -1)
-            slope = weight * b.slope
-            fall = (slope @ error[..., None])[..., 0]
+            fall, slope = b.towards(upper, fore, of), b.slope
             # A joint at its limit that is pushed further out stays; the others make up for it.
             stuck = ((q <= self.low) & (fall < 0)) | ((q >= self.high) & (fall > 0))
             slope = np.where(stuck[..., None], 0.0, slope)
-            normal = slope @ np.swapaxes(slope, -1, -2) + damping
+            both = slope if of is None else weighted(slope, of[:, :, None])
+            normal = both @ np.swapaxes(slope, -1, -2) + damping
             step = np.linalg.solve(normal, np.where(stuck, 0.0, fall)[..., None])[..., 0]
             q = q + np.minimum(np.maximum(step, -_LARGEST_STEP_RAD), _LARGEST_STEP_RAD)
             q = np.minimum(np.maximum(q, self.low), self.high)

@@ -43,6 +43,7 @@ class HumanPose:
         forearm_twist_rad: (2, T).
         chest_rotation: (T, 3, 3) chest against where the pelvis faces, upright; the identity for a person who stands upright.
         head_rotation: (T, 3, 3) head against the same.
+        fps: frames per second.
     """
 
     upper: Array
@@ -50,6 +51,7 @@ class HumanPose:
     forearm_twist_rad: Array
     chest_rotation: Array
     head_rotation: Array
+    fps: float
 
 
 def read_human(motion: Motion) -> HumanPose:
@@ -77,7 +79,7 @@ def read_human(motion: Motion) -> HumanPose:
     arms = in_chest.transpose(1, 0, 2)
     return HumanPose(
         np.ascontiguousarray(arms[:2]), np.ascontiguousarray(arms[2:]), motion.forearm_twist_rad.T.astype(np.float64),
-        _TO_ROBOT @ relative @ _TO_ROBOT.T, _TO_ROBOT @ head @ _TO_ROBOT.T,
+        _TO_ROBOT @ relative @ _TO_ROBOT.T, _TO_ROBOT @ head @ _TO_ROBOT.T, motion.fps,
     )  # fmt: skip
 
 

@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.human.arm_chain import ArmChain, read_arm
-from retarget.human.arms import Arms
+from retarget.human.arms import Arms, Bones
 from retarget.human.branches import choose
 from retarget.human.human import SIDES, HumanPose
 from retarget.human.objective import ArmMatters, PoseMatters
 from retarget.human.trunk import Trunk
+from retarget.human.weighing import bone_weights
 from retarget.path.limit_path import Angles
 from retarget.path.limits import JointLimits
 from retarget.path.lookahead_qp import Wish, least_moving
@@ -29,6 +30,8 @@ ArmsFollow = Literal["chest", "world"]
 _REST_PULL = 0.004
 """Weight of squared steps against squared direction errors: a tenth of a degree for human motion, all for an unseen joint."""
 _REST_STEPS = 3
+_CHOICE_PULL = 0.03
+"""The same for arms that cannot show both bones: less is shown where that needs a jump."""
 _SEEN_RAD = 0.004
 """Direction error that resting may leave before it is tried again from where it came to."""
 _NEARBY = 0.01
@@ -46,16 +49,24 @@ class Poses:
         outside: (T, J) whether a position limit changed one.
         upper: (2, T, 3) directions of left and right upper arm, in the robot's chest frame, that they are for.
         fore: (2, T, 3) of the forearms.
+        weights: (2, T, 2, 2) how much the errors of both count, see `weighing`.
     """
 
     q_rad: Array
     outside: NDArray[np.bool_]
     upper: Array
     fore: Array
+    weights: Array
 
     def part(self, frames: slice) -> Poses:
         """Some of the frames."""
-        return Poses(self.q_rad[frames], self.outside[frames], self.upper[:, frames], self.fore[:, frames])
+        return Poses(
+            self.q_rad[frames],
+            self.outside[frames],
+            self.upper[:, frames],
+            self.fore[:, frames],
+            self.weights[:, frames],
+        )
 
     def stretched(self, times: float) -> Poses:
         """The same, so many times slower."""
@@ -68,7 +79,7 @@ class Poses:
             return x[..., low, :] * (1 - share) + x[..., high, :] * share
 
         upper, fore = (d / np.linalg.norm(d, axis=-1, keepdims=True) for d in map(between, (self.upper, self.fore)))
-        return Poses(between(self.q_rad), self.outside[low], upper, fore)
+        return Poses(between(self.q_rad), self.outside[low], upper, fore, self.weights[:, low])
 
 
 class Poser:
@@ -106,13 +117,16 @@ class Poser:
         if self._arms_follow == "world":
             turned = np.swapaxes(self._trunk.into_chest(q) @ human.chest_rotation, -1, -2)
             upper, fore = ((d[:, :, None] @ turned)[:, :, 0] for d in (upper, fore))
+        weights = bone_weights(human)
         for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
-            angles, cut = self._arm_angles(arms, upper[sides], fore[sides], before[joints])
+            if arms.reaches_all:
+                weights[sides] = np.eye(2)
+            angles, cut = self._arm_angles(arms, upper[sides], fore[sides], weights[sides], before[joints])
             q[:, joints], outside[:, joints] = angles.transpose(1, 0, 2), cut.transpose(1, 0, 2)
         for i, joint, sense in self._twists:
             q[:, joint] = sense * human.forearm_twist_rad[i]
         outside |= (q < low) | (q > high)
-        return Poses(np.minimum(np.maximum(q, low), high), outside, upper, fore)
+        return Poses(np.minimum(np.maximum(q, low), high), outside, upper, fore, weights)
 
     def directions(self, q_rad: Array) -> tuple[Array, Array]:
         """(2, T, 3) directions of the upper arms and of the forearms, left and right, in poses (T, J)."""
@@ -138,7 +152,9 @@ class Poser:
         every, falls = np.zeros((T, J, J)), np.zeros((T, J))
         for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
             bones = arms.bones(q_rad[:, joints].transpose(1, 0, 2))
-            hessian, fall = bones.hessian(), bones.towards(poses.upper[sides][:, :T], poses.fore[sides][:, :T])
+            weights = poses.weights[sides][:, :T]
+            hessian = bones.hessian(weights)
+            fall = bones.towards(poses.upper[sides][:, :T], poses.fore[sides][:, :T], weights)
             for g, of in enumerate(joints):
                 every[:, of[:, None], of] += hessian[g]
                 falls[:, of] += fall[g]
@@ -152,12 +168,23 @@ class Poser:
         arms = [ArmMatters(a, j, q_rad, led_rad) for a, j in zip(self._arms, self._joints, strict=True)]
         return PoseMatters(arms, Angles(q_rad, self._others) if self._others else None)
 
-    def _arm_angles(self, arms: Arms, upper: Array, fore: Array, before: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Angles of arms of one kind for directions (G, T, 3), from `before` (G, n) on, and which were cut, (G, T, n)."""
-        ways, seen = arms.ways(upper, fore)
-        chosen, seen = choose(ways, arms.own_cost(ways, upper, fore, seen), seen, before)
+    def _arm_angles(
+        self, arms: Arms, upper: Array, fore: Array, weights: Array, before: Array
+    ) -> tuple[Array, NDArray[np.bool_]]:
+        """Angles of arms of one kind for directions (G, T, 3), from `before` (G, n) on, and which were cut, (G, T, n).
+
+        Arms that reach every pair of directions rest where their turning is not seen; the others move less where little is
+        lost by it.
+        """
+        ways, seen = arms.ways(upper, fore, weights)
+        chosen, seen = choose(ways, arms.own_cost(ways, upper, fore, seen, weights), seen, before)
         cut = (chosen < arms.low) | (chosen > arms.high)
         closed = arms.within_limits(chosen, upper, fore) if cut.any() else chosen
+        if not arms.reaches_all:
+            x = closed
+            for _ in range(_REST_STEPS):
+                x = self._calmer(arms, x, arms.bones(x), (upper, fore), weights, _CHOICE_PULL, before)
+            return x, cut
         bones = arms.bones(closed)
         shown = bones.upper, bones.fore
         x = arms.rested(closed, seen, *shown, before)
@@ -165,11 +192,24 @@ class Poser:
             bones = arms.bones(x)
         lost = np.zeros(0)
         for _ in range(_REST_STEPS):
-            hessian = bones.hessian() + arms.eye * _NEARBY
-            linear = (hessian @ x[..., None])[..., 0] + bones.towards(*shown)
-            x = np.minimum(np.maximum(least_moving(Wish(hessian, linear, _REST_PULL), before), arms.low), arms.high)
+            x = self._calmer(arms, x, bones, shown, None, _REST_PULL, before)
             bones = arms.bones(x)
             lost = np.maximum(np.abs(bones.upper - shown[0]), np.abs(bones.fore - shown[1])).max(-1)
             if lost.max() < _SEEN_RAD:
                 return x, cut
         return np.where((lost > _MOST_LOST_RAD)[..., None], closed, x), cut
+
+    @staticmethod
+    def _calmer(
+        arms: Arms,
+        x: Array,
+        bones: Bones,
+        wanted: tuple[Array, Array],
+        weights: Array | None,
+        pull: float,
+        before: Array,
+    ) -> Array:
+        """(G, T, n) one Gauss-Newton step from angles `x` with `bones` towards directions `wanted` and little movement."""
+        hessian = bones.hessian(weights) + arms.eye * _NEARBY
+        linear = (hessian @ x[..., None])[..., 0] + bones.towards(*wanted, weights)
+        return np.minimum(np.maximum(least_moving(Wish(hessian, linear, pull), before), arms.low), arms.high)

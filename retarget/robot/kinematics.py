@@ -117,3 +117,9 @@ def _joint_id(robot: RobotModel, model: Any, name: str) -> int:
         known = ", ".join(str(model.joint(k).name) for k in range(model.njnt))
         raise RobotFileError(robot.path, "joint name", f"'{name}' is not in {robot.description_path.name}", known)
     return int(i)
+
+
+def smooth_step(x: Array, at_0: float, at_1: float) -> Array:
+    """0 where x is at or before `at_0`, 1 at or beyond `at_1` (which may be the smaller), smooth between."""
+    share = np.clip((x - at_0) / (at_1 - at_0), 0.0, 1.0)
+    return share * share * (3 - 2 * share)

@@ -163,7 +163,7 @@ def test_an_arm_led_past_its_first_axis_comes_out_on_the_near_side(tmp_path):
     fore = unit(upper + np.array([0.0, 0, 0.9]))
     human = type("Human", (), {})()
     human.upper, human.fore = np.stack([upper, upper * [1, -1, 1]]), np.stack([fore, fore * [1, -1, 1]])
-    human.forearm_twist_rad = np.zeros((2, 41))
+    human.forearm_twist_rad, human.fps = np.zeros((2, 41)), 20.0
     human.chest_rotation = human.head_rotation = np.tile(np.eye(3), (41, 1, 1))
     before = np.zeros(robot.n_joints)
     before[[robot.joint_names.index(f"{s}_shoulder_{p}") for p in ("pitch", "roll") for s in ("left", "right")]] = (

@@ -1,0 +1,84 @@
+"""How much each bone of an arm counts in each frame, for arms that cannot show both bones at once.
+
+An arm of two or three joints has to choose. Where a forearm swings about a still upper arm (a wave, a beat), the forearm tells the
+gesture. Elsewhere the place of the hand does, and most of all where hands meet. A hand before the chest is told by both: a finger
+that points there must point at it. The error of a frame is
+
+    w_upper |e_upper|^2 + w_fore |e_fore|^2 + w_hand |l_upper e_upper + l_fore e_fore|^2
+
+of the errors of both unit directions, with lengths l of a person's arm that have the mean 1: the hand is meant where it is seen
+against the shoulder, whatever the robot's proportions. The weights change smoothly with time, so that the best pose does
+as well. Arms of four and more joints reach every pair of directions: they need no choice, and both bones count alike.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mmm_core.motion.skeleton import BONE_LENGTHS_M
+from retarget.human.human import HumanPose
+from retarget.robot.kinematics import smooth_step
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BoneWeights:
+    """Weights of the squared errors of the upper arm, the forearm, and the hand."""
+
+    upper: float
+    fore: float
+    hand: float
+
+
+REACHING = BoneWeights(0.7, 0.7, 2.0)
+SWINGING = BoneWeights(0.3, 1.0, 0.0)
+MEETING = BoneWeights(0.3, 0.3, 4.0)
+AT_CHEST = BoneWeights(1.0, 1.0, 0.0)
+"""Found on generated gestures and recordings on OP3, see docs/retargeting.md."""
+_SWING_RAD_S = (0.6, 1.5)
+"""Root mean square speed of a forearm from which on it begins to swing, and at which it does."""
+_STILL_SHARE = (0.65, 0.35)
+"""Speed of the upper arm as a share of the forearm's at which the upper arm moves along, and at which it is still."""
+_SWING_S = 0.4
+"""Seconds: standard deviation of the Gaussian over which speeds are taken."""
+_MEET_M, _CHEST_M = (0.32, 0.2), (0.22, 0.12)
+"""Distance of a person's wrists from each other, and from the breastbone, at which they come near, and at which they are there."""
+_UPPER_M, _FORE_M = float(BONE_LENGTHS_M[18]), float(BONE_LENGTHS_M[20])
+_SHOULDERS_M = np.array([[0.0, 0.17, 0.0], [0.0, -0.17, 0.0]])
+_BREASTBONE_M = np.array([0.13, 0.0, -0.13])
+"""Left and right shoulder and the breastbone of the common body in the chest frame: forward, left, up of the shoulders' middle."""
+
+
+def bone_weights(human: HumanPose) -> Array:
+    """(2, T, 2, 2) symmetric weights of the errors of upper arm and forearm, by side."""
+    swing = swinging(human)
+    wrists = _SHOULDERS_M[:, None] + _UPPER_M * human.upper + _FORE_M * human.fore
+    meet = smooth_step(np.linalg.norm(wrists[0] - wrists[1], axis=-1), *_MEET_M) * (1 - swing)
+    chest = smooth_step(np.linalg.norm(wrists - _BREASTBONE_M, axis=-1), *_CHEST_M) * (1 - swing - meet)
+    shares = ((1 - swing - meet - chest, REACHING), (swing, SWINGING), (meet, MEETING), (chest, AT_CHEST))
+    lengths = np.array([_UPPER_M, _FORE_M]) / np.mean([_UPPER_M, _FORE_M])
+    weights = np.zeros((2, human.upper.shape[1], 2, 2))
+    for amount, of in shares:
+        weights += amount[..., None, None] * (np.diag([of.upper, of.fore]) + of.hand * np.outer(lengths, lengths))
+    return weights
+
+
+def swinging(human: HumanPose) -> Array:
+    """(2, T) how much each forearm swings about a still upper arm, 0 to 1."""
+    upper, fore = (_speed_rad_s(d, human.fps) for d in (human.upper, human.fore))
+    return smooth_step(fore, *_SWING_RAD_S) * smooth_step(upper / np.maximum(fore, 1e-6), *_STILL_SHARE)
+
+
+def _speed_rad_s(directions: Array, fps: float) -> Array:
+    """(2, T) root mean square speed of unit directions (2, T, 3) around each frame."""
+    if directions.shape[1] < 2:
+        return np.zeros(directions.shape[:2])
+    step = np.gradient(directions, axis=1) * fps
+    reach = max(1, round(3 * _SWING_S * fps))
+    share = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (_SWING_S * fps)) ** 2)
+    squares = np.pad((step**2).sum(-1), ((0, 0), (reach, reach)), mode="edge")
+    return np.sqrt(np.stack([np.convolve(s, share / share.sum(), "valid") for s in squares]))
