@@ -20,7 +20,7 @@ from daemon.recording.rotation import RotatingLog
 from mmm_core.errors import MmmError, MotionFileError
 from mmm_core.imports.recordings.files import read_motion
 from mmm_core.motion.motion import load_npz
-from retarget.robot import load_robot
+from retarget.robot.loading import load_robot
 from tests.daemon.kinematic import raised_arm
 
 pytestmark = pytest.mark.timeout(120)

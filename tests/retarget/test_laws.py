@@ -9,7 +9,6 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from random_motions import random_motion
-from test_pipeline import at_rest, check_bounds
 
 from daemon.bench.contacts import ContactCheck
 from daemon.bench.motions import cut
@@ -19,6 +18,7 @@ from retarget.path.paths import JointState
 from retarget.pipeline import BLOCK_FRAMES, Retargeter
 from retarget.robot.loading import list_robots, load_robot
 from retarget.robot_to_human import joints_of_path
+from tests.retarget.test_pipeline import at_rest, check_bounds
 
 RETARGETERS = {name: Retargeter(load_robot(name)) for name in list_robots()}
 CHECKS = {name: ContactCheck(r.robot) for name, r in RETARGETERS.items()}

@@ -18,7 +18,7 @@ from mmm_core.training.ablation import BASE, TOKENIZERS, TRANSFORMERS, run_ablat
 from mmm_core.training.recipe import read_recipe
 from mmm_core.training.run import Run
 
-DATA = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared")) / "data"
+DATA = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[4] / "shared")) / "data"
 needs_data = pytest.mark.skipif(
     not (DATA / "clips.jsonl").is_file(), reason="the shared motion data is not beside this checkout"
 )

@@ -33,9 +33,9 @@ from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig
 from mmm_core.model.transformer import MotionTransformer, TransformerConfig
 from mmm_core.model.vqvae import VqVae, VqVaeConfig
 from mmm_core.motion.features import features_from_joints
-from tests.mmm_core.folders import make_folder, standing
+from tests.support.motion_folders import make_folder, standing
 
-DATA = Path(__file__).parents[3] / "shared" / "data"
+DATA = Path(__file__).parents[4] / "shared" / "data"
 
 PUBLISHED = {
     "movement_encoder": {"main.0.weight": (512, 259, 4), "main.3.weight": (512, 512, 4), "out_net.weight": (512, 512)},

@@ -27,7 +27,7 @@ from mmm_core.training.recipe import known_recipes, read_recipe
 from mmm_core.training.run import Run, Schedule
 from mmm_core.training.run import train as run_stage
 from mmm_core.training.stages import Stages
-from tests.mmm_core.folders import make_folder
+from tests.support.motion_folders import make_folder
 
 SCHEDULE = "steps = {steps}\nlearning_rate = 1e-3\nwarmup_steps = 2\nsave_every = 3\n"
 SMALL = """
@@ -95,7 +95,7 @@ def small(path: Path, layout: str = "parts", steps: int = 8, synthesised: int = 
 
 
 def environment() -> dict[str, str]:
-    root = str(Path(__file__).parents[2])
+    root = str(Path(__file__).parents[3])
     return {**os.environ, "PYTHONPATH": root, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
 
 

@@ -14,7 +14,7 @@ from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.families.phrases import read_phrases
 from mmm_core.language.stop_words import means_stop
 
-PAGE = Path(__file__).parents[2] / "docs" / "wire" / "stop_words.md"
+PAGE = Path(__file__).parents[3] / "docs" / "wire" / "stop_words.md"
 
 
 def listed(heading: str) -> list[str]:

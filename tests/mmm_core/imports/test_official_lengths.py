@@ -21,8 +21,8 @@ from mmm_core.model.sampling import OFFICIAL_SAMPLING, empty_row, fill
 from mmm_core.model.schedule import official_counts
 from mmm_core.model.text import TextStates
 from mmm_core.model.transformer import MotionTransformer
-from tests.mmm_core.golden import GOLDEN, golden, needs_golden
-from tests.mmm_core.test_official import SAMPLES, recorded_noise, text_of
+from tests.mmm_core.imports.test_official import SAMPLES, recorded_noise, text_of
+from tests.support.golden import GOLDEN, golden, needs_golden
 
 TABLE = Path(__file__).parent / "released_counts.txt"
 LENGTHS = range(1, 50)

@@ -11,7 +11,7 @@ from mmm_core.errors import TrainingDataError
 from mmm_core.imports.datasets import open_folder, read_captions
 from mmm_core.imports.kit import joints_from_kit, kit_facing_yaw_rad
 from mmm_core.motion.features import joints_from_positions, joints_of
-from tests.mmm_core.folders import features, kit_walk, make_folder
+from tests.support.motion_folders import features, kit_walk, make_folder
 
 
 @pytest.mark.parametrize(("kind", "width", "fps"), [("humanml3d", 263, 20.0), ("kit", 251, 12.5)])

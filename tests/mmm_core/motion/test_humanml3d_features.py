@@ -19,7 +19,7 @@ from mmm_core.motion.features import RestPose, features_from_joints, joints_from
 from mmm_core.motion.humanml3d_features import humanml3d_features_from_joints
 from mmm_core.motion.motion import FPS, N_FEATURES, Motion
 from mmm_core.motion.skeleton import rotation_y
-from tests.mmm_core.folders import make_folder
+from tests.support.motion_folders import make_folder
 
 RECORDED = np.load(Path(__file__).parent / "humanml3d_notebook.npz")
 CHANNELS = {

@@ -34,7 +34,7 @@ from mmm_core.model.text import TextStates
 from mmm_core.model.transformer import OFFICIAL, MotionTransformer
 from mmm_core.model.vqvae import HEIGHT_CHANNELS, VqVae, VqVaeConfig
 from mmm_core.motion.features import joints_from_positions, root_path
-from tests.mmm_core.golden import GOLDEN, golden, needs_golden
+from tests.support.golden import GOLDEN, golden, needs_golden
 
 pytestmark = needs_golden
 TOLERANCE = {"atol": 2e-5, "rtol": 1e-4}

@@ -17,7 +17,7 @@ from torch import Tensor
 
 from mmm_core.errors import CheckpointError
 from mmm_core.imports.clip_weights import clip_from_openai
-from tests.mmm_core.golden import GOLDEN, golden, needs_golden
+from tests.support.golden import GOLDEN, golden, needs_golden
 
 pytestmark = needs_golden
 

@@ -26,7 +26,7 @@ from mmm_core.motion.bvh import save_bvh
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import Motion
 
-SHARED = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared"))
+SHARED = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[4] / "shared"))
 
 
 @given(st.integers(0, 3000))
@@ -121,7 +121,7 @@ def test_a_phrase_without_a_known_section_is_named(text: str, message: str) -> N
 
 
 def test_each_family_has_its_phrase_file_and_no_file_is_left_over() -> None:
-    folder = Path(__file__).parents[2] / "mmm_core" / "corpus" / "phrases"
+    folder = Path(__file__).parents[3] / "mmm_core" / "corpus" / "phrases"
     assert {path.stem for path in folder.glob("*.txt")} == set(FAMILIES)
 
 

@@ -29,7 +29,7 @@ from mmm_core.motion.skeleton import (
     twist_about_bone_rad,
 )
 
-SHARED = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[3] / "shared"))
+SHARED = Path(os.environ.get("MMMD_SHARED", Path(__file__).parents[4] / "shared"))
 finite = st.floats(-1, 1, allow_nan=False)
 angles = st.floats(-3.0, 3.0)
 
