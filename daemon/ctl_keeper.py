@@ -106,4 +106,5 @@ class CtlKeeper:
             if silence.lasts(self._link.ctl_beat) and not ended.done():
                 log.error("the ctl process has been silent for %g s and is killed", SILENT_S)
                 child.kill()
-        return ended.result()
+                break
+        return await ended

@@ -170,6 +170,9 @@ ANSWERED = (
         "frames", "a message of several parts", "send one part", "daemon/test_front.py",
     ),
     Answered(
+        "front_silent", "the front is frozen or dead; on ctl, `stop` and `estop` are served without it", "ask again, or start the daemon anew", "daemon/test_control.py",
+    ),
+    Answered(
         "generator_down", "no generator runs", "`mmmd status` says why; gestures need none", "daemon/test_generator.py",
     ),
     Answered(

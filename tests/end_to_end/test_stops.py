@@ -5,10 +5,13 @@ The servos are behind a real tty and outlive the daemon's processes; their audit
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
+import threading
 import time
 import uuid
+from collections.abc import Iterator
 
 import pytest
 import zmq
@@ -85,6 +88,48 @@ def test_the_front_keeps_no_estop_from_the_bus_process(servos, number):
         servos.assert_kept()
     finally:
         daemon.process.send_signal(signal.SIGCONT) if daemon.process.poll() is None else None
+        person.close()
+        daemon.close()
+
+
+@contextlib.contextmanager
+def topics_come_and_go(endpoint: str) -> Iterator[None]:
+    """A subscriber that subscribes to 200 topics of 1 kB and back, as fast as it can."""
+    stopping = threading.Event()
+    topics = [f"v1/{i:04d}".encode() + b"x" * 1000 for i in range(200)]
+
+    def flood() -> None:
+        context = zmq.Context()
+        socket = context.socket(zmq.SUB)
+        socket.connect(endpoint)
+        while not stopping.is_set():
+            for option in (zmq.SUBSCRIBE, zmq.UNSUBSCRIBE):
+                for topic in topics:
+                    socket.setsockopt(option, topic)
+        context.destroy(linger=0)
+
+    thread = threading.Thread(target=flood, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        stopping.set()
+        thread.join(10)
+
+
+def test_a_flood_of_subscriptions_keeps_no_estop_from_the_robot(servos):
+    """One such subscriber kept an e-stop from the robot for 12 s and more."""
+    daemon = daemon_on(servos)
+    person = Person(daemon)
+    try:
+        with daemon.client() as client:
+            lead_to(client, servos, "moving")
+        with topics_come_and_go(daemon.endpoints.pub):
+            time.sleep(1.0)
+            assert person.hears(ev.Ack, person.estop(), 5.0).carried_out
+            within(1.0, "no torque", lambda: not servos.torque)
+        servos.assert_kept()
+    finally:
         person.close()
         daemon.close()
 
