@@ -37,7 +37,7 @@ SWITCH_S = 0.001
 """Longest that the doorkeeper's thread keeps the interpreter from the one that takes e-stops."""
 SCHED_FIFO = 1
 """As in sched.h; ZeroMQ takes the number."""
-SHARE = Share(64, "oldest", float("inf"))
+SHARE = Share(512, gives_way="oldest")
 """Connections to `ctl`: who connects gets in whatever waits there, as it may be for an e-stop."""
 ORPHAN_CHECK_S = 0.5
 
