@@ -224,6 +224,9 @@ ANSWERED = (
         "wrong_number", "a target with another number of angles", "one for each joint, or angles by name", "end_to_end/test_stream.py",
     ),
     Answered(
+        "wrong_secret", "a target without the secret of the lease", "send the secret that `accepted` gave", "daemon/test_stream_inbox.py",
+    ),
+    Answered(
         "wrong_state", "the robot's state does not allow it", "`mmmd status` says what does", "daemon/test_commands.py",
     ),
 )  # fmt: skip
