@@ -106,9 +106,9 @@ def secured(tmp_path_factory):
     robot, laptop = pair_of_folders(folder)
     ends = free_endpoints()
     daemon = RunningDaemon(
-        "--keys", str(robot.path), "--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub
+        "--keys", str(robot.path), "--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub, "--stream", ends.stream
     )  # fmt: skip
-    daemon.endpoints = Endpoints(ends.cmd, ends.ctl, ends.pub, laptop.path)
+    daemon.endpoints = Endpoints(ends.cmd, ends.ctl, ends.pub, laptop.path, ends.stream)
     try:
         yield daemon.until_ready(), robot, laptop
         assert daemon.terminate() == 0
