@@ -133,7 +133,7 @@ def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candida
             refused += 1
             sys.stderr.write(f"mmmd: {prompt.id}: refused: {problem}\n")
             if json:
-                refusal = {
+                refusal: dict[str, object] = {
                     "id": prompt.id,
                     "text": prompt.text,
                     "seed": prompt.seed,

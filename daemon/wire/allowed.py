@@ -28,13 +28,14 @@ def refused_value(
     found = _PLACE.search(str(error))
     if found is None or not found["path"] or not str(error).startswith("Expected "):
         return None
-    value, types = cast("Any", raw), [inspect.type_info(kind)]
+    value: Any = raw
+    types: list[inspect.Type] = [inspect.type_info(kind)]
     for match in _STEP.finditer(found["path"]):
         name, index = match[1], match[2]
         if name is not None and isinstance(value, dict):
-            value, types = value.get(name), _field_types(types, name)
+            value, types = cast("dict[str, Any]", value).get(name), _field_types(types, name)
         elif index is not None and index.isdigit() and isinstance(value, list):
-            value, types = value[int(index)], [inner for t in types for inner in _item_types(t)]
+            value, types = cast("list[Any]", value)[int(index)], [inner for t in types for inner in _item_types(t)]
         else:
             return None
     if not types:
@@ -58,7 +59,7 @@ def _singles(kind: inspect.Type) -> list[inspect.Type]:
     """The alternatives of a type; of what is noted about one only the words for a pattern are kept."""
     if isinstance(kind, inspect.Metadata):
         patterned = isinstance(kind.type, inspect.StrType) and kind.type.pattern is not None
-        return [kind] if patterned and kind.extra_json_schema else _singles(kind.type)
+        return [kind] if patterned and _noted(kind) else _singles(kind.type)
     if isinstance(kind, inspect.UnionType):
         return [single for one in kind.types for single in _singles(one)]
     return [kind]
@@ -66,7 +67,7 @@ def _singles(kind: inspect.Type) -> list[inspect.Type]:
 
 def _words(kind: inspect.Type) -> str:
     if isinstance(kind, inspect.Metadata):
-        return str((kind.extra_json_schema or {}).get("description", "text"))
+        return str(_noted(kind).get("description", "text"))
     if isinstance(kind, (inspect.IntType, inspect.FloatType)):
         what = "a whole number" if isinstance(kind, inspect.IntType) else "a number"
         low, high = (f"{bound:.12g}" if bound is not None else None for bound in (kind.ge, kind.le))
@@ -81,5 +82,11 @@ def _words(kind: inspect.Type) -> str:
     if isinstance(kind, (inspect.ListType, inspect.VarTupleType)):
         many = "" if kind.max_length is None else f" of {kind.min_length or 0} to {kind.max_length} entries"
         return f"an array{many}"
-    named = {inspect.BoolType: "true or false", inspect.NoneType: "null", inspect.DictType: "an object"}
-    return named.get(type(kind), "an object")
+    if isinstance(kind, inspect.BoolType):
+        return "true or false"
+    return "null" if isinstance(kind, inspect.NoneType) else "an object"
+
+
+def _noted(kind: inspect.Metadata) -> dict[str, Any]:
+    """The JSON schema that is noted about a type."""
+    return cast("dict[str, Any]", kind.extra_json_schema or {})  # pyright: ignore[reportUnknownMemberType]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 LONGEST_SHOWN = 60
 """Characters of an untrusted text that a message repeats."""
 LONGEST_REASON = 300
@@ -28,7 +30,7 @@ def shown(value: object) -> str:
         return repr(value)
     if isinstance(value, dict):
         return "an object"
-    return f"an array of {len(value)}" if isinstance(value, list) else f"a {type(value).__name__}"
+    return f"an array of {len(cast('list[object]', value))}" if isinstance(value, list) else f"a {type(value).__name__}"
 
 
 def shortened(error: BaseException) -> str:
