@@ -1,4 +1,4 @@
-"""E-stop to torque-off bytes, through a whole daemon, while every core is kept busy by another process."""
+"""E-stop to torque-off bytes, through a whole daemon, while every core is kept busy by another process; then under disturbances."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from daemon.bench.daemon_rig import busy_cores, percentile, running_daemon
+from daemon.bench.estop_disturbed import measure_disturbed
 from daemon.bench.report import context
 from daemon.client import Client
 from daemon.driving.realtime import give_back_fifo, take_fifo
@@ -21,12 +22,32 @@ CLIENT_PRIORITY = 20
 _METHOD = (
     "mmmd run --bus sim:// while one busy process for each core runs at normal priority; e-stop sent during a motion by a"
     " client that has FIFO priority where permitted, as its own wait for a core is not the daemon's; bus periods from the"
-    " moment before it sends to the cycle whose bytes cut torque, rounded up; {} times, the robot reset and armed between"
+    " moment before it sends to the cycle whose bytes cut torque, rounded up; {} times, the robot reset and armed between."
+    " Disturbances: servos behind a tty that outlive the daemon's processes, a client of `ctl` without any priority; from its request to the instant at which no servo has torque, looked for every 0.5 ms;"
+    " from_back: from the first bytes that the servos receive of a bus process that was away"
 )
 
 
 def bench_estop(n: int = 30, seed: int = 0, robot: str = "reference") -> dict[str, Any]:
-    """`cycles_max`; `cycles_p95` and milliseconds beside it."""
+    """`cycles_max`, `cycles_p95` and milliseconds with all cores busy; `disturbances`, and all their `lost` and `violations`.
+
+    Args:
+        n: e-stops with all cores busy, and in each disturbance.
+        seed: of the instants.
+        robot: its name.
+    """
+    busy = _measure_busy(n, seed, robot)
+    disturbances, violations = measure_disturbed(n, seed, robot)
+    return {
+        **busy,
+        "disturbances": disturbances,
+        "lost": sum(one["lost"] for one in disturbances.values()),
+        "violations": violations,
+        **context(seed, _METHOD.format(n)),
+    }
+
+
+def _measure_busy(n: int, seed: int, robot: str) -> dict[str, Any]:
     rng = np.random.default_rng(seed)
     asked_s: list[float] = []
     with tempfile.TemporaryDirectory() as folder:
@@ -57,5 +78,4 @@ def bench_estop(n: int = 30, seed: int = 0, robot: str = "reference") -> dict[st
         "missing": n - len(took_cycles),
         "n": n,
         "robot": robot,
-        **context(seed, _METHOD.format(n)),
     }

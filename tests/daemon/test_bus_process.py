@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from daemon.bench.tty_servos import served
 from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.bus.serial_port import SerialPort
 from daemon.bus.servo_bus import ServoBus
@@ -17,7 +18,6 @@ from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.pty import PtyServer
-from tests.end_to_end.harness import served
 
 pytestmark = pytest.mark.realtime
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from daemon.bench.tty_servos import served
 from daemon.bus.calibration import MARGIN_S, Calibrated, calibrate, copy_of
 from daemon.bus.events import BusEventKind
 from daemon.bus.multi import bus_on
@@ -21,7 +22,7 @@ from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
 from sim.port import SimPort
 from sim.pty import PtyServer
-from tests.end_to_end.harness import MMMD, served
+from tests.end_to_end.harness import MMMD
 
 pytestmark = pytest.mark.realtime
 

@@ -15,13 +15,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from daemon.bench.tty_servos import TtyServos
 from daemon.client import CancelledByError, Client, NoAnswerError, RefusedError
 from daemon.wire import events as ev
 from retarget.robot.loading import load_robot
-from sim.bus import SimBus
-from sim.faults import Fault, FaultSchedule
-from sim.pty import PtyServer
-from tests.end_to_end.harness import RunningDaemon, mmmd, served
+from tests.end_to_end.harness import RunningDaemon, mmmd
 from tests.end_to_end.test_start_and_end import child_pid
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
@@ -36,35 +34,20 @@ FAULT_WITHIN_S = 6.0
 """From the signal to a robot in a latched fault that can be reset: 1 s of silence, 2.5 s to the kill, the restart."""
 
 
-class Servos:
-    """The simulated robot behind a tty, served by a thread."""
+class Servos(TtyServos):
+    """The simulated robot behind a tty, its audit at hand."""
 
     def __init__(self, folder) -> None:
-        self._link = folder / "servos"
-        self.server = PtyServer(SimBus(ROBOT), self._link)
-        self.url = f"dxl://{folder}/servos?baud={ROBOT.bus.baud}"
-        self._served = contextlib.ExitStack()
-        self._served.enter_context(served(self.server))
+        super().__init__(ROBOT, folder)
 
     def assert_kept(self) -> None:
-        report = self.server.bus.audit.report()
+        report = self.bus.audit.report()
         assert report["violations"] == 0, report["details"]
-
-    @property
-    def torque(self) -> bool:
-        return any(s.torque for s in self.server.bus.servos.values())
 
     @property
     def moves(self) -> bool:
         """Whether a shaft turns, by more than the creep of friction."""
-        return bool((np.abs(self.server.bus.world.drives.velocity_tick_s) > 20).any())
-
-    def unplugged(self, on: bool) -> None:
-        self.server.bus.faults = FaultSchedule((Fault("unplug"),) if on else ())
-        within(2.0, "the tty gone or back", lambda: self._link.exists() != on)
-
-    def close(self) -> None:
-        self._served.close()
+        return bool((np.abs(self.bus.world.drives.velocity_tick_s) > 20).any())
 
 
 def within(seconds: float, what: str, condition: Callable[[], bool]) -> None:

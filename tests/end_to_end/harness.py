@@ -9,18 +9,15 @@ import socket
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from daemon.client import Client, NoAnswerError
 from daemon.config import Endpoints
-from daemon.driving.realtime import BUS_PRIORITY, give_back_fifo
 from daemon.generator.messages import Generated
 from daemon.playing.waiting import SHADOW_S
 from daemon.wire.events import Done
-from sim.pty import PtyServer
 from tests.daemon.kinematic import KinematicGenerator, generate
 
 Answer = Callable[[str, int, float | None], Generated]
@@ -173,38 +170,3 @@ def plays_well(done: Done) -> bool:
     return (
         20 * done.underruns <= done.frames and done.gate_clipped_frames <= MOST_CLIPPED_IN_AN_UNDERRUN * done.underruns
     )
-
-
-def go_first(pid: int, flags: int = 0) -> None:
-    """FIFO priority for a process that plays servos (0: this thread), where that is allowed."""
-    with contextlib.suppress(OSError):
-        os.sched_setscheduler(pid, os.SCHED_FIFO | flags, os.sched_param(BUS_PRIORITY))
-
-
-def go_last(pid: int) -> None:
-    """Normal priority again."""
-    with contextlib.suppress(OSError):
-        os.sched_setscheduler(pid, os.SCHED_OTHER, os.sched_param(0))
-
-
-@contextlib.contextmanager
-def served(server: PtyServer) -> Iterator[PtyServer]:
-    """Simulated servos behind a tty, in a thread that goes first where that is allowed: late, they would be silent ones.
-
-    The test itself goes first as well, as it holds the interpreter's lock now and then; what is started meanwhile does not.
-    """
-
-    def serve() -> None:
-        go_first(0)
-        server.serve()
-
-    thread = threading.Thread(target=serve, daemon=True)
-    go_first(0, os.SCHED_RESET_ON_FORK)
-    try:
-        thread.start()
-        yield server
-    finally:
-        give_back_fifo()
-        server.stop()
-        thread.join(5)
-        server.close()

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from daemon.bench.tty_servos import go_first, go_last
 from daemon.supervisor import log_file, log_path_error
-from tests.end_to_end.harness import MMMD, RunningDaemon, go_first, go_last, mmmd
+from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 

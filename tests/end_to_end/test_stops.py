@@ -5,17 +5,15 @@ The servos are behind a real tty and outlive the daemon's processes; their audit
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
-import threading
 import time
 import uuid
-from collections.abc import Iterator
 
 import pytest
 import zmq
 
+from daemon.bench.floods import flooded
 from daemon.client import NoAnswerError
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
@@ -92,31 +90,6 @@ def test_the_front_keeps_no_estop_from_the_bus_process(servos, number):
         daemon.close()
 
 
-@contextlib.contextmanager
-def topics_come_and_go(endpoint: str) -> Iterator[None]:
-    """A subscriber that subscribes to 200 topics of 1 kB and back, as fast as it can."""
-    stopping = threading.Event()
-    topics = [f"v1/{i:04d}".encode() + b"x" * 1000 for i in range(200)]
-
-    def flood() -> None:
-        context = zmq.Context()
-        socket = context.socket(zmq.SUB)
-        socket.connect(endpoint)
-        while not stopping.is_set():
-            for option in (zmq.SUBSCRIBE, zmq.UNSUBSCRIBE):
-                for topic in topics:
-                    socket.setsockopt(option, topic)
-        context.destroy(linger=0)
-
-    thread = threading.Thread(target=flood, daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        stopping.set()
-        thread.join(10)
-
-
 def test_a_flood_of_subscriptions_keeps_no_estop_from_the_robot(servos):
     """One such subscriber kept an e-stop from the robot for 12 s and more."""
     daemon = daemon_on(servos)
@@ -124,7 +97,7 @@ def test_a_flood_of_subscriptions_keeps_no_estop_from_the_robot(servos):
     try:
         with daemon.client() as client:
             lead_to(client, servos, "moving")
-        with topics_come_and_go(daemon.endpoints.pub):
+        with flooded("pub", daemon.endpoints.pub):
             time.sleep(1.0)
             assert person.hears(ev.Ack, person.estop(), 5.0).carried_out
             within(1.0, "no torque", lambda: not servos.torque)

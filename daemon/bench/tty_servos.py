@@ -1,0 +1,118 @@
+"""Simulated servos behind a real tty: they outlive the daemon's processes, and show at any time which of them has torque."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+import time
+from collections.abc import Generator
+from pathlib import Path
+
+from daemon.driving.realtime import BUS_PRIORITY, give_back_fifo
+from daemon.errors import DaemonError
+from retarget.robot.robot import RobotModel
+from sim.bus import SimBus
+from sim.faults import Fault, FaultSchedule
+from sim.pty import PtyServer
+
+_PLUG_TIMEOUT_S = 5.0
+
+
+class ListeningBus(SimBus):
+    """Remembers when it received its first bytes since `listen_anew`.
+
+    Attributes:
+        first_bytes_s: monotonic time; None where nothing was received since.
+    """
+
+    first_bytes_s: float | None = None
+
+    def listen_anew(self) -> None:
+        """Wait for the next first bytes."""
+        self.first_bytes_s = None
+
+    def receive(self, data: bytes, t_s: float, baud: int, *, patient: bool = False) -> None:
+        """Take what the client sends, as `SimBus` does."""
+        if self.first_bytes_s is None:
+            self.first_bytes_s = time.monotonic()
+        super().receive(data, t_s, baud, patient=patient)
+
+
+class TtyServos:
+    """The simulated servos of a robot behind a tty, served by a thread of this process until `close`.
+
+    Attributes:
+        bus: the simulated bus.
+        server: its tty.
+        url: of the bus, for `mmmd run --bus`.
+
+    Args:
+        robot: whose servos they are.
+        folder: where the link to the tty is made.
+    """
+
+    def __init__(self, robot: RobotModel, folder: Path) -> None:
+        self._link = folder / "servos"
+        self.bus = ListeningBus(robot)
+        self.server = PtyServer(self.bus, self._link)
+        self.url = f"dxl://{self._link}?baud={robot.bus.baud}"
+        self._served = contextlib.ExitStack()
+        self._served.enter_context(served(self.server))
+
+    @property
+    def torque(self) -> bool:
+        """Whether any servo has torque."""
+        return any(servo.torque for servo in self.bus.servos.values())
+
+    def unplugged(self, on: bool) -> None:
+        """Take the tty away, or bring it back as another one under the same link.
+
+        Raises:
+            DaemonError: the tty did not go or come in time.
+        """
+        self.bus.faults = FaultSchedule((Fault("unplug"),) if on else ())
+        end_s = time.monotonic() + _PLUG_TIMEOUT_S
+        while self._link.exists() == on:
+            if time.monotonic() > end_s:
+                raise DaemonError(f"{self._link} is {'still' if on else 'not yet'} there after {_PLUG_TIMEOUT_S:g} s")
+            time.sleep(0.01)
+
+    def close(self) -> None:
+        """End the thread and remove the tty."""
+        self._served.close()
+
+
+def go_first(pid: int, flags: int = 0) -> None:
+    """FIFO priority for a process that plays servos (0: this thread), where that is allowed."""
+    with contextlib.suppress(OSError):
+        os.sched_setscheduler(pid, os.SCHED_FIFO | flags, os.sched_param(BUS_PRIORITY))
+
+
+def go_last(pid: int) -> None:
+    """Normal priority again."""
+    with contextlib.suppress(OSError):
+        os.sched_setscheduler(pid, os.SCHED_OTHER, os.sched_param(0))
+
+
+@contextlib.contextmanager
+def served(server: PtyServer) -> Generator[PtyServer]:
+    """Simulated servos behind a tty, in a thread that goes first where that is allowed: late, they would be silent ones.
+
+    The caller itself goes first as well, as it holds the interpreter's lock now and then; what is started meanwhile does not.
+    """
+
+    def serve() -> None:
+        go_first(0)
+        server.serve()
+
+    thread = threading.Thread(target=serve, daemon=True)
+    go_first(0, os.SCHED_RESET_ON_FORK)
+    try:
+        thread.start()
+        yield server
+    finally:
+        give_back_fifo()
+        server.stop()
+        thread.join(5)
+        server.close()
