@@ -23,8 +23,9 @@ _METHOD = (
     "mmmd run --bus sim:// while one busy process for each core runs at normal priority; e-stop sent during a motion by a"
     " client that has FIFO priority where permitted, as its own wait for a core is not the daemon's; bus periods from the"
     " moment before it sends to the cycle whose bytes cut torque, rounded up; {} times, the robot reset and armed between."
-    " Disturbances: servos behind a tty that outlive the daemon's processes, a client of `ctl` without any priority; from its request to the instant at which no servo has torque, looked for every 0.5 ms;"
-    " from_back: from the first bytes that the servos receive of a bus process that was away"
+    " Disturbances: servos behind a tty that outlive the daemon's processes; a client of ctl without any priority; from its request"
+    " to the instant at which no servo has torque, looked for every 0.5 ms; from_back: from the first bytes of a bus process that"
+    " was away"
 )
 
 

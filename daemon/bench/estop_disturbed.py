@@ -120,10 +120,10 @@ def _percentiles(seconds: Sequence[float]) -> dict[str, float | None]:
 
 
 def _tell(rig: EstopRig, trial: str, outcome: Outcome) -> None:
-    """Progress on stderr, and the daemon's log where an e-stop was lost."""
+    """Progress on stderr, and the daemon's log where an e-stop was lost or not told as carried out."""
     back = "" if outcome.back_s is None else f", {1e3 * outcome.back_s:.1f} ms from the bus process's return"
     told = "" if outcome.told else ", not told as carried out"
     sys.stderr.write(f"{trial}: {'LOST' if outcome.lost else f'{1e3 * outcome.off_s:.1f} ms'}{back}{told}\n")
-    if outcome.lost:
+    if outcome.lost or not outcome.told:
         sys.stderr.write(f"the daemon's log ends with:\n{rig.said}\n")
     sys.stderr.flush()

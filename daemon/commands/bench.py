@@ -21,6 +21,9 @@ _WITH_N: dict[str, int | None] = {
 _WITH_ROBOT = ("audit",)
 """Figures that can be had of robots of one's own."""
 
+_MUST_BE_NONE = ("violations", "self_contacts", "lost")
+"""Figures that fail the bench unless they are zero."""
+
 
 def bench(
     name: Annotated[BenchName, tyro.conf.Positional], json: bool = False, seed: int = 0, n: int | None = None,
@@ -28,27 +31,26 @@ def bench(
 ) -> int:  # fmt: skip
     """Measure one figure and print it.
 
-        generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten
-        steps, and its ids at all lengths beside those of the released sampler written plainly.
-        story: ten minutes of motion from 59 texts on two threads. retarget: time of all its stages and direction error for
-        each robot, bounds and contacts checked again. first-motion: text to first moving servo frame, warm, through the
-        daemon. barge-in: overlapping commands and stops at random instants. seams: jerk and steps where motions meet, and
+    generate: a whole 196-frame motion on one thread. official: the same with the released model's size and ten
+    steps, and its ids at all lengths beside those of the released sampler written plainly.
+    story: ten minutes of motion from 59 texts on two threads. retarget: time of all its stages and direction error for
+    each robot, bounds and contacts checked again. first-motion: text to first moving servo frame, warm, through the
+    daemon. barge-in: overlapping commands and stops at random instants. seams: jerk and steps where motions meet, and
     closure of loops. estop: e-stop to torque-off bytes with busy cores; then, under floods, with processes frozen and
-        killed, while starting, arming and parking, and after a torn port: e-stops lost, and request to torque off of all servos
-        (n of each; the e-stops with busy cores come first, the others are told on stderr one by one). audit: many texts
-        through the daemon's bus side on every robot, also under faults, every goal checked against the limits. bus: codec and
-        servo bus against a wire kept on a pty, beside other drivers where they are installed. stream: joint target of another
-        program to first moved goal.
+    killed, while starting, arming and parking, and after a torn port: e-stops lost, and request to torque off of all
+    servos (--n of each; progress on stderr). audit: many texts through the daemon's bus side on every robot, also under
+    faults, every goal checked against the limits. bus: codec and servo bus against a wire kept on a pty, beside other
+    drivers where they are installed. stream: joint target of another program to first moved goal.
 
-        Example: mmmd bench first-motion --json
-        or, for a robot of your own: mmmd bench audit --robot my_robot --n 30
+    Example: mmmd bench first-motion --json
+    or, for a robot of your own: mmmd bench audit --robot my_robot --n 30
 
-        Args:
-            name: what to measure.
-            json: print one JSON object instead of lines.
-            seed: seed of the texts and of generation.
-            n: number of texts, clips or trials, where the figure has any.
-            robot: for audit: packaged robots, or paths of robot files or their folders; every packaged robot when not given.
+    Args:
+        name: what to measure.
+        json: print one JSON object instead of lines.
+        seed: seed of the texts and of generation.
+        n: number of texts, clips or trials, where the figure has any.
+        robot: for audit: packaged robots, or paths of robot files or their folders; every packaged robot when not given.
     """
     from rich.console import Console
 
@@ -67,10 +69,5 @@ def bench(
     else:
         for key, value in figures.items():
             console.print(f"[bold]{key}[/bold]: {value}")
-    failed = (
-        figures.get("violations")
-        or figures.get("lost")
-        or figures.get("self_contacts")
-        or figures.get("tokens_identical") is False
-    )
+    failed = any(figures.get(key) for key in _MUST_BE_NONE) or figures.get("tokens_identical") is False
     return 1 if failed else 0

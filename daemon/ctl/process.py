@@ -100,10 +100,10 @@ def _serve(taker: Taker, link: BusLink, channel: Channel, parent: Parent) -> Non
     channel.send(Ready())  # before anything that is handed over
     checked_s = time.monotonic()
     while not asked_to_end:
-        taker.turn()
         if time.monotonic() - checked_s > ORPHAN_CHECK_S:
             checked_s = time.monotonic()
             asked_to_end = parent.gone and not link.bus_lives
+        taker.turn()  # after the check: a bus process that carried out an e-stop and ended still has it acknowledged
     log.info("ended")
 
 

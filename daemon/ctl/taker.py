@@ -204,7 +204,7 @@ class Taker:
                     self._reply(due.route, _front_silent(due.request))
                 continue
             done = self._link.carried_out(due.asked)
-            if (done and due.ended) or now_s >= due.until_s:
+            if (done and (due.ended or self._channel.closed)) or now_s >= due.until_s:
                 del self._due[number]
                 self._reply(
                     due.route, Ack(id=due.request.id, verb=tag_of(due.request), state=due.state, carried_out=done)

@@ -178,6 +178,16 @@ def test_a_dead_front_keeps_no_stop_from_the_bus_process(ctl):
         assert ctl.bus_takes() == [BusRequest[verb.upper()]]
 
 
+def test_a_dead_front_holds_up_no_reply_to_an_estop(ctl):
+    """The bus process ends once it has carried it out and nobody else is there; ctl then ended before its reply was due."""
+    ctl.front.close()
+    ctl.ask("estop")
+    while not ctl.bus_takes():
+        ctl.taker.turn()
+    (reply,) = ctl.turn(3)
+    assert isinstance(reply, ev.Ack) and reply.carried_out
+
+
 def test_a_front_that_takes_nothing_costs_bounded_memory_and_no_stop(monkeypatch):
     monkeypatch.setattr("daemon.ctl.taker.MOST_OPEN", 300)
     ctl = Ctl()
