@@ -12,18 +12,18 @@ import numpy as np
 
 from daemon.bench.daemon_rig import busy_cores, percentile, running_daemon
 from daemon.bench.estop_disturbed import measure_disturbed
+from daemon.bench.estop_rig import CLIENT_PRIORITY
 from daemon.bench.report import context
 from daemon.client import Client
 from daemon.driving.realtime import give_back_fifo, take_fifo
 from daemon.recording.mcap_log import read_log
 from retarget.robot.loading import load_robot
 
-CLIENT_PRIORITY = 20
 _METHOD = (
     "mmmd run --bus sim:// while one busy process for each core runs at normal priority; e-stop sent during a motion by a"
     " client that has FIFO priority where permitted, as its own wait for a core is not the daemon's; bus periods from the"
     " moment before it sends to the cycle whose bytes cut torque, rounded up; {} times, the robot reset and armed between."
-    " Disturbances: servos behind a tty that outlive the daemon's processes; a client of ctl without any priority; from its request"
+    " Disturbances: servos behind a tty that outlive the daemon's processes; the client as before, on ctl alone; from its request"
     " to the instant at which no servo has torque, looked for every 0.5 ms; from_back: from the first bytes of a bus process that"
     " was away"
 )

@@ -69,11 +69,11 @@ def give_one(rig: EstopRig, disturbance: Disturbance, rng: np.random.Generator) 
     """Lead the robot to the state, disturb the daemon, give an e-stop and watch the servos."""
     rig.bring_to(disturbance.state)
     with contextlib.ExitStack() as stack:
-        button = None if disturbance.newcomer else stack.enter_context(Button(rig.endpoints.ctl))
+        button = None if disturbance.newcomer else stack.enter_context(Button(rig.endpoints.ctl, has_fifo=rig.has_fifo))
         stack.enter_context(disturbance.act(rig, rng))
         asked_s = time.monotonic()
         if button is None:
-            button = stack.enter_context(Button(rig.endpoints.ctl))
+            button = stack.enter_context(Button(rig.endpoints.ctl, has_fifo=rig.has_fifo))
         button.press()
         return _watched(rig, button, asked_s, disturbance)
 

@@ -21,6 +21,7 @@ from daemon.bench.tty_servos import TtyServos
 from daemon.client import Client
 from daemon.config import Endpoints
 from daemon.demo import child
+from daemon.driving.realtime import may_fifo
 from daemon.errors import DaemonError
 from daemon.probe import listening
 from daemon.wire.codec import decode_event, encode
@@ -29,6 +30,7 @@ from daemon.wire.requests import Estop
 from retarget.robot.loading import load_robot
 
 BUS, CTL = "daemon.driving.process", "daemon.ctl.process"
+CLIENT_PRIORITY = 20
 READY_TIMEOUT_S = 60.0
 STATE_TIMEOUT_S = 20.0
 _LOG_LINES = 40
@@ -41,6 +43,7 @@ class EstopRig:
     Attributes:
         servos: of the robot.
         endpoints: of the daemon, TCP on this machine.
+        has_fifo: whether a button may have FIFO priority.
 
     Args:
         robot: name of the robot.
@@ -48,6 +51,7 @@ class EstopRig:
     """
 
     def __init__(self, robot: str, folder: Path) -> None:
+        self.has_fifo = may_fifo(CLIENT_PRIORITY)
         self.servos = TtyServos(load_robot(robot), folder)
         cmd, ctl, pub, stream = (f"tcp://127.0.0.1:{port}" for port in _free_ports(4))
         self.endpoints = Endpoints(cmd, ctl, pub, stream=stream)
@@ -164,10 +168,14 @@ class Button:
 
     Args:
         endpoint: `ctl` of the daemon.
+        has_fifo: give its I/O thread FIFO priority, as its own wait for a core is not the daemon's.
     """
 
-    def __init__(self, endpoint: str) -> None:
+    def __init__(self, endpoint: str, *, has_fifo: bool) -> None:
         self._context: zmq.Context[zmq.Socket[bytes]] = zmq.Context()
+        if has_fifo:  # libzmq aborts where it is not permitted
+            self._context.set(zmq.THREAD_SCHED_POLICY, os.SCHED_FIFO)
+            self._context.set(zmq.THREAD_PRIORITY, CLIENT_PRIORITY)
         self._socket = self._context.socket(zmq.DEALER)
         self._socket.connect(endpoint)
         self._id = uuid.uuid4().hex
