@@ -188,7 +188,7 @@ def test_the_command_writes_every_field(tmp_path: Path) -> None:
 def test_the_command_names_a_file_it_cannot_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     from daemon.cli import main
 
-    assert main(["retarget", str(tmp_path / "none.npz"), "--out", str(tmp_path / "out.npz")]) == 1
+    assert main(["retarget", str(tmp_path / "none.npz"), "--out", str(tmp_path / "out.npz")]) == 2
     assert "no such file" in capsys.readouterr().err
     np.savez(tmp_path / "bad.npz", joints=np.zeros((4, 21, 3)), fps=20.0)
     assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 1
