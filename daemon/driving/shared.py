@@ -270,17 +270,7 @@ class BusLink:
     @property
     def bus_lives(self) -> bool:
         """Whether a bus process has these requests to carry out, be it frozen."""
-        try:
-            fd = os.open(self.path, os.O_RDONLY | os.O_CLOEXEC)
-        except OSError:
-            return False
-        try:
-            fcntl.flock(fd, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return True
-        finally:
-            os.close(fd)
-        return False
+        return _is_held(self.path)
 
     # The side of the process that serves `ctl`.
 
@@ -422,6 +412,21 @@ class BusLink:
         return self._cycles[rows], n, first - index
 
 
+def _is_held(path: Path) -> bool:
+    """Whether a bus process holds the lock of a memory's file, see `BusLink.hold`."""
+    try:
+        fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(fd, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(fd)
+    return False
+
+
 def _remove_orphans(folder: Path) -> None:
     """Remove shared memory whose owner, named in the file name, is no more."""
     for path in folder.glob(f"{_PREFIX}*-*"):
@@ -431,6 +436,8 @@ def _remove_orphans(folder: Path) -> None:
         try:
             os.kill(int(owner), 0)
         except ProcessLookupError:
+            if _is_held(path):  # its bus process still has the robot, and `ctl` looks for that by this file
+                continue
             with suppress(OSError):  # another user's
                 path.unlink()
         except (PermissionError, OverflowError):

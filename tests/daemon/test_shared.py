@@ -1,4 +1,7 @@
 import multiprocessing
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -249,3 +252,21 @@ def test_across_processes_nothing_is_lost_or_torn(link):
     assert lost == 0
     assert list(rows["frame"]) == list(range(n))
     assert rows["goal_rad"].tobytes() == sent.tobytes()
+
+
+def test_another_daemon_leaves_the_memory_of_a_killed_front_whose_bus_process_lives():
+    """It removed it; `ctl` then took the bus process for gone, ended, and nobody took an e-stop any more."""
+    first = BusLink.create(2)
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    path = first.path.rename(first.path.with_name(first.path.name.replace(f"-{os.getpid()}-", f"-{gone.pid}-")))
+    try:
+        bus, ctl = BusLink.attach(path, 2), BusLink.attach(path, 2)
+        bus.hold()
+        BusLink.create(2).close()
+        assert ctl.bus_lives
+        os.close(bus._held)  # as when its process ends
+        BusLink.create(2).close()
+        assert not path.exists()
+    finally:
+        path.unlink(missing_ok=True)
