@@ -85,17 +85,17 @@ def test_it_says_when_it_has_the_robot_and_what_rights_it_got(started):
 
 
 @pytest.mark.parametrize(
-    ("url", "says"),
+    ("url", "says", "readiness"),
     [
-        ("dxl:///dev/ttyNOSUCH?baud=1000000", "ttyNOSUCH"),
-        ("usb://x", "unknown scheme"),
-        ("sim://?baud=57600", "57600 baud"),
+        ("dxl:///dev/ttyNOSUCH?baud=1000000", "ttyNOSUCH", Readiness.FAILED),
+        ("usb://x", "unknown scheme", Readiness.REFUSED),
+        ("sim://?baud=57600", "57600 baud", Readiness.FAILED),
     ],
 )
-def test_it_says_why_it_has_no_robot(started, url, says):
+def test_it_says_why_it_has_no_robot(started, url, says, readiness):
     bus = started(url)
     assert bus.process.wait(30) == 1
-    assert bus.link.readiness is Readiness.FAILED
+    assert bus.link.readiness is readiness
     assert says in bus.link.text
     assert "Traceback" not in bus.process.stderr.read()
 

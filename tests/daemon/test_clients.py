@@ -195,7 +195,7 @@ def test_a_halt_does_not_wait_for_what_is_said_and_ends_what_has_not_begun(runni
             answers = {a["id"]: a for a in map(json.loads, out.getvalue().splitlines())}
             assert answers.keys() == {1, 2, 3, 4}
             assert [result_of(answers[n]) for n in (1, 2)] == [f"the command was cancelled by {halt}"] * 2
-            assert "reference is in" in result_of(answers[3]) and "moving" in result_of(answers[4])
+            assert "reference is" in result_of(answers[3]) and "moving" in result_of(answers[4])
             assert (await client.status()).command is None
             await client.reset()
             await client.arm()

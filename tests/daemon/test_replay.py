@@ -187,7 +187,7 @@ def test_the_command_says_so_and_its_exit_status_too(log_file, capsys):
 
 
 def test_the_command_refuses_what_is_no_log(tmp_path, capsys):
-    assert main(["replay", str(tmp_path / "none.mcap")]) == 1
+    assert main(["replay", str(tmp_path / "none.mcap")]) == 2
     assert "no such file" in capsys.readouterr().err
 
 

@@ -165,7 +165,7 @@ class Sequence:
 
     def _record(self) -> None:
         if self._newest_id:
-            self._client.record("sequence")
+            self._client.record("sequence", replace=True)
         else:
             self._refused("bad_gesture", lambda: self._client.record("sequence"))
 

@@ -133,7 +133,7 @@ def test_a_frozen_generator_is_a_named_failure_and_is_noticed_again():
     def answer(text, seed, seconds):
         from tests.daemon.kinematic import generate
 
-        if "freeze" in text:
+        if "frost" in text:
             frozen.wait(14)
         return generate(text, seed, seconds)
 
@@ -147,7 +147,7 @@ def test_a_frozen_generator_is_a_named_failure_and_is_noticed_again():
             def freeze() -> None:
                 with daemon.client() as other:
                     try:
-                        other.say("freeze")
+                        other.say("wave through the frost")
                     except (RefusedError, CancelledByError) as error:
                         outcome.append(error)
 

@@ -87,4 +87,4 @@ def test_the_command_says_it_in_words_and_as_json(run, tmp_path: Path, capsys):
     )
     assert main(["sim", "--replay", str(path)]) == 0
     assert "all servos:" in capsys.readouterr().out
-    assert main(["sim", "--replay", str(tmp_path / "none.mcap")]) == 1
+    assert main(["sim", "--replay", str(tmp_path / "none.mcap")]) == 2
