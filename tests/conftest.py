@@ -25,6 +25,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a suite in the background hands that on to its children
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     if config.getoption("--void-when-held-up"):
         config.stash[WATCH] = HostWatch().start()
 
@@ -59,9 +61,3 @@ def pytest_runtest_makereport(
             report.outcome = "skipped"
             report.longrepr = (str(item.path), item.location[1] or 0, reason)
     return report
-
-
-def pytest_configure() -> None:
-    """Children of a suite that runs in the background take Ctrl-C: they would inherit that it is ignored."""
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
