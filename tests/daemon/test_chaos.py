@@ -178,7 +178,7 @@ def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, s
         daemon.close()
 
 
-@pytest.mark.soak  # too slow for make test since stops have a process of their own: the wait for an answer runs out
+@pytest.mark.soak  # fails since `ctl` is a process of its own: after the thaw no awaited state comes within 5 s; the cause is open
 def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands_and_goes_on_with_it(servos):
     """After 0.5 s the bus process brings to rest what moves; what is being parked is parked."""
     daemon = daemon_on(servos)
