@@ -11,9 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from daemon.bus import packet, packet1
-from daemon.bus.packet import ALERT_BIT, BROADCAST_ID, Access, Instruction, Packet, Part
-from daemon.bus.registers import RETURN_DELAY_UNIT_S
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.packet import ALERT_BIT, BROADCAST_ID, Access, Instruction, Packet, Part
+from daemon.dynamixel.registers.registers import RETURN_DELAY_UNIT_S
 from retarget.robot.robot import RobotModel
 from sim.audit.audit import Audit
 from sim.faults import FaultSchedule

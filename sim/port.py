@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 from urllib.parse import SplitResult, parse_qs
 
-from daemon.bus.open import PortContext
 from daemon.clock import Clock
+from daemon.dynamixel.ports.opening import PortContext
 from daemon.errors import CommandError, LinkLostError
 from sim.bus import SimBus
 from sim.clock import TrueTime, VirtualClock

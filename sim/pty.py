@@ -15,7 +15,7 @@ import select
 import tty
 from pathlib import Path
 
-from daemon.bus.tty_speed import tty_speed
+from daemon.dynamixel.ports.tty_speed import tty_speed
 from daemon.errors import CommandError
 from sim.audit.audit import TTY_GOALS
 from sim.bus import SimBus

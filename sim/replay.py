@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.servo_bus import ServoBus
+from daemon.dynamixel.servo_bus import ServoBus
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap
 from sim.bus import SimBus

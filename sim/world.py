@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from daemon.bus.models import MODELS
+from daemon.dynamixel.registers.models import MODELS
 from retarget.robot.robot import RobotModel, ServoSpec
 from retarget.robot.ticks import JointServoMap
 from sim.audit.audit import Audit

@@ -18,7 +18,7 @@ from rich.progress import track
 from daemon.bench.audit_rig import AuditRig
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
-from daemon.bus.models import MODELS
+from daemon.dynamixel.registers.models import MODELS
 from daemon.errors import CommandError
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import list_robots, load_robot

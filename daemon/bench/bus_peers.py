@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from daemon.bench.wire_emulator import POSITION_TICK
-from daemon.bus.packet import sync_read, sync_write
+from daemon.dynamixel.codec.packet import sync_read, sync_write
 
 Cycle = Callable[[], bool]
 """One cycle; whether every servo's position was right."""

@@ -16,8 +16,8 @@ import sys
 import time
 import tty
 
-from daemon.bus.models import MODELS
-from daemon.bus.packet import BROADCAST_ID, HEADER, Instruction, Part, fast_status, status
+from daemon.dynamixel.codec.packet import BROADCAST_ID, HEADER, Instruction, Part, fast_status, status
+from daemon.dynamixel.registers.models import MODELS
 
 MODEL_NUMBER, FIRMWARE = 1020, 52
 POSITION_TICK, VELOCITY_RAW, CURRENT_RAW = 2048, -3, -7

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from daemon.bus.calibration import Calibrated, Ranges
+    from daemon.dynamixel.setup.calibration import Calibrated, Ranges
     from retarget.robot.robot import RobotModel
 
 _REFRESH_S = 0.05
@@ -45,10 +45,10 @@ def calibrate(
     from rich.console import Console
     from rich.live import Live
 
-    from daemon.bus.calibration import MARGIN_S, write_robot_file
-    from daemon.bus.calibration import calibrate as find
-    from daemon.bus.multi import open_bus
     from daemon.clock import RealClock
+    from daemon.dynamixel.multi import open_bus
+    from daemon.dynamixel.setup.calibration import MARGIN_S, write_robot_file
+    from daemon.dynamixel.setup.calibration import calibrate as find
     from daemon.errors import CommandError
     from daemon.picture_files import check_picture
     from daemon.pictures.robot_picture import Pose, robot_picture

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 if TYPE_CHECKING:
-    from daemon.bus.port import Port
     from daemon.clock import Clock
+    from daemon.dynamixel.ports.port import Port
     from daemon.recording.mcap_log import Log
     from retarget.robot.robot import RobotModel
 
@@ -38,8 +38,8 @@ def replay(
     from rich.console import Console
     from rich.progress import Progress
 
-    from daemon.bus.servo_bus import ServoBus
     from daemon.driving.shared import BusLink
+    from daemon.dynamixel.servo_bus import ServoBus
     from daemon.recording.mcap_log import read_log
     from daemon.recording.replay import check_robot, robot_changed
     from daemon.recording.replay import replay as play
@@ -76,8 +76,8 @@ def _open(bus: str, robot: RobotModel, log: Log) -> tuple[Port, Clock]:
     """The port, and the clock that goes with it; plain simulated servos stand where those of the log stood."""
     import numpy as np
 
-    from daemon.bus.open import PortContext, open_port
     from daemon.clock import RealClock
+    from daemon.dynamixel.ports.opening import PortContext, open_port
     from retarget.robot.ticks import JointServoMap
     from sim.bus import SimBus
     from sim.clock import VirtualClock

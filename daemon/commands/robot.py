@@ -133,8 +133,8 @@ def _check(console: Any, model: RobotModel) -> int:
 
 def _bus_time(model: RobotModel) -> tuple[str, list[str], list[str]]:
     """What a cycle takes on the wire; what to look at; what makes the rate impossible."""
-    from daemon.bus.models import MODEL_NUMBERS, MODELS
-    from daemon.bus.rate_plan import plan_for
+    from daemon.dynamixel.rate_plan import plan_for
+    from daemon.dynamixel.registers.models import MODEL_NUMBERS, MODELS
     from daemon.errors import ConfigError
 
     strange = sorted({s.model.name for s in model.servos if s.model.name not in MODEL_NUMBERS} - {"?"})

@@ -32,10 +32,10 @@ def scan(
     from rich.progress import Progress
     from rich.table import Table
 
-    from daemon.bus.scan import BAUDS
-    from daemon.bus.scan import scan as scan_port
-    from daemon.bus.serial_port import SerialPort
     from daemon.clock import RealClock
+    from daemon.dynamixel.ports.serial_port import SerialPort
+    from daemon.dynamixel.scan import BAUDS
+    from daemon.dynamixel.scan import scan as scan_port
     from daemon.errors import CommandError
 
     wrong = [p for p in protocol if p not in (1.0, 2.0)]

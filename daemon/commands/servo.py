@@ -11,7 +11,7 @@ import tyro
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from daemon.bus.registers import Item
+    from daemon.dynamixel.registers.registers import Item
 
 Verb = Literal["get", "set", "reboot", "id", "baud"]
 
@@ -47,9 +47,9 @@ def servo(
     """
     from rich.console import Console
 
-    from daemon.bus.open import PortContext, open_port
-    from daemon.bus.single import find
     from daemon.clock import RealClock
+    from daemon.dynamixel.ports.opening import PortContext, open_port
+    from daemon.dynamixel.setup.single_servo import find
     from daemon.errors import CommandError
     from retarget.robot.loading import load_robot
 

@@ -15,8 +15,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.models import BusModel
-from daemon.bus.reading import UNKNOWN, BusReading
+from daemon.dynamixel.reading import UNKNOWN, BusReading
+from daemon.dynamixel.registers.models import BusModel
 from daemon.errors import CommandError
 
 Array = NDArray[np.float64]

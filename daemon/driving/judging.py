@@ -11,11 +11,11 @@ import logging
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.multi import RobotBus
-from daemon.bus.reading import BusReading
-from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.driving.arming import WATCHDOG_UNITS
 from daemon.driving.pinning import refuse_hardware_errors
+from daemon.dynamixel.multi import RobotBus
+from daemon.dynamixel.reading import BusReading
+from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)

@@ -10,10 +10,10 @@ from collections.abc import Generator
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.multi import RobotBus
-from daemon.bus.packet import ALERT_BIT
-from daemon.bus.reading import BusReading
 from daemon.clock import Clock
+from daemon.dynamixel.codec.packet import ALERT_BIT
+from daemon.dynamixel.multi import RobotBus
+from daemon.dynamixel.reading import BusReading
 from daemon.errors import ServoFaultError
 
 PIN_ATTEMPTS = 3

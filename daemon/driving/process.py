@@ -10,13 +10,13 @@ import threading
 import time
 from pathlib import Path
 
-from daemon.bus.multi import RobotBus, open_bus
 from daemon.clock import RealClock
 from daemon.driving.cores import keep_to
 from daemon.driving.realtime import BUS_PRIORITY, give_back_fifo, lock_memory, take_fifo
 from daemon.driving.shared import BusLink
 from daemon.driving.starting import start
 from daemon.driving.streamer import Streamer
+from daemon.dynamixel.multi import RobotBus, open_bus
 from daemon.log_feed import send_logs
 from daemon.logs import start_logging
 from daemon.parent import Parent

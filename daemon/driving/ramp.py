@@ -7,8 +7,8 @@ servos get no goals (they hold those they were pinned to), and at its end each h
 
 from __future__ import annotations
 
-from daemon.bus.multi import RobotBus
-from daemon.bus.packet import ALERT_BIT
+from daemon.dynamixel.codec.packet import ALERT_BIT
+from daemon.dynamixel.multi import RobotBus
 from daemon.errors import ServoFaultError
 
 EFFORT_START = 250 / 885

@@ -21,8 +21,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.health import HEALTH
 from daemon.driving.request_words import HALTS, N_WORDS, Asked, Asker, BusRequest, RequestWords
+from daemon.dynamixel.health import HEALTH
 
 Array = NDArray[np.float64]
 

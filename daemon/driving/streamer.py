@@ -15,8 +15,6 @@ from contextlib import suppress
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.multi import RobotBus
-from daemon.bus.reading import BusReading
 from daemon.clock import Clock
 from daemon.driving.arming import Armed, arm_in_steps
 from daemon.driving.derating import Derating
@@ -30,6 +28,8 @@ from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.silence import Silence
 from daemon.driving.slow_move import SlowMove
 from daemon.driving.turns import TurnWatch
+from daemon.dynamixel.multi import RobotBus
+from daemon.dynamixel.reading import BusReading
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from retarget.path.collision import SelfContact
 from retarget.robot.robot import RobotModel

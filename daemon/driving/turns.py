@@ -13,8 +13,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.multi import RobotBus
-from daemon.bus.reading import BusReading
+from daemon.dynamixel.multi import RobotBus
+from daemon.dynamixel.reading import BusReading
 from daemon.errors import ServoFaultError
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap

@@ -14,10 +14,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.servo_bus import ServoBus
 from daemon.clock import Clock
 from daemon.driving.shared import N_SETPOINTS, BusLink, BusRequest, BusState
 from daemon.driving.streamer import Streamer
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import DaemonError, LogError
 from daemon.recording.mcap_log import Log, LoggedCycle
 from daemon.recording.wiretap import Wiretap

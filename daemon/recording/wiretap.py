@@ -8,8 +8,8 @@ from collections.abc import Collection, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.packet import Instruction, PacketDecoder
-from daemon.bus.port import Port
+from daemon.dynamixel.codec.packet import Instruction, PacketDecoder
+from daemon.dynamixel.ports.port import Port
 
 _GOAL_OF_X = (116, 4)
 

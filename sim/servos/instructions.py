@@ -5,8 +5,9 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Sequence
 
-from daemon.bus import packet, packet1
-from daemon.bus.packet import BROADCAST_ID, Access, ErrorCode, Instruction, Packet
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.packet import BROADCAST_ID, Access, ErrorCode, Instruction, Packet
 from daemon.errors import PacketError
 from sim.audit.audit import Audit
 from sim.servos.servo import SimServo

@@ -10,8 +10,8 @@ import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from daemon.bus.models import BusModel, IndirectWindow
-from daemon.bus.registers import Item
+from daemon.dynamixel.registers.models import BusModel, IndirectWindow
+from daemon.dynamixel.registers.registers import Item
 
 INDIRECT = "indirect_"
 """What the names of indirect address items and of indirect data items begin with."""

@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from daemon.bus.packet import ALERT_BIT, ErrorCode
-from daemon.bus.registers import Item
+from daemon.dynamixel.codec.packet import ALERT_BIT, ErrorCode
+from daemon.dynamixel.registers.registers import Item
 from retarget.robot.robot import ServoSpec
 from sim.servos.drives import Drives, Mode
 from sim.servos.memory import INDIRECT

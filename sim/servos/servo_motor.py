@@ -10,8 +10,8 @@ import struct
 from collections.abc import Mapping
 from typing import ClassVar
 
-from daemon.bus.models import MODELS
-from daemon.bus.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, Item
+from daemon.dynamixel.registers.models import MODELS
+from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S, Item
 from retarget.robot.robot import ServoSpec
 from sim.errors import SimSettingError
 from sim.servos.drives import POSITION_MODES, STEP_S, Drives, Mode

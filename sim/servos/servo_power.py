@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from daemon.bus.registers import WATCHDOG_TRIPPED
+from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED
 from retarget.robot.robot import ServoSpec
 from sim.errors import SimSettingError
 from sim.servos.drives import Drives, Mode

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from daemon.bus.registers import Item
+from daemon.dynamixel.registers.registers import Item
 from sim.servos.drives import Mode
 from sim.servos.servo import Errors, SimServo
 from sim.servos.servo_power import HEAT_BIT, OVERLOAD_BIT

@@ -13,8 +13,8 @@ import struct
 from collections.abc import Mapping
 from typing import ClassVar
 
-from daemon.bus.registers import WATCHDOG_TRIPPED, Item
-from daemon.bus.registers_yp import HOLDING_ERRORS
+from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED, Item
+from daemon.dynamixel.registers.registers_series_y_p import HOLDING_ERRORS
 from sim.servos.drives import STEP_S
 from sim.servos.servo import SimServo
 from sim.servos.servo_power import ENCODER_BIT, HEAT_BIT, OVERLOAD_BIT, VOLTAGE_BIT

@@ -5,9 +5,9 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Sequence
 
-from daemon.bus import packet
-from daemon.bus.crc import crc16
-from daemon.bus.packet import BROADCAST_ID, Instruction, Part
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.crc import crc16
+from daemon.dynamixel.codec.packet import BROADCAST_ID, Instruction, Part
 
 
 def shares_of(turns: Sequence[Sequence[Part]], length: int) -> list[list[bytes]]:

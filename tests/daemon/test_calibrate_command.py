@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from daemon.bench.tty_servos import served
-from daemon.bus.calibration import MARGIN_S, Calibrated, calibrate, copy_of
-from daemon.bus.events import BusEventKind
-from daemon.bus.multi import bus_on
-from daemon.bus.servo_bus import ServoBus
-from daemon.bus.timing import MARGIN_S as RUN_MARGIN_S
+from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.multi import bus_on
+from daemon.dynamixel.servo_bus import ServoBus
+from daemon.dynamixel.setup.calibration import MARGIN_S, Calibrated, calibrate, copy_of
+from daemon.dynamixel.timing import MARGIN_S as RUN_MARGIN_S
 from retarget.robot.loading import ROBOTS_DIR, load_robot
 from retarget.robot.pose_words import pose_in_words
 from sim.bus import SimBus

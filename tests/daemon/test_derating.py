@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from daemon.bus.reading import BusReading
 from daemon.driving.derating import LEAST_SHARE, DeratedBy, Derating, ServoLimits
 from daemon.driving.shared import BusState
+from daemon.dynamixel.reading import BusReading
 from sim.faults import Fault
 from tests.daemon.rig import rig, swing
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from rig import rig
 
-from daemon.bus.health import COUNTERS, HEALTH, Health
-from daemon.bus.multi import bus_on
 from daemon.commands.status import _servo
 from daemon.demo import free_endpoints
 from daemon.driving.shared import BusLink
+from daemon.dynamixel.health import COUNTERS, HEALTH, Health
+from daemon.dynamixel.multi import bus_on
 from daemon.front.metrics import exposition
 from daemon.state.bus_view import BusView
 from daemon.wire.status import ServoHealth, StateEvent

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from daemon.bus.lock import LockFileError, PortLock
-from daemon.bus.serial_port import SerialPort
+from daemon.dynamixel.ports.lock import LockFileError, PortLock
+from daemon.dynamixel.ports.serial_port import SerialPort
 from daemon.errors import PortError
 from daemon.own_folder import OwnFolder
 
@@ -94,7 +94,7 @@ def test_a_port_names_what_is_in_place_of_its_lock_file(temporary: Path) -> None
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="needs root, to be another user who may open the device")
 def test_nobody_else_can_open_a_port_in_use_even_without_asking_for_a_lock(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("daemon.bus.serial_port.is_pseudo", lambda _fd: False)
+    monkeypatch.setattr("daemon.dynamixel.ports.serial_port.is_pseudo", lambda _fd: False)
     master, slave = os.openpty()
     try:
         device = os.ttyname(slave)

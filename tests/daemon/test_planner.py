@@ -9,9 +9,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from daemon.bus.servo_bus import ServoBus
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.streamer import Streamer
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.playing.lead import Lead
 from daemon.playing.planner import Planner
 from daemon.playing.posture import at_tempo, distance_deg, posture_of, standing

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from rig import rig, swing
 
-from daemon.bus.servo_bus import ServoBus
 from daemon.cli import main
 from daemon.driving.shared import BusLink, BusRequest, BusState
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import LogError
 from daemon.recording.mcap_log import Log, LogWriter, read_log
 from daemon.recording.replay import ReplayFaultError, replay, stretches

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from daemon.bus.servo_bus import ServoBus
 from daemon.driving.shared import BusLink, BusRequest, Readiness
 from daemon.driving.starting import start
 from daemon.driving.streamer import LOOK_S
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import PortMissingError
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel

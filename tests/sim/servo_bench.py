@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from daemon.bus import packet
-from daemon.bus.models import MODELS
-from daemon.bus.packet import Packet, PacketDecoder
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.packet import Packet, PacketDecoder
+from daemon.dynamixel.registers.models import MODELS
 from retarget.robot.robot import BusSettings, JointSpec, RobotModel, ServoSpec
 from retarget.robot.servos import servo_models
 from sim.bus import SimBus

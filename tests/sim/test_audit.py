@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from servo_bench import Bench
 
-from daemon.bus import packet
+from daemon.dynamixel.codec import packet
 from retarget.path.collision import SelfContact
 from retarget.robot.loading import load_robot
 from retarget.robot.ticks import JointServoMap

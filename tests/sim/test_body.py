@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.bus.models import MODELS
+from daemon.dynamixel.registers.models import MODELS
 from retarget.robot.loading import list_robots, load_robot
 from retarget.robot.ticks import JointServoMap
 from sim.bodies.mujoco_body import MujocoBody

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from servo_bench import Bench
 
-from daemon.bus import packet
-from daemon.bus.crc import crc16
-from daemon.bus.packet import Packet, PacketDecoder
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.crc import crc16
+from daemon.dynamixel.codec.packet import Packet, PacketDecoder
 from daemon.errors import ConfigError, LinkLostError
 from sim.clock import VirtualClock
 from sim.errors import FaultFileError

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from servo_bench import Bench
 
-from daemon.bus import packet
-from daemon.bus.packet import PacketDecoder
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.packet import PacketDecoder
 from sim.clock import VirtualClock
 from sim.errors import SimSettingError
 from sim.port import SimPort

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from servo_bench import Bench
 
-from daemon.bus import packet
+from daemon.dynamixel.codec import packet
 from sim.clock import VirtualClock
 from sim.port import SimPort
 from sim.steal_time import LEAST_PAUSE_S, LOOK_EVERY_S, STAT, MachineTime, stolen_s

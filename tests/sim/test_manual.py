@@ -11,8 +11,9 @@ import pytest
 from servo_bench import Bench
 from test_servo1 import Bench as Bench1
 
-from daemon.bus import packet, packet1
-from daemon.bus.packet import ErrorCode
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.packet import ErrorCode
 from sim.servos.servo_protocol1 import CHECKSUM_ERROR, INSTRUCTION_ERROR, RANGE_ERROR
 
 INDIRECT_DATA_1, INDIRECT_DATA_29 = 224, 634

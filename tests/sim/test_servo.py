@@ -8,9 +8,9 @@ from itertools import pairwise
 import pytest
 from servo_bench import TICK_RAD, Bench
 
-from daemon.bus import packet
-from daemon.bus.models import MODELS
-from daemon.bus.packet import ErrorCode, FactoryReset
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.packet import ErrorCode, FactoryReset
+from daemon.dynamixel.registers.models import MODELS
 from sim.faults import Fault
 
 PROTOCOL_2 = [m.name for m in MODELS.values() if m.protocol == 2.0]

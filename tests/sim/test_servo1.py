@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 from servo_bench import Bench as Bench2
 
-from daemon.bus import packet, packet1
-from daemon.bus.models import MODELS
-from daemon.bus.packet import Packet
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.packet import Packet
+from daemon.dynamixel.registers.models import MODELS
 from sim.faults import Fault
 from sim.servos.servo_protocol1 import ANGLE_ERROR, INSTRUCTION_ERROR, OVERLOAD_ERROR, RANGE_ERROR
 

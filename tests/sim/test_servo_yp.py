@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from servo_bench import Bench
 
-from daemon.bus import packet
-from daemon.bus.packet import ErrorCode
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.packet import ErrorCode
 from sim.bodies.motors import MOTORS
 from sim.faults import Fault
 

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from servo_bench import Bench, spec
 
-from daemon.bus import packet
-from daemon.bus.crc import crc16
-from daemon.bus.packet import PacketDecoder
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.crc import crc16
+from daemon.dynamixel.codec.packet import PacketDecoder
 from sim.faults import Fault
 from sim.wire.wire import Wire, WireSettings
 

@@ -9,10 +9,11 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from daemon.bus import packet, packet1
-from daemon.bus.models import MODEL_NUMBERS, MODELS, BusModel
-from daemon.bus.packet import BROADCAST_ID, ErrorCode, Instruction, Packet, Part
-from daemon.bus.registers import WATCHDOG_TRIPPED
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.packet import BROADCAST_ID, ErrorCode, Instruction, Packet, Part
+from daemon.dynamixel.registers.models import MODEL_NUMBERS, MODELS, BusModel
+from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED
 from daemon.errors import LinkLostError, PacketError
 from retarget.robot.robot import ServoSpec
 from retarget.robot.servos import servo_models

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from daemon.bus.servo_bus import ServoBus
+from daemon.dynamixel.servo_bus import ServoBus
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from sim.bus import SimBus

@@ -10,10 +10,10 @@ from emulator import FakePort, fake
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.bus.chained import ChainedReads
-from daemon.bus.health import QUARANTINE_AFTER
-from daemon.bus.packet import Instruction
-from daemon.bus.servo_bus import ServoBus
+from daemon.dynamixel.chained_adapters import ChainedReads
+from daemon.dynamixel.codec.packet import Instruction
+from daemon.dynamixel.health import QUARANTINE_AFTER
+from daemon.dynamixel.servo_bus import ServoBus
 from sim.clock import VirtualClock
 
 N, PART_BYTES = 20, 14

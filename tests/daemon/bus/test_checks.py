@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from rig_bus import BusRig, bus_rig
 
-from daemon.bus.checks import check_servos, fix, require_needed
-from daemon.bus.rules import ADVISED, NEEDED, Finding
+from daemon.dynamixel.registers.rules import ADVISED, NEEDED, Finding
+from daemon.dynamixel.setup.checks import check_servos, fix, require_needed
 from daemon.errors import BusMismatchError
 
 

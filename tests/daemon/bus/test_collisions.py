@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from daemon.bus.events import BusEventKind
-from daemon.bus.health import Health
-from daemon.bus.servo_bus import ServoBus
+from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.health import Health
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import BusMismatchError, LinkGarbledError
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus

@@ -11,9 +11,10 @@ from collections.abc import Callable
 
 import pytest
 
-from daemon.bus import packet, packet1
-from daemon.bus.group import FastGroupReply, GroupReply
-from daemon.bus.packet import Instruction, Packet
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.group import FastGroupReply, GroupReply
+from daemon.dynamixel.codec.packet import Instruction, Packet
 from daemon.errors import PacketError
 
 IDS = [1, 2, 3]

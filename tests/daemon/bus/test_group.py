@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.bus import packet
-from daemon.bus.crc import FixedCrc, crc16, position_table
-from daemon.bus.group import FastGroupReply, GroupReply, GroupWrite
-from daemon.bus.packet import STUFFED, PacketDecoder, Part, fast_status, status
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.crc import FixedCrc, crc16, position_table
+from daemon.dynamixel.codec.group import FastGroupReply, GroupReply, GroupWrite
+from daemon.dynamixel.codec.packet import STUFFED, PacketDecoder, Part, fast_status, status
 
 groups = st.lists(st.integers(0, 252), min_size=1, max_size=20, unique=True)
 bodies = st.binary(min_size=10, max_size=10) | st.lists(st.sampled_from([0xFF, 0xFD, 0]), min_size=10, max_size=10).map(

@@ -8,9 +8,9 @@ from emulator import fake
 from rig_bus import bus_rig
 from test_multi import joined, two_ports
 
-from daemon.bus.events import BusEventKind
-from daemon.bus.health import Health
-from daemon.bus.servo_bus import ServoBus
+from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.health import Health
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import LinkLostError
 from sim.clock import VirtualClock
 from sim.faults import Fault

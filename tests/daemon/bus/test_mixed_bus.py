@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from emulator import FakePort, fake
 
-from daemon.bus.events import BusEventKind
-from daemon.bus.health import Health
-from daemon.bus.models import MODELS
-from daemon.bus.packet import Instruction, Part, fast_status, ping, status, sync_read
-from daemon.bus.servo_bus import ServoBus
-from daemon.bus.timing import MARGIN_S
+from daemon.dynamixel.codec.packet import Instruction, Part, fast_status, ping, status, sync_read
+from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.health import Health
+from daemon.dynamixel.registers.models import MODELS
+from daemon.dynamixel.servo_bus import ServoBus
+from daemon.dynamixel.timing import MARGIN_S
 from daemon.errors import BusMismatchError, CommandError, ConfigError, LinkLostError
 from sim.clock import VirtualClock
 

@@ -15,9 +15,9 @@ from dynamixel_sdk import (
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from daemon.bus import packet
-from daemon.bus.crc import crc16
-from daemon.bus.packet import Access, FactoryReset, Instruction, Packet, PacketDecoder, Part, encode
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.crc import crc16
+from daemon.dynamixel.codec.packet import Access, FactoryReset, Instruction, Packet, PacketDecoder, Part, encode
 from daemon.errors import PacketError
 
 # ROBOTIS e-manual, "DYNAMIXEL Protocol 2.0", "Instruction Details": the packets printed in the examples, transcribed by

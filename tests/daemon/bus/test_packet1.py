@@ -7,9 +7,9 @@ from dynamixel_sdk import Protocol1PacketHandler
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.bus import packet1
-from daemon.bus.packet import Access, Instruction, Packet
-from daemon.bus.packet1 import PacketDecoder, encode
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.packet import Access, Instruction, Packet
+from daemon.dynamixel.codec.packet_protocol1 import PacketDecoder, encode
 from daemon.errors import PacketError
 
 # ROBOTIS e-manual, "DYNAMIXEL Protocol 1.0": the packets printed in the text and the examples, transcribed by hand.

@@ -12,12 +12,12 @@ from urllib.parse import urlsplit
 import pytest
 from dynamixel_sdk import GroupSyncRead, GroupSyncWrite, PacketHandler, PortHandler
 
-from daemon.bus import packet
-from daemon.bus.open import PortContext, open_port
-from daemon.bus.packet import PacketDecoder
-from daemon.bus.port import Port
-from daemon.bus.serial_port import SerialPort, open_dxl
 from daemon.clock import RealClock
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec.packet import PacketDecoder
+from daemon.dynamixel.ports.opening import PortContext, open_port
+from daemon.dynamixel.ports.port import Port
+from daemon.dynamixel.ports.serial_port import SerialPort, open_dxl
 from daemon.errors import CommandError, LinkLostError, PortBusyError, PortMissingError, PortPermissionError
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from emulator import fake
 
-from daemon.bus.models import MODEL_NUMBERS, MODELS
-from daemon.bus.rate_plan import plan_for
-from daemon.bus.servo_bus import ServoBus
+from daemon.dynamixel.rate_plan import plan_for
+from daemon.dynamixel.registers.models import MODEL_NUMBERS, MODELS
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import ConfigError
 
 XM = [MODELS[1020]] * 20

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.bus.models import MODEL_NUMBERS, MODELS, BusModel, IndirectWindow
-from daemon.bus.registers import AX, X330, X_CURRENT, hardware_error_text
+from daemon.dynamixel.registers.models import MODEL_NUMBERS, MODELS, BusModel, IndirectWindow
+from daemon.dynamixel.registers.registers import AX, X330, X_CURRENT, hardware_error_text
 
 FACTS = Path(__file__).parents[4] / "shared" / "servos" / "servos.toml"
 ALL = [pytest.param(model, id=model.name) for model in MODELS.values()]

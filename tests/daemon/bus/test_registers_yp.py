@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.bus.models import MODEL_NUMBERS, MODELS, IndirectWindow
-from daemon.bus.registers_yp import ERROR_CODES, HOLDING_ERRORS, P, Y, error_code_text
+from daemon.dynamixel.registers.models import MODEL_NUMBERS, MODELS, IndirectWindow
+from daemon.dynamixel.registers.registers_series_y_p import ERROR_CODES, HOLDING_ERRORS, P, Y, error_code_text
 
 INT32 = (-(2**31), 2**31 - 1)
 

@@ -7,8 +7,8 @@ import pytest
 from emulator import fake, spec
 from rig_bus import bus_rig
 
-from daemon.bus.models import MODEL_NUMBERS, MODELS
-from daemon.bus.servo_bus import ServoBus
+from daemon.dynamixel.registers.models import MODEL_NUMBERS, MODELS
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTimeoutError, ServoFaultError
 from sim.faults import Fault, FaultSchedule
 

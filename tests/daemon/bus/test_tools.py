@@ -11,17 +11,24 @@ import numpy as np
 import pytest
 from emulator import FakePort, FakeServo, fake
 
-from daemon.bus.adapter import Adapter, adapter_at, device_of, latency_advice, latency_remedy, latency_timer_ms
-from daemon.bus.calibration import Ranges, calibrate, write_robot_file
-from daemon.bus.checks import check_servos, fix, require_needed
-from daemon.bus.doctor import BAD, GOOD, diagnose
-from daemon.bus.models import MODEL_NUMBERS, MODELS
-from daemon.bus.rules import ADVISED, NEEDED
-from daemon.bus.scan import scan
-from daemon.bus.serial_port import SerialPort
-from daemon.bus.servo_bus import ServoBus
-from daemon.bus.single import find
 from daemon.cli import main
+from daemon.dynamixel.ports.adapter import (
+    Adapter,
+    adapter_at,
+    device_of,
+    latency_advice,
+    latency_remedy,
+    latency_timer_ms,
+)
+from daemon.dynamixel.ports.serial_port import SerialPort
+from daemon.dynamixel.registers.models import MODEL_NUMBERS, MODELS
+from daemon.dynamixel.registers.rules import ADVISED, NEEDED
+from daemon.dynamixel.scan import scan
+from daemon.dynamixel.servo_bus import ServoBus
+from daemon.dynamixel.setup.calibration import Ranges, calibrate, write_robot_file
+from daemon.dynamixel.setup.checks import check_servos, fix, require_needed
+from daemon.dynamixel.setup.doctor import BAD, GOOD, diagnose
+from daemon.dynamixel.setup.single_servo import find
 from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTimeoutError, PortMissingError
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel

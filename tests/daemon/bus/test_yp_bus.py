@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from rig_bus import BusRig, bus_rig
 
-from daemon.bus.checks import check_servos, fix, require_needed
-from daemon.bus.models import MODELS
-from daemon.bus.packet import Instruction, PacketDecoder
-from daemon.bus.rate_plan import plan_for
-from daemon.bus.rules import ADVISED, NEEDED
-from daemon.bus.servo_bus import ServoBus
 from daemon.driving.derating import FULL_LOAD, read_limits
 from daemon.driving.pinning import pin_where_they_stand, reading_at_rest
+from daemon.dynamixel.codec.packet import Instruction, PacketDecoder
+from daemon.dynamixel.rate_plan import plan_for
+from daemon.dynamixel.registers.models import MODELS
+from daemon.dynamixel.registers.rules import ADVISED, NEEDED
+from daemon.dynamixel.servo_bus import ServoBus
+from daemon.dynamixel.setup.checks import check_servos, fix, require_needed
 from daemon.errors import BusMismatchError, ServoFaultError
 from daemon.recording.wiretap import Wiretap
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from daemon.bus.registers import (
+from daemon.dynamixel.registers.registers import (
     AX,
     MX1,
     MX1_CURRENT,
@@ -24,7 +24,7 @@ from daemon.bus.registers import (
     hardware_error_text,
     with_values,
 )
-from daemon.bus.registers_yp import INVERTER_ABOVE_MOTOR_C, LOW_VOLTS_RAW, P, Y, error_code_text
+from daemon.dynamixel.registers.registers_series_y_p import INVERTER_ABOVE_MOTOR_C, LOW_VOLTS_RAW, P, Y, error_code_text
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.chained import ChainedReads
-from daemon.bus.dialect import DIALECTS, Dialect
-from daemon.bus.events import BusEventKind
-from daemon.bus.feedback import FastSyncStep, Protocol1Step, Step, is_status, steps_for
-from daemon.bus.packet import BROADCAST_ID, Packet
-from daemon.bus.port import Port
-from daemon.bus.probing import Probing
-from daemon.bus.reading import NEVER_CYCLES, BusReading
-from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
+from daemon.dynamixel.chained_adapters import ChainedReads
+from daemon.dynamixel.codec.dialect import DIALECTS, Dialect
+from daemon.dynamixel.codec.packet import BROADCAST_ID, Packet
+from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.feedback import FastSyncStep, Protocol1Step, Step, is_status, steps_for
+from daemon.dynamixel.health_probe import Probing
+from daemon.dynamixel.ports.port import Port
+from daemon.dynamixel.reading import NEVER_CYCLES, BusReading
+from daemon.dynamixel.timing import MARGIN_S
 from retarget.robot.robot import ServoSpec
 
 _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
@@ -122,7 +122,7 @@ class Cycle(Probing):
         return self.reading.valid
 
     def show_health(self, table: NDArray[np.void]) -> None:
-        """Copy state and counters of each servo into (S,) `daemon.bus.health.HEALTH`."""
+        """Copy state and counters of each servo into (S,) `daemon.dynamixel.health.HEALTH`."""
         self.health.show(table)
 
     @property

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from daemon.bus.models import BusModel
-from daemon.bus.registers import EXTENDED_POSITION_MODE, POSITION_MODE
+from daemon.dynamixel.registers.models import BusModel
+from daemon.dynamixel.registers.registers import EXTENDED_POSITION_MODE, POSITION_MODE
 from retarget.robot.robot import ServoSpec
 
 ITEMS = (

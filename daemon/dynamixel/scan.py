@@ -6,14 +6,15 @@ import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from daemon.bus import packet, packet1
-from daemon.bus.dialect import DIALECTS
-from daemon.bus.feedback import is_status
-from daemon.bus.models import MODELS
-from daemon.bus.packet import BROADCAST_ID, Packet
-from daemon.bus.port import Port
-from daemon.bus.timing import BITS_PER_BYTE
 from daemon.clock import Clock
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.dialect import DIALECTS
+from daemon.dynamixel.codec.packet import BROADCAST_ID, Packet
+from daemon.dynamixel.feedback import is_status
+from daemon.dynamixel.ports.port import Port
+from daemon.dynamixel.registers.models import MODELS
+from daemon.dynamixel.timing import BITS_PER_BYTE
 from daemon.errors import PortBaudError
 
 BAUDS = (57_600, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 115_200, 9_600, 4_500_000)

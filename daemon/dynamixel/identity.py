@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from daemon.bus.models import MODELS
-from daemon.bus.port import Port
-from daemon.bus.scan import identify
 from daemon.clock import Clock
+from daemon.dynamixel.ports.port import Port
+from daemon.dynamixel.registers.models import MODELS
+from daemon.dynamixel.scan import identify
 
 Identity = tuple[int, int]
 """Model number and firmware."""

@@ -8,7 +8,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.packet import ALERT_BIT
+from daemon.dynamixel.codec.packet import ALERT_BIT
 
 QUARANTINE_AFTER = 10
 """Cycles in a row without an answer after which a servo is asked no more but once a second: at 100 Hz a tenth of a second."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
-from daemon.bus.crc import crc16
+from daemon.dynamixel.codec.crc import crc16
 from daemon.errors import PacketError
 
 HEADER = b"\xff\xff\xfd\x00"

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.multi import RobotBus
-from daemon.bus.reading import BusReading
+from daemon.dynamixel.multi import RobotBus
+from daemon.dynamixel.reading import BusReading
 from daemon.errors import CommandError
 from retarget.errors import RobotFileError
 from retarget.robot.loading import load_robot

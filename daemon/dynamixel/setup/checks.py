@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from daemon.bus.identity import identity_text
-from daemon.bus.multi import RobotBus
-from daemon.bus.rules import ADVISED, NEEDED, Finding, findings_of, items_of
+from daemon.dynamixel.identity import identity_text
+from daemon.dynamixel.multi import RobotBus
+from daemon.dynamixel.registers.rules import ADVISED, NEEDED, Finding, findings_of, items_of
 from daemon.errors import BusMismatchError, CommandError, MismatchRow
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap

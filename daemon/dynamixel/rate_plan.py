@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from daemon.bus.feedback import Step, steps_for
-from daemon.bus.group import GroupWrite, GroupWrite1
-from daemon.bus.models import BusModel
-from daemon.bus.timing import BITS_PER_BYTE
+from daemon.dynamixel.codec.group import GroupWrite, GroupWrite1
+from daemon.dynamixel.feedback import Step, steps_for
+from daemon.dynamixel.registers.models import BusModel
+from daemon.dynamixel.timing import BITS_PER_BYTE
 from daemon.errors import ConfigError
 
 _BAUDS = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)

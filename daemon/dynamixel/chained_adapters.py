@@ -7,7 +7,7 @@ not keep to the order), and then every servo answers for itself for a while: so 
 
 from __future__ import annotations
 
-from daemon.bus.health import QUARANTINE_AFTER
+from daemon.dynamixel.health import QUARANTINE_AFTER
 
 _BREAK_POINTS, _MOST_POINTS = 4, 12
 """Points of a cycle whose reply broke off; a whole one takes one point away. At so many it is left: three in a row, or one

@@ -13,13 +13,14 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus import packet, packet1
-from daemon.bus.dialect import DIALECTS
-from daemon.bus.group import FastGroupReply, GroupReply
-from daemon.bus.models import BusModel
-from daemon.bus.packet import Instruction, Packet
-from daemon.bus.reading import BusReading
-from daemon.bus.registers import FEEDBACK_LENGTH, Item
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.dialect import DIALECTS
+from daemon.dynamixel.codec.group import FastGroupReply, GroupReply
+from daemon.dynamixel.codec.packet import Instruction, Packet
+from daemon.dynamixel.reading import BusReading
+from daemon.dynamixel.registers.models import BusModel
+from daemon.dynamixel.registers.registers import FEEDBACK_LENGTH, Item
 
 
 @dataclass(frozen=True)

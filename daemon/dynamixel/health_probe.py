@@ -6,14 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from daemon.bus.asking import TRIES
-from daemon.bus.events import BusEventKind
-from daemon.bus.items import Items
-from daemon.bus.models import BusModel
-from daemon.bus.port import Port
-from daemon.bus.slow import SlowReader, Span
-from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
+from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.ports.port import Port
+from daemon.dynamixel.register_access import Items
+from daemon.dynamixel.registers.models import BusModel
+from daemon.dynamixel.servo_link import TRIES
+from daemon.dynamixel.slow_registers import SlowReader, Span
+from daemon.dynamixel.timing import MARGIN_S
 from daemon.errors import LinkTimeoutError, ServoFaultError, two_of
 from retarget.robot.robot import ServoSpec
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.dialect import DIALECTS
-from daemon.bus.models import BusModel
-from daemon.bus.packet import Packet
-from daemon.bus.reading import BusReading
-from daemon.bus.registers import Table
+from daemon.dynamixel.codec.dialect import DIALECTS
+from daemon.dynamixel.codec.packet import Packet
+from daemon.dynamixel.reading import BusReading
+from daemon.dynamixel.registers.models import BusModel
+from daemon.dynamixel.registers.registers import Table
 
 _WITNESS = "status_return_level"
 

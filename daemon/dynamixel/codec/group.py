@@ -12,9 +12,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus import packet1
-from daemon.bus.crc import FixedCrc, crc16, position_table
-from daemon.bus.packet import BROADCAST_ID, HEADER, STUFFED, Instruction, Packet, encode, sync_write
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.crc import FixedCrc, crc16, position_table
+from daemon.dynamixel.codec.packet import BROADCAST_ID, HEADER, STUFFED, Instruction, Packet, encode, sync_write
 
 _HEAD_BYTES = 8  # header, id, length, instruction
 _CRC_BYTES = 2

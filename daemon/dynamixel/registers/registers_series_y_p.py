@@ -7,7 +7,7 @@ disagree, or the manual with itself, a comment at the item says which was taken.
 
 from __future__ import annotations
 
-from daemon.bus.registers import table_of
+from daemon.dynamixel.registers.registers import table_of
 
 _INT32 = 2**31 - 1
 _WORD = 32767

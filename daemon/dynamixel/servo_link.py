@@ -6,16 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from daemon.bus.dialect import DIALECTS, Decoder, Dialect
-from daemon.bus.events import BusEvent, BusEventKind, EventLog
-from daemon.bus.feedback import is_status
-from daemon.bus.health import HealthTracker
-from daemon.bus.models import MODELS, BusModel
-from daemon.bus.packet import Packet
-from daemon.bus.port import Port, Reopenable
-from daemon.bus.reading import UNKNOWN, BusReading
-from daemon.bus.timing import MARGIN_S, SETUP_MARGIN_S, Timing
 from daemon.clock import Clock
+from daemon.dynamixel.codec.dialect import DIALECTS, Decoder, Dialect
+from daemon.dynamixel.codec.packet import Packet
+from daemon.dynamixel.events import BusEvent, BusEventKind, EventLog
+from daemon.dynamixel.feedback import is_status
+from daemon.dynamixel.health import HealthTracker
+from daemon.dynamixel.ports.port import Port, Reopenable
+from daemon.dynamixel.reading import UNKNOWN, BusReading
+from daemon.dynamixel.registers.models import MODELS, BusModel
+from daemon.dynamixel.timing import MARGIN_S, SETUP_MARGIN_S, Timing
 from daemon.errors import CommandError, ConfigError, LinkGarbledError, LinkLostError, LinkTimeoutError, ServoFaultError
 from retarget.robot.robot import ServoSpec
 

@@ -8,15 +8,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus.events import BusEvent
-from daemon.bus.open import PortContext, open_port
-from daemon.bus.port import Port
-from daemon.bus.rate_plan import RatePlan
-from daemon.bus.reading import BusReading
-from daemon.bus.scan import Found
-from daemon.bus.servo_bus import ServoBus
-from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
+from daemon.dynamixel.events import BusEvent
+from daemon.dynamixel.ports.opening import PortContext, open_port
+from daemon.dynamixel.ports.port import Port
+from daemon.dynamixel.rate_plan import RatePlan
+from daemon.dynamixel.reading import BusReading
+from daemon.dynamixel.scan import Found
+from daemon.dynamixel.servo_bus import ServoBus
+from daemon.dynamixel.timing import MARGIN_S
 from daemon.errors import BusMismatchError, CommandError, DaemonError, LinkTimeoutError, MismatchRow
 from retarget.robot.robot import RobotModel, ServoSpec
 
@@ -56,7 +56,7 @@ class MultiBus:
         return self._merged([part.timeouts for part in self.parts])
 
     def show_health(self, table: NDArray[np.void]) -> None:
-        """Copy state and counters of each servo into (S,) `daemon.bus.health.HEALTH`."""
+        """Copy state and counters of each servo into (S,) `daemon.dynamixel.health.HEALTH`."""
         for part, rows in zip(self.parts, self._rows, strict=True):
             part.health.show(table, rows)
 

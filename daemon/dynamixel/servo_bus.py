@@ -5,15 +5,15 @@ from __future__ import annotations
 import contextlib
 import logging
 
-from daemon.bus.asking import TRIES
-from daemon.bus.cycle import Cycle
-from daemon.bus.events import BusEventKind
-from daemon.bus.feedback import FastSyncStep
-from daemon.bus.identity import MUTE_TEXT, PINGS_ONLY, Identity, identity_text, mismatch_hint, silence_text
-from daemon.bus.rate_plan import RatePlan, plan_of
-from daemon.bus.registers import RETURN_DELAY_UNIT_S
-from daemon.bus.scan import Found, answering
-from daemon.bus.timing import SETUP_MARGIN_S
+from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.feedback import FastSyncStep
+from daemon.dynamixel.feedback_cycle import Cycle
+from daemon.dynamixel.identity import MUTE_TEXT, PINGS_ONLY, Identity, identity_text, mismatch_hint, silence_text
+from daemon.dynamixel.rate_plan import RatePlan, plan_of
+from daemon.dynamixel.registers.registers import RETURN_DELAY_UNIT_S
+from daemon.dynamixel.scan import Found, answering
+from daemon.dynamixel.servo_link import TRIES
+from daemon.dynamixel.timing import SETUP_MARGIN_S
 from daemon.errors import BusMismatchError, LinkTimeoutError, MismatchRow, ServoFaultError, two_of
 
 log = logging.getLogger(__name__)

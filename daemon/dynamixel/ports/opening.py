@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from importlib.metadata import entry_points
 from urllib.parse import SplitResult, urlsplit
 
-from daemon.bus.port import Port
 from daemon.clock import Clock
+from daemon.dynamixel.ports.port import Port
 from daemon.errors import CommandError
 from retarget.robot.robot import RobotModel
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from daemon.bus import packet, packet1
-from daemon.bus.packet import ALERT_BIT, Packet
+from daemon.dynamixel.codec import packet
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.packet import ALERT_BIT, Packet
 
 
 class Decoder(Protocol):

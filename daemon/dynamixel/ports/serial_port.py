@@ -13,10 +13,10 @@ from urllib.parse import SplitResult, parse_qs
 
 import serial
 
-from daemon.bus.adapter import adapter_at, device_of
-from daemon.bus.lock import LockFileError, PortLock, process_holding
-from daemon.bus.open import PortContext
-from daemon.bus.tty_speed import tty_speed
+from daemon.dynamixel.ports.adapter import adapter_at, device_of
+from daemon.dynamixel.ports.lock import LockFileError, PortLock, process_holding
+from daemon.dynamixel.ports.opening import PortContext
+from daemon.dynamixel.ports.tty_speed import tty_speed
 from daemon.errors import (
     CommandError,
     LinkLostError,

@@ -8,13 +8,13 @@ import resource
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from daemon.bus.adapter import GOOD_LATENCY_MS, adapter_at, latency_remedy, latency_timer_ms
-from daemon.bus.checks import check_servos, check_strangers, fix
-from daemon.bus.identity import MUTE_TEXT
-from daemon.bus.multi import RobotBus, bus_on
-from daemon.bus.port import Port
-from daemon.bus.rules import ADVISED, NEEDED, Finding
 from daemon.clock import Clock
+from daemon.dynamixel.identity import MUTE_TEXT
+from daemon.dynamixel.multi import RobotBus, bus_on
+from daemon.dynamixel.ports.adapter import GOOD_LATENCY_MS, adapter_at, latency_remedy, latency_timer_ms
+from daemon.dynamixel.ports.port import Port
+from daemon.dynamixel.registers.rules import ADVISED, NEEDED, Finding
+from daemon.dynamixel.setup.checks import check_servos, check_strangers, fix
 from daemon.errors import BusMismatchError, ConfigError, DaemonError, PortError
 from retarget.robot.robot import RobotModel
 

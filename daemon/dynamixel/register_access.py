@@ -7,15 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.bus import packet1
-from daemon.bus.asking import Asking
-from daemon.bus.events import BusEventKind
-from daemon.bus.group import GroupWrite, GroupWrite1
-from daemon.bus.models import BusModel
-from daemon.bus.port import Port
-from daemon.bus.registers import POSITION_MODE, WATCHDOG_TRIPPED, Item
-from daemon.bus.timing import MARGIN_S
 from daemon.clock import Clock
+from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.group import GroupWrite, GroupWrite1
+from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.ports.port import Port
+from daemon.dynamixel.registers.models import BusModel
+from daemon.dynamixel.registers.registers import POSITION_MODE, WATCHDOG_TRIPPED, Item
+from daemon.dynamixel.servo_link import Asking
+from daemon.dynamixel.timing import MARGIN_S
 from daemon.errors import CommandError, ServoFaultError
 from retarget.robot.robot import ServoSpec
 

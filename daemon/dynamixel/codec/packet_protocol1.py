@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from daemon.bus.packet import BROADCAST_ID, Access, Instruction, Packet
+from daemon.dynamixel.codec.packet import BROADCAST_ID, Access, Instruction, Packet
 from daemon.errors import PacketError
 
 HEADER = b"\xff\xff"
