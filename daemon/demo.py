@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from daemon.client import Client
-from daemon.config import Endpoints
 from daemon.errors import DaemonError
 from daemon.recording.mcap_log import Log, read_log
+from daemon.settings.config import Endpoints
 from daemon.wire.events import Accepted, AnyEvent, Cancelled, Done, Progress, Refusal
 from daemon.wire.requests import Say
 from retarget.robot.robot import RobotModel

@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 from urllib.parse import SplitResult, parse_qs
 
-from daemon.clock import Clock
 from daemon.dynamixel.ports.opening import PortContext
 from daemon.errors import CommandError, LinkLostError
+from daemon.host.clock import Clock
 from sim.bus import SimBus
 from sim.clock import TrueTime, VirtualClock
 from sim.errors import FaultFileError

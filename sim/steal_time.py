@@ -13,7 +13,7 @@ import re
 import threading
 from pathlib import Path
 
-from daemon.clock import Clock, RealClock
+from daemon.host.clock import Clock, RealClock
 
 STAT = Path("/proc/stat")
 """Since the start of the machine and of each processor: what its host took, as eighth figure, in 1/100 s (proc_stat(5))."""

@@ -16,13 +16,13 @@ from rich.console import Console
 from daemon.bench.bus_peers import PEERS, c_client_us, installed, sdk_codec_us
 from daemon.bench.report import context
 from daemon.bench.wire_emulator import CURRENT_RAW, POSITION_TICK, VELOCITY_RAW
-from daemon.clock import RealClock
 from daemon.dynamixel.codec.group import GroupWrite
 from daemon.dynamixel.codec.packet import Part, fast_status, status
 from daemon.dynamixel.feedback import FastSyncStep, SyncStep
 from daemon.dynamixel.ports.serial_port import SerialPort
 from daemon.dynamixel.reading import BusReading
 from daemon.dynamixel.servo_bus import ServoBus
+from daemon.host.clock import RealClock
 from retarget.robot.robot import ServoSpec
 from retarget.robot.servos import servo_models
 

@@ -19,11 +19,11 @@ import zmq
 from daemon.bench.daemon_rig import HALTED, arm_again
 from daemon.bench.tty_servos import TtyServos
 from daemon.client import Client
-from daemon.config import Endpoints
 from daemon.demo import child
-from daemon.driving.realtime import may_fifo
 from daemon.errors import DaemonError
-from daemon.probe import listening
+from daemon.host.realtime import may_fifo
+from daemon.network.probe import listening
+from daemon.settings.config import Endpoints
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.events import Ack, CarriedOut
 from daemon.wire.requests import Estop

@@ -17,7 +17,7 @@ from daemon.bench.texts import draw_texts
 from daemon.client import Client
 from daemon.demo import free_endpoints
 from daemon.errors import DaemonError
-from daemon.keys import KeyFolder
+from daemon.network.keys import KeyFolder
 from daemon.wire.events import Cancelled, Done, Failed, Progress, Rejected
 from daemon.wire.requests import Say
 

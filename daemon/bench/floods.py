@@ -17,8 +17,8 @@ from urllib.parse import urlsplit
 
 import zmq
 
-from daemon.descriptors import die_with_parent, raise_descriptor_limit
 from daemon.errors import DaemonError
+from daemon.host.descriptors import die_with_parent, raise_descriptor_limit
 from daemon.wire.codec import encode
 from daemon.wire.requests import Capabilities
 

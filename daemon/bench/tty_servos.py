@@ -9,8 +9,8 @@ import time
 from collections.abc import Generator
 from pathlib import Path
 
-from daemon.driving.realtime import BUS_PRIORITY, give_back_fifo
 from daemon.errors import DaemonError
+from daemon.host.realtime import BUS_PRIORITY, give_back_fifo
 from retarget.robot.robot import RobotModel
 from sim.bus import SimBus
 from sim.faults import Fault, FaultSchedule

@@ -36,8 +36,8 @@ from daemon.client.errors import (
 )
 from daemon.client.lines import Line, within
 from daemon.client.streams import AsyncStream, LeaseNews, begun, new_lease
-from daemon.config import Endpoints
-from daemon.keys import KeyFolder, connect_curve
+from daemon.network.keys import KeyFolder, connect_curve
+from daemon.settings.config import Endpoints
 from daemon.wire.codec import decode_event
 from daemon.wire.events import Ack, AnyEvent, Done, Refusal
 from daemon.wire.requests import (

@@ -10,9 +10,9 @@ import zmq
 
 from daemon.client.compositions import REPLY_TIMEOUT_S
 from daemon.client.errors import NoAnswerError, RefusedError, stamp, unexpected
-from daemon.config import Endpoints
-from daemon.keys import KeyFolder, connect_curve
-from daemon.probe import PROBE_TIMEOUT_S, listening
+from daemon.network.keys import KeyFolder, connect_curve
+from daemon.network.probe import PROBE_TIMEOUT_S, listening
+from daemon.settings.config import Endpoints
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.events import Ack, AnyEvent, Refusal
 from daemon.wire.requests import Request, tag_of

@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-from daemon.clock import clock_id
 from daemon.errors import DaemonError
+from daemon.host.clock import clock_id
 from daemon.wire.event_base import Event
 from daemon.wire.events import AnyEvent, Done, ErrorEvent, Refusal
 from daemon.wire.requests import Request, tag_of

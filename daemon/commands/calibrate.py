@@ -45,11 +45,11 @@ def calibrate(
     from rich.console import Console
     from rich.live import Live
 
-    from daemon.clock import RealClock
     from daemon.dynamixel.multi import open_bus
     from daemon.dynamixel.setup.calibration import MARGIN_S, write_robot_file
     from daemon.dynamixel.setup.calibration import calibrate as find
     from daemon.errors import CommandError
+    from daemon.host.clock import RealClock
     from daemon.picture_files import check_picture
     from daemon.pictures.robot_picture import Pose, robot_picture
     from retarget.robot.loading import load_robot

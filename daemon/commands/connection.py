@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from daemon.config import Endpoints
+from daemon.settings.config import Endpoints
 
 if TYPE_CHECKING:
     from daemon.client import AsyncClient, Client

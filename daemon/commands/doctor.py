@@ -25,10 +25,10 @@ def doctor(robot: str = "reference", bus: str = "dxl:///dev/ttyUSB0", fix: bool 
     from rich.console import Console
     from rich.table import Table
 
-    from daemon.clock import RealClock
     from daemon.dynamixel.multi import open_ports
     from daemon.dynamixel.ports.opening import PortContext
     from daemon.dynamixel.setup.doctor import ADVICE, BAD, GOOD, diagnose
+    from daemon.host.clock import RealClock
     from retarget.robot.loading import load_robot
 
     model, clock, console = load_robot(robot), RealClock(), Console()

@@ -39,7 +39,7 @@ def keys(
         key: public key of the other machine, in hexadecimal or in quoted Z85.
         keys: folder of the keys; your configuration folder when it is not given.
     """
-    from daemon.keys import KeyFolder, as_hex, default_folder
+    from daemon.network.keys import KeyFolder, as_hex, default_folder
 
     folder = KeyFolder(keys or default_folder())
     if verb in ("allow", "trust") and not (name and key):

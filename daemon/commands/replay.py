@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 if TYPE_CHECKING:
-    from daemon.clock import Clock
     from daemon.dynamixel.ports.port import Port
+    from daemon.host.clock import Clock
     from daemon.recording.mcap_log import Log
     from retarget.robot.robot import RobotModel
 
@@ -76,8 +76,8 @@ def _open(bus: str, robot: RobotModel, log: Log) -> tuple[Port, Clock]:
     """The port, and the clock that goes with it; plain simulated servos stand where those of the log stood."""
     import numpy as np
 
-    from daemon.clock import RealClock
     from daemon.dynamixel.ports.opening import PortContext, open_port
+    from daemon.host.clock import RealClock
     from retarget.robot.ticks import JointServoMap
     from sim.bus import SimBus
     from sim.clock import VirtualClock

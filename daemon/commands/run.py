@@ -77,10 +77,10 @@ def run(
     given = dict(locals())
     from dataclasses import replace
 
-    from daemon.logs import start_logging
-    from daemon.settings import config_of, resolve
-    from daemon.supervisor import log_file, log_path_error
-    from daemon.supervisor import run as run_daemon
+    from daemon.logs.log_lines import start_logging
+    from daemon.settings.sources import config_of, resolve
+    from daemon.supervisor.supervisor import log_file, log_path_error
+    from daemon.supervisor.supervisor import run as run_daemon
 
     settings = resolve(_flags(given), config)
     as_json = bool(settings["log_json"].value)
@@ -109,7 +109,7 @@ def config(
         config: TOML file; else where `mmmd run` looks.
         json: print one JSON object.
     """
-    from daemon.settings import config_of, resolve
+    from daemon.settings.sources import config_of, resolve
 
     settings = resolve({}, config)
     config_of(settings)

@@ -32,11 +32,11 @@ def scan(
     from rich.progress import Progress
     from rich.table import Table
 
-    from daemon.clock import RealClock
     from daemon.dynamixel.ports.serial_port import SerialPort
     from daemon.dynamixel.scan import BAUDS
     from daemon.dynamixel.scan import scan as scan_port
     from daemon.errors import CommandError
+    from daemon.host.clock import RealClock
 
     wrong = [p for p in protocol if p not in (1.0, 2.0)]
     if wrong:

@@ -47,10 +47,10 @@ def servo(
     """
     from rich.console import Console
 
-    from daemon.clock import RealClock
     from daemon.dynamixel.ports.opening import PortContext, open_port
     from daemon.dynamixel.setup.single_servo import find
     from daemon.errors import CommandError
+    from daemon.host.clock import RealClock
     from retarget.robot.loading import load_robot
 
     counts = {"get": None, "set": 2, "reboot": 0, "id": 1, "baud": 1}

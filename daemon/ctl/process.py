@@ -17,19 +17,19 @@ from pathlib import Path
 
 import zmq
 
-from daemon.config import EndpointInUseError
-from daemon.connections import ConnectionGuard, Share
 from daemon.ctl.channel import Channel, Ready
 from daemon.ctl.taker import Taker
-from daemon.driving.realtime import CONTROL_PRIORITY, lock_memory, may_fifo, take_fifo
 from daemon.driving.request_words import Asker
 from daemon.driving.shared import BusLink
 from daemon.errors import ConfigError
-from daemon.keys import Doorkeeper, KeyFolder
-from daemon.log_feed import send_logs
-from daemon.logs import start_logging
-from daemon.parent import Parent
-from daemon.sockets import bind
+from daemon.host.parent import Parent
+from daemon.host.realtime import CONTROL_PRIORITY, lock_memory, may_fifo, take_fifo
+from daemon.logs.log_feed import send_logs
+from daemon.logs.log_lines import start_logging
+from daemon.network.connections import ConnectionGuard, Share
+from daemon.network.keys import Doorkeeper, KeyFolder
+from daemon.network.sockets import bind
+from daemon.settings.config import EndpointInUseError
 
 log = logging.getLogger(__name__)
 

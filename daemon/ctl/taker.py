@@ -15,11 +15,11 @@ from dataclasses import dataclass, field
 
 import zmq
 
-from daemon.connections import ConnectionGuard, connection_of
 from daemon.ctl.channel import FRONT_ANSWERS_S, Answered, Channel, Handed, Told
 from daemon.driving.request_words import Asked, BusRequest
 from daemon.driving.shared import BusLink
-from daemon.inbox import MOST_DISCARDED, MOST_PARTS
+from daemon.network.connections import ConnectionGuard, connection_of
+from daemon.network.inbox import MOST_DISCARDED, MOST_PARTS
 from daemon.state.ledger import Route, split_route
 from daemon.state.machine import RobotState
 from daemon.wire.codec import WireError, decode_ctl, encode, error_event, only_frame

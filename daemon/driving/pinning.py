@@ -10,11 +10,11 @@ from collections.abc import Generator
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.clock import Clock
 from daemon.dynamixel.codec.packet import ALERT_BIT
 from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.reading import BusReading
 from daemon.errors import ServoFaultError
+from daemon.host.clock import Clock
 
 PIN_ATTEMPTS = 3
 SWING_OUT_S = 1.0

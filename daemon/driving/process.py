@@ -10,16 +10,16 @@ import threading
 import time
 from pathlib import Path
 
-from daemon.clock import RealClock
-from daemon.driving.cores import keep_to
-from daemon.driving.realtime import BUS_PRIORITY, give_back_fifo, lock_memory, take_fifo
 from daemon.driving.shared import BusLink
 from daemon.driving.starting import start
 from daemon.driving.streamer import Streamer
 from daemon.dynamixel.multi import RobotBus, open_bus
-from daemon.log_feed import send_logs
-from daemon.logs import start_logging
-from daemon.parent import Parent
+from daemon.host.clock import RealClock
+from daemon.host.cores import keep_to
+from daemon.host.parent import Parent
+from daemon.host.realtime import BUS_PRIORITY, give_back_fifo, lock_memory, take_fifo
+from daemon.logs.log_feed import send_logs
+from daemon.logs.log_lines import start_logging
 from retarget.robot.loading import load_robot
 
 log = logging.getLogger(__name__)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 
-from daemon.clock import Clock
 from daemon.driving.request_words import ESTOPS, BusRequest
 from daemon.driving.shared import BusLink, Readiness
 from daemon.driving.streamer import Streamer
@@ -13,6 +12,7 @@ from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.ports.adapter import latency_advice
 from daemon.dynamixel.setup.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.errors import CommandError, ConfigError, DaemonError
+from daemon.host.clock import Clock
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)

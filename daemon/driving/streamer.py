@@ -15,7 +15,6 @@ from contextlib import suppress
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.clock import Clock
 from daemon.driving.arming import Armed, arm_in_steps
 from daemon.driving.derating import Derating
 from daemon.driving.gate import Gate
@@ -31,6 +30,7 @@ from daemon.driving.turns import TurnWatch
 from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.reading import BusReading
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
+from daemon.host.clock import Clock
 from retarget.path.collision import SelfContact
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap

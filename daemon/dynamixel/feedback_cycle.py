@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.clock import Clock
 from daemon.dynamixel.chained_adapters import ChainedReads
 from daemon.dynamixel.codec.dialect import DIALECTS, Dialect
 from daemon.dynamixel.codec.packet import BROADCAST_ID, Packet
@@ -17,6 +16,7 @@ from daemon.dynamixel.health_probe import Probing
 from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.reading import NEVER_CYCLES, BusReading
 from daemon.dynamixel.timing import MARGIN_S
+from daemon.host.clock import Clock
 from retarget.robot.robot import ServoSpec
 
 _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002

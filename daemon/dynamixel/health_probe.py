@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from daemon.clock import Clock
 from daemon.dynamixel.events import BusEventKind
 from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.register_access import Items
@@ -15,6 +14,7 @@ from daemon.dynamixel.servo_link import TRIES
 from daemon.dynamixel.slow_registers import SlowReader, Span
 from daemon.dynamixel.timing import MARGIN_S
 from daemon.errors import LinkTimeoutError, ServoFaultError, two_of
+from daemon.host.clock import Clock
 from retarget.robot.robot import ServoSpec
 
 

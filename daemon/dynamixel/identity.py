@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from daemon.clock import Clock
 from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.registers.models import MODELS
 from daemon.dynamixel.scan import identify
+from daemon.host.clock import Clock
 
 Identity = tuple[int, int]
 """Model number and firmware."""

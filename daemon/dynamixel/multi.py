@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.clock import Clock
 from daemon.dynamixel.events import BusEvent
 from daemon.dynamixel.ports.opening import PortContext, open_port
 from daemon.dynamixel.ports.port import Port
@@ -18,6 +17,7 @@ from daemon.dynamixel.scan import Found
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.dynamixel.timing import MARGIN_S
 from daemon.errors import BusMismatchError, CommandError, DaemonError, LinkTimeoutError, MismatchRow
+from daemon.host.clock import Clock
 from retarget.robot.robot import RobotModel, ServoSpec
 
 _FIELDS = tuple(field.name for field in dataclasses.fields(BusReading))

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.clock import Clock
 from daemon.dynamixel.codec import packet_protocol1 as packet1
 from daemon.dynamixel.codec.group import GroupWrite, GroupWrite1
 from daemon.dynamixel.events import BusEventKind
@@ -17,6 +16,7 @@ from daemon.dynamixel.registers.registers import POSITION_MODE, WATCHDOG_TRIPPED
 from daemon.dynamixel.servo_link import Asking
 from daemon.dynamixel.timing import MARGIN_S
 from daemon.errors import CommandError, ServoFaultError
+from daemon.host.clock import Clock
 from retarget.robot.robot import ServoSpec
 
 _GAP_BYTES = 12

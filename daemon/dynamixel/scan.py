@@ -6,7 +6,6 @@ import contextlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from daemon.clock import Clock
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec import packet_protocol1 as packet1
 from daemon.dynamixel.codec.dialect import DIALECTS
@@ -16,6 +15,7 @@ from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.registers.models import MODELS
 from daemon.dynamixel.timing import BITS_PER_BYTE
 from daemon.errors import PortBaudError
+from daemon.host.clock import Clock
 
 BAUDS = (57_600, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 115_200, 9_600, 4_500_000)
 """In the order in which robots use them: factory, Poppy and OP2, OP3, and the rest."""

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from daemon.clock import Clock
 from daemon.dynamixel.codec.dialect import DIALECTS, Decoder, Dialect
 from daemon.dynamixel.codec.packet import Packet
 from daemon.dynamixel.events import BusEvent, BusEventKind, EventLog
@@ -17,6 +16,7 @@ from daemon.dynamixel.reading import UNKNOWN, BusReading
 from daemon.dynamixel.registers.models import MODELS, BusModel
 from daemon.dynamixel.timing import MARGIN_S, SETUP_MARGIN_S, Timing
 from daemon.errors import CommandError, ConfigError, LinkGarbledError, LinkLostError, LinkTimeoutError, ServoFaultError
+from daemon.host.clock import Clock
 from retarget.robot.robot import ServoSpec
 
 TRIES = 3

@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.metadata
 from collections.abc import Callable
 
-from daemon.config import DaemonConfig
 from daemon.errors import ClipError, GestureExistsError
 from daemon.front.stop_texts import asks_to_stop
 from daemon.generator.generation import GeneratorClient
@@ -13,6 +12,7 @@ from daemon.gestures.library import GestureLibrary
 from daemon.playing.layers import gaze_note
 from daemon.playing.performer import Performer
 from daemon.playing.sources import Sources
+from daemon.settings.config import DaemonConfig
 from daemon.state.ledger import Ledger, Route
 from daemon.wire.event_base import Event
 from daemon.wire.events import Ack, Rejected

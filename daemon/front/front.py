@@ -17,8 +17,6 @@ import msgspec
 import zmq
 import zmq.asyncio
 
-from daemon.config import DaemonConfig
-from daemon.connections import ConnectionGuard, Share
 from daemon.driving.shared import BusLink, BusRequest
 from daemon.front.ctl_desk import CtlDesk
 from daemon.front.desk import TOPICS, Desk
@@ -28,15 +26,17 @@ from daemon.front.stream_desk import TargetDesk
 from daemon.front.subscriptions import MOST_BYTES, RECEIVE_QUEUE, LastValues
 from daemon.generator.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
-from daemon.inbox import Inbox, Message
-from daemon.keys import Doorkeeper, KeyFolder
-from daemon.log_feed import EVENT_LOGGER
+from daemon.logs.log_feed import EVENT_LOGGER
+from daemon.network.connections import ConnectionGuard, Share
+from daemon.network.inbox import Inbox, Message
+from daemon.network.keys import Doorkeeper, KeyFolder
+from daemon.network.sockets import bind, publish_now, send_now
 from daemon.playing.follower import Follower
 from daemon.playing.performer import Performer
 from daemon.playing.planner import Planner
 from daemon.playing.sources import Sources
 from daemon.playing.until_armed import TICK_S
-from daemon.sockets import bind, publish_now, send_now
+from daemon.settings.config import DaemonConfig
 from daemon.state.bus_view import BusView
 from daemon.state.ledger import Ledger, Route, split_route
 from daemon.state.machine import RobotState, StateMachine

@@ -7,8 +7,8 @@ import contextlib
 import logging
 from collections.abc import Callable, Mapping, Sequence
 
-from daemon.config import config_error, metrics_address
 from daemon.dynamixel.health import Health
+from daemon.settings.config import config_error, metrics_address
 from daemon.state.machine import RobotState
 from daemon.wire.status import ServoHealth, StateEvent
 

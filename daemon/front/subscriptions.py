@@ -6,9 +6,9 @@ import asyncio
 import time
 from collections.abc import Callable, Iterable
 
-from daemon.connections import ConnectionGuard
 from daemon.front.rates import Rates
-from daemon.inbox import Inbox
+from daemon.network.connections import ConnectionGuard
+from daemon.network.inbox import Inbox
 
 RECEIVE_QUEUE = 4
 """Subscriptions that ZeroMQ reads ahead of each peer: before it does anything else it enters all that are there into its tree."""

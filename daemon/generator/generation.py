@@ -36,7 +36,7 @@ from daemon.generator.messages import (
     encode,
     generated_from,
 )
-from daemon.keys import KeyFolder, connect_curve
+from daemon.network.keys import KeyFolder, connect_curve
 from daemon.wire.showing import shortened
 from mmm_core.motion.motion import Motion
 

@@ -17,9 +17,6 @@ from typing import Protocol
 
 import zmq
 
-from daemon.config import check_endpoint
-from daemon.connections import ConnectionGuard, Share, connection_of
-from daemon.descriptors import die_with_parent
 from daemon.errors import ConfigError
 from daemon.generator.messages import (
     GENERATION_VERSION,
@@ -40,10 +37,13 @@ from daemon.generator.messages import (
     encode,
     generated_message,
 )
-from daemon.keys import Doorkeeper, KeyFolder
-from daemon.log_feed import send_logs
-from daemon.logs import start_logging
-from daemon.sockets import bind as bind_socket
+from daemon.host.descriptors import die_with_parent
+from daemon.logs.log_feed import send_logs
+from daemon.logs.log_lines import start_logging
+from daemon.network.connections import ConnectionGuard, Share, connection_of
+from daemon.network.keys import Doorkeeper, KeyFolder
+from daemon.network.sockets import bind as bind_socket
+from daemon.settings.config import check_endpoint
 from daemon.wire.showing import shortened, shown
 
 log = logging.getLogger(__name__)

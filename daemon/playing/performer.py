@@ -14,7 +14,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.config import DaemonConfig
 from daemon.driving.shared import BusLink, BusRequest
 from daemon.playing.follower import Follower
 from daemon.playing.layers import Layers
@@ -24,6 +23,7 @@ from daemon.playing.sources import Prepared, Sources
 from daemon.playing.stream_score import StreamScore
 from daemon.playing.until_armed import TICK_S, until_armed
 from daemon.playing.waiting import MOST_WAITING, Halts, Pending, WaitingRoom
+from daemon.settings.config import DaemonConfig
 from daemon.state.lease import LeaseState
 from daemon.state.ledger import Entry, Ledger
 from daemon.state.machine import CommandRefusedError, RobotState, StateMachine, Trigger

@@ -15,7 +15,6 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.config import DaemonConfig
 from daemon.errors import ClipError
 from daemon.generator.generation import GeneratorClient, no_answer
 from daemon.generator.messages import Generated, GeneratorError
@@ -29,6 +28,7 @@ from daemon.playing.score import ClipScore, Marks, Score, varied
 from daemon.playing.showing import Showing, Shows, Verdict, at_tempo
 from daemon.playing.story_score import SceneNews, StoryScore
 from daemon.playing.stream_score import StreamScore
+from daemon.settings.config import DaemonConfig
 from daemon.state.lease import LeaseClock
 from daemon.state.ledger import Entry
 from daemon.state.replies import NotPlayableError, generator_failed, too_late

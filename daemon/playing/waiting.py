@@ -13,7 +13,7 @@ import time
 from collections import OrderedDict
 from dataclasses import dataclass
 
-from daemon.clock import clock_id
+from daemon.host.clock import clock_id
 from daemon.state.ledger import Entry
 from daemon.wire.requests import Request
 

@@ -17,9 +17,9 @@ import msgspec
 import zmq
 
 from daemon.driving.shared import N_CYCLES, BusLink
-from daemon.log_feed import send_logs
-from daemon.logs import start_logging
-from daemon.parent import Parent
+from daemon.host.parent import Parent
+from daemon.logs.log_feed import send_logs
+from daemon.logs.log_lines import start_logging
 from daemon.recording.rotation import RotatingLog
 from daemon.recording.schemas import DROPPED_TOPIC, Dropped
 from retarget.robot.loading import load_robot

@@ -14,11 +14,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.clock import Clock
 from daemon.driving.shared import N_SETPOINTS, BusLink, BusRequest, BusState
 from daemon.driving.streamer import Streamer
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import DaemonError, LogError
+from daemon.host.clock import Clock
 from daemon.recording.mcap_log import Log, LoggedCycle
 from daemon.recording.wiretap import Wiretap
 from retarget.robot.robot import RobotModel

@@ -34,7 +34,7 @@ class Request(msgspec.Struct, tag_field="type", forbid_unknown_fields=True, kw_o
         id: chosen by the sender, returned in every event; empty lets the daemon choose.
         seq: the sender's count of messages; kept in the log.
         t_mono: the sender's monotonic clock in seconds; kept in the log.
-        clock: which clock that is, as `daemon.clock.clock_id` names it; only times of the same clock are compared.
+        clock: which clock that is, as `daemon.host.clock.clock_id` names it; only times of the same clock are compared.
     """
 
     v: int = PROTOCOL_VERSION

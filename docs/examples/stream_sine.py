@@ -9,7 +9,7 @@ import sys
 import time
 
 from daemon.client import CancelledByError, Client, RefusedError
-from daemon.config import Endpoints
+from daemon.settings.config import Endpoints
 
 RATE_HZ, AMPLITUDE_RAD, SWING_HZ = 50, 0.3, 0.5
 

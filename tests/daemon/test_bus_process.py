@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from daemon.bench.tty_servos import served
-from daemon.clock import RealClock
 from daemon.driving.arming import WATCHDOG_UNITS
 from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
 from daemon.dynamixel.ports.serial_port import SerialPort
 from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.dynamixel.servo_bus import ServoBus
+from daemon.host.clock import RealClock
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.pty import PtyServer

@@ -13,9 +13,9 @@ import zmq
 
 from daemon.client import AsyncClient, Client, NoAnswerError, RefusedError
 from daemon.commands.control import _tell
-from daemon.config import Endpoints
 from daemon.errors import ConfigError
-from daemon.settings import config_of, resolve
+from daemon.settings.config import Endpoints
+from daemon.settings.sources import config_of, resolve
 from daemon.wire import codec as wire
 from daemon.wire import events, requests
 from tests.daemon.test_health import STATE

@@ -18,7 +18,7 @@ import pytest
 
 from daemon.client import AsyncClient, CancelledByError, Client, NoAnswerError, RefusedError
 from daemon.client.mcp import TOOLS, McpServer
-from daemon.config import Endpoints
+from daemon.settings.config import Endpoints
 from tests.end_to_end.harness import MMMD, RunningDaemon
 
 pytestmark = [pytest.mark.timeout(90), pytest.mark.realtime]

@@ -10,11 +10,11 @@ import time
 import pytest
 import zmq
 
-from daemon.connections import ConnectionGuard
 from daemon.ctl.channel import Answered, Channel, Handed, Told, pair
 from daemon.ctl.taker import FRONT_ANSWERS_S, HALT_REPLY_S, Taker
 from daemon.driving.request_words import Asker
 from daemon.driving.shared import BusLink, BusRequest
+from daemon.network.connections import ConnectionGuard
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 

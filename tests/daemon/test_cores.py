@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from daemon.driving.cores import CoreClaim, keep_to, on_all_cores
+from daemon.host.cores import CoreClaim, keep_to, on_all_cores
 
 CORES = frozenset({0, 1, 2})
 
@@ -28,7 +28,7 @@ def test_the_only_core_is_nobodys(cores: frozenset[int], tmp_path: Path) -> None
 
 def test_a_core_is_free_again_when_its_daemon_was_killed(tmp_path: Path) -> None:
     code = (
-        "import sys, time; from pathlib import Path; from daemon.driving.cores import CoreClaim\n"
+        "import sys, time; from pathlib import Path; from daemon.host.cores import CoreClaim\n"
         "claim = CoreClaim(frozenset({0, 1}), Path(sys.argv[1])); print(claim.core, flush=True); time.sleep(60)"
     )
     with subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE, text=True) as other:

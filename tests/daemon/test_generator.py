@@ -263,7 +263,7 @@ def test_the_process_refuses_a_checkpoint_that_is_none(endpoint, tmp_path):
 
 
 def test_the_front_holds_no_torch():
-    code = "import sys, daemon.supervisor, daemon.client.client, daemon.cli; print('torch' in sys.modules)"
+    code = "import sys, daemon.supervisor.supervisor, daemon.client.client, daemon.cli; print('torch' in sys.modules)"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     assert result.stdout.strip() == "False"
 

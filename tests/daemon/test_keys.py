@@ -17,12 +17,12 @@ from hypothesis import strategies as st
 
 from daemon.cli import main
 from daemon.client import Client, NoAnswerError, RefusedError
-from daemon.config import Endpoints
 from daemon.demo import free_endpoints
 from daemon.errors import ConfigError
 from daemon.front.rates import BURST, PEER_BURST, PEER_RATE_HZ, RATE_HZ, Rates, RequestLimits
 from daemon.generator.messages import Generated
-from daemon.keys import ZAP, Doorkeeper, KeyFolder, as_hex, checked_key
+from daemon.network.keys import ZAP, Doorkeeper, KeyFolder, as_hex, checked_key
+from daemon.settings.config import Endpoints
 from tests.daemon.kinematic import generate
 from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
 
@@ -142,7 +142,7 @@ def test_a_stranger_gets_nothing_on_any_socket(secured, tmp_path, who):
         ):  # fmt: skip
             socket = context.socket(kind)
             if who != "no key":
-                from daemon.keys import connect_curve
+                from daemon.network.keys import connect_curve
 
                 connect_curve(socket, stranger, "daemon")
             monitor = socket.get_monitor_socket(zmq.EVENT_HANDSHAKE_FAILED_AUTH)

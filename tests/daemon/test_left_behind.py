@@ -14,7 +14,7 @@ import pytest
 from daemon.dynamixel.ports.lock import LockFileError, PortLock
 from daemon.dynamixel.ports.serial_port import SerialPort
 from daemon.errors import PortError
-from daemon.own_folder import OwnFolder
+from daemon.supervisor.run_folder import OwnFolder
 
 
 @pytest.fixture(autouse=True)
@@ -35,7 +35,7 @@ def test_the_folder_of_a_killed_daemon_goes_with_the_next_start_and_those_of_oth
     living = OwnFolder()
     (living.path / "log").touch()
     code = (
-        "import os, tempfile; from daemon.own_folder import OwnFolder; "
+        "import os, tempfile; from daemon.supervisor.run_folder import OwnFolder; "
         f"tempfile.tempdir = {str(temporary)!r}; print(OwnFolder().path, flush=True); os.kill(os.getpid(), 9)"
     )
     killed = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, timeout=60, check=False)

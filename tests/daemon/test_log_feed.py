@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from daemon.log_feed import EVENT_LOGGER, MOST_BYTES, SOCKET_VARIABLE, LogFeed, LogSender, send_logs
+from daemon.logs.log_feed import EVENT_LOGGER, MOST_BYTES, SOCKET_VARIABLE, LogFeed, LogSender, send_logs
 from daemon.wire.status import LogEvent
 
 

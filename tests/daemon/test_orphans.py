@@ -14,7 +14,7 @@ from rig import rig
 from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.driving.starting import start
 from daemon.driving.streamer import FAULT_LIMP_S
-from daemon.parent import PARENT_VARIABLE
+from daemon.host.parent import PARENT_VARIABLE
 from retarget.robot.loading import load_robot
 
 _FRONT_KILLED_AT_ONCE = """

@@ -21,7 +21,7 @@ from daemon.errors import LogError
 from daemon.recording.feed import RecorderFeed
 from daemon.recording.mcap_log import CYCLE_TOPIC, LogWriter, read_log
 from daemon.recording.schemas import DROPPED_TOPIC
-from daemon.settings import DEFAULTS
+from daemon.settings.sources import DEFAULTS
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from tests.end_to_end.harness import RunningDaemon

@@ -23,11 +23,11 @@ import pytest
 from daemon.demo import free_endpoints
 from daemon.driving.shared import cycle_dtype
 from daemon.errors import ConfigError
-from daemon.logs import JsonLines
+from daemon.logs.log_lines import JsonLines
 from daemon.recording.mcap_log import read_log
 from daemon.recording.rotation import RotatingLog
-from daemon.settings import DEFAULTS, config_of, resolve
-from daemon.supervisor import BUS_END_TIMEOUT_S
+from daemon.settings.sources import DEFAULTS, config_of, resolve
+from daemon.supervisor.supervisor import BUS_END_TIMEOUT_S
 from retarget.robot.loading import load_robot
 from tests.end_to_end.harness import RunningDaemon, mmmd
 

@@ -9,8 +9,8 @@ import pytest
 import zmq
 import zmq.asyncio
 
+from daemon.network.sockets import publish_now, send_now
 from daemon.recording.feed import RecorderFeed
-from daemon.sockets import publish_now, send_now
 
 pytestmark = [pytest.mark.timeout(30), pytest.mark.realtime]
 N, HWM = 3000, 500

@@ -14,9 +14,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from daemon.client import Client, NoAnswerError
-from daemon.config import Endpoints
 from daemon.generator.messages import Generated
 from daemon.playing.waiting import SHADOW_S
+from daemon.settings.config import Endpoints
 from daemon.wire.events import Done
 from tests.daemon.kinematic import KinematicGenerator, generate
 

@@ -324,7 +324,7 @@ def test_random_jumping_streams_stay_off_the_body(robot):
 KILLED = """
 import math, os, sys, time
 from daemon.client import Client
-from daemon.config import Endpoints
+from daemon.settings.config import Endpoints
 with Client(Endpoints(*sys.argv[1:4])) as robot, robot.stream("doomed") as stream:
     rest, began_s = robot.status().goal_rad, time.monotonic()
     while True:

@@ -206,7 +206,7 @@ def test_a_clock_that_jumps_moves_no_servo_and_needs_virtual_time() -> None:
     port.write(packet.ping(1))
     assert clock.now_s() == pytest.approx(3601.5) and clock.true_s == pytest.approx(1.5)
     assert b.world.t_s < 1.6
-    from daemon.clock import RealClock
+    from daemon.host.clock import RealClock
 
     with pytest.raises(FaultFileError, match="virtual time"):
         SimPort(b.bus, RealClock())

@@ -16,13 +16,13 @@ from pathlib import Path
 import pytest
 from dynamixel_sdk import COMM_RX_TIMEOUT, COMM_SUCCESS, GroupSyncRead, PacketHandler, PortHandler
 
-from daemon.clock import RealClock
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.ports.serial_port import SerialPort
 from daemon.dynamixel.ports.tty_speed import tty_speed
 from daemon.dynamixel.scan import scan
 from daemon.errors import CommandError, LinkLostError, PortBaudError
+from daemon.host.clock import RealClock
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from importlib.metadata import entry_points
 from urllib.parse import SplitResult, urlsplit
 
-from daemon.clock import Clock
 from daemon.dynamixel.ports.port import Port
 from daemon.errors import CommandError
+from daemon.host.clock import Clock
 from retarget.robot.robot import RobotModel
 
 

@@ -8,7 +8,6 @@ import resource
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from daemon.clock import Clock
 from daemon.dynamixel.identity import MUTE_TEXT
 from daemon.dynamixel.multi import RobotBus, bus_on
 from daemon.dynamixel.ports.adapter import GOOD_LATENCY_MS, adapter_at, latency_remedy, latency_timer_ms
@@ -16,6 +15,7 @@ from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.registers.rules import ADVISED, NEEDED, Finding
 from daemon.dynamixel.setup.checks import check_servos, check_strangers, fix
 from daemon.errors import BusMismatchError, ConfigError, DaemonError, PortError
+from daemon.host.clock import Clock
 from retarget.robot.robot import RobotModel
 
 GOOD, ADVICE, BAD = "good", "advice", "bad"

@@ -5,13 +5,13 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass
 
-from daemon.clock import Clock
 from daemon.dynamixel.identity import MUTE_TEXT, PINGS_ONLY
 from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.registers.models import MODELS, BusModel
 from daemon.dynamixel.registers.registers import Item
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import CommandError, LinkTimeoutError
+from daemon.host.clock import Clock
 from retarget.robot.robot import ServoSpec
 from retarget.robot.servos import servo_models
 

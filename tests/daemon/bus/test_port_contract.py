@@ -12,13 +12,13 @@ from urllib.parse import urlsplit
 import pytest
 from dynamixel_sdk import GroupSyncRead, GroupSyncWrite, PacketHandler, PortHandler
 
-from daemon.clock import RealClock
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec.packet import PacketDecoder
 from daemon.dynamixel.ports.opening import PortContext, open_port
 from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.ports.serial_port import SerialPort, open_dxl
 from daemon.errors import CommandError, LinkLostError, PortBusyError, PortMissingError, PortPermissionError
+from daemon.host.clock import RealClock
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.port import SimPort

@@ -19,12 +19,7 @@ from pathlib import Path
 import zmq
 import zmq.asyncio
 
-from daemon.children import Child
-from daemon.config import DaemonConfig, config_error
 from daemon.ctl.channel import Channel
-from daemon.ctl_keeper import CtlKeeper
-from daemon.driving.cores import CoreClaim
-from daemon.driving.realtime import BUS_PRIORITY, may_fifo
 from daemon.driving.request_words import ESTOPS, BusRequest
 from daemon.driving.shared import BusLink, BusState, Readiness
 from daemon.errors import ConfigError, DaemonError
@@ -32,13 +27,18 @@ from daemon.front.front import Front
 from daemon.front.metrics import MetricsServer, exposition
 from daemon.generator.generation import GeneratorClient
 from daemon.generator.messages import GeneratorError
-from daemon.keys import KeyFolder
-from daemon.log_feed import SOCKET_VARIABLE, LogFeed
-from daemon.notify import Notifier
-from daemon.own_folder import OwnFolder
+from daemon.host.cores import CoreClaim
+from daemon.host.notify import Notifier
+from daemon.host.realtime import BUS_PRIORITY, may_fifo
+from daemon.logs.log_feed import SOCKET_VARIABLE, LogFeed
+from daemon.network.keys import KeyFolder
 from daemon.recording.feed import RecorderFeed
-from daemon.settings import settings_of
+from daemon.settings.config import DaemonConfig, config_error
+from daemon.settings.sources import settings_of
 from daemon.state.machine import RobotState
+from daemon.supervisor.children import Child
+from daemon.supervisor.ctl_keeper import CtlKeeper
+from daemon.supervisor.run_folder import OwnFolder
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 

@@ -97,7 +97,7 @@ class Endpoints:
         cmd: requests and their events.
         ctl: stop, estop, reset, arm, park, torque, status.
         pub: state and events for all.
-        keys: folder of CURVE keys, for which see `daemon.keys`; None leaves only local endpoints.
+        keys: folder of CURVE keys, for which see `daemon.network.keys`; None leaves only local endpoints.
         stream: joint targets from another program; empty takes a place beside `cmd`, see `stream_beside`.
     """
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 
 PARENT_VARIABLE = "MMMD_PARENT_PID"
-"""Set for every child of the daemon (`daemon.children`)."""
+"""Set for every child of the daemon (`daemon.supervisor.children`)."""
 
 
 class Parent:

@@ -23,7 +23,7 @@ from typing import Any, Literal, cast
 
 import zmq
 
-from daemon.descriptors import (
+from daemon.host.descriptors import (
     Held,
     bytes_received,
     descriptors,

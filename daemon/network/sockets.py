@@ -7,9 +7,9 @@ from typing import Any, cast
 import zmq
 import zmq.asyncio
 
-from daemon.config import EndpointInUseError, config_error
-from daemon.keys import KeyFolder, serve_curve
-from daemon.probe import listening
+from daemon.network.keys import KeyFolder, serve_curve
+from daemon.network.probe import listening
+from daemon.settings.config import EndpointInUseError, config_error
 
 MAX_RECEIVE_BYTES = 256 << 10
 """Bytes of a frame. ZeroMQ drops the connection of a peer that sends more; below it the peer is told what is allowed."""

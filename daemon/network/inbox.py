@@ -8,7 +8,7 @@ from typing import NamedTuple, cast
 import zmq
 import zmq.asyncio
 
-from daemon.connections import ConnectionGuard, connection_of
+from daemon.network.connections import ConnectionGuard, connection_of
 
 MOST_PARTS = 8
 """Parts of a message that are kept: an address, an empty delimiter, and more than any request of ours has."""

@@ -11,8 +11,8 @@ import time
 from collections import deque
 from collections.abc import Mapping, Sequence
 
-from daemon.driving.cores import on_all_cores
-from daemon.parent import PARENT_VARIABLE
+from daemon.host.cores import on_all_cores
+from daemon.host.parent import PARENT_VARIABLE
 
 log = logging.getLogger(__name__)
 

@@ -7,12 +7,12 @@ import logging
 import time
 from collections.abc import Callable, Mapping
 
-from daemon.children import Child
-from daemon.config import DaemonConfig, EndpointInUseError
 from daemon.ctl.channel import Channel, Ready, pair
 from daemon.driving.shared import BusLink
 from daemon.driving.silence import Silence
 from daemon.errors import ConfigError, DaemonError
+from daemon.settings.config import DaemonConfig, EndpointInUseError
+from daemon.supervisor.children import Child
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)

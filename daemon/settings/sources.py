@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from daemon.config import DaemonConfig, Endpoints, stream_beside
 from daemon.errors import ConfigError
+from daemon.settings.config import DaemonConfig, Endpoints, stream_beside
 
 _ENDPOINTS = Endpoints()
 _CONFIG = DaemonConfig("reference", "sim://")
