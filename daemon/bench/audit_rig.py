@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.shared import BusLink, BusRequest, BusState
-from daemon.driving.streamer import Streamer
-from daemon.driving.turns import TURNS_UNKNOWN
+from daemon.control.control_loop import Streamer
+from daemon.control.turns import TURNS_UNKNOWN
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.servo_bus import ServoBus
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.path.paths import JointState
 from retarget.robot.robot import RobotModel
 from sim.bus import SimBus

@@ -29,7 +29,7 @@ from daemon.wire.events import Ack, CarriedOut
 from daemon.wire.requests import Estop
 from retarget.robot.loading import load_robot
 
-BUS, CTL = "daemon.driving.process", "daemon.ctl.process"
+BUS, CTL = "daemon.control.process", "daemon.ctl.process"
 CLIENT_PRIORITY = 20
 READY_TIMEOUT_S = 60.0
 STATE_TIMEOUT_S = 20.0

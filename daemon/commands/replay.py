@@ -38,11 +38,11 @@ def replay(
     from rich.console import Console
     from rich.progress import Progress
 
-    from daemon.driving.shared import BusLink
     from daemon.dynamixel.servo_bus import ServoBus
     from daemon.recording.mcap_log import read_log
     from daemon.recording.replay import check_robot, robot_changed
     from daemon.recording.replay import replay as play
+    from daemon.shared_memory.bus_link import BusLink
     from retarget.robot.loading import load_robot
 
     notes = Console(stderr=True)

@@ -30,7 +30,7 @@ class Handed(msgspec.Struct, tag="handed"):
     """From `ctl`: a request. A stop or an e-stop is asked of the bus process already; the others are for the front to decide.
 
     Attributes:
-        number: of the request, as in `daemon.driving.request_words`.
+        number: of the request, as in `daemon.shared_memory.request_words`.
         frame: as it came.
     """
 

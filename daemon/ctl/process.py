@@ -19,8 +19,6 @@ import zmq
 
 from daemon.ctl.channel import Channel, Ready
 from daemon.ctl.taker import Taker
-from daemon.driving.request_words import Asker
-from daemon.driving.shared import BusLink
 from daemon.errors import ConfigError
 from daemon.host.parent import Parent
 from daemon.host.realtime import CONTROL_PRIORITY, lock_memory, may_fifo, take_fifo
@@ -30,6 +28,8 @@ from daemon.network.connections import ConnectionGuard, Share
 from daemon.network.keys import Doorkeeper, KeyFolder
 from daemon.network.sockets import bind
 from daemon.settings.config import EndpointInUseError
+from daemon.shared_memory.bus_link import BusLink
+from daemon.shared_memory.request_words import Asker
 
 log = logging.getLogger(__name__)
 

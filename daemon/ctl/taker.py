@@ -16,10 +16,10 @@ from dataclasses import dataclass, field
 import zmq
 
 from daemon.ctl.channel import FRONT_ANSWERS_S, Answered, Channel, Handed, Told
-from daemon.driving.request_words import Asked, BusRequest
-from daemon.driving.shared import BusLink
 from daemon.network.connections import ConnectionGuard, connection_of
 from daemon.network.inbox import MOST_DISCARDED, MOST_PARTS
+from daemon.shared_memory.bus_link import BusLink
+from daemon.shared_memory.request_words import Asked, BusRequest
 from daemon.state.ledger import Route, split_route
 from daemon.state.machine import RobotState
 from daemon.wire.codec import WireError, decode_ctl, encode, error_event, only_frame

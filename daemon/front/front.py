@@ -17,7 +17,6 @@ import msgspec
 import zmq
 import zmq.asyncio
 
-from daemon.driving.shared import BusLink, BusRequest
 from daemon.front.ctl_desk import CtlDesk
 from daemon.front.desk import TOPICS, Desk
 from daemon.front.rates import RATE_HZ, RequestLimits
@@ -37,6 +36,7 @@ from daemon.playing.planner import Planner
 from daemon.playing.sources import Sources
 from daemon.playing.until_armed import TICK_S
 from daemon.settings.config import DaemonConfig
+from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.bus_view import BusView
 from daemon.state.ledger import Ledger, Route, split_route
 from daemon.state.machine import RobotState, StateMachine

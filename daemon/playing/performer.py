@@ -14,7 +14,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.shared import BusLink, BusRequest
 from daemon.playing.follower import Follower
 from daemon.playing.layers import Layers
 from daemon.playing.planner import Planner
@@ -24,6 +23,7 @@ from daemon.playing.stream_score import StreamScore
 from daemon.playing.until_armed import TICK_S, until_armed
 from daemon.playing.waiting import MOST_WAITING, Halts, Pending, WaitingRoom
 from daemon.settings.config import DaemonConfig
+from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.lease import LeaseState
 from daemon.state.ledger import Entry, Ledger
 from daemon.state.machine import CommandRefusedError, RobotState, StateMachine, Trigger

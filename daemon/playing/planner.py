@@ -15,13 +15,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.shared import N_SETPOINTS, BusLink
 from daemon.playing.lead import Lead
 from daemon.playing.plan import Piece, Plan
 from daemon.playing.plan_statistics import PlanStatistics
 from daemon.playing.posture import Posture, joined, posture_of, standing
 from daemon.playing.stream_plan import StreamPlan
 from daemon.playing.stream_score import StreamScore
+from daemon.shared_memory.bus_link import N_SETPOINTS, BusLink
 from daemon.state.bus_view import BusView
 from mmm_core.motion.motion import FPS
 from retarget.human.human import read_human

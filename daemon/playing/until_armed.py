@@ -6,8 +6,8 @@ import asyncio
 import time
 from collections.abc import Callable
 
-from daemon.driving.shared import BusLink, BusRequest
 from daemon.playing.follower import Follower
+from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.machine import CommandRefusedError, RobotState, Trigger
 
 TICK_S = 0.005

@@ -24,9 +24,9 @@ from mcap.records import Channel, Chunk, Header, McapRecord, Message, Metadata
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import Writer
 
-from daemon.driving.shared import BusState
 from daemon.errors import LogError
 from daemon.recording.schemas import schema_of
+from daemon.shared_memory.bus_link import BusState
 from retarget.robot.robot import RobotModel
 
 FORMAT = 1

@@ -16,12 +16,12 @@ from pathlib import Path
 import msgspec
 import zmq
 
-from daemon.driving.shared import N_CYCLES, BusLink
 from daemon.host.parent import Parent
 from daemon.logs.log_feed import send_logs
 from daemon.logs.log_lines import start_logging
 from daemon.recording.rotation import RotatingLog
 from daemon.recording.schemas import DROPPED_TOPIC, Dropped
+from daemon.shared_memory.bus_link import N_CYCLES, BusLink
 from retarget.robot.loading import load_robot
 
 log = logging.getLogger(__name__)

@@ -14,13 +14,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.shared import N_SETPOINTS, BusLink, BusRequest, BusState
-from daemon.driving.streamer import Streamer
+from daemon.control.control_loop import Streamer
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import DaemonError, LogError
 from daemon.host.clock import Clock
 from daemon.recording.mcap_log import Log, LoggedCycle
 from daemon.recording.wiretap import Wiretap
+from daemon.shared_memory.bus_link import N_SETPOINTS, BusLink, BusRequest, BusState
 from retarget.robot.robot import RobotModel
 
 _LONGEST_APPROACH_S = 30.0

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.derating import DeratedBy
-from daemon.driving.shared import BusLink, BusState
+from daemon.control.derating import DeratedBy
 from daemon.dynamixel.health import Health
+from daemon.shared_memory.bus_link import BusLink, BusState
 from daemon.wire.status import ServoHealth
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap

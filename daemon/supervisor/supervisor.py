@@ -20,8 +20,6 @@ import zmq
 import zmq.asyncio
 
 from daemon.ctl.channel import Channel
-from daemon.driving.request_words import ESTOPS, BusRequest
-from daemon.driving.shared import BusLink, BusState, Readiness
 from daemon.errors import ConfigError, DaemonError
 from daemon.front.front import Front
 from daemon.front.metrics import MetricsServer, exposition
@@ -35,6 +33,8 @@ from daemon.network.keys import KeyFolder
 from daemon.recording.feed import RecorderFeed
 from daemon.settings.config import DaemonConfig, config_error
 from daemon.settings.sources import settings_of
+from daemon.shared_memory.bus_link import BusLink, BusState, Readiness
+from daemon.shared_memory.request_words import ESTOPS, BusRequest
 from daemon.state.machine import RobotState
 from daemon.supervisor.children import Child
 from daemon.supervisor.ctl_keeper import CtlKeeper
@@ -93,7 +93,7 @@ class Supervisor:
         self._environment = {SOCKET_VARIABLE: str(self._log_path)}
         self._link.set_estop_holds(config.estop == "hold")
         self._ctl = CtlKeeper(config, self._robot, self._link, self._environment)
-        self._bus = Child("bus process", "daemon.driving.process", arguments, self._environment)
+        self._bus = Child("bus process", "daemon.control.process", arguments, self._environment)
 
     async def run(self) -> int:
         """Serve until SIGTERM or SIGINT; 0 after a park, 3 when the robot was left in a latched fault or e-stop.

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from daemon.driving.shared import cycle_dtype
 from daemon.errors import ClipError, LogError
 from daemon.gestures.clips import load_clips
 from daemon.gestures.library import SHIPPED
 from daemon.recording.mcap_log import read_log
 from daemon.recording.rotation import RotatingLog
+from daemon.shared_memory.bus_link import cycle_dtype
 from mmm_core.errors import MmmError, MotionFileError
 from mmm_core.imports.recordings.files import read_motion
 from mmm_core.motion.motion import load_npz

@@ -7,9 +7,9 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from daemon.driving.shared import BusLink, BusRequest, BusState
-from daemon.driving.streamer import Streamer
+from daemon.control.control_loop import Streamer
 from daemon.dynamixel.servo_bus import ServoBus
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from sim.bus import SimBus

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.driving.approach import ACCELERATION_RAD_S2, SPEED_RAD_S, Approach
-from daemon.driving.gate import Gate
+from daemon.control.ptp_trajectory import ACCELERATION_RAD_S2, SPEED_RAD_S, Approach
+from daemon.control.safety_limiter import Gate
 from retarget.path.limits import JointLimits
 from retarget.robot.loading import list_robots, load_robot
 

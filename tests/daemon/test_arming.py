@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from rig import rig, swing
 
-from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
-from daemon.driving.starting import start
+from daemon.control.starting import start
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState, Readiness
 from sim.faults import Fault
 
 A, P, S, E = BusRequest.ARM, BusRequest.PARK, BusRequest.STOP, BusRequest.ESTOP

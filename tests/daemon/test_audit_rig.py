@@ -11,7 +11,7 @@ from rig import swing
 
 from daemon.bench.audit_rig import AuditRig
 from daemon.cli import main
-from daemon.driving.shared import BusRequest, BusState
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.robot.loading import load_robot
 from sim.faults import Fault
 
@@ -77,7 +77,7 @@ def test_what_cannot_be_repaired_is_said():
 
 def test_contacts_that_are_commanded_are_reported(monkeypatch):
     """With the gate's knowledge of the body taken away a plan into the body shows in the report."""
-    from daemon.driving.gate import Gate
+    from daemon.control.safety_limiter import Gate
     from retarget.path.collision import SelfContact
     from retarget.path.limits import JointLimits
 
@@ -85,7 +85,7 @@ def test_contacts_that_are_commanded_are_reported(monkeypatch):
     draw = np.random.default_rng(0)
     poses = draw.uniform(limits.position_min_rad, limits.position_max_rad, (2000, ROBOT.n_joints))
     inside = np.repeat(poses[body.clearance_m(poses).argmin()][None], 300, 0)
-    monkeypatch.setattr("daemon.driving.streamer.Gate", lambda robot, contact: Gate(robot))
+    monkeypatch.setattr("daemon.control.control_loop.Gate", lambda robot, contact: Gate(robot))
     rig = AuditRig(ROBOT)
     rig.make_ready()
     rig.play(inside)

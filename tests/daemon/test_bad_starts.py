@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from rig import rig, swing
 
-from daemon.driving.approach import SPEED_RAD_S
-from daemon.driving.shared import BusRequest, BusState
+from daemon.control.ptp_trajectory import SPEED_RAD_S
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.robot.loading import load_robot
 from sim.faults import Fault
 

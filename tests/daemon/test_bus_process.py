@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from daemon.bench.tty_servos import served
-from daemon.driving.arming import WATCHDOG_UNITS
-from daemon.driving.shared import BusLink, BusRequest, BusState, Readiness
+from daemon.control.arming import WATCHDOG_UNITS
 from daemon.dynamixel.ports.serial_port import SerialPort
 from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.host.clock import RealClock
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState, Readiness
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.pty import PtyServer
@@ -29,7 +29,7 @@ class BusProcess:
 
     def __init__(self, bus_url: str) -> None:
         self.link = BusLink.create(ROBOT.n_joints)
-        command = [sys.executable, "-m", "daemon.driving.process", "--robot", "reference"]
+        command = [sys.executable, "-m", "daemon.control.process", "--robot", "reference"]
         command += ["--bus", bus_url, "--link", str(self.link.path)]
         self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
 

@@ -129,7 +129,7 @@ def test_the_bus_process_in_any_state_ends_in_a_fault_that_can_be_reset(servos, 
         with daemon.client() as client:
             for state in (*STATES, "fault"):
                 lead_to(client, servos, state)
-                bus = child_pid(daemon, "daemon.driving.process")
+                bus = child_pid(daemon, "daemon.control.process")
                 os.kill(bus, number)
                 began_s = time.monotonic()
                 within(FAULT_WITHIN_S, f"{state}: fault", lambda: client.status().state == "fault")
@@ -221,7 +221,7 @@ def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_p
             folder.mkdir()
             servos = Servos(folder)
             daemon = daemon_on(servos)
-            rigs.append((servos, daemon, child_pid(daemon, "daemon.driving.process")))
+            rigs.append((servos, daemon, child_pid(daemon, "daemon.control.process")))
             with daemon.client() as client:
                 lead_to(client, servos, state)
             daemon.process.kill()
@@ -244,7 +244,7 @@ def test_a_second_daemon_names_the_process_that_has_the_port_and_ends_with_a_sta
         ends = [f"--{name}=ipc://{tmp_path}/{name}" for name in ("cmd", "ctl", "pub")]
         second = mmmd("run", "--bus", servos.url, *ends)
         assert second.returncode == 1
-        assert f"in use by process {child_pid(daemon, 'daemon.driving.process')}" in second.stderr
+        assert f"in use by process {child_pid(daemon, 'daemon.control.process')}" in second.stderr
         assert daemon.terminate() == 0
     finally:
         daemon.close()
@@ -281,7 +281,7 @@ def test_the_generator_killed_and_frozen_in_each_state_is_started_again():
                 within(60, "ready", lambda: client.status().generator.startswith("ready"))
                 if state == "fault":
                     bring_to(client, "idle")
-                    os.kill(child_pid(daemon, "daemon.driving.process"), signal.SIGKILL)
+                    os.kill(child_pid(daemon, "daemon.control.process"), signal.SIGKILL)
                     within(FAULT_WITHIN_S, "named", lambda: "reset" in client.status().reason)
                 else:
                     bring_to(client, state)
@@ -312,7 +312,7 @@ def test_a_command_under_way_when_the_bus_process_dies_ends_once(servos):
             client.arm()
             client.say("wave", seconds=5.0, wait=False, command_id="dying")
             client.wait_for("moving", timeout_s=5)
-            os.kill(child_pid(daemon, "daemon.driving.process"), signal.SIGKILL)
+            os.kill(child_pid(daemon, "daemon.control.process"), signal.SIGKILL)
             heard = []
             with contextlib.suppress(NoAnswerError, CancelledByError):
                 end_s = time.monotonic() + 4

@@ -12,9 +12,9 @@ import zmq
 
 from daemon.ctl.channel import Answered, Channel, Handed, Told, pair
 from daemon.ctl.taker import FRONT_ANSWERS_S, HALT_REPLY_S, Taker
-from daemon.driving.request_words import Asker
-from daemon.driving.shared import BusLink, BusRequest
 from daemon.network.connections import ConnectionGuard
+from daemon.shared_memory.bus_link import BusLink, BusRequest
+from daemon.shared_memory.request_words import Asker
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 

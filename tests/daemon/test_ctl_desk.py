@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from daemon.ctl.channel import FRONT_SERVES_S, Answered, Channel, Handed, pair
-from daemon.driving.request_words import Asker
-from daemon.driving.shared import BusLink, BusRequest
 from daemon.front.ctl_desk import UNTOLD_S, CtlDesk
 from daemon.playing.waiting import Halts
+from daemon.shared_memory.bus_link import BusLink, BusRequest
+from daemon.shared_memory.request_words import Asker
 from daemon.state.ledger import Ledger
 from daemon.state.machine import RobotState, StateMachine
 from daemon.wire import codec as wire

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from daemon.driving.derating import LEAST_SHARE, DeratedBy, Derating, ServoLimits
-from daemon.driving.shared import BusState
+from daemon.control.derating import LEAST_SHARE, DeratedBy, Derating, ServoLimits
 from daemon.dynamixel.reading import BusReading
+from daemon.shared_memory.bus_link import BusState
 from sim.faults import Fault
 from tests.daemon.rig import rig, swing
 

@@ -11,13 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig import Rig, rig, swing
 
-from daemon.driving.gate import Gate
-from daemon.driving.leading_back import LeadingBack
-from daemon.driving.shared import BusRequest, BusState
-from daemon.driving.turns import TurnWatch
+from daemon.control.leading_back import LeadingBack
+from daemon.control.safety_limiter import Gate
+from daemon.control.turns import TurnWatch
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import ServoFaultError
 from daemon.host.clock import RealClock
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.driving.shared import BusRequest, BusState
 from daemon.playing.follower import BUS_SILENT_S, Follower
 from daemon.playing.planner import Planner
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.machine import RobotState, StateMachine
 from retarget.robot.loading import load_robot

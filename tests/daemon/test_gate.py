@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.driving.gate import Gate
+from daemon.control.safety_limiter import Gate
 from retarget.robot.loading import load_robot
 
 ROBOT = load_robot("reference")

@@ -11,10 +11,10 @@ from rig import rig
 
 from daemon.commands.status import _servo
 from daemon.demo import free_endpoints
-from daemon.driving.shared import BusLink
 from daemon.dynamixel.health import COUNTERS, HEALTH, Health
 from daemon.dynamixel.multi import bus_on
 from daemon.front.metrics import exposition
+from daemon.shared_memory.bus_link import BusLink
 from daemon.state.bus_view import BusView
 from daemon.wire.status import ServoHealth, StateEvent
 from retarget.robot.loading import load_robot

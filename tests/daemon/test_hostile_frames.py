@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.driving.shared import BusRequest, cycle_dtype
 from daemon.front.stream_inbox import StreamInbox
 from daemon.recording.mcap_log import read_log
 from daemon.recording.rotation import RotatingLog
+from daemon.shared_memory.bus_link import BusRequest, cycle_dtype
 from daemon.wire import codec as wire
 from daemon.wire.events import Ack, ErrorEvent
 from retarget.robot.loading import load_robot

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 from rig import rig
 
-from daemon.driving.shared import BusLink, BusRequest, BusState
-from daemon.driving.starting import start
-from daemon.driving.streamer import FAULT_LIMP_S
+from daemon.control.control_loop import FAULT_LIMP_S
+from daemon.control.starting import start
 from daemon.host.parent import PARENT_VARIABLE
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.robot.loading import load_robot
 
 _FRONT_KILLED_AT_ONCE = """
@@ -34,7 +34,7 @@ def has_ended(pid: int) -> bool:
 
 
 @pytest.mark.realtime
-@pytest.mark.parametrize("module", ["daemon.driving.process", "daemon.recording.recorder"])
+@pytest.mark.parametrize("module", ["daemon.control.process", "daemon.recording.recorder"])
 def test_a_child_whose_front_was_killed_while_it_started_ends(module: str, tmp_path: Path) -> None:
     """It asked for its parent's id once it ran, got that of whoever inherits orphans, and kept the port for ever."""
     robot = load_robot("reference")

@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.driving.derating import LEAST_SHARE
-from daemon.driving.pace import WAIT_S, Pace, SlowedSetpoints
-from daemon.driving.shared import Setpoint
+from daemon.control.derating import LEAST_SHARE
+from daemon.control.time_scaling import WAIT_S, Pace, SlowedSetpoints
+from daemon.shared_memory.bus_link import Setpoint
 
 PERIOD_S = 0.01
 

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig import Rig, rig, with_known_turns
 
-from daemon.driving.pace import WAIT_S
-from daemon.driving.shared import BusRequest, BusState
-from daemon.driving.streamer import NO_WAY_LIMP_S
+from daemon.control.control_loop import NO_WAY_LIMP_S
+from daemon.control.time_scaling import WAIT_S
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.path import rrt_connect
 from retarget.path.collision import SelfContact
 from retarget.path.limits import JointLimits

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from rig import Rig, rig, swing
 
-from daemon.driving.shared import BusRequest, BusState
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from sim.faults import Fault
 from sim.servos.servo_power import OVERLOAD_BIT
 

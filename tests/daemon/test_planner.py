@@ -9,12 +9,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from daemon.driving.shared import BusLink, BusRequest, BusState
-from daemon.driving.streamer import Streamer
+from daemon.control.control_loop import Streamer
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.playing.lead import Lead
 from daemon.playing.planner import Planner
 from daemon.playing.posture import at_tempo, distance_deg, posture_of, standing
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from daemon.state.bus_view import BusView
 from retarget.path.limits import JointLimits
 from retarget.robot.loading import load_robot

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rig import rig
 
-from daemon.driving.shared import BusRequest, BusState
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from sim.faults import Fault
 from sim.servos.servo_protocol1 import OVERLOAD_ERROR, SimServo1
 

@@ -16,12 +16,12 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 from rig import rig, swing
 
-from daemon.driving.shared import BusLink, BusState
 from daemon.errors import LogError
 from daemon.recording.feed import RecorderFeed
 from daemon.recording.mcap_log import CYCLE_TOPIC, LogWriter, read_log
 from daemon.recording.schemas import DROPPED_TOPIC
 from daemon.settings.sources import DEFAULTS
+from daemon.shared_memory.bus_link import BusLink, BusState
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from tests.end_to_end.harness import RunningDaemon

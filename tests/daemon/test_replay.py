@@ -6,11 +6,11 @@ import pytest
 from rig import rig, swing
 
 from daemon.cli import main
-from daemon.driving.shared import BusLink, BusRequest, BusState
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import LogError
 from daemon.recording.mcap_log import Log, LogWriter, read_log
 from daemon.recording.replay import ReplayFaultError, replay, stretches
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock

@@ -21,12 +21,12 @@ import numpy as np
 import pytest
 
 from daemon.demo import free_endpoints
-from daemon.driving.shared import cycle_dtype
 from daemon.errors import ConfigError
 from daemon.logs.log_lines import JsonLines
 from daemon.recording.mcap_log import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.settings.sources import DEFAULTS, config_of, resolve
+from daemon.shared_memory.bus_link import cycle_dtype
 from daemon.supervisor.supervisor import BUS_END_TIMEOUT_S
 from retarget.robot.loading import load_robot
 from tests.end_to_end.harness import RunningDaemon, mmmd
@@ -245,7 +245,7 @@ def test_a_log_that_does_not_rotate_is_one_file(tmp_path):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full, a device without room")
 def test_a_full_disk_ends_the_recorder_with_one_message(tmp_path):
     (tmp_path / "run.mcap").symlink_to("/dev/full")
-    from daemon.driving.shared import BusLink
+    from daemon.shared_memory.bus_link import BusLink
 
     link = BusLink.create(load_robot("reference").n_joints)
     try:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.driving.shared import N_CYCLES, N_SETPOINTS, BusLink, BusRequest, BusState, Readiness
+from daemon.shared_memory.bus_link import N_CYCLES, N_SETPOINTS, BusLink, BusRequest, BusState, Readiness
 
 J = 5
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.driving.shared import BusRequest, BusState
-from daemon.driving.silence import Silence
-from daemon.driving.streamer import CTL_LOST_S
+from daemon.control.control_loop import CTL_LOST_S
+from daemon.control.silence import Silence
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from tests.daemon.rig import lead_to, rig
 
 

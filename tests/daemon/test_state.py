@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from daemon.driving.shared import BusState
+from daemon.shared_memory.bus_link import BusState
 from daemon.state.docs import page
 from daemon.state.machine import (
     COMMANDS,

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from daemon.driving.request_words import N_WORDS, Asked, Asker, BusRequest, RequestWords
+from daemon.shared_memory.request_words import N_WORDS, Asked, Asker, BusRequest, RequestWords
 
 A, S, E, R = BusRequest.ARM, BusRequest.STOP, BusRequest.ESTOP, BusRequest.RESET
 

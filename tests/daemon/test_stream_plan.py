@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.driving.shared import BusRequest, BusState
 from daemon.playing.planner import Planner
 from daemon.playing.stream_plan import StreamPlan
 from daemon.playing.stream_score import StreamScore
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.lease import LeaseClock, LeaseState
 from retarget.path.collision import SelfContact

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rig import assert_brakes_within_limits, rig, swing, with_known_turns
 
-from daemon.driving.shared import BusRequest, BusState
 from daemon.dynamixel.registers.models import CONTROL_TABLES
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.path.collision import SelfContact
 from retarget.robot.loading import list_robots, load_robot
 

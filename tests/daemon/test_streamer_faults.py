@@ -5,9 +5,9 @@ import itertools
 import pytest
 from rig import rig, swing
 
-from daemon.driving import shared
-from daemon.driving.shared import BusRequest, BusState
-from daemon.driving.streamer import HEARTBEAT_LOST_S, PARK_AFTER_S
+from daemon.control.control_loop import HEARTBEAT_LOST_S, PARK_AFTER_S
+from daemon.shared_memory import bus_link as shared
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.robot.loading import load_robot
 from sim.faults import Fault
 

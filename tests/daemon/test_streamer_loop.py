@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from daemon.driving.shared import BusLink, BusRequest, Readiness
-from daemon.driving.starting import start
-from daemon.driving.streamer import LOOK_S
+from daemon.control.control_loop import LOOK_S
+from daemon.control.starting import start
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import PortMissingError
+from daemon.shared_memory.bus_link import BusLink, BusRequest, Readiness
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from sim.bus import SimBus
@@ -40,13 +40,13 @@ def test_start_says_why_there_is_no_robot():
 
 
 def test_the_start_says_how_to_set_a_slow_adapters_timer(monkeypatch, caplog):
-    monkeypatch.setattr("daemon.driving.starting.latency_advice", lambda device: f"run: set {device}" if device else "")
+    monkeypatch.setattr("daemon.control.starting.latency_advice", lambda device: f"run: set {device}" if device else "")
     robot, clock = load_robot("reference"), VirtualClock()
     link = BusLink.create(robot.n_joints)
     port = SimPort(SimBus(robot), clock)
     port.device = "/dev/ttyUSB7"
     try:
-        with caplog.at_level("WARNING", "daemon.driving.starting"):
+        with caplog.at_level("WARNING", "daemon.control.starting"):
             assert start(robot, lambda: ServoBus(port, robot.servos, clock), link, clock) is not None
         assert "run: set /dev/ttyUSB7" in caplog.text and link.readiness is Readiness.READY
     finally:

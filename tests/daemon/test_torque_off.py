@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from rig import assert_brakes_within_limits, lead_to, rig, swing
 
-from daemon.driving.shared import BusRequest, BusState
-from daemon.driving.streamer import FAULT_LIMP_S, TORQUE_OFF_REPEATS
+from daemon.control.control_loop import FAULT_LIMP_S, TORQUE_OFF_REPEATS
+from daemon.shared_memory.bus_link import BusRequest, BusState
 from sim.faults import Fault
 
 

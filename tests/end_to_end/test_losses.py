@@ -48,7 +48,7 @@ def test_a_killed_front_leaves_a_parked_robot_and_no_process(tmp_path):
         assert daemon.mmmd("say", "wave", "--no-wait").returncode == 0
         with daemon.client() as client:
             client.wait_for("moving", timeout_s=10)
-        bus = child_pid(daemon, "daemon.driving.process")
+        bus = child_pid(daemon, "daemon.control.process")
         daemon.process.kill()
         daemon.process.wait(5)
         within(20, "the bus process has ended", lambda: gone(bus))

@@ -196,7 +196,7 @@ def test_a_bus_process_that_dies_or_freezes_is_a_fault(number):
         daemon.until_ready()
         with daemon.client() as client:
             client.arm()
-            pid = child_pid(daemon, "daemon.driving.process")
+            pid = child_pid(daemon, "daemon.control.process")
             os.kill(pid, number)
             status = client.wait_for("fault", timeout_s=5)
             assert "bus process" in status.reason

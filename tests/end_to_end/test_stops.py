@@ -66,7 +66,7 @@ def test_the_front_keeps_no_estop_from_the_bus_process(servos, number):
     try:
         with daemon.client() as client:
             lead_to(client, servos, "moving")
-        bus, ctl = child_pid(daemon, "daemon.driving.process"), child_pid(daemon, "daemon.ctl.process")
+        bus, ctl = child_pid(daemon, "daemon.control.process"), child_pid(daemon, "daemon.ctl.process")
         daemon.process.send_signal(number)
         ack = person.hears(ev.Ack, person.estop(), 5.0)
         assert ack.carried_out
@@ -137,7 +137,7 @@ def test_an_estop_without_a_bus_process_is_told_as_owed_and_carried_out_by_the_n
     try:
         with daemon.client() as client:
             lead_to(client, servos, "moving")
-            os.kill(child_pid(daemon, "daemon.driving.process"), number)
+            os.kill(child_pid(daemon, "daemon.control.process"), number)
             time.sleep(after_s)
             name = person.estop()
             assert person.hears(ev.Ack, name, 5.0).carried_out is False

@@ -144,7 +144,7 @@ def test_nothing_that_runs_imports_what_the_wheel_leaves_out():
             if name not in seen and not name.startswith(NEEDS_A_CLONE):
                 seen[name] = f"{seen[module]} {module}".strip()
                 waiting.append(name)
-    assert "mmm_core.generate.engine" in seen and "daemon.driving.streamer" in seen
+    assert "mmm_core.generate.engine" in seen and "daemon.control.control_loop" in seen
 
 
 class Environment:

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.driving.gate import Gate
+from daemon.control.safety_limiter import Gate
 from retarget.errors import RobotFileError, UnknownRobotError
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
@@ -181,9 +181,7 @@ def test_directions_and_zero_are_as_the_file_says() -> None:
 
 
 def test_retargeting_loads_no_torch() -> None:
-    code = (
-        "import sys, retarget.pipeline, daemon.driving.streamer, daemon.front.front; sys.exit('torch' in sys.modules)"
-    )
+    code = "import sys, retarget.pipeline, daemon.control.control_loop, daemon.front.front; sys.exit('torch' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], timeout=60, check=False).returncode == 0
 
 

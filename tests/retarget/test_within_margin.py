@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from daemon.driving.gate import GATE_SHARE, Gate
+from daemon.control.safety_limiter import GATE_SHARE, Gate
 from retarget.path.collision import KEPT, SelfContact
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointState

@@ -12,8 +12,8 @@ from collections import Counter, deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from daemon.driving.shared import BusState
 from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED
+from daemon.shared_memory.bus_link import BusState
 from sim.faults import PACKET_KINDS, Fault
 from tests.daemon.rig import Rig
 

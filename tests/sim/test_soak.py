@@ -19,10 +19,10 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from daemon.driving.process import SLOW_EVERY
-from daemon.driving.shared import BusLink, BusRequest, BusState
-from daemon.driving.turns import TURNS_UNKNOWN
+from daemon.control.process import SLOW_EVERY
+from daemon.control.turns import TURNS_UNKNOWN
 from daemon.dynamixel.codec import packet
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from sim.faults import INSTANT_KINDS, PACKET_KINDS, Fault

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from emulator import FakePort, FakeServo
 
-from daemon.driving.shared import BusLink, BusRequest, BusState
-from daemon.driving.streamer import Streamer
+from daemon.control.control_loop import Streamer
 from daemon.dynamixel.multi import MultiBus, RobotBus, bus_on, open_bus
 from daemon.dynamixel.registers.models import MODELS
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.dynamixel.setup.checks import check_servos
 from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTimeoutError
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.robot.loading import load_robot
 from retarget.robot.ticks import JointServoMap
 from sim.clock import VirtualClock

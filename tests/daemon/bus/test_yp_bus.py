@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from rig_bus import BusRig, bus_rig
 
-from daemon.driving.derating import FULL_LOAD, read_limits
-from daemon.driving.pinning import pin_where_they_stand, reading_at_rest
+from daemon.control.derating import FULL_LOAD, read_limits
+from daemon.control.pinning import pin_where_they_stand, reading_at_rest
 from daemon.dynamixel.codec.packet import Instruction, PacketDecoder
 from daemon.dynamixel.rate_plan import plan_for
 from daemon.dynamixel.registers.models import MODELS

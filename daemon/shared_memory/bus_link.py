@@ -1,7 +1,7 @@
 """Memory shared between front and bus process: setpoints down, requests down, cycles up. No locks.
 
 One file in memory, mapped by both. Each ring has one writer; indices are 64-bit words that only their owner moves, so a
-reader never waits and a stuck peer never blocks the bus. Requests are words too (`daemon.driving.request_words`): an e-stop
+reader never waits and a stuck peer never blocks the bus. Requests are words too (`daemon.shared_memory.request_words`): an e-stop
 never queues behind anything, and is owed until a cycle has carried it out.
 """
 
@@ -21,8 +21,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.request_words import HALTS, N_WORDS, Asked, Asker, BusRequest, RequestWords
 from daemon.dynamixel.health import HEALTH
+from daemon.shared_memory.request_words import HALTS, N_WORDS, Asked, Asker, BusRequest, RequestWords
 
 Array = NDArray[np.float64]
 
@@ -310,7 +310,7 @@ class BusLink:
 
     @property
     def derating(self) -> tuple[float, int, int]:
-        """Share of full speed, its cause (`daemon.driving.derating.DeratedBy`), and the id of the servo that needs it most."""
+        """Share of full speed, its cause (`daemon.control.derating.DeratedBy`), and the id of the servo that needs it most."""
         words = (_Word.SPEED_PERMILLE, _Word.DERATED_BY, _Word.DERATED_SERVO)
         permille, by, servo_id = (int(self._words[word]) for word in words)
         return (permille / 1000 if permille else 1.0), by, servo_id

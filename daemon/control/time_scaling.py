@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from daemon.driving.shared import Setpoint
+from daemon.shared_memory.bus_link import Setpoint
 
 WAIT_S = 1.0
 """So long a motion waits in all before it goes on without the robot: setpoints that do lead into it end as well."""

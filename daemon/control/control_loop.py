@@ -15,22 +15,22 @@ from contextlib import suppress
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.arming import Armed, arm_in_steps
-from daemon.driving.derating import Derating
-from daemon.driving.gate import Gate
-from daemon.driving.judging import MAY_HAVE_TRIPPED_S, Judge
-from daemon.driving.leading_back import LeadingBack
-from daemon.driving.pace import Pace, SlowedSetpoints
-from daemon.driving.ramp import EFFORT_START, TorqueRamp
-from daemon.driving.request_words import ESTOPS, Asked
-from daemon.driving.shared import BusLink, BusRequest, BusState
-from daemon.driving.silence import Silence
-from daemon.driving.slow_move import SlowMove
-from daemon.driving.turns import TurnWatch
+from daemon.control.arming import Armed, arm_in_steps
+from daemon.control.derating import Derating
+from daemon.control.fault_detector import MAY_HAVE_TRIPPED_S, Judge
+from daemon.control.leading_back import LeadingBack
+from daemon.control.point_to_point import SlowMove
+from daemon.control.safety_limiter import Gate
+from daemon.control.silence import Silence
+from daemon.control.time_scaling import Pace, SlowedSetpoints
+from daemon.control.torque_ramp import EFFORT_START, TorqueRamp
+from daemon.control.turns import TurnWatch
 from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.reading import BusReading
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.host.clock import Clock
+from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
+from daemon.shared_memory.request_words import ESTOPS, Asked
 from retarget.path.collision import SelfContact
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap

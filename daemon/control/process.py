@@ -1,4 +1,4 @@
-"""Entry of the bus process: rights, port, loop. `python -m daemon.driving.process --robot R --bus URL --link NAME`."""
+"""Entry of the bus process: rights, port, loop. `python -m daemon.control.process --robot R --bus URL --link NAME`."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ import threading
 import time
 from pathlib import Path
 
-from daemon.driving.shared import BusLink
-from daemon.driving.starting import start
-from daemon.driving.streamer import Streamer
+from daemon.control.control_loop import Streamer
+from daemon.control.starting import start
 from daemon.dynamixel.multi import RobotBus, open_bus
 from daemon.host.clock import RealClock
 from daemon.host.cores import keep_to
@@ -20,6 +19,7 @@ from daemon.host.parent import Parent
 from daemon.host.realtime import BUS_PRIORITY, give_back_fifo, lock_memory, take_fifo
 from daemon.logs.log_feed import send_logs
 from daemon.logs.log_lines import start_logging
+from daemon.shared_memory.bus_link import BusLink
 from retarget.robot.loading import load_robot
 
 log = logging.getLogger(__name__)

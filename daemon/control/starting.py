@@ -5,14 +5,14 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 
-from daemon.driving.request_words import ESTOPS, BusRequest
-from daemon.driving.shared import BusLink, Readiness
-from daemon.driving.streamer import Streamer
+from daemon.control.control_loop import Streamer
 from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.ports.adapter import latency_advice
 from daemon.dynamixel.setup.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.errors import CommandError, ConfigError, DaemonError
 from daemon.host.clock import Clock
+from daemon.shared_memory.bus_link import BusLink, Readiness
+from daemon.shared_memory.request_words import ESTOPS, BusRequest
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)

@@ -11,8 +11,8 @@ import logging
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.arming import WATCHDOG_UNITS
-from daemon.driving.pinning import refuse_hardware_errors
+from daemon.control.arming import WATCHDOG_UNITS
+from daemon.control.pinning import refuse_hardware_errors
 from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.reading import BusReading
 from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S

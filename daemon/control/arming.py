@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.derating import ServoLimits, read_limits
-from daemon.driving.pinning import pin_where_they_stand, reading_at_rest, refuse_hardware_errors
-from daemon.driving.turns import TurnWatch
+from daemon.control.derating import ServoLimits, read_limits
+from daemon.control.pinning import pin_where_they_stand, reading_at_rest, refuse_hardware_errors
+from daemon.control.turns import TurnWatch
 from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.setup.checks import check_servos, require_needed
 from daemon.errors import LinkTimeoutError

@@ -7,8 +7,8 @@ import logging
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.driving.approach import Approach
-from daemon.driving.gate import Gate
+from daemon.control.ptp_trajectory import Approach
+from daemon.control.safety_limiter import Gate
 from retarget.path.collision import SelfContact
 from retarget.path.rrt_connect import WaySearch
 from retarget.robot.robot import RobotModel
