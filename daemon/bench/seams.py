@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from daemon.bench.daemon_rig import percentile
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
-from daemon.playing.cycles import closed, find_loop
-from daemon.playing.idle import IdleScore
-from daemon.playing.planner import FADE_FRAMES
-from daemon.playing.posture import Posture, distance_deg, faded_in, joined, posture_of, standing
-from daemon.playing.sources import PREFIX_FRAMES
+from daemon.playback.setpoint_buffer import FADE_FRAMES
+from daemon.playback.sources.preparation import PREFIX_FRAMES
+from daemon.poses.cycles import closed, find_loop
+from daemon.poses.idle import IdleScore
+from daemon.poses.pose_sequence import Posture, distance_deg, faded_in, joined, posture_of, standing
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import FPS, Motion

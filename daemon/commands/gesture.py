@@ -93,7 +93,7 @@ def _list(folder: Path | None, json: bool) -> int:
 
 def _add(name: str, file: Path | None, folder: Path | None, *, replace: bool) -> int:
     from daemon.gestures.library import GestureLibrary
-    from daemon.playing.posture import posture_of
+    from daemon.poses.pose_sequence import posture_of
     from mmm_core.motion.motion import load_npz
 
     if file is None:

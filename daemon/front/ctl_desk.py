@@ -12,7 +12,7 @@ import time
 from collections.abc import Awaitable, Callable
 
 from daemon.ctl.channel import FRONT_SERVES_S, Answered, Channel, Handed, Ready, Told
-from daemon.playing.performer import Performer
+from daemon.scheduling.scheduler import Performer
 from daemon.shared_memory.bus_link import BusLink
 from daemon.shared_memory.request_words import Asked, BusRequest
 from daemon.state.ledger import Ledger

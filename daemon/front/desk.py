@@ -9,9 +9,9 @@ from daemon.errors import ClipError, GestureExistsError
 from daemon.front.stop_texts import asks_to_stop
 from daemon.generator.generation import GeneratorClient
 from daemon.gestures.library import GestureLibrary
-from daemon.playing.layers import gaze_note
-from daemon.playing.performer import Performer
-from daemon.playing.sources import Sources
+from daemon.playback.sources.preparation import Sources
+from daemon.poses.layers import gaze_note
+from daemon.scheduling.scheduler import Performer
 from daemon.settings.config import DaemonConfig
 from daemon.state.ledger import Ledger, Route
 from daemon.wire.event_base import Event

@@ -30,11 +30,11 @@ from daemon.network.connections import ConnectionGuard, Share
 from daemon.network.inbox import Inbox, Message
 from daemon.network.keys import Doorkeeper, KeyFolder
 from daemon.network.sockets import bind, publish_now, send_now
-from daemon.playing.follower import Follower
-from daemon.playing.performer import Performer
-from daemon.playing.planner import Planner
-from daemon.playing.sources import Sources
-from daemon.playing.until_armed import TICK_S
+from daemon.playback.bus_follower import Follower
+from daemon.playback.setpoint_buffer import Planner
+from daemon.playback.sources.preparation import Sources
+from daemon.scheduling.scheduler import Performer
+from daemon.scheduling.until_armed import TICK_S
 from daemon.settings.config import DaemonConfig
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.bus_view import BusView

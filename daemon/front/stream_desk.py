@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 
 from daemon.front.stream_inbox import StreamInbox
-from daemon.playing.performer import Performer
+from daemon.scheduling.scheduler import Performer
 from daemon.state.ledger import Ledger
 from daemon.wire.codec import WireError, error_event
 from daemon.wire.event_base import Event

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.errors import ClipError
-from daemon.playing.posture import Posture, standing
-from daemon.playing.score import Marks
+from daemon.poses.cycles import Marks
+from daemon.poses.pose_sequence import Posture, standing
 from mmm_core.motion.arrays import read_npz
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.skeleton import BONE_LENGTHS_M, normalise

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
 from daemon.gestures.clips import Clip, load_clips, save_clips
-from daemon.playing.posture import Posture, at_tempo
-from daemon.playing.score import marks_of
+from daemon.poses.cycles import marks_of
+from daemon.poses.pose_sequence import Posture, at_tempo
 from daemon.wire.status import GestureInfo
 from mmm_core.motion.motion import FPS
 

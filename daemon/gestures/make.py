@@ -16,8 +16,8 @@ import numpy as np
 
 from daemon.gestures.clips import Clip, save_clips
 from daemon.gestures.library import SHIPPED
-from daemon.playing.posture import Posture, distance_deg, mirrored, posture_of, standing
-from daemon.playing.score import marks_of
+from daemon.poses.cycles import marks_of
+from daemon.poses.pose_sequence import Posture, distance_deg, mirrored, posture_of, standing
 from mmm_core.corpus.heldout import Probe
 from mmm_core.motion.motion import Motion
 from retarget.pipeline import Retargeter

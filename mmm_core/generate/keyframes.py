@@ -2,7 +2,7 @@
 
 In-betweening of MMM (arXiv 2312.03596, sec. 3.3) with poses instead of motions: each pose becomes the id of a person who
 stands still in it, at the position of its time; all other ids are [MASK]. Ids are coarse, so the motion passes a pose within
-a few degrees; a caller that needs the exact pose bends the motion towards it afterwards (`daemon.playing.keyposes`).
+a few degrees; a caller that needs the exact pose bends the motion towards it afterwards (`daemon.poses.key_poses`).
 """
 
 from __future__ import annotations

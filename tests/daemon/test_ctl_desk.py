@@ -11,7 +11,7 @@ import pytest
 
 from daemon.ctl.channel import FRONT_SERVES_S, Answered, Channel, Handed, pair
 from daemon.front.ctl_desk import UNTOLD_S, CtlDesk
-from daemon.playing.waiting import Halts
+from daemon.scheduling.command_queue import Halts
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.shared_memory.request_words import Asker
 from daemon.state.ledger import Ledger

@@ -8,8 +8,8 @@ from collections.abc import Awaitable, Callable
 import numpy as np
 
 from daemon.generator.messages import Generated
-from daemon.playing.draft_score import MOST_TRIES, DraftScore
-from daemon.playing.posture import Posture, posture_of
+from daemon.playback.sources.preview_source import MOST_TRIES, DraftScore
+from daemon.poses.pose_sequence import Posture, posture_of
 from tests.daemon.kinematic import raised_arm
 
 DRAFT, WHOLE = raised_arm(seconds=1.0, angle_rad=0.6), raised_arm(seconds=2.0, angle_rad=1.2)

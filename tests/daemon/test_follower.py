@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.playing.follower import BUS_SILENT_S, Follower
-from daemon.playing.planner import Planner
+from daemon.playback.bus_follower import BUS_SILENT_S, Follower
+from daemon.playback.setpoint_buffer import Planner
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.machine import RobotState, StateMachine

@@ -9,8 +9,8 @@ from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
 from daemon.gestures.clips import Clip, load_clips, save_clips
 from daemon.gestures.library import SHIPPED, GestureLibrary
 from daemon.gestures.make import WANTED, mirror_name
-from daemon.playing.posture import distance_deg, posture_of, standing
-from daemon.playing.score import marks_of
+from daemon.poses.cycles import marks_of
+from daemon.poses.pose_sequence import distance_deg, posture_of, standing
 from mmm_core.evaluation.probes import judge
 from mmm_core.motion.posture_features import posture_features
 from retarget.pipeline import Retargeter
@@ -120,7 +120,7 @@ def test_damaged_files_are_named_and_do_not_hide_the_others(tmp_path):
 
 
 def test_marks_outside_the_frames_are_damage(tmp_path):
-    from daemon.playing.score import Marks
+    from daemon.poses.cycles import Marks
 
     save_clips(tmp_path / "x.npz", {"x": Clip("x", "", P, Marks((5, 999), 3))})
     with pytest.raises(ClipError, match="do not fit"):

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.playing.lead import Lead
+from daemon.playback.latency_estimate import Lead
 
 
 @given(st.floats(0.001, 0.5))

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from daemon.control.control_loop import Streamer
 from daemon.dynamixel.servo_bus import ServoBus
-from daemon.playing.lead import Lead
-from daemon.playing.planner import Planner
-from daemon.playing.posture import at_tempo, distance_deg, posture_of, standing
+from daemon.playback.latency_estimate import Lead
+from daemon.playback.setpoint_buffer import Planner
+from daemon.poses.pose_sequence import at_tempo, distance_deg, posture_of, standing
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from daemon.state.bus_view import BusView
 from retarget.path.limits import JointLimits

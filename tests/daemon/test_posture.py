@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.playing.posture import (
+from daemon.poses.pose_sequence import (
     at_tempo,
     distance_deg,
     faded_in,
@@ -47,7 +47,7 @@ def test_mirroring_twice_changes_nothing_and_once_moves_the_other_arm():
 
 
 def test_a_mirrored_head_looks_to_the_other_side():
-    from daemon.playing.idle import head_wxyz
+    from daemon.poses.idle import head_wxyz
 
     yaw, pitch = np.deg2rad([30.0]), np.deg2rad([10.0])
     from dataclasses import replace

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.playing.cycles import after_loop, closed, find_hold, find_loop
-from daemon.playing.idle import STYLES, IdleScore, looking
-from daemon.playing.posture import Posture, distance_deg, joined, posture_of, standing
-from daemon.playing.score import ClipScore, Marks, marks_of
+from daemon.playback.sources.clip_source import ClipScore
+from daemon.poses.cycles import Marks, after_loop, closed, find_hold, find_loop, marks_of
+from daemon.poses.idle import STYLES, IdleScore, looking
+from daemon.poses.pose_sequence import Posture, distance_deg, joined, posture_of, standing
 from daemon.wire.requests import Say
 from mmm_core.motion.motion import FPS
 from retarget.pipeline import Retargeter

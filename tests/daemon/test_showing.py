@@ -9,8 +9,8 @@ import pytest
 
 from daemon.gestures.clips import load_clips
 from daemon.gestures.library import SHIPPED
-from daemon.playing.posture import Posture, standing
-from daemon.playing.showing import Showing, Verdict
+from daemon.playback.sources.showing import Showing, Verdict
+from daemon.poses.pose_sequence import Posture, standing
 from mmm_core.motion.motion import FPS
 from mmm_core.recognition.seen import Scene
 from retarget.pipeline import Retargeter

@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from daemon.generator.messages import Generated, GeneratorError
-from daemon.playing import story_score
-from daemon.playing.keyposes import KeyPose, led_through
-from daemon.playing.posture import at_tempo, distance_deg, joined, posture_of, standing
-from daemon.playing.story_score import PIECES_AHEAD, StoryScore
+from daemon.playback.sources import story_source as story_score
+from daemon.playback.sources.story_source import PIECES_AHEAD, StoryScore
+from daemon.poses.key_poses import KeyPose, led_through
+from daemon.poses.pose_sequence import at_tempo, distance_deg, joined, posture_of, standing
 from daemon.state.replies import NotPlayableError
 from daemon.wire.requests import SceneOf, Story
 from tests.daemon.kinematic import motion_of, raised_arm

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.playing.planner import Planner
-from daemon.playing.stream_plan import StreamPlan
-from daemon.playing.stream_score import StreamScore
+from daemon.playback.setpoint_buffer import Planner
+from daemon.playback.sources.stream_source import StreamScore
+from daemon.playback.stream_trajectory import StreamPlan
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.lease import LeaseClock, LeaseState

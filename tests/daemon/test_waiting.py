@@ -7,7 +7,7 @@ import time
 import pytest
 
 from daemon.host.clock import clock_id
-from daemon.playing.waiting import CLOCKS_KEPT, SHADOW_S, Halts
+from daemon.scheduling.command_queue import CLOCKS_KEPT, SHADOW_S, Halts
 from daemon.state.ledger import Entry
 from daemon.wire.requests import Say, Stop
 

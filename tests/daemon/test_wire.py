@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.playing.sources import PREFIX_FRAMES
+from daemon.playback.sources.preparation import PREFIX_FRAMES
 from daemon.wire import codec as wire
 from daemon.wire import events, requests
 from daemon.wire.schemas import schemas, text_of

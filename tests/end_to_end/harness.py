@@ -15,7 +15,7 @@ from pathlib import Path
 
 from daemon.client import Client, NoAnswerError
 from daemon.generator.messages import Generated
-from daemon.playing.waiting import SHADOW_S
+from daemon.scheduling.command_queue import SHADOW_S
 from daemon.settings.config import Endpoints
 from daemon.wire.events import Done
 from tests.daemon.kinematic import KinematicGenerator, generate

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from daemon.playing.posture import distance_deg, posture_of
+from daemon.poses.pose_sequence import distance_deg, posture_of
 from mmm_core.errors import GenerationError
 from mmm_core.generate.continuation import continue_motion
 from mmm_core.generate.engine import Engine

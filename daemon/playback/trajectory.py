@@ -11,8 +11,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playing.plan_statistics import PlanStatistics
-from daemon.playing.posture import Posture, joined
+from daemon.playback.trajectory_statistics import PlanStatistics
+from daemon.poses.pose_sequence import Posture, joined
 from retarget.path.paths import JointPath, JointState
 
 Array = NDArray[np.float64]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from daemon.playing.idle import looking
-from daemon.playing.posture import Posture
+from daemon.poses.idle import looking
+from daemon.poses.pose_sequence import Posture
 from retarget.robot.robot import RobotModel
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playing.posture import Posture, mixed, smooth_step, standing
+from daemon.poses.pose_sequence import Posture, mixed, smooth_step, standing
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.skeleton import JOINT_NAMES, normalise
 

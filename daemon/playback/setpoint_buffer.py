@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playing.lead import Lead
-from daemon.playing.plan import Piece, Plan
-from daemon.playing.plan_statistics import PlanStatistics
-from daemon.playing.posture import Posture, joined, posture_of, standing
-from daemon.playing.stream_plan import StreamPlan
-from daemon.playing.stream_score import StreamScore
+from daemon.playback.latency_estimate import Lead
+from daemon.playback.sources.stream_source import StreamScore
+from daemon.playback.stream_trajectory import StreamPlan
+from daemon.playback.trajectory import Piece, Plan
+from daemon.playback.trajectory_statistics import PlanStatistics
+from daemon.poses.pose_sequence import Posture, joined, posture_of, standing
 from daemon.shared_memory.bus_link import N_SETPOINTS, BusLink
 from daemon.state.bus_view import BusView
 from mmm_core.motion.motion import FPS

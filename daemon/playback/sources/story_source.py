@@ -17,7 +17,7 @@ import numpy as np
 
 from daemon.generator.generation import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
-from daemon.playing.posture import Posture, at_steps, joined, mirrored, posture_of, scaled, standing
+from daemon.poses.pose_sequence import Posture, at_steps, joined, mirrored, posture_of, scaled, standing
 from daemon.state.replies import NotPlayableError, generator_failed
 from daemon.wire.requests import Story
 from mmm_core.recognition.seen import Scene, scenes_seen, sentence

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playing.posture import Posture, distance_deg, mixed, smooth_step, standing
+from daemon.poses.pose_sequence import Posture, distance_deg, mixed, smooth_step, standing
 
 Array = NDArray[np.float64]
 
@@ -15,6 +17,24 @@ LOOP_ALIKE_DEG = 15.0
 CLOSING_S = 0.4
 """Over this time before its end a loop is led to where it began."""
 _STILL_DEG_S = 20.0
+
+
+@dataclass(frozen=True)
+class Marks:
+    """What is known of a clip beforehand, in frames; None where it has to be found.
+
+    Attributes:
+        loop: first frame and end of the part that goes round; None when there is none.
+        hold: frame that is held.
+    """
+
+    loop: tuple[int, int] | None
+    hold: int
+
+
+def marks_of(posture: Posture) -> Marks:
+    """Find loop and hold of a clip."""
+    return Marks(find_loop(posture), find_hold(posture))
 
 
 def find_loop(p: Posture) -> tuple[int, int] | None:

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playing.lacking import instead, lacking
-from daemon.playing.posture import Posture
+from daemon.playback.sources.lacking import instead, lacking
+from daemon.poses.pose_sequence import Posture
 from mmm_core.recognition.named import families_named
 from mmm_core.recognition.seen import HARDLY, NOTHING_MOVES, Scene, lost, scenes_seen, sentence
 from retarget.pipeline import Retargeter

@@ -8,10 +8,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playing.plan import KEPT_FRAMES, Plan
-from daemon.playing.plan_statistics import PlanStatistics
-from daemon.playing.posture import Posture
-from daemon.playing.stream_score import StreamScore
+from daemon.playback.sources.stream_source import StreamScore
+from daemon.playback.trajectory import KEPT_FRAMES, Plan
+from daemon.playback.trajectory_statistics import PlanStatistics
+from daemon.poses.pose_sequence import Posture
 from retarget.path.paths import JointState
 
 Array = NDArray[np.float64]

@@ -1,18 +1,17 @@
 """What a command plays, stretch by stretch: once, several times, or for ever.
 
 A score is asked for its next stretch shortly before it is due. Whatever can make postures in time order can be one:
-a clip here, idle movements in `daemon.playing.idle`, a generator that tells a story.
+a clip here, idle movements in `daemon.poses.idle`, a generator that tells a story.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from daemon.playing.cycles import after_loop, closed, find_hold, find_loop
-from daemon.playing.posture import Posture, at_tempo, faded_in, joined, mirrored, scaled
+from daemon.poses.cycles import Marks, after_loop, closed, marks_of
+from daemon.poses.pose_sequence import Posture, at_tempo, faded_in, joined, mirrored, scaled
 from daemon.wire.requests import Play
 
 AGAIN_FADE_FRAMES = 8
@@ -32,24 +31,6 @@ class Score(Protocol):
     def next(self) -> tuple[Posture, bool]:
         """The next stretch, and whether it is the last; not called again after that."""
         ...
-
-
-@dataclass(frozen=True)
-class Marks:
-    """What is known of a clip beforehand, in frames; None where it has to be found.
-
-    Attributes:
-        loop: first frame and end of the part that goes round; None when there is none.
-        hold: frame that is held.
-    """
-
-    loop: tuple[int, int] | None
-    hold: int
-
-
-def marks_of(posture: Posture) -> Marks:
-    """Find loop and hold of a clip."""
-    return Marks(find_loop(posture), find_hold(posture))
 
 
 class ClipScore:

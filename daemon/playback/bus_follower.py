@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 
-from daemon.playing.planner import Planner
+from daemon.playback.setpoint_buffer import Planner
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.machine import ImpossibleTransitionError, RobotState, StateMachine, Trigger

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from daemon.playing.posture import Posture
+from daemon.poses.pose_sequence import Posture
 from mmm_core.motion.motion import Motion
 from mmm_core.recognition.seen import Scene
 

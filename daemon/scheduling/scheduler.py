@@ -1,7 +1,7 @@
 """Carries commands out: make the motion, wait for its turn, arm where allowed, take over, watch it to its end.
 
-At most one motion is played; the newest `now` that is accepted wins (`daemon.playing.waiting` has the rule). Runs in the front's
-event loop.
+At most one motion is played; the newest `now` that is accepted wins (`daemon.scheduling.command_queue` has the rule).
+Runs in the front's event loop.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playing.follower import Follower
-from daemon.playing.layers import Layers
-from daemon.playing.planner import Planner
-from daemon.playing.player import Player
-from daemon.playing.sources import Prepared, Sources
-from daemon.playing.stream_score import StreamScore
-from daemon.playing.until_armed import TICK_S, until_armed
-from daemon.playing.waiting import MOST_WAITING, Halts, Pending, WaitingRoom
+from daemon.playback.bus_follower import Follower
+from daemon.playback.playback import Player
+from daemon.playback.setpoint_buffer import Planner
+from daemon.playback.sources.preparation import Prepared, Sources
+from daemon.playback.sources.stream_source import StreamScore
+from daemon.poses.layers import Layers
+from daemon.scheduling.command_queue import MOST_WAITING, Halts, Pending, WaitingRoom
+from daemon.scheduling.until_armed import TICK_S, until_armed
 from daemon.settings.config import DaemonConfig
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.lease import LeaseState

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daemon.playing.posture import Posture, mixed
+from daemon.poses.pose_sequence import Posture, mixed
 
 REACH_S = 1.0
 """So long before a pose is due the motion begins to be led to it, and so long after it is free again."""

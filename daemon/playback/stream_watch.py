@@ -7,9 +7,9 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playing.planner import Planner
-from daemon.playing.stream_plan import StreamPlan
-from daemon.playing.stream_score import SELF_COLLISION
+from daemon.playback.setpoint_buffer import Planner
+from daemon.playback.sources.stream_source import SELF_COLLISION
+from daemon.playback.stream_trajectory import StreamPlan
 from daemon.state.ledger import Entry, Ledger
 from daemon.wire.events import Progress
 

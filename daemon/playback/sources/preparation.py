@@ -19,15 +19,16 @@ from daemon.errors import ClipError
 from daemon.generator.generation import GeneratorClient, no_answer
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.gestures.library import GestureLibrary
-from daemon.playing.draft_score import DraftScore
-from daemon.playing.kept_motions import KeptMotion, KeptMotions
-from daemon.playing.keyposes import KeyPose, led_through
-from daemon.playing.originals import Originals
-from daemon.playing.posture import Posture, joined, mirrored, posture_of
-from daemon.playing.score import ClipScore, Marks, Score, varied
-from daemon.playing.showing import Showing, Shows, Verdict, at_tempo
-from daemon.playing.story_score import SceneNews, StoryScore
-from daemon.playing.stream_score import StreamScore
+from daemon.playback.sources.clip_source import ClipScore, Score, varied
+from daemon.playback.sources.kept_motions import KeptMotion, KeptMotions
+from daemon.playback.sources.originals import Originals
+from daemon.playback.sources.preview_source import DraftScore
+from daemon.playback.sources.showing import Showing, Shows, Verdict, at_tempo
+from daemon.playback.sources.story_source import SceneNews, StoryScore
+from daemon.playback.sources.stream_source import StreamScore
+from daemon.poses.cycles import Marks
+from daemon.poses.key_poses import KeyPose, led_through
+from daemon.poses.pose_sequence import Posture, joined, mirrored, posture_of
 from daemon.settings.config import DaemonConfig
 from daemon.state.lease import LeaseClock
 from daemon.state.ledger import Entry

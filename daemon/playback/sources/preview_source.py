@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from daemon.generator.messages import Generated
-from daemon.playing.posture import Posture
+from daemon.poses.pose_sequence import Posture
 
 MOST_TRIES = 5
 """A machine that is late so often plays the draft to its end."""

@@ -9,12 +9,12 @@ import asyncio
 import math
 from collections.abc import Callable, Iterator
 
-from daemon.playing.draft_score import DraftScore
-from daemon.playing.layers import Layers
-from daemon.playing.plan import Piece
-from daemon.playing.planner import FADE_FRAMES, HandOver, Planner
-from daemon.playing.posture import Posture, distance_deg, faded_in
-from daemon.playing.score import Score
+from daemon.playback.setpoint_buffer import FADE_FRAMES, HandOver, Planner
+from daemon.playback.sources.clip_source import Score
+from daemon.playback.sources.preview_source import DraftScore
+from daemon.playback.trajectory import Piece
+from daemon.poses.layers import Layers
+from daemon.poses.pose_sequence import Posture, distance_deg, faded_in
 
 _EASY_DEG_S = 60.0
 """Idle movements lead back to standing no faster."""

@@ -9,10 +9,10 @@ import numpy as np
 from daemon.errors import ClipError, UnknownGestureError
 from daemon.gestures.clips import Clip
 from daemon.gestures.library import GestureLibrary
-from daemon.playing.kept_motions import KeptMotion, KeptMotions
-from daemon.playing.keyposes import KeyPose
-from daemon.playing.posture import standing
-from daemon.playing.score import marks_of
+from daemon.playback.sources.kept_motions import KeptMotion, KeptMotions
+from daemon.poses.cycles import marks_of
+from daemon.poses.key_poses import KeyPose
+from daemon.poses.pose_sequence import standing
 from daemon.state.replies import NotPlayableError
 from daemon.wire.events import Failed, Rejected
 from daemon.wire.requests import Edit, KeyPoseOf, Replay

@@ -6,7 +6,7 @@ import asyncio
 import time
 from collections.abc import Callable
 
-from daemon.playing.follower import Follower
+from daemon.playback.bus_follower import Follower
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.machine import CommandRefusedError, RobotState, Trigger
 

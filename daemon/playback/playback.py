@@ -14,21 +14,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playing.draft_score import DraftScore
-from daemon.playing.follower import Follower
-from daemon.playing.idle import IdleScore
-from daemon.playing.layers import Layers
-from daemon.playing.plan import Plan
-from daemon.playing.plan_statistics import SAMPLED_HZ
-from daemon.playing.planner import Planner
-from daemon.playing.posture import Posture, standing
-from daemon.playing.score import ClipScore, Score
-from daemon.playing.showing import Verdict
-from daemon.playing.story_score import StoryScore
-from daemon.playing.stream_plan import StreamPlan
-from daemon.playing.stream_score import StreamScore
-from daemon.playing.stream_watch import StreamWatch
-from daemon.playing.stretches import Stretches
+from daemon.playback.bus_follower import Follower
+from daemon.playback.segments import Stretches
+from daemon.playback.setpoint_buffer import Planner
+from daemon.playback.sources.clip_source import ClipScore, Score
+from daemon.playback.sources.preview_source import DraftScore
+from daemon.playback.sources.showing import Verdict
+from daemon.playback.sources.story_source import StoryScore
+from daemon.playback.sources.stream_source import StreamScore
+from daemon.playback.stream_trajectory import StreamPlan
+from daemon.playback.stream_watch import StreamWatch
+from daemon.playback.trajectory import Plan
+from daemon.playback.trajectory_statistics import SAMPLED_HZ
+from daemon.poses.idle import IdleScore
+from daemon.poses.layers import Layers
+from daemon.poses.pose_sequence import Posture, standing
 from daemon.state.ledger import Entry, Ledger
 from daemon.state.machine import RobotState
 from daemon.state.replies import NotPlayableError, as_failure, ending, failed
