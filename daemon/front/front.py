@@ -17,13 +17,13 @@ import msgspec
 import zmq
 import zmq.asyncio
 
-from daemon.front.ctl_desk import CtlDesk
-from daemon.front.desk import TOPICS, Desk
-from daemon.front.rates import RATE_HZ, RequestLimits
+from daemon.front.ctl_handler import CtlDesk
+from daemon.front.rate_limits import RATE_HZ, RequestLimits
+from daemon.front.request_handler import TOPICS, Desk
 from daemon.front.stop_texts import stops
-from daemon.front.stream_desk import TargetDesk
 from daemon.front.subscriptions import MOST_BYTES, RECEIVE_QUEUE, LastValues
-from daemon.generator.generation import GeneratorClient
+from daemon.front.target_handler import TargetDesk
+from daemon.generator.client import GeneratorClient
 from daemon.gestures.library import GestureLibrary
 from daemon.logs.log_feed import EVENT_LOGGER
 from daemon.network.connections import ConnectionGuard, Share

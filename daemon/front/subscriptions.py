@@ -6,7 +6,7 @@ import asyncio
 import time
 from collections.abc import Callable, Iterable
 
-from daemon.front.rates import Rates
+from daemon.front.rate_limits import Rates
 from daemon.network.connections import ConnectionGuard
 from daemon.network.inbox import Inbox
 

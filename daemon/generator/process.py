@@ -56,7 +56,7 @@ MOST_BEGUN = 8
 
 
 class Maker(Protocol):
-    """What makes motions: `daemon.generator.maker` with the model, others in tests."""
+    """What makes motions: `daemon.generator.service` with the model, others in tests."""
 
     def generate(self, request: GenerateMessage) -> Iterator[Generated]:
         """A motion, after a draft of it where one is asked for and can be made."""
@@ -154,7 +154,7 @@ def run(
     """
     check_endpoint("bind", bind, keys=keys is not None)
     os.nice(NICENESS)
-    from daemon.generator.maker import EngineMaker
+    from daemon.generator.service import EngineMaker
 
     maker = EngineMaker.load(model, threads)
     checkpoint_hash = maker.checkpoint_hash

@@ -23,7 +23,7 @@ from daemon.ctl.channel import Channel
 from daemon.errors import ConfigError, DaemonError
 from daemon.front.front import Front
 from daemon.front.metrics import MetricsServer, exposition
-from daemon.generator.generation import GeneratorClient
+from daemon.generator.client import GeneratorClient
 from daemon.generator.messages import GeneratorError
 from daemon.host.cores import CoreClaim
 from daemon.host.notify import Notifier

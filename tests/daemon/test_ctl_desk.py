@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from daemon.ctl.channel import FRONT_SERVES_S, Answered, Channel, Handed, pair
-from daemon.front.ctl_desk import UNTOLD_S, CtlDesk
+from daemon.front.ctl_handler import UNTOLD_S, CtlDesk
 from daemon.scheduling.command_queue import Halts
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.shared_memory.request_words import Asker

@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from daemon.generator import messages as generation
-from daemon.generator.generation import GeneratorClient
+from daemon.generator.client import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.generator.process import MOST_BEGUN, answers
 from mmm_core.generate.continuation import continue_motion

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.front.stream_inbox import StreamInbox
+from daemon.front.target_parsing import StreamInbox
 from daemon.recording.mcap_log import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.shared_memory.bus_link import BusRequest, cycle_dtype

@@ -19,7 +19,7 @@ from daemon.cli import main
 from daemon.client import Client, NoAnswerError, RefusedError
 from daemon.demo import free_endpoints
 from daemon.errors import ConfigError
-from daemon.front.rates import BURST, PEER_BURST, PEER_RATE_HZ, RATE_HZ, Rates, RequestLimits
+from daemon.front.rate_limits import BURST, PEER_BURST, PEER_RATE_HZ, RATE_HZ, Rates, RequestLimits
 from daemon.generator.messages import Generated
 from daemon.network.keys import ZAP, Doorkeeper, KeyFolder, as_hex, checked_key
 from daemon.settings.config import Endpoints

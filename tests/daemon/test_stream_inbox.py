@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.front.stream_inbox import NAMED_EVERY_S, StreamInbox
+from daemon.front.target_parsing import NAMED_EVERY_S, StreamInbox
 from daemon.wire.codec import WireError
 from retarget.robot.loading import load_robot
 

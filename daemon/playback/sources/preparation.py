@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.errors import ClipError
-from daemon.generator.generation import GeneratorClient, no_answer
+from daemon.generator.client import GeneratorClient, no_answer
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.gestures.library import GestureLibrary
 from daemon.playback.sources.clip_source import ClipScore, Score, varied

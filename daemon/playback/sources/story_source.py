@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daemon.generator.generation import GeneratorClient
+from daemon.generator.client import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.poses.pose_sequence import Posture, at_steps, joined, mirrored, posture_of, scaled, standing
 from daemon.state.replies import NotPlayableError, generator_failed

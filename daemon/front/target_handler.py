@@ -6,7 +6,7 @@ import logging
 import time
 from collections.abc import Callable
 
-from daemon.front.stream_inbox import StreamInbox
+from daemon.front.target_parsing import StreamInbox
 from daemon.scheduling.scheduler import Performer
 from daemon.state.ledger import Ledger
 from daemon.wire.codec import WireError, error_event

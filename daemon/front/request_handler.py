@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from daemon.errors import ClipError, GestureExistsError
 from daemon.front.stop_texts import asks_to_stop
-from daemon.generator.generation import GeneratorClient
+from daemon.generator.client import GeneratorClient
 from daemon.gestures.library import GestureLibrary
 from daemon.playback.sources.preparation import Sources
 from daemon.poses.layers import gaze_note
