@@ -20,14 +20,14 @@ help:
 
 setup: $(VENV)/.ready
 
-# The pip of an older Python reads what a package requires only by downloading it, so pip itself is made new enough (daemon/cpu_torch.py).
-# torch comes next and alone, in its CPU build (daemon/cpu_torch.py): with it in place nothing else can pull in another one.
+# The pip of an older Python reads what a package requires only by downloading it, so pip itself is made new enough (daemon/cli/cpu_torch.py).
+# torch comes next and alone, in its CPU build (daemon/cli/cpu_torch.py): with it in place nothing else can pull in another one.
 # `make setup TORCH=gpu` takes the build of the configured index, on Linux about 6 GB with its GPU libraries.
 $(VENV)/.ready: pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "mmmd needs Python 3.11 or newer, found " + sys.version)'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install $(PIP_FLAGS) --quiet --disable-pip-version-check 'pip>=23.2'
-	$(BIN)/python -m daemon.cpu_torch --constraint constraints.txt --build $(TORCH) --pip-flags='$(PIP_FLAGS)'
+	$(BIN)/python -m daemon.cli.cpu_torch --constraint constraints.txt --build $(TORCH) --pip-flags='$(PIP_FLAGS)'
 	$(BIN)/python -m pip install $(PIP_FLAGS) --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
 	@touch $@
 

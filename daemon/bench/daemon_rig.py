@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from daemon.client import Client
-from daemon.demo import child, free_endpoints, wait_until_ready
+from daemon.demo.main_job import child, free_endpoints, wait_until_ready
 from daemon.errors import DaemonError
 
 HALTED = ("fault", "estop")

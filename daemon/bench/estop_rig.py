@@ -19,7 +19,7 @@ import zmq
 from daemon.bench.daemon_rig import HALTED, arm_again
 from daemon.bench.tty_servos import TtyServos
 from daemon.client import Client
-from daemon.demo import child
+from daemon.demo.main_job import child
 from daemon.errors import DaemonError
 from daemon.host.realtime import may_fifo
 from daemon.network.probe import listening

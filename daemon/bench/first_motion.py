@@ -15,7 +15,7 @@ from daemon.bench.daemon_rig import HALTED, arm_again, busy_cores, running_daemo
 from daemon.bench.report import HostShare, context, percentiles_ms
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
-from daemon.demo import free_endpoints
+from daemon.demo.main_job import free_endpoints
 from daemon.errors import DaemonError
 from daemon.network.keys import KeyFolder
 from daemon.wire.events import Cancelled, Done, Failed, Progress, Rejected

@@ -18,6 +18,7 @@ from typing import IO, Any, cast
 
 from daemon.client.async_client import AsyncClient
 from daemon.client.errors import CancelledByError, Said
+from daemon.client.event_text import describe
 from daemon.client.json_rpc import (
     BAD_PARAMETERS,
     INTERNAL,
@@ -217,8 +218,6 @@ class McpServer:
 
 
 def _told(events: tuple[Any, ...]) -> str:
-    from daemon.commands.playing import describe
-
     return "\n".join(describe(e) for e in events)
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from daemon.cli import COMMANDS, _load, _run, main
+from daemon.cli.program import COMMANDS, _load, _run, main
 from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.end_to_end.harness import RunningDaemon, mmmd
 

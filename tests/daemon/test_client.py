@@ -11,8 +11,8 @@ import msgspec
 import pytest
 import zmq
 
+from daemon.cli.client.control import _tell
 from daemon.client import AsyncClient, Client, NoAnswerError, RefusedError
-from daemon.commands.control import _tell
 from daemon.errors import ConfigError
 from daemon.settings.config import Endpoints
 from daemon.settings.sources import config_of, resolve

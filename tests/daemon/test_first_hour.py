@@ -9,10 +9,10 @@ import time
 
 import pytest
 
-from daemon.cli import COMMANDS, main
+from daemon.cli.client.status import gaze_words
+from daemon.cli.help_text import cleaned
+from daemon.cli.program import COMMANDS, main
 from daemon.client import RefusedError
-from daemon.commands.status import gaze_words
-from daemon.help_text import cleaned
 from tests.end_to_end.harness import START_TIMEOUT_S, RunningDaemon
 
 WITHOUT_TORCH = """\

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from rig import rig
 
-from daemon.commands.status import _servo
-from daemon.demo import free_endpoints
+from daemon.cli.client.status import _servo
+from daemon.demo.main_job import free_endpoints
 from daemon.dynamixel.health import COUNTERS, HEALTH, Health
 from daemon.dynamixel.multi import bus_on
 from daemon.front.metrics import exposition

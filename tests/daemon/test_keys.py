@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from daemon.cli import main
 from daemon.client import Client, NoAnswerError, RefusedError
-from daemon.demo import free_endpoints
+from daemon.demo.main_job import free_endpoints
 from daemon.errors import ConfigError
 from daemon.front.rate_limits import BURST, PEER_BURST, PEER_RATE_HZ, RATE_HZ, Rates, RequestLimits
 from daemon.generator.messages import Generated

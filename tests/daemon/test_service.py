@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from daemon.demo import free_endpoints
+from daemon.demo.main_job import free_endpoints
 from daemon.errors import ConfigError
 from daemon.logs.log_lines import JsonLines
 from daemon.recording.mcap_log import read_log

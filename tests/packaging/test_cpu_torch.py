@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from daemon.commands.install_torch import install_torch
-from daemon.cpu_torch import CPU_INDEX
+from daemon.cli.cpu_torch import CPU_INDEX
+from daemon.cli.install_torch import install_torch
 from tests.end_to_end.harness import mmmd
 
 ROOT = Path(__file__).parents[2]
@@ -79,7 +79,7 @@ def old_pip(python) -> Iterator[str]:
 def set_up(python: Path, configured: str, cpu_index: str, *arguments: str, constraint: Path | None = None):
     environment = {k: v for k, v in os.environ.items() if not k.startswith("PIP_")}
     environment |= {"PIP_CONFIG_FILE": os.devnull, "PIP_INDEX_URL": configured, "PIP_RETRIES": "0"}
-    command = [python, "-m", "daemon.cpu_torch", "--cpu-index", cpu_index, *arguments]
+    command = [python, "-m", "daemon.cli.cpu_torch", "--cpu-index", cpu_index, *arguments]
     if constraint is not None:
         command += ["--constraint", constraint]
     done = subprocess.run(command, env=environment, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
@@ -174,4 +174,4 @@ def test_the_command_and_the_makefile_use_it():
     assert CPU_INDEX in mmmd("install-torch", "--help").stdout.replace("\n", "")
     makefile = (ROOT / "Makefile").read_text()
     assert "'pip>=23.2'" in makefile
-    assert "-m daemon.cpu_torch --constraint constraints.txt --build $(TORCH)" in makefile
+    assert "-m daemon.cli.cpu_torch --constraint constraints.txt --build $(TORCH)" in makefile

@@ -23,8 +23,8 @@ pytestmark = pytest.mark.realtime
 ROOT = Path(__file__).parents[2]
 LEFT_OUT = ("mmm_core.training", "mmm_core.corpus.families", "mmm_core.corpus.phrases", "mmm_core.corpus.prompts")
 NEEDS_A_CLONE = (
-    "daemon.commands.train",
-    "daemon.commands.eval",
+    "daemon.cli.offline.train",
+    "daemon.cli.offline.eval",
     "daemon.bench",
     "daemon.gestures.make",
     "mmm_core.evaluation",
@@ -130,7 +130,7 @@ def imports_of(module: str) -> set[str]:
 
 def test_nothing_that_runs_imports_what_the_wheel_leaves_out():
     """From the commands down, whatever a function may import; `train`, `eval` and `bench` say that they need a clone."""
-    waiting = [f"daemon.commands.{p.stem}" for p in (ROOT / "daemon" / "commands").glob("*.py")] + [
+    waiting = [".".join(p.relative_to(ROOT).with_suffix("").parts) for p in (ROOT / "daemon" / "cli").rglob("*.py")] + [
         "daemon.supervisor.supervisor"
     ]
     waiting = [name for name in waiting if not name.startswith(NEEDS_A_CLONE)]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from tyro.conf import OmitArgPrefixes, Positional
 
-from daemon.commands.connection import Connection
+from daemon.cli.connection import Connection
 from daemon.wire.showing import in_words
 
 if TYPE_CHECKING:

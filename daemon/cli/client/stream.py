@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from tyro.conf import OmitArgPrefixes
 
-from daemon.commands.connection import Connection
+from daemon.cli.connection import Connection
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def stream(
         json: print the lease's events as JSON.
         at: where the daemon is.
     """
-    from daemon.commands.playing import describe
+    from daemon.client.event_text import describe
     from daemon.wire.codec import encode
 
     with at.client() as robot, robot.stream(holder, silence_s=silence_s) as lease:

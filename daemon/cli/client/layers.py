@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 import tyro
 from tyro.conf import OmitArgPrefixes
 
-from daemon.commands.connection import Connection
-from daemon.commands.status import gaze_words
+from daemon.cli.client.status import gaze_words
+from daemon.cli.connection import Connection
 from daemon.wire.showing import in_words
 
 

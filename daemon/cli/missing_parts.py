@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from daemon.cpu_torch import WHAT_TO_DO
+from daemon.cli.cpu_torch import WHAT_TO_DO
 
 _WITH_TORCH = ("torch", "safetensors", "tokenizers")
 _EXTRAS = {"distributed": "dask", "dask": "dask", "tensorboard": "train", "mink": "bench", "rustypot": "bench"}
@@ -24,7 +24,7 @@ _RUN = (
 )
 """Packages of the extra `run`, by the names that they are imported by."""
 _OURS = ("mmm_core", "retarget", "daemon", "sim")
-_ROOT = Path(__file__).parents[1]
+_ROOT = Path(__file__).parents[2]
 
 
 def about_missing(error: Exception) -> str:

@@ -44,7 +44,7 @@ def robot(
     from rich.console import Console
 
     from daemon.errors import CommandError
-    from daemon.picture_files import check_picture
+    from daemon.pictures.picture_files import check_picture
     from retarget.robot.loading import list_robots, load_robot
 
     console = Console(soft_wrap=True, highlight=False)

@@ -7,7 +7,7 @@ import sys
 
 from tyro.conf import OmitArgPrefixes
 
-from daemon.commands.connection import Connection
+from daemon.cli.connection import Connection
 
 
 def mcp(at: OmitArgPrefixes[Connection] = Connection()) -> int:  # noqa: B008

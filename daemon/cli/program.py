@@ -29,53 +29,59 @@ class CommandEntry:
 
 
 COMMANDS: dict[str, CommandEntry] = {
-    "demo": CommandEntry("daemon.commands.demo:demo", "simulated robot, daemon, three texts, pictures: see it work"),
-    "run": CommandEntry("daemon.commands.run:run", "the daemon: text over ZeroMQ in, servo motion out"),
-    "config": CommandEntry("daemon.commands.run:config", "the settings of `run` and where each comes from"),
-    "install-service": CommandEntry("daemon.commands.service:install_service", "systemd unit and udev rule"),
+    "demo": CommandEntry("daemon.cli.demo:demo", "simulated robot, daemon, three texts, pictures: see it work"),
+    "run": CommandEntry("daemon.cli.services.run:run", "the daemon: text over ZeroMQ in, servo motion out"),
+    "config": CommandEntry("daemon.cli.services.run:config", "the settings of `run` and where each comes from"),
+    "install-service": CommandEntry("daemon.cli.services.service:install_service", "systemd unit and udev rule"),
     "install-torch": CommandEntry(
-        "daemon.commands.install_torch:install_torch", "PyTorch for the CPU, which the motion model needs"
+        "daemon.cli.install_torch:install_torch", "PyTorch for the CPU, which the motion model needs"
     ),
-    "say": CommandEntry("daemon.commands.say:say", "tell the robot what to do"),
-    "story": CommandEntry("daemon.commands.story:story", "several things in one motion, for as long as you like"),
-    "inbetween": CommandEntry("daemon.commands.story:inbetween", "poses at given times; the middle is generated"),
-    "gesture": CommandEntry("daemon.commands.gesture:gesture", "play, list, record and add named gestures"),
-    "look": CommandEntry("daemon.commands.layers:look", "turn the head, whatever the body does"),
-    "idle": CommandEntry("daemon.commands.layers:idle", "small movements while there is nothing to play"),
-    "stream": CommandEntry("daemon.commands.stream:stream", "joint targets from another program, under a lease"),
-    "cancel": CommandEntry("daemon.commands.layers:cancel", "end a command; the robot brakes and holds"),
-    "capabilities": CommandEntry("daemon.commands.layers:capabilities", "what the robot and the daemon can do"),
-    "status": CommandEntry("daemon.commands.status:status", "what the robot and the daemon are doing"),
-    "watch": CommandEntry("daemon.commands.watch:watch", "follow events and state as they happen"),
-    "stop": CommandEntry("daemon.commands.control:stop", "brake within the limits and hold"),
-    "estop": CommandEntry("daemon.commands.control:estop", "cut torque at once (or hold, as set); latched until reset"),
-    "reset": CommandEntry("daemon.commands.control:reset", "leave e-stop or fault; the robot stays limp"),
-    "arm": CommandEntry("daemon.commands.control:arm", "torque on, slow move to the rest pose"),
-    "park": CommandEntry("daemon.commands.control:park", "slow move to the park pose, torque off"),
-    "torque": CommandEntry("daemon.commands.control:torque", "off: brake, then limp where it stands; on: as arm"),
-    "mcp": CommandEntry("daemon.commands.mcp:mcp", "tools for a language model: say, gesture, look, stop"),
-    "keys": CommandEntry("daemon.commands.keys:keys", "who may talk to whom over the network"),
-    "scan": CommandEntry("daemon.commands.scan:scan", "which servos are on a port: every baud, both protocols"),
-    "doctor": CommandEntry("daemon.commands.doctor:doctor", "rights, adapter, servos, settings, rate; with the remedy"),
-    "servo": CommandEntry("daemon.commands.servo:servo", "read and set up one servo: get, set, reboot, id, baud"),
+    "say": CommandEntry("daemon.cli.client.say:say", "tell the robot what to do"),
+    "story": CommandEntry("daemon.cli.client.story:story", "several things in one motion, for as long as you like"),
+    "inbetween": CommandEntry("daemon.cli.client.story:inbetween", "poses at given times; the middle is generated"),
+    "gesture": CommandEntry("daemon.cli.client.gesture:gesture", "play, list, record and add named gestures"),
+    "look": CommandEntry("daemon.cli.client.layers:look", "turn the head, whatever the body does"),
+    "idle": CommandEntry("daemon.cli.client.layers:idle", "small movements while there is nothing to play"),
+    "stream": CommandEntry("daemon.cli.client.stream:stream", "joint targets from another program, under a lease"),
+    "cancel": CommandEntry("daemon.cli.client.layers:cancel", "end a command; the robot brakes and holds"),
+    "capabilities": CommandEntry("daemon.cli.client.layers:capabilities", "what the robot and the daemon can do"),
+    "status": CommandEntry("daemon.cli.client.status:status", "what the robot and the daemon are doing"),
+    "watch": CommandEntry("daemon.cli.client.watch:watch", "follow events and state as they happen"),
+    "stop": CommandEntry("daemon.cli.client.control:stop", "brake within the limits and hold"),
+    "estop": CommandEntry(
+        "daemon.cli.client.control:estop", "cut torque at once (or hold, as set); latched until reset"
+    ),
+    "reset": CommandEntry("daemon.cli.client.control:reset", "leave e-stop or fault; the robot stays limp"),
+    "arm": CommandEntry("daemon.cli.client.control:arm", "torque on, slow move to the rest pose"),
+    "park": CommandEntry("daemon.cli.client.control:park", "slow move to the park pose, torque off"),
+    "torque": CommandEntry("daemon.cli.client.control:torque", "off: brake, then limp where it stands; on: as arm"),
+    "mcp": CommandEntry("daemon.cli.mcp:mcp", "tools for a language model: say, gesture, look, stop"),
+    "keys": CommandEntry("daemon.cli.keys:keys", "who may talk to whom over the network"),
+    "scan": CommandEntry("daemon.cli.hardware.scan:scan", "which servos are on a port: every baud, both protocols"),
+    "doctor": CommandEntry(
+        "daemon.cli.hardware.doctor:doctor", "rights, adapter, servos, settings, rate; with the remedy"
+    ),
+    "servo": CommandEntry("daemon.cli.hardware.servo:servo", "read and set up one servo: get, set, reboot, id, baud"),
     "calibrate": CommandEntry(
-        "daemon.commands.calibrate:calibrate", "zero positions and ranges of the joints, by hand"
+        "daemon.cli.hardware.calibrate:calibrate", "zero positions and ranges of the joints, by hand"
     ),
-    "sim": CommandEntry("daemon.commands.sim:sim", "simulated servos behind a real tty"),
-    "robot": CommandEntry("daemon.commands.robot:robot", "list, check and show robots"),
-    "generate": CommandEntry("daemon.commands.generate:generate", "text to human motion: .npz and .bvh"),
-    "edit": CommandEntry("daemon.commands.edit:edit", "a part of a motion made again: file or robot"),
+    "sim": CommandEntry("daemon.cli.hardware.sim:sim", "simulated servos behind a real tty"),
+    "robot": CommandEntry("daemon.cli.hardware.robot:robot", "list, check and show robots"),
+    "generate": CommandEntry("daemon.cli.offline.generate:generate", "text to human motion: .npz and .bvh"),
+    "edit": CommandEntry("daemon.cli.offline.edit:edit", "a part of a motion made again: file or robot"),
     "import-official": CommandEntry(
-        "daemon.commands.import_official:import_official", "the MMM authors' checkpoints as one file of ours"
+        "daemon.cli.offline.import_official:import_official", "the MMM authors' checkpoints as one file of ours"
     ),
-    "retarget": CommandEntry("daemon.commands.retarget:retarget", "human motion to joint angles and servo ticks"),
-    "replay": CommandEntry("daemon.commands.replay:replay", "a recorded run again, through the same gate"),
-    "render": CommandEntry("daemon.commands.render:render", "pictures and films of a motion or a run"),
-    "plot": CommandEntry("daemon.commands.render:plot", "the joints of a run over time"),
-    "generator": CommandEntry("daemon.commands.generator:generator", "the motion model alone, for daemons to share"),
-    "train": CommandEntry("daemon.commands.train:train", "train the motion model"),
-    "eval": CommandEntry("daemon.commands.eval:eval", "how good the model is"),
-    "bench": CommandEntry("daemon.commands.bench:bench", "how fast and how safe it all is"),
+    "retarget": CommandEntry("daemon.cli.offline.retarget:retarget", "human motion to joint angles and servo ticks"),
+    "replay": CommandEntry("daemon.cli.offline.replay:replay", "a recorded run again, through the same gate"),
+    "render": CommandEntry("daemon.cli.offline.render:render", "pictures and films of a motion or a run"),
+    "plot": CommandEntry("daemon.cli.offline.render:plot", "the joints of a run over time"),
+    "generator": CommandEntry(
+        "daemon.cli.services.generator:generator", "the motion model alone, for daemons to share"
+    ),
+    "train": CommandEntry("daemon.cli.offline.train:train", "train the motion model"),
+    "eval": CommandEntry("daemon.cli.offline.eval:eval", "how good the model is"),
+    "bench": CommandEntry("daemon.cli.bench:bench", "how fast and how safe it all is"),
 }
 GOOD, FAILED, BAD_USE, ROBOT_FAULT = 0, 1, 2, 3
 
@@ -146,7 +152,7 @@ def _run(name: str, command: Callable[..., int | None], arguments: list[str]) ->
     import tyro
 
     if "-h" in arguments or "--help" in arguments:
-        from daemon.help_text import plain_help
+        from daemon.cli.help_text import plain_help
 
         with plain_help():
             tyro.cli(command, prog=f"mmmd {name}", args=arguments)
@@ -158,7 +164,7 @@ def _explain(error: Exception) -> int:
     """Say what went wrong in one message; the exit status."""
     if os.environ.get("MMMD_DEBUG"):
         traceback.print_exception(error)
-    from daemon.missing_parts import about_missing
+    from daemon.cli.missing_parts import about_missing
 
     if missing := about_missing(error):
         return _failed(missing, FAILED)

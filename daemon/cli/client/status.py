@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tyro.conf import OmitArgPrefixes
 
-from daemon.commands.connection import Connection
+from daemon.cli.connection import Connection
 
 if TYPE_CHECKING:
     from daemon.wire.status import ServoHealth, StateEvent

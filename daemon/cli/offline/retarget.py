@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import tyro
 
 if TYPE_CHECKING:
-    from daemon.retarget_files import Settings
+    from daemon.cli.offline.retarget_files import Settings
 
 
 def retarget(
@@ -55,8 +55,8 @@ def retarget(
         dask: address of a Dask scheduler to use instead.
         json: print the report, or the counts of a folder, as one JSON object.
     """
+    from daemon.cli.offline.retarget_files import Settings, retarget_file
     from daemon.errors import CommandError
-    from daemon.retarget_files import Settings, retarget_file
 
     _refuse("--fps", fps, 1000.0, "frames per second")
     _refuse("--most-error-deg", most_error_deg, 180.0, "degrees")
@@ -92,8 +92,8 @@ def _folder(settings: Settings, folder: Path, out: Path, jobs: int, dask: str | 
     from rich.console import Console
     from rich.progress import track
 
+    from daemon.cli.offline.retarget_files import on_cores, on_dask, start_folder
     from daemon.errors import CommandError
-    from daemon.retarget_files import on_cores, on_dask, start_folder
     from mmm_core.imports.recordings.files import KINDS, find_motions
     from retarget.robot.loading import load_robot
 

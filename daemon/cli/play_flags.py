@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 import uuid
 from dataclasses import dataclass
-from math import degrees
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from daemon.commands.connection import Connection
+from daemon.cli.connection import Connection
+from daemon.client.event_text import describe
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:
@@ -137,38 +137,3 @@ def _interrupted(request: Play, at: Connection) -> int:
     except KeyboardInterrupt:
         sys.stderr.write(f"\nmmmd: left; {what} may go on: `mmmd stop` brakes and holds, `mmmd estop` cuts torque\n")
     return INTERRUPTED
-
-
-def describe(event: object) -> str:
-    """One line about an event, for people."""
-    from daemon.wire.events import Accepted, Ack, Cancelled, Done, Progress, Refusal
-    from daemon.wire.showing import in_words
-
-    if isinstance(event, Accepted):
-        reason = f" ({event.reason})" if event.reason else ""
-        length = f"; {event.duration_s:.1f} s" if event.duration_s else ""
-        lacks = f"; this robot cannot show all of it: {event.lacks}" if event.lacks else ""
-        return f"{event.status}: {event.understood}{reason}{length}{lacks}"
-    if isinstance(event, Progress):
-        if event.scene is not None:
-            taken = "left out" if event.status == "rejected" else event.status
-            return f"scene {event.scene}: {event.text} ({taken}{': ' if event.reason else ''}{event.reason})"
-        if event.first_motion_ms is None:
-            return f"{event.stage}: {event.reason}" if event.reason else f"{event.stage} ..."
-        after = "the text" if event.target_t_mono is None else "the first target"
-        return f"{event.stage}: first servo frame {event.first_motion_ms:.0f} ms after {after}"
-    if isinstance(event, Done):
-        missing = f", but {event.missing}" if event.missing else ""
-        verdict = f"{event.shown}: {event.seen}{missing}; " if event.shown else ""
-        return (
-            f"done: {verdict}{event.duration_s:.2f} s; fastest {event.peak_speed_joint}, {degrees(event.peak_speed_rad_s):.0f} of "
-            f"{degrees(event.peak_speed_limit_rad_s):.0f} deg/s; {event.clipped_frames} of {event.frames} frames clipped; "
-            f"direction error {event.direction_error_deg:.1f} deg"
-        )
-    if isinstance(event, Cancelled):
-        return f"cancelled by {event.by}"
-    if isinstance(event, Ack):
-        return f"{event.verb}: the robot was {in_words(event.state)}" + (f"; {event.note}" if event.note else "")
-    if isinstance(event, Refusal):
-        return event.message
-    return str(event)

@@ -32,7 +32,7 @@ def demo(
     from rich.progress import Progress, SpinnerColumn, TextColumn
 
     from daemon.client import Client
-    from daemon.demo import (
+    from daemon.demo.main_job import (
         Shown,
         audited_plans,
         child,

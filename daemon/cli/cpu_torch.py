@@ -3,7 +3,7 @@
 The plain `torch` of the public package index requires CUDA on x86_64 and on arm64 Linux. This module tries, in this order, the
 index that pip is configured for, then PyTorch's own CPU index, and takes the first build without GPU libraries. When neither has
 one it stops and says what would be fetched. The standard library and pip are enough to run it: `make setup` does so before
-anything else is installed (`python -m daemon.cpu_torch --constraint constraints.txt`); `mmmd install-torch` is the same
+anything else is installed (`python -m daemon.cli.cpu_torch --constraint constraints.txt`); `mmmd install-torch` is the same
 for an installed mmmd.
 """
 
@@ -183,7 +183,7 @@ def _gpu_libraries(requires: Sequence[str]) -> tuple[str, ...]:
 
 def main() -> int:
     """Install torch as the command line says; 0, or 1 with a message."""
-    parser = argparse.ArgumentParser(prog="python -m daemon.cpu_torch", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m daemon.cli.cpu_torch", description=__doc__)
     parser.add_argument("--constraint", type=Path)
     parser.add_argument("--build", choices=("cpu", "gpu"), default="cpu")
     parser.add_argument("--cpu-index", default=CPU_INDEX)

@@ -50,7 +50,7 @@ def calibrate(
     from daemon.dynamixel.setup.calibration import calibrate as find
     from daemon.errors import CommandError
     from daemon.host.clock import RealClock
-    from daemon.picture_files import check_picture
+    from daemon.pictures.picture_files import check_picture
     from daemon.pictures.robot_picture import Pose, robot_picture
     from retarget.robot.loading import load_robot
     from retarget.robot.pose_words import pose_in_words

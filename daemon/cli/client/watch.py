@@ -6,7 +6,7 @@ import sys
 
 from tyro.conf import OmitArgPrefixes
 
-from daemon.commands.connection import Connection
+from daemon.cli.connection import Connection
 
 
 def watch(
@@ -45,7 +45,7 @@ def watch(
             elif isinstance(event, LogEvent):
                 line = f"{event.t_mono:.3f} {event.process} {event.level} {event.text}"
             else:
-                from daemon.commands.playing import describe
+                from daemon.client.event_text import describe
 
                 line = f"{event.t_mono:.3f} {topic} {event.id[:8]} {describe(event)}"
             sys.stdout.write(line + "\n")

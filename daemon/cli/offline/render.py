@@ -44,10 +44,10 @@ def render(
     from rich.progress import track
 
     from daemon.errors import CommandError
-    from daemon.picture_files import check_picture
     from daemon.pictures.drawing import contact_sheet, frames
     from daemon.pictures.film import write_film
     from daemon.pictures.performance import RUN_FPS, read_performance
+    from daemon.pictures.picture_files import check_picture
 
     check_picture(out, "--out", tuple(_SIZES))
     if not (_even(width) and _even(height)):
@@ -84,8 +84,8 @@ def plot(file: Annotated[Path, tyro.conf.Positional], out: Path, robot: str | No
     """
     from rich.console import Console
 
-    from daemon.picture_files import check_picture
     from daemon.pictures.joints import joint_plot
+    from daemon.pictures.picture_files import check_picture
     from daemon.recording.mcap_log import read_log
     from retarget.robot.loading import load_robot
 

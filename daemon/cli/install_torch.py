@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from daemon.cpu_torch import CPU_INDEX, install
+from daemon.cli.cpu_torch import CPU_INDEX, install
 from daemon.errors import NoCpuBuildError
 
 

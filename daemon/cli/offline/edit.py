@@ -9,8 +9,8 @@ from typing import Annotated, Any
 import tyro
 from tyro.conf import OmitArgPrefixes
 
-from daemon.commands.connection import Connection
-from daemon.commands.playing import PlayFlags, built, play
+from daemon.cli.connection import Connection
+from daemon.cli.play_flags import PlayFlags, built, play
 from daemon.errors import CommandError
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 from tyro.conf import OmitArgPrefixes
 
-from daemon.commands.connection import Connection
-from daemon.commands.playing import PlayFlags, built, play
+from daemon.cli.connection import Connection
+from daemon.cli.play_flags import PlayFlags, built, play
 from daemon.errors import CommandError
 
 if TYPE_CHECKING:
