@@ -59,8 +59,9 @@ def within(seconds: float, what: str, condition: Callable[[], bool]) -> None:
 
 def bring_to(client: Client, state: str) -> None:
     """Lead the robot from anywhere to a state."""
-    now = client.status().state
-    if now in ("moving", "holding"):  # what moves without end, or is held up in it and about to go on
+    status = client.status()
+    now = status.state
+    if now in ("moving", "holding") or status.command:  # what moves without end, or is held up in it and about to go on
         client.stop()
     if now in ("fault", "estop"):
         client.reset()
@@ -178,7 +179,6 @@ def test_a_bus_unplugged_in_each_state_is_a_named_fault_and_comes_back(servos, s
         daemon.close()
 
 
-@pytest.mark.soak  # fails since `ctl` is a process of its own: after the thaw no awaited state comes within 5 s; the cause is open
 def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands_and_goes_on_with_it(servos):
     """After 0.5 s the bus process brings to rest what moves; what is being parked is parked."""
     daemon = daemon_on(servos)

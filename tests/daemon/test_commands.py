@@ -274,7 +274,9 @@ def test_idle_movements_begin_yield_at_once_and_end(robot):
         assert robot.say("wave", seconds=0.8).done.first_motion_ms < 1000
         assert robot.status().idle == "lively"
         robot.stop()
-        robot.wait_for("holding", timeout_s=3)
+        robot.wait_for(
+            "holding", "idle", timeout_s=3
+        )  # idle: the stop came between two movements, when nothing had to brake
         still = robot.status().goal_rad
         time.sleep(1.5)
         assert robot.status().goal_rad == still  # a person stopped it: no idling until the next command
