@@ -21,7 +21,6 @@ from daemon.control.fault_detector import MAY_HAVE_TRIPPED_S, Judge
 from daemon.control.leading_back import LeadingBack
 from daemon.control.point_to_point import SlowMove
 from daemon.control.safety_limiter import Gate
-from daemon.control.silence import Silence
 from daemon.control.time_scaling import Pace, SlowedSetpoints
 from daemon.control.torque_ramp import EFFORT_START, TorqueRamp
 from daemon.control.turns import TurnWatch
@@ -30,6 +29,7 @@ from daemon.dynamixel.reading import BusReading
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.host.clock import Clock
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
+from daemon.shared_memory.heartbeat import Silence
 from daemon.shared_memory.request_words import ESTOPS, Asked
 from retarget.path.collision import SelfContact
 from retarget.robot.robot import RobotModel

@@ -7,11 +7,11 @@ import logging
 import time
 from collections.abc import Callable, Mapping
 
-from daemon.control.silence import Silence
 from daemon.ctl.channel import Channel, Ready, pair
 from daemon.errors import ConfigError, DaemonError
 from daemon.settings.config import DaemonConfig, EndpointInUseError
 from daemon.shared_memory.bus_link import BusLink
+from daemon.shared_memory.heartbeat import Silence
 from daemon.supervisor.children import Child
 from retarget.robot.robot import RobotModel
 

@@ -8,9 +8,9 @@ import pytest
 from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
 from daemon.gestures.clips import Clip, load_clips, save_clips
 from daemon.gestures.library import SHIPPED, GestureLibrary
-from daemon.gestures.make import WANTED, mirror_name
 from daemon.poses.cycles import marks_of
 from daemon.poses.pose_sequence import distance_deg, posture_of, standing
+from docs.tools.make_gestures import WANTED, mirror_name
 from mmm_core.evaluation.probes import judge
 from mmm_core.motion.posture_features import posture_features
 from retarget.pipeline import Retargeter

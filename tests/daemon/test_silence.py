@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from daemon.control.control_loop import CTL_LOST_S
-from daemon.control.silence import Silence
 from daemon.shared_memory.bus_link import BusRequest, BusState
+from daemon.shared_memory.heartbeat import Silence
 from tests.daemon.rig import lead_to, rig
 
 

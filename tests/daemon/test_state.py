@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from daemon.shared_memory.bus_link import BusState
-from daemon.state.docs import page
 from daemon.state.machine import (
     COMMANDS,
     REPORTS,
@@ -19,6 +18,7 @@ from daemon.state.machine import (
     StateMachine,
     Trigger,
 )
+from docs.tools.states_page import page
 
 S, T = RobotState, Trigger
 
@@ -162,7 +162,7 @@ def test_without_auto_arm_the_first_text_waits_for_arm():
 
 
 def test_the_page_of_the_docs_is_that_of_the_table():
-    """`python -m daemon.state.docs docs/states.md` writes it."""
+    """`python -m docs.tools.states_page docs/states.md` writes it."""
     assert (Path(__file__).parents[2] / "docs" / "states.md").read_text("utf-8") == page()
 
 

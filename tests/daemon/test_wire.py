@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from daemon.playback.sources.preparation import PREFIX_FRAMES
 from daemon.wire import codec as wire
 from daemon.wire import events, requests
-from daemon.wire.schemas import schemas, text_of
+from docs.tools.wire_schemas import schemas, text_of
 from mmm_core.generate.continuation import LONGEST_PREFIX_TOKENS
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.motion.motion import FPS
@@ -178,7 +178,7 @@ def test_an_event_of_a_later_minor_version_is_still_read():
 
 
 def test_published_schemas_are_those_of_the_code():
-    """`python -m daemon.wire.schemas docs/wire` writes them."""
+    """`python -m docs.tools.wire_schemas docs/wire` writes them."""
     expected = {name: text_of(schema) for name, schema in schemas().items()}
     found = {path.name: path.read_text("utf-8") for path in DOCS.glob("*.schema.json")}
     assert found == expected

@@ -16,7 +16,7 @@ import msgspec
 import pytest
 import zmq
 
-from daemon.wire.schemas import schemas
+from docs.tools.wire_schemas import schemas
 
 pytestmark = pytest.mark.realtime
 
@@ -26,7 +26,6 @@ NEEDS_A_CLONE = (
     "daemon.cli.offline.train",
     "daemon.cli.offline.eval",
     "daemon.bench",
-    "daemon.gestures.make",
     "mmm_core.evaluation",
 )
 """Modules that may import what the wheel leaves out: they say that a clone is needed."""

@@ -1,6 +1,6 @@
 """The pictures of docs/retargeting.md: where the direction error comes from.
 
-    python -m daemon.bench.retarget_pictures docs/pictures
+    python -m docs.tools.retarget_pictures docs/pictures
 
 draws them anew from the motions that `mmmd bench retarget` measures on.
 """

@@ -1,4 +1,4 @@
-"""JSON schemas of the wire's messages, as files: `python -m daemon.wire.schemas docs/wire`."""
+"""JSON schemas of the wire's messages, as files: `python -m docs.tools.wire_schemas docs/wire`."""
 
 from __future__ import annotations
 

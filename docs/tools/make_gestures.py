@@ -1,4 +1,4 @@
-"""Makes the gestures that ship: `python -m daemon.gestures.make`. Once for each model; the result is in version control.
+"""Makes the gestures that ship: `python -m docs.tools.make_gestures`. Once for each model; the result is in version control.
 
 Each gesture is a text of the table below, generated with seed after seed until one passes the kinematic checks of the
 evaluation (limb, side, count, direction), and begins and ends near standing. The best of the

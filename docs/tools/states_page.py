@@ -1,4 +1,4 @@
-"""The table of states as a page: `python -m daemon.state.docs docs/states.md`. A test keeps the page equal to the table."""
+"""The table of states as a page: `python -m docs.tools.states_page docs/states.md`. A test keeps the page equal to the table."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ def page() -> str:
     lines = [
         "# States of the robot",
         "",
-        "Drawn from the table in `daemon/state/machine.py` by `python -m daemon.state.docs docs/states.md`. A command is allowed",
-        "where it has an entry and is refused elsewhere, with what is allowed and what to do. The state itself moves only when the",
-        "bus process reports that it has: a report without an entry is impossible, and asks for an e-stop.",
+        "Drawn from the table in `daemon/state/machine.py` by `python -m docs.tools.states_page docs/states.md`. A command is",
+        "allowed where it has an entry and is refused elsewhere, with what is allowed and what to do. The state itself moves only",
+        "when the bus process reports that it has: a report without an entry is impossible, and asks for an e-stop.",
         "",
         "| state | meaning |",
         "|---|---|",
