@@ -14,7 +14,7 @@ import zmq
 from daemon.front.subscriptions import BURST, COST_OF_OTHERS, MOST_TOPIC_BYTES, RATE_HZ, Subscriptions
 from daemon.wire import codec as wire
 from tests.attacks.zmtp import RawPeer, connected, frame
-from tests.end_to_end.harness import RunningDaemon
+from tests.support.harness import RunningDaemon
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 CONNECTIONS = 1500

@@ -21,7 +21,7 @@ from mmm_core.errors import MmmError, MotionFileError
 from mmm_core.imports.recordings.files import read_motion
 from mmm_core.motion.motion import load_npz
 from retarget.robot.loading import load_robot
-from tests.daemon.kinematic import raised_arm
+from tests.support.kinematic import raised_arm
 
 pytestmark = pytest.mark.timeout(120)
 FLIPS = 150

@@ -16,8 +16,8 @@ import zmq
 from daemon.generator import messages
 from daemon.generator.process import serve
 from tests.attacks.zmtp import RawPeer, frame
-from tests.daemon.kinematic import KinematicMaker
-from tests.end_to_end.harness import MMMD, RunningDaemon
+from tests.support.harness import MMMD, RunningDaemon
+from tests.support.kinematic import KinematicMaker
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 

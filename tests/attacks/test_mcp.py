@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from tests.end_to_end.harness import MMMD, RunningDaemon
+from tests.support.harness import MMMD, RunningDaemon
 
 pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
 

@@ -10,7 +10,7 @@ import zmq
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from tests.attacks.zmtp import RawPeer, frame
-from tests.end_to_end.harness import RunningDaemon
+from tests.support.harness import RunningDaemon
 
 pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
 MANY = 100_000

@@ -16,7 +16,7 @@ import zmq
 from daemon.client import Client
 from daemon.wire.requests import CMD_TYPES, CTL_TYPES, STREAM_TYPES, tag_of
 from tests.attacks.zmtp import RawPeer, connected, frame
-from tests.end_to_end.harness import RunningDaemon
+from tests.support.harness import RunningDaemon
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 ROUNDS, SOAK_ROUNDS = 4, 400

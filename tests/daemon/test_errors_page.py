@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.daemon.errors_page import ANSWERED, FRAMES, INSIDE, PAGE, TYPED, Frame, Typed, page, refused, typed
+from tests.support.errors_page import ANSWERED, FRAMES, INSIDE, PAGE, TYPED, Frame, Typed, page, refused, typed
 
 TESTS = Path(__file__).parents[1]
 DAEMON = TESTS.parent / "daemon"
@@ -31,7 +31,7 @@ def test_a_wrong_frame_has_its_code(row: Frame):
 
 
 def test_the_page_says_what_was_said():
-    """When it does not: `python -m tests.daemon.errors_page`."""
+    """When it does not: `python -m tests.support.errors_page`."""
     assert PAGE.read_text("utf-8") == page()
 
 

@@ -13,8 +13,8 @@ from daemon.client import CancelledByError, RefusedError
 from daemon.wire import events as ev
 from daemon.wire.requests import KeyPoseOf, Say, SceneOf, Story
 from mmm_core.inference.checkpoint import MODEL_FILE
-from tests.end_to_end.harness import RunningDaemon, mmmd, plays_well
 from tests.end_to_end.test_start_and_end import child_pid
+from tests.support.harness import RunningDaemon, mmmd, plays_well
 
 pytestmark = [
     pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout"),
@@ -93,7 +93,7 @@ def test_a_story_outlives_its_generator(run):
 
 def test_a_text_goes_on_from_what_is_played(run):
     """It takes over in the middle of a motion, within all limits; that it is the motion of that prefix is tested with the
-    generator's process (tests/daemon/test_generator.py).
+    generator's process (tests/daemon/generator/test_generator.py).
     """
     with run.client() as robot, run.client() as other:
         events = other.events_of(Say(id="up", text="raise both arms", seconds=3.0, seed=1))

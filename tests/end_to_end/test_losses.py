@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from daemon.client import CancelledByError, RefusedError
-from tests.end_to_end.harness import RunningDaemon
 from tests.end_to_end.test_start_and_end import child_pid
+from tests.support.harness import RunningDaemon
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
@@ -131,7 +131,7 @@ def test_a_frozen_generator_is_a_named_failure_and_is_noticed_again():
     frozen = threading.Event()
 
     def answer(text, seed, seconds):
-        from tests.daemon.kinematic import generate
+        from tests.support.kinematic import generate
 
         if "frost" in text:
             frozen.wait(14)

@@ -15,8 +15,8 @@ import pytest
 from daemon.wire.events import Accepted, Cancelled, Done, Progress
 from daemon.wire.requests import Say
 from mmm_core.inference.checkpoint import MODEL_FILE
-from tests.end_to_end.harness import RunningDaemon, mmmd
 from tests.end_to_end.test_start_and_end import child_pid
+from tests.support.harness import RunningDaemon, mmmd
 
 pytestmark = [
     pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout"),

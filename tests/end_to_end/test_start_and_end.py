@@ -12,7 +12,7 @@ import pytest
 
 from daemon.bench.tty_servos import go_first, go_last
 from daemon.supervisor.supervisor import log_file, log_path_error
-from tests.end_to_end.harness import MMMD, RunningDaemon, mmmd
+from tests.support.harness import MMMD, RunningDaemon, mmmd
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 

@@ -18,9 +18,9 @@ from daemon.client import NoAnswerError
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire.requests import Estop
-from tests.daemon.test_chaos import Servos, assert_works, bring_to, daemon_on, lead_to, within
-from tests.end_to_end.harness import RunningDaemon
+from tests.end_to_end.test_chaos import Servos, assert_works, bring_to, daemon_on, lead_to, within
 from tests.end_to_end.test_start_and_end import child_pid
+from tests.support.harness import RunningDaemon
 
 pytestmark = [pytest.mark.timeout(240), pytest.mark.realtime]
 BACK_WITHIN_S = 40.0

@@ -24,7 +24,7 @@ from daemon.client.streams import Stream
 from daemon.wire import events as ev
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.requests import Release, Say
-from tests.end_to_end.harness import MMMD, MOST_CLIPPED_IN_AN_UNDERRUN, RunningDaemon
+from tests.support.harness import MMMD, MOST_CLIPPED_IN_AN_UNDERRUN, RunningDaemon
 
 pytestmark = pytest.mark.realtime
 

@@ -16,7 +16,7 @@ import pytest
 
 from daemon.cli.cpu_torch import CPU_INDEX
 from daemon.cli.install_torch import install_torch
-from tests.end_to_end.harness import mmmd
+from tests.support.harness import mmmd
 
 ROOT = Path(__file__).parents[2]
 GPU = ('nvidia-cublas==13.1.1.3; platform_system == "Linux"', "triton==3.7.1", "cuda-toolkit[cudart]==13.0.2")

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED
 from daemon.shared_memory.bus_link import BusState
 from sim.faults import PACKET_KINDS, Fault
-from tests.daemon.rig import Rig
+from tests.support.rig import Rig
 
 NAMED_WITHIN_S = 3.0
 """After a fault's end; each of sixteen servos is asked for its torque once in 0.8 s, a silent one once in a second."""

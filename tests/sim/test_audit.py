@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from servo_bench import Bench
 
 from daemon.dynamixel.codec import packet
 from retarget.path.collision import SelfContact
@@ -17,6 +16,7 @@ from retarget.robot.ticks import JointServoMap
 from sim.audit.audit import ANSWERS_TOLD, TTY_GOALS, Audit
 from sim.audit.contact_audit import ContactAudit
 from sim.faults import Fault
+from tests.support.servo_bench import Bench
 
 ROBOT = load_robot("reference")
 SERVO = ROBOT.servos[2]  # waist_yaw: an XM430 without gear

@@ -11,7 +11,7 @@ import pytest
 from daemon.cli import main
 from daemon.recording.mcap_log import LogWriter
 from sim.replay import Stretch, compare
-from tests.daemon.rig import rig, swing
+from tests.support.rig import rig, swing
 
 TICK_DEG = 360 / 4096
 """The two may be a step of the simulation (2 ms) out of phase; at this speed that is up to 0.082 degrees."""

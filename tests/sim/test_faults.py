@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from servo_bench import Bench
 
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec.crc import crc16
@@ -15,6 +14,7 @@ from sim.clock import VirtualClock
 from sim.errors import FaultFileError
 from sim.faults import KINDS, PACKET_KINDS, Fault, FaultSchedule
 from sim.port import SimPort
+from tests.support.servo_bench import Bench
 
 
 def test_a_schedule_is_read_and_strikes_in_its_time(tmp_path: Path) -> None:

@@ -7,7 +7,6 @@ import random
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from servo_bench import Bench
 
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec.packet import PacketDecoder
@@ -16,6 +15,7 @@ from sim.errors import SimSettingError
 from sim.port import SimPort
 from sim.wire.wire import Wire, WireSettings
 from sim.wire.wire_bytes import Burst
+from tests.support.servo_bench import Bench
 
 TWENTY = ("XM430-W350",) * 20
 

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from servo_bench import Bench
 
 from daemon.dynamixel.codec import packet
 from sim.clock import VirtualClock
 from sim.port import SimPort
 from sim.steal_time import LEAST_PAUSE_S, LOOK_EVERY_S, STAT, MachineTime, stolen_s
+from tests.support.servo_bench import Bench
 
 TICK_S = 0.01
 

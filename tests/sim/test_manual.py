@@ -8,13 +8,13 @@ Trajectory (136). Control table of MX-28 (1.0): Moving Speed (32).
 from __future__ import annotations
 
 import pytest
-from servo_bench import Bench
 from test_servo1 import Bench as Bench1
 
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec import packet_protocol1 as packet1
 from daemon.dynamixel.codec.packet import ErrorCode
 from sim.servos.servo_protocol1 import CHECKSUM_ERROR, INSTRUCTION_ERROR, RANGE_ERROR
+from tests.support.servo_bench import Bench
 
 INDIRECT_DATA_1, INDIRECT_DATA_29 = 224, 634
 

@@ -6,12 +6,12 @@ import math
 from itertools import pairwise
 
 import pytest
-from servo_bench import TICK_RAD, Bench
 
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec.packet import ErrorCode, FactoryReset
 from daemon.dynamixel.registers.models import MODELS
 from sim.faults import Fault
+from tests.support.servo_bench import TICK_RAD, Bench
 
 PROTOCOL_2 = [m.name for m in MODELS.values() if m.protocol == 2.0]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from servo_bench import Bench as Bench2
 
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec import packet_protocol1 as packet1
@@ -11,6 +10,7 @@ from daemon.dynamixel.codec.packet import Packet
 from daemon.dynamixel.registers.models import MODELS
 from sim.faults import Fault
 from sim.servos.servo_protocol1 import ANGLE_ERROR, INSTRUCTION_ERROR, OVERLOAD_ERROR, RANGE_ERROR
+from tests.support.servo_bench import Bench as Bench2
 
 PROTOCOL_1 = [m.name for m in MODELS.values() if m.protocol == 1.0]
 

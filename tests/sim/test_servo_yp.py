@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from servo_bench import Bench
 
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec.packet import ErrorCode
 from sim.bodies.motors import MOTORS
 from sim.faults import Fault
+from tests.support.servo_bench import Bench
 
 Y, P = "YM070-210-R099-RH", "PH42-020-S300-R"
 BOTH = pytest.mark.parametrize("name", [Y, P])

@@ -26,8 +26,8 @@ from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from sim.faults import INSTANT_KINDS, PACKET_KINDS, Fault
-from tests.daemon.rig import Rig, rig, swing
 from tests.sim.soak_witness import EXPECTED, Witness
+from tests.support.rig import Rig, rig, swing
 
 HOURS = float(os.environ.get("MMMD_SOAK_HOURS", "10"))
 ROBOT = os.environ.get("MMMD_SOAK_ROBOT", "reference")

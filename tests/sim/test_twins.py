@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from servo_bench import Bench, spec
 
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec.crc import crc16
 from daemon.dynamixel.codec.packet import PacketDecoder
 from sim.faults import Fault
 from sim.wire.wire import Wire, WireSettings
+from tests.support.servo_bench import Bench, spec
 
 THREE = ("XM430-W350",) * 3
 ROWS = [(2, 132, 4), (1, 132, 4), (3, 132, 4)]

@@ -1,0 +1,165 @@
+"""What a newcomer meets in the first hour: exit statuses, a machine without PyTorch, help, narrow terminals."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from daemon.cli.client.status import gaze_words
+from daemon.cli.help_text import cleaned
+from daemon.cli.program import COMMANDS, main
+from daemon.client import RefusedError
+from tests.support.harness import START_TIMEOUT_S, RunningDaemon
+
+WITHOUT_TORCH = """\
+import sys
+from importlib.machinery import PathFinder
+
+class Without(PathFinder):
+    @classmethod
+    def find_spec(cls, name, path=None, target=None):
+        return None if name.partition(".")[0] == "torch" else super().find_spec(name, path, target)
+
+sys.meta_path[sys.meta_path.index(PathFinder)] = Without
+"""
+"""What a machine that has no PyTorch looks like to Python."""
+MMMD = [sys.executable, "-m", "daemon.cli"]
+
+
+@pytest.fixture(scope="module")
+def running():
+    daemon = RunningDaemon()
+    try:
+        yield daemon.until_ready()
+        assert daemon.terminate() == 0
+    finally:
+        daemon.close()
+
+
+def mmmd(*arguments: str, text: str | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([*MMMD, *arguments], input=text, capture_output=True, text=True, timeout=60, check=False)
+
+
+@pytest.mark.realtime
+def test_a_machine_without_pytorch_runs_gestures_and_says_what_is_missing(tmp_path, monkeypatch):
+    """`mmmd run` refused to start, although gestures, look, replay and stream need no PyTorch."""
+    (tmp_path / "sitecustomize.py").write_text(WITHOUT_TORCH)
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH")))))
+    daemon = RunningDaemon(model=True)
+    try:
+        end_s = time.monotonic() + START_TIMEOUT_S
+        while "ready: robot" not in daemon.said and time.monotonic() < end_s:
+            time.sleep(0.05)
+        with daemon.armed() as client:
+            assert client.gesture("nod").done is not None
+            with pytest.raises(RefusedError, match="PyTorch is not installed: `mmmd install-torch`") as caught:
+                client.say("wave")
+            assert caught.value.code == "generator_down"
+            assert "install-torch" in client.status().generator
+        assert daemon.terminate() == 0
+    finally:
+        daemon.close()
+
+
+@pytest.mark.realtime
+def test_a_port_in_use_is_status_1_so_that_a_service_tries_again(running):
+    again = mmmd("run", *running.at, "--stream", running.endpoints.stream)
+    assert again.returncode == 1 and "already in use" in again.stderr
+
+
+@pytest.mark.realtime
+@pytest.mark.parametrize("bus", ["sim://?body=foo", "sim://?baud=abc", "sim://?faults=missing.toml"])
+def test_a_bad_option_of_the_bus_is_bad_use_and_named(bus, tmp_path):
+    ends = [f"ipc://{tmp_path}/{name}" for name in ("cmd", "ctl", "pub", "stream")]
+    done = mmmd("run", "--bus", bus, "--cmd", ends[0], "--ctl", ends[1], "--pub", ends[2], "--stream", ends[3])
+    assert done.returncode == 2 and f"--bus {bus}" in done.stderr, done.stderr
+
+
+@pytest.mark.realtime
+def test_a_look_says_that_it_is_held_and_status_shows_it(running):
+    """After a `look` the head did not follow texts any more, and plain `status` did not say why."""
+    told = mmmd("look", "--yaw", "30", "--pitch", "-10", *running.at)
+    assert told.stdout.startswith("look: 30 degrees left, 10 degrees up, held until `mmmd look` without angles")
+    assert "30 degrees left, 10 degrees up, held until `mmmd look`" in mmmd("status", *running.at).stdout
+    assert mmmd("look", *running.at).stdout.startswith("look: the head is free again")
+    assert mmmd("look", "--yaw", "500", *running.at).returncode == 2
+
+
+@pytest.mark.realtime
+def test_answers_say_what_became_of_the_robot(running):
+    with running.armed():
+        pass
+    assert mmmd("stop", *running.at).stdout.startswith("stop: the robot ")
+    assert "any more; the robot is " in mmmd("idle", "off", *running.at).stdout
+    assert mmmd("gesture", "play", "nosuch", *running.at).returncode == 2
+
+
+@pytest.mark.realtime
+def test_a_fault_is_left_by_reset_and_then_arm(running):
+    """`status` in an e-stop or fault named `arm`, which is refused there."""
+    with running.armed() as client:
+        client.estop()
+        client.wait_for("estop", timeout_s=20)
+        assert "needs `mmmd reset`, then `mmmd arm`" in " ".join(mmmd("status", *running.at).stdout.split())
+        client.reset()
+        client.wait_for("limp", timeout_s=20)
+        assert "(needs `mmmd arm`)" in " ".join(mmmd("status", *running.at).stdout.split())
+
+
+@pytest.mark.realtime
+def test_a_stream_of_wrong_joints_alone_is_status_1(running):
+    with running.armed():
+        done = mmmd("stream", *running.at, text='{"nojoint": 1}\n' * 3)
+    assert done.returncode == 1 and "nojoint" in done.stdout, done
+
+
+@pytest.mark.parametrize("name", [n for n in COMMANDS if n != "help"])
+def test_help_speaks_no_python(name, capsys):
+    assert main([name, "--help"]) == 0
+    said = capsys.readouterr().out
+    assert "{None" not in said and "None)" not in said, said
+
+
+def test_help_keeps_its_borders():
+    """A default that was wrapped leaves no line behind, and every line its width."""
+    whole = [
+        "│ --log PATH   a file. (default: │",
+        "│              None)             │",
+        "│ --x {None}|INT  a number. (default: None) │",
+    ]
+    wrapped = "\n".join(whole) + "\n"
+    lines = cleaned(wrapped).splitlines()
+    assert [len(line) for line in lines] == [len(line) for line in whole[::2]]
+    assert lines[0].split() == ["│", "--log", "PATH", "a", "file.", "│"] and "--x INT" in lines[1]
+
+
+def test_an_unknown_command_is_told_what_it_is_like(capsys):
+    assert main(["sya"]) == 2
+    assert "did you mean say" in capsys.readouterr().err
+
+
+def test_names_of_gestures_are_whole_in_a_narrow_terminal(monkeypatch, capsys):
+    """At 60 columns names were cut, so that they could not be typed."""
+    from daemon.gestures.library import GestureLibrary
+
+    monkeypatch.setenv("COLUMNS", "60")
+    assert main(["gesture", "list"]) == 0
+    words = set(capsys.readouterr().out.split())
+    assert {info.name for info in GestureLibrary().infos()} <= words
+
+
+def test_a_service_is_not_installed_unasked(capsys):
+    assert main(["install-service"]) == 2
+    assert "/etc/systemd/system/mmmd.service" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("yaw_deg", "pitch_deg", "words"),
+    [(30, -10, "30 degrees left, 10 degrees up"), (-5, 0, "5 degrees right"), (0, 0, "straight ahead")],
+)
+def test_where_the_head_looks_in_words(yaw_deg, pitch_deg, words):
+    assert gaze_words(yaw_deg, pitch_deg) == words

@@ -1,0 +1,410 @@
+"""The servo bus against another emulator: every family, fast sync read, indirect windows, and what a wire can do to it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from daemon.dynamixel.codec.packet import Instruction, Part, fast_status, ping, status, sync_read
+from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.health import Health
+from daemon.dynamixel.registers.models import MODELS
+from daemon.dynamixel.servo_bus import ServoBus
+from daemon.dynamixel.timing import MARGIN_S
+from daemon.errors import BusMismatchError, CommandError, ConfigError, LinkLostError
+from sim.clock import VirtualClock
+from tests.support.servo_emulator import FakePort, fake
+
+X20 = ("XM430-W350",) * 20
+ALL_KINDS = ("XM430-W350", "XL430-W250", "XL330-M288", "MX-28", "MX-64", "AX-12A", "AX-18A", "MX-64-2", "2XL430-W250")
+
+
+def bus_of(
+    *names: str, slow_every: int = 0, verify: bool = True, **port: object
+) -> tuple[ServoBus, FakePort, VirtualClock]:
+    far, servos, clock = fake(*names, **port)
+    bus = ServoBus(far, servos, clock, slow_every=slow_every)
+    if verify:
+        bus.verify()
+    return bus, far, clock
+
+
+def kinds(bus: ServoBus) -> list[BusEventKind]:
+    return [event.kind for event in bus.events.take()]
+
+
+def put(far: FakePort, position: int = 1000) -> None:
+    """Every servo its own position; speed -5 and effort -7."""
+    for i, s in far.servos.items():
+        s.set("present_position", position + i)
+        s.set("present_speed" if s.model.protocol == 1.0 else "present_velocity", -5)
+        s.set(s.model.effort_item, -7)
+
+
+def test_every_family_reads_and_takes_goals_in_the_same_way() -> None:
+    bus, far, _ = bus_of(*ALL_KINDS)
+    put(far)
+    goals = np.arange(9, dtype=np.int32) + 500
+    reading = bus.exchange(goals)
+    assert reading.valid.all()
+    assert reading.position_tick.tolist() == list(range(1001, 1010))
+    assert reading.velocity_raw.tolist() == [-5] * 9
+    assert reading.current_raw.tolist() == [-7] * 9
+    assert [s.get("goal_position") for s in far.servos.values()] == goals.tolist()
+
+
+@pytest.mark.parametrize("n", [1, 2, 20])
+def test_a_group_that_knows_fast_sync_reads_is_one_write_and_one_packet(n: int) -> None:
+    bus, far, _ = bus_of(*X20[:n])
+    put(far)
+    far.writes.clear()
+    reading = bus.exchange(np.full(n, 2048, np.int32))
+    assert reading.valid.all() and reading.position_tick.tolist() == [1001 + i for i in range(n)]
+    (request,) = far.writes
+    assert (sync_read(126, 10, bus.ids, fast=True) in request) == (n > 1), "a single servo wins nothing by it"
+
+
+def test_fast_sync_read_is_tried_once_and_left_for_good_where_it_is_not_answered() -> None:
+    far, servos, clock = fake(*X20[:4])
+    far.servos[3].fast = False
+    bus = ServoBus(far, servos, clock)
+    bus.verify()
+    assert kinds(bus) == [BusEventKind.FAST_SYNC_OFF]
+    far.writes.clear()
+    assert bus.exchange(None).valid.all()
+    assert far.writes == [sync_read(126, 10, bus.ids)]
+
+
+@pytest.mark.parametrize(("firmware", "fast"), [(44, False), (45, True)])
+def test_old_firmware_is_not_even_asked_for_it(firmware: int, fast: bool) -> None:
+    far, servos, clock = fake(*X20[:4])
+    for s in far.servos.values():
+        s.set("firmware_version", firmware)
+    bus = ServoBus(far, servos, clock)
+    bus.verify()
+    assert any(Instruction.FAST_SYNC_READ == w[7] for w in far.writes) == fast
+    assert bus.firmware == [firmware] * 4
+
+
+@pytest.mark.parametrize(
+    "names", [X20, ("MX-28",) * 6, ("MX-64-2",) * 6, ("AX-12A",) * 4], ids=["fast", "mx1", "sync", "ax"]
+)
+def test_one_dead_servo_costs_itself_only_and_after_quarantine_nearly_nothing(names: tuple[str, ...]) -> None:
+    bus, far, clock = bus_of(*names)
+
+    def rate_hz(n: int = 1) -> float:
+        start_s = clock.now_s()
+        for _ in range(n):
+            bus.exchange(np.full(len(names), 100, np.int32))
+        return n / (clock.now_s() - start_s)
+
+    before_hz = rate_hz(50)
+    far.servos[2].silent = True
+    valid = np.array([bus.exchange(None).valid.copy() for _ in range(15)])
+    chained = (far.servos[1].fast and names[0].startswith("XM")) or names[0] == "MX-28"
+    assert valid[2 if chained else 0 :, [0, *range(2, len(names))]].all(), (
+        "the others answer, for themselves if need be"
+    )
+    assert not valid[:, 1].any()
+    assert bus.health.state[1] == Health.QUARANTINED and bus.timeouts[1] == 10
+    assert BusEventKind.QUARANTINED in kinds(bus)
+    for _ in range(25):
+        bus.exchange(None)
+    asked_s = clock.now_s()
+    after_hz = rate_hz(500)
+    assert after_hz > 0.95 * before_hz
+    far.servos[2].silent = False
+    while clock.now_s() < asked_s + 10 and not bus.exchange(None).valid[1]:
+        pass
+    assert bus.health.state[1] == Health.OK and BusEventKind.RETURNED in kinds(bus)
+
+
+def test_all_silent_at_once_is_named_and_nobody_is_given_up() -> None:
+    bus, far, _ = bus_of(*X20)
+    for s in far.servos.values():
+        s.silent = True
+    for _ in range(30):
+        bus.exchange(None)
+    assert kinds(bus) == [BusEventKind.BROWN_OUT]
+    assert bus.health.asked.all() and (bus.health.state == Health.MISSING).all()
+    for s in far.servos.values():
+        s.silent = False
+    assert bus.exchange(None).valid.all()
+
+
+@pytest.mark.parametrize("slow_every", [1, 3])
+def test_slow_registers_come_in_turn_for_every_family(slow_every: int) -> None:
+    bus, far, clock = bus_of(*ALL_KINDS, slow_every=slow_every)
+    for i, s in far.servos.items():
+        s.set("present_input_voltage", 100 + i)
+        s.set("present_temperature", 30 + i)
+    assert (bus.reading.torque == -1).all(), "unknown before the first"
+    bus.write_all("torque_enable", 1)
+    for _ in range(2 * 9 * slow_every):
+        reading = bus.exchange(None)
+    assert reading.voltage_raw.tolist() == [101 + i for i in range(9)]
+    assert reading.temperature_c.tolist() == [31 + i for i in range(9)]
+    assert reading.torque.tolist() == [1] * 9
+    assert (clock.now_s() - reading.slow_read_s < 1.0).all()
+
+
+def test_indirect_windows_stand_where_model_and_firmware_have_them() -> None:
+    far, servos, clock = fake("XM430-W350", "XL330-M288", "XL330-M288")
+    old = far.servos[3]
+    old.firmware = 45
+    old.__post_init__()
+    bus = ServoBus(far, servos, clock, slow_every=1)
+    bus.verify()
+    for i, s in far.servos.items():
+        s.set("present_temperature", 40 + i)
+    far.writes.clear()
+    for _ in range(3):
+        bus.exchange(None)
+    asked = [int.from_bytes(w[8:10], "little") for w in far.writes if w[7] == Instruction.READ]
+    assert asked == [224, 208, 224]
+    assert bus.reading.temperature_c.tolist() == [41, 42, 43]
+
+
+@pytest.mark.parametrize("name", ["XM430-W350", "XL330-M288", "AX-12A"])
+def test_a_servo_that_rebooted_is_named_and_its_window_of_zeros_not_believed(name: str) -> None:
+    bus, far, _ = bus_of(name, name, name, slow_every=1)
+    for s in far.servos.values():
+        s.set("present_temperature", 40)
+    bus.write_all("torque_enable", 1)
+    for _ in range(6):
+        bus.exchange(None)
+    assert kinds(bus) == []
+    far.servos[2].reboot()
+    far.servos[2].set("present_temperature", 40)
+    for _ in range(6):
+        bus.exchange(None)
+    assert BusEventKind.REBOOTED in kinds(bus)
+    assert bus.health.state.tolist() == [Health.OK, Health.FAULTED, Health.OK]
+    assert bus.reading.temperature_c.tolist() == [40] * 3
+    bus.verify()
+    bus.exchange(None)
+    assert bus.health.state.tolist() == [Health.OK] * 3, "verified anew"
+
+
+def test_many_servos_without_torque_are_a_brown_out() -> None:
+    bus, far, _ = bus_of(*X20[:6], slow_every=1)
+    bus.write_all("torque_enable", 1)
+    for s in list(far.servos.values())[:4]:
+        s.reboot()
+    for _ in range(12):
+        bus.exchange(None)
+    assert BusEventKind.BROWN_OUT in kinds(bus)
+
+
+@pytest.mark.parametrize(
+    "names", [X20[:4], ("2XL430-W250",) * 4, ("MX-28",) * 3, ("AX-12A",) * 2], ids=["fast", "sync", "mx", "ax"]
+)
+def test_an_adapter_that_echoes_is_noticed_and_lived_with(names: tuple[str, ...]) -> None:
+    bus, far, _ = bus_of(*names, verify=False)
+    far.echo = True
+    bus.verify()
+    put(far)
+    goals = np.full(len(names), 300, np.int32)
+    bus.exchange(goals)
+    far.writes.clear()
+    reading = bus.exchange(goals)
+    assert reading.valid.all() and reading.position_tick.tolist() == [1001 + i for i in range(len(names))]
+    assert kinds(bus).count(BusEventKind.ECHO) == 1
+    bus.write_item(1, "led", 1)
+    assert bus.read_item(1, "led") == 1
+
+
+@pytest.mark.parametrize(
+    ("stranger", "said"),
+    [
+        (ping(9), "did not send"),
+        (status(77, 0, bytes(10)), "servo 77"),
+        (sync_read(132, 4, [1, 2]), "another controller"),
+    ],
+)
+def test_a_foreign_packet_is_named_and_costs_nobody_his_answer(stranger: bytes, said: str) -> None:
+    bus, far, _ = bus_of(*("2XL430-W250",) * 4)
+    put(far)
+    far.before = stranger
+    reading = bus.exchange(None)
+    assert reading.valid.all() and reading.position_tick.tolist() == [1001, 1002, 1003, 1004]
+    events = [e for e in bus.events.take() if e.kind is BusEventKind.FOREIGN_PACKET]
+    assert len(events) == 1 and said in events[0].text
+
+
+def test_two_servos_with_one_id_are_named() -> None:
+    bus, far, _ = bus_of(*("2XL430-W250",) * 4)
+    far.servos[2].doubled = True
+    bus.exchange(None)
+    (event,) = [e for e in bus.events.take() if e.kind is BusEventKind.DUPLICATE_ID]
+    assert event.servo_id == 2 and "mmmd servo" in event.text
+
+
+def test_an_answer_of_the_last_cycle_that_comes_during_this_one_is_late_not_a_second_servo() -> None:
+    bus, far, _ = bus_of(*("2XL430-W250",) * 3)
+    bus.exchange(None)
+    far.servos[2].silent = True
+    bus.exchange(None)
+    far.servos[2].silent = False
+    put(far)
+    far.before = status(2, 0, bytes(10))
+    reading = bus.exchange(None)
+    assert reading.valid.all() and reading.position_tick[1] == 1002, "the newer one counts"
+    assert BusEventKind.DUPLICATE_ID not in kinds(bus) and bus.health.counters.late[1] == 1
+
+
+def test_noise_before_the_answers_costs_nothing_but_time() -> None:
+    bus, far, _ = bus_of(*("2XL430-W250",) * 4)
+    far.before = b"\xff\xff\xfd\x00\x01\x40\x00\x55" + bytes(30)
+    assert bus.exchange(None).valid.all()
+
+
+def test_a_lost_middle_answer_is_known_by_the_last_ones_coming() -> None:
+    """No deadline is waited for: the servos answer in order."""
+    bus, far, clock = bus_of(*("2XL430-W250",) * 6)
+    start_s = clock.now_s()
+    bus.exchange(None)
+    whole_s, start_s = clock.now_s() - start_s, clock.now_s()
+    far.spoil = lambda raw, servo_id: b"" if servo_id == 3 else raw
+    reading = bus.exchange(None)
+    assert clock.now_s() - start_s < whole_s
+    assert reading.valid.tolist() == [True, True, False, True, True, True]
+    far.spoil = lambda raw, servo_id: b"" if servo_id == 6 else raw
+    start_s = clock.now_s()
+    bus.exchange(None)
+    assert whole_s < clock.now_s() - start_s < whole_s + MARGIN_S + 0.001
+
+
+def test_bad_checksums_are_counted_and_late_answers_too() -> None:
+    bus, far, clock = bus_of(*("2XL430-W250",) * 3)
+    far.spoil = lambda raw, servo_id: raw[:-1] + bytes([raw[-1] ^ 1]) if servo_id == 2 else raw
+    bus.exchange(None)
+    assert bus.health.counters.crc.tolist() == [0, 1, 0]
+    far.spoil = lambda raw, _servo_id: raw
+    far.turnaround_s = 0.02
+    assert not bus.exchange(None).valid.any()
+    far.turnaround_s = 0.0
+    clock.sleep_until(clock.now_s() + 0.05)
+    assert bus.exchange(None).valid.all()
+    assert bus.health.counters.late.tolist() == [1, 1, 1]
+
+
+def test_sending_ahead_brings_the_last_cycle_while_the_wire_is_busy() -> None:
+    bus, far, clock = bus_of(*X20)
+    goals = np.full(20, 2048, np.int32)
+    start_s = clock.now_s()
+    seen: list[int] = []
+    for i in range(50):
+        put(far, 1000 + 100 * i)
+        reading = bus.exchange_ahead(goals)
+        seen.append(int(reading.position_tick[0]))
+    assert seen[1:4] == [1001, 1101, 1201]
+    assert (clock.now_s() - start_s) / 50 < 1.05 * (114 + 34 + 288) * 10e-6
+    assert bus.read_item(1, "led") == 0, "what is in flight comes home first"
+    assert bus.exchange(goals).valid.all()
+
+
+def test_an_unplugged_port_comes_back_by_itself_and_says_so() -> None:
+    bus, far, clock = bus_of(*X20[:4])
+    far.unplugged = True
+    for _ in range(5):
+        with pytest.raises(LinkLostError):
+            bus.exchange(None)
+        clock.sleep_until(clock.now_s() + 0.2)
+    far.unplugged = False
+    clock.sleep_until(clock.now_s() + 0.6)
+    assert bus.exchange(None).valid.all() and far.reopened == 1
+    assert kinds(bus) == [BusEventKind.LOST, BusEventKind.REPLUGGED]
+
+
+def test_the_watchdog_is_armed_where_there_is_one_and_said_where_it_is_of_no_use() -> None:
+    bus, far, _ = bus_of(*ALL_KINDS)
+    without = bus.arm_watchdog(10)
+    assert set(without) == {3, 4, 5, 6, 7}, "the 330 size, and protocol 1.0"
+    assert [far.servos[i].get("bus_watchdog") for i in (1, 2, 3, 8, 9)] == [10] * 5
+
+
+def test_a_tripped_watchdog_is_cleared_only_after_the_torque_is_off() -> None:
+    """Cleared under torque, the servo would go on to the goal it was stopped on the way to."""
+    bus, far, _ = bus_of(*X20[:3])
+    bus.write_all("torque_enable", 1)
+    far.servos[2].set("bus_watchdog", -1)
+    far.writes.clear()
+    bus.clear_watchdog()
+    to_2 = [w for w in far.writes if w[4] == 2 and w[7] == Instruction.WRITE]
+    assert [int.from_bytes(w[8:10], "little") for w in to_2] == [64, 98]
+    assert [s.get("torque_enable") for s in far.servos.values()] == [1, 0, 1]
+    assert kinds(bus) == [BusEventKind.WATCHDOG_TRIPPED]
+
+
+def test_effort_and_torque_off_reach_every_family() -> None:
+    bus, far, _ = bus_of(*ALL_KINDS)
+    bus.write_all("torque_enable", 1)
+    bus.set_effort(0.5)
+    assert far.servos[1].get("goal_pwm") == 442 and far.servos[6].get("torque_limit") == 512
+    bus.send_torque_off()
+    assert all(s.get("torque_enable") == 0 for s in far.servos.values())
+
+
+def test_hardware_errors_in_words_for_both_protocols() -> None:
+    bus, far, _ = bus_of("XM430-W350", "AX-12A", "XM430-W350")
+    for i in (1, 2):
+        far.servos[i].hardware_error = 0b100100
+    far.servos[1].set("hardware_error_status", 0b100100)
+    reading = bus.exchange(None)
+    assert reading.error.tolist() == [0x80, 0x80, 0]
+    assert {bus.hardware_error_text(i) for i in (1, 2)} == {"overheating, overload"}
+    assert bus.health.state.tolist() == [Health.FAULTED, Health.FAULTED, Health.OK]
+    assert bus.health.counters.alerts.tolist() == [1, 1, 0]
+    bus.exchange(None)
+    events = [e.servo_id for e in bus.events.take() if e.kind is BusEventKind.HARDWARE_ERROR]
+    assert events == [1, 2], "told when it begins, not in every cycle"
+
+
+def test_what_is_not_there_is_named() -> None:
+    far, servos, clock = fake("XM430-W350", "AX-12A")
+    far.servos[2].silent = True
+    far.servos[1].set("model_number", 1060)
+    bus = ServoBus(far, servos, clock)
+    with pytest.raises(BusMismatchError, match=r"XL430-W250 \(model 1060\), firmware 52"):
+        bus.verify()
+    with pytest.raises(CommandError, match="no servo 9 on this bus; there are 1, 2"):
+        bus.read_item(9, "led")
+    with pytest.raises(CommandError, match="no servo on fake:// has an item 'elan'"):
+        bus.send_all("elan", 1)
+
+
+def test_a_servo_without_a_control_table_is_refused() -> None:
+    far, servos, clock = fake("XM430-W350")
+    strange = replace(servos[0].model, name="XQ-1", model_number=9999)
+    odd = replace(servos[0], joint_name="arm", model=strange)
+    with pytest.raises(ConfigError, match=r"XQ-1.*known: XH430-W350"):
+        ServoBus(far, [odd], clock)
+
+
+def test_an_emulator_whose_parts_carry_no_checksums_is_understood() -> None:
+    """Some only end the common packet in a right CRC."""
+    bus, far, _ = bus_of(*X20[:3])
+
+    def spoil(raw: bytes, _servo_id: int) -> bytes:
+        whole = fast_status([Part(i, 0, raw[10 + 14 * (i - 1) : 20 + 14 * (i - 1)]) for i in (1, 2, 3)])
+        return whole if raw[7] == Instruction.STATUS and len(raw) == len(whole) else raw
+
+    far.spoil = spoil
+    assert bus.exchange(None).valid.all()
+
+
+def test_models_of_the_table_and_of_this_test_agree() -> None:
+    assert {m.family for m in MODELS.values()} == {
+        "x_current",
+        "x_load",
+        "x330",
+        "mx2_load",
+        "mx2_current",
+        "mx1",
+        "ax",
+        "y",
+        "p",
+    }

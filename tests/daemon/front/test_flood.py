@@ -1,0 +1,102 @@
+"""More messages than anybody needs: none of them costs a frame of what is played, and a stop is not lost among them."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+
+import pytest
+import zmq
+
+from daemon.client import CancelledByError
+from daemon.wire.requests import Gesture
+from tests.support.harness import RunningDaemon
+
+pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
+MESSAGES = 13_000
+CLIENTS = 4
+"""So that each stays below the burst that one client may send, and every message is served."""
+FRAMES = (b'{"type": "status"}', b'{"type": "capabilities"}', b"{", b'{"type": "cancel", "command": "nobody"}')
+
+
+class Flood:
+    """Sends all its frames as fast as the sockets take them, from a thread, and counts the answers.
+
+    Attributes:
+        begun: set once a tenth has been answered.
+        over: set once all have been.
+    """
+
+    def __init__(self, endpoint: str) -> None:
+        self.begun, self.over = threading.Event(), threading.Event()
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(endpoint,))
+        self._thread.start()
+
+    def _run(self, endpoint: str) -> None:
+        context, poller = zmq.Context(), zmq.Poller()
+        sockets: list[zmq.Socket[bytes]] = []
+        for _ in range(CLIENTS):
+            socket = context.socket(zmq.DEALER)
+            socket.setsockopt(zmq.RCVHWM, 0)
+            socket.setsockopt(zmq.SNDHWM, 0)
+            socket.connect(endpoint)
+            poller.register(socket, zmq.POLLIN)
+            sockets.append(socket)
+        for k in range(MESSAGES):
+            sockets[k % CLIENTS].send(FRAMES[k // CLIENTS % len(FRAMES)])
+        answered = 0
+        while answered < MESSAGES and not self._closing.is_set():
+            for socket, _ in poller.poll(100):
+                socket.recv()
+                answered += 1
+            if answered >= MESSAGES // 10:
+                self.begun.set()
+        if answered == MESSAGES:
+            self.over.set()
+        context.destroy(linger=0)
+
+    def close(self) -> None:
+        self._closing.set()
+        self._thread.join(30)
+
+
+def test_13000_messages_at_once_cost_no_frame_of_a_motion_and_hide_no_stop():
+    """The front served all of them before anything else: the robot ran dry, was held as if the front were gone, parked."""
+    daemon = RunningDaemon()
+    floods: list[Flood] = []
+    try:
+        with daemon.until_ready().client() as client:
+            client.arm()
+            playing = Gesture(id="playing", name="wave_right", loop=True)
+            client.play(playing, wait=False)
+            before = client.wait_for("moving", timeout_s=5)
+
+            floods.append(Flood(daemon.endpoints.cmd))
+            assert floods[0].over.wait(60), "not every message was answered"
+            seen = client.status().bus_info["cycles"]
+            while (after := client.status()).bus_info[
+                "cycles"
+            ] < seen + 50:  # what happened meanwhile is counted by then
+                time.sleep(0.02)
+            assert after.state == "moving" and after.command is not None and after.command.id == "playing"
+            assert after.bus_info["underruns"] == before.bus_info["underruns"]
+            assert after.bus_info["requests_dropped"] == 0 and "front silent" not in daemon.said
+
+            floods.append(Flood(daemon.endpoints.cmd))
+            assert floods[1].begun.wait(60)
+            client.stop()
+            with pytest.raises(CancelledByError, match="stop"):
+                client.play(playing, timeout_s=30)
+            assert client.status().state == "holding"
+            assert floods[1].over.wait(60), "not every message was answered"
+            assert client.status().state == "holding" and "front silent" not in daemon.said
+            assert client.say("wave", seconds=0.8, timeout_s=30).done
+        assert daemon.terminate() == 0
+        assert json.loads(daemon.audit.read_text())["violations"] == 0
+        assert "Traceback" not in daemon.said
+    finally:
+        for flood in floods:
+            flood.close()
+        daemon.close()

@@ -1,0 +1,90 @@
+"""What the bus process reports is followed; what cannot be is an e-stop that says why."""
+
+from __future__ import annotations
+
+import pytest
+
+from daemon.playback.bus_follower import BUS_SILENT_S, Follower
+from daemon.playback.setpoint_buffer import Planner
+from daemon.shared_memory.bus_link import BusRequest, BusState
+from daemon.state.bus_view import BusView
+from daemon.state.machine import RobotState, StateMachine
+from retarget.robot.loading import load_robot
+from tests.support.rig import Rig, lead_to, rig
+
+ROBOT = load_robot("reference")
+
+
+class Front:
+    """The front's end of a rig, on a clock that only `Front` moves."""
+
+    def __init__(self, r: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.rig, self.now_s = r, 0.0
+        monkeypatch.setattr("daemon.state.bus_view.time.monotonic", lambda: self.now_s)
+        view = BusView(r.link, ROBOT)
+        self.machine = StateMachine()
+        self.follower = Follower(r.link, view, Planner(ROBOT, r.link, view, 0.1), self.machine)
+
+    def tick(self, cycles: int = 1, seconds: float = 0.01) -> RobotState:
+        self.rig.cycle(cycles)
+        self.now_s += seconds
+        self.follower.update()
+        return self.machine.state
+
+    def arm(self) -> None:
+        self.rig.link.request(BusRequest.ARM)
+        while self.tick() is not RobotState.IDLE:
+            assert self.rig.state in (BusState.LIMP, BusState.ARMING, BusState.HOLDING)
+
+
+@pytest.mark.parametrize("state", ["limp", "arming", "holding", "playing", "stopping", "parking"])
+def test_a_bus_process_that_was_silent_for_a_while_and_comes_back_latches_the_fault_that_was_told(monkeypatch, state):
+    """It took up what it was doing, which cannot follow a fault, and ended in an e-stop that nobody had given."""
+    with rig("reference") as r:
+        front = Front(r, monkeypatch)
+        front.tick()
+        if state == "arming":
+            r.link.request(BusRequest.ARM)
+        elif state != "limp":
+            lead_to(r, state)
+        front.tick()
+        assert r.state.name.lower() == state
+        had_torque = all(r.torque)
+        assert front.tick(cycles=0, seconds=1.2 * BUS_SILENT_S) is RobotState.FAULT
+        assert "silent" in front.follower.fault_reason
+        passed = {front.tick() for _ in range(30)}
+        assert passed == {RobotState.FAULT} and r.state is BusState.FAULT
+        assert all(r.torque) == had_torque, "what has torque comes to rest and holds"
+        assert "is back" in front.follower.fault_reason and "reset" in front.follower.fault_reason
+        r.link.request(BusRequest.RESET)
+        assert front.tick() is RobotState.LIMP and front.follower.fault_reason == "" and not any(r.torque)
+        r.assert_limits_kept() if had_torque else None
+
+
+def test_a_reset_given_while_the_bus_process_was_silent_is_carried_out_after_the_fault(monkeypatch):
+    with rig("reference") as r:
+        front = Front(r, monkeypatch)
+        front.arm()
+        front.tick(cycles=0, seconds=1.2 * BUS_SILENT_S)
+        r.link.request(BusRequest.RESET)
+        states = [front.tick() for _ in range(4)]
+        assert states[-1] is RobotState.LIMP and RobotState.ESTOP not in states and not any(r.torque)
+
+
+def test_what_cannot_follow_is_an_e_stop_that_says_why(monkeypatch) -> None:
+    with rig("reference") as r:
+        front = Front(r, monkeypatch)
+        front.arm()
+        front.machine.state = RobotState.FAULT  # which the bus process knows nothing of
+        front.tick()
+        assert front.tick() is RobotState.ESTOP and not any(r.torque)
+        reason = front.follower.fault_reason
+        assert "itself" in reason and "'bus holding'" in reason
+
+
+def test_an_e_stop_that_somebody_gave_has_no_reason_of_the_daemons(monkeypatch) -> None:
+    with rig("reference") as r:
+        front = Front(r, monkeypatch)
+        front.arm()
+        r.link.request(BusRequest.ESTOP)
+        assert front.tick() is RobotState.ESTOP and front.follower.fault_reason == ""

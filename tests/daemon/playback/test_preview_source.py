@@ -1,0 +1,85 @@
+"""A draft, until the motion comes: before it is played, while it is, after it, or never."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+
+import numpy as np
+
+from daemon.generator.messages import Generated
+from daemon.playback.sources.preview_source import MOST_TRIES, DraftScore
+from daemon.poses.pose_sequence import Posture, posture_of
+from tests.support.kinematic import raised_arm
+
+DRAFT, WHOLE = raised_arm(seconds=1.0, angle_rad=0.6), raised_arm(seconds=2.0, angle_rad=1.2)
+
+
+async def score_of() -> tuple[DraftScore, Callable[..., Awaitable[None]]]:
+    """A score, and what lets its motion come, or an error."""
+    comes: asyncio.Future[Generated] = asyncio.get_running_loop().create_future()
+
+    async def wait() -> Generated:
+        return await comes
+
+    whole = asyncio.create_task(wait())
+
+    async def come(error: Exception | None = None) -> None:
+        if error is None:
+            comes.set_result(Generated(WHOLE, "", "", {}, ""))
+        else:
+            comes.set_exception(error)
+        await asyncio.wait({whole})
+
+    return DraftScore(posture_of(DRAFT), whole, lambda generated: posture_of(generated.motion)), come
+
+
+def same(a: Posture, b: Posture) -> bool:
+    return np.array_equal(a.bones, b.bones)
+
+
+def test_a_motion_that_is_there_in_time_is_played_alone():
+    async def run():
+        score, come = await score_of()
+        assert score.ready and not score.may_go_over
+        await come()
+        stretch, last = score.next()
+        assert last and same(stretch, posture_of(WHOLE)) and not score.may_go_over
+
+    asyncio.run(run())
+
+
+def test_a_motion_that_comes_while_the_draft_is_played_takes_its_place():
+    async def run():
+        score, come = await score_of()
+        stretch, last = score.next()
+        assert not last and same(stretch, posture_of(DRAFT))
+        assert not score.ready and not score.may_go_over
+        await come()
+        assert score.ready and score.may_go_over and score.tries_left == MOST_TRIES
+        assert same(score.rest(n_left=len(DRAFT.joints_m) - 5), posture_of(WHOLE)[5:])
+
+    asyncio.run(run())
+
+
+def test_a_motion_that_comes_after_the_draft_goes_on_from_there():
+    async def run():
+        score, come = await score_of()
+        score.next()
+        await come()
+        stretch, last = score.next()
+        assert last and same(stretch, posture_of(WHOLE)[len(DRAFT.joints_m) :])
+
+    asyncio.run(run())
+
+
+def test_without_a_motion_the_draft_is_all():
+    async def run():
+        score, come = await score_of()
+        score.next()
+        await come(ValueError("the generator was killed"))
+        assert score.ready and not score.may_go_over
+        stretch, last = score.next()
+        assert last and same(stretch, posture_of(DRAFT).at(np.full(2, len(DRAFT.joints_m) - 1)))
+
+    asyncio.run(run())

@@ -1,0 +1,172 @@
+"""A daemon as a person starts it: real processes, local sockets of its own, ended at the end."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from daemon.client import Client, NoAnswerError
+from daemon.generator.messages import Generated
+from daemon.scheduling.command_queue import SHADOW_S
+from daemon.settings.config import Endpoints
+from daemon.wire.events import Done
+from tests.support.kinematic import KinematicGenerator, generate
+
+Answer = Callable[[str, int, float | None], Generated]
+MMMD = [sys.executable, "-m", "daemon.cli"]
+START_TIMEOUT_S = 80.0
+MOST_CLIPPED_IN_AN_UNDERRUN = 4
+"""Where the machine is held up the bus process brakes; frames that were on their way meanwhile, up to 4 of the 10 that are
+queued, are limited until it goes on."""
+
+
+class RunningDaemon:
+    """`mmmd run` on sockets in a folder of its own, with a generator peer whose answers are known unless `model`.
+
+    Args:
+        options: of `mmmd run`.
+        bus: where the servos are.
+        robot: which.
+        model: whether the daemon starts its own generator, with the shipped model.
+        answer: of the generator peer to a text.
+        tcp: sockets on free ports of this machine instead.
+    """
+
+    def __init__(
+        self,
+        *options: str,
+        bus: str = "sim://",
+        robot: str = "reference",
+        model: bool = False,
+        answer: Answer = generate,
+        tcp: bool = False,
+    ) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="mmmd-test-")
+        self.folder = Path(self._folder.name)
+        self.endpoints = Endpoints(*(f"ipc://{self.folder}/{name}" for name in ("cmd", "ctl", "pub")))
+        if tcp:
+            cmd, ctl, pub, stream = (f"tcp://127.0.0.1:{port}" for port in free_ports(4))
+            self.endpoints = Endpoints(cmd, ctl, pub, stream=stream)
+            options = ("--stream", stream, *options)
+        self.peer = None if model else KinematicGenerator(f"ipc://{self.folder}/gen", answer)
+        self.audit = self.folder / "audit.json"
+        if bus == "sim://":
+            bus = f"sim://?audit={self.audit}"
+        generator = [] if model else ["--generator", f"ipc://{self.folder}/gen"]
+        self.output = self.folder / "output"
+        command = [
+            *MMMD,
+            "run",
+            "--robot",
+            robot,
+            "--bus",
+            bus,
+            *generator,
+            *self.at,
+            "--stream",
+            self.endpoints.stream,
+            *options,
+        ]
+        with self.output.open("wb") as out:
+            self.process = subprocess.Popen(command, stdout=out, stderr=out)
+
+    @property
+    def at(self) -> list[str]:
+        """Options that lead the other commands to this daemon."""
+        return ["--cmd", self.endpoints.cmd, "--ctl", self.endpoints.ctl, "--pub", self.endpoints.pub]
+
+    @property
+    def said(self) -> str:
+        """What it has printed."""
+        return self.output.read_text("utf-8", "replace")
+
+    def client(self) -> Client:
+        return Client(self.endpoints)
+
+    @contextlib.contextmanager
+    def armed(self) -> Iterator[Client]:
+        """A client of a robot that is armed and still, whatever the test before has left. A fault must not be left behind."""
+        with self.client() as client:
+            state = client.status().state
+            if state == "moving":
+                client.stop()
+                time.sleep(2 * SHADOW_S)  # a text that cannot say when it was sent would count as one from before it
+            elif state in ("fault", "estop"):
+                client.reset()
+            if state in ("fault", "estop", "parking"):
+                client.wait_for("limp", timeout_s=20)
+            client.arm()
+            client.wait_for("idle", "holding", timeout_s=20)
+            yield client
+            status = client.status()
+            assert status.state != "fault", status.reason
+
+    def until_ready(self) -> RunningDaemon:
+        """Wait until it answers, its generator does, and its bus process cycles."""
+        end_s = time.monotonic() + START_TIMEOUT_S
+        while time.monotonic() < end_s and self.process.poll() is None:
+            with contextlib.suppress(NoAnswerError), self.client() as client:
+                while time.monotonic() < end_s:
+                    now = client.status()
+                    if now.generator.startswith("ready") and now.bus_info["cycles"]:
+                        return self
+                    time.sleep(0.05)
+            time.sleep(0.05)
+        raise AssertionError(f"the daemon did not get ready (status {self.process.poll()}):\n{self.said}")
+
+    def ended(self, timeout_s: float = 30.0) -> int:
+        """Wait for its end; its exit status."""
+        try:
+            return self.process.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"the daemon did not end in {timeout_s} s:\n{self.said}") from None
+
+    def terminate(self) -> int:
+        self.process.send_signal(signal.SIGTERM)
+        return self.ended()
+
+    def mmmd(self, *arguments: str, timeout_s: float = 30.0) -> subprocess.CompletedProcess[str]:
+        """Run another command at this daemon."""
+        return mmmd(*arguments, *self.at, timeout_s=timeout_s)
+
+    def close(self) -> None:
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+            try:
+                self.process.wait(30)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait(5)
+        if self.peer is not None:
+            self.peer.close()
+        self._folder.cleanup()
+
+
+def free_ports(n: int) -> list[int]:
+    """TCP ports that nobody listens at just now."""
+    with contextlib.ExitStack() as stack:
+        sockets = [stack.enter_context(socket.create_server(("127.0.0.1", 0))) for _ in range(n)]
+        return [s.getsockname()[1] for s in sockets]
+
+
+def mmmd(*arguments: str, timeout_s: float = 30.0, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a command to its end."""
+    return subprocess.run(
+        [*MMMD, *arguments], capture_output=True, text=True, timeout=timeout_s, check=False,
+        env={**os.environ, **environment},
+    )  # fmt: skip
+
+
+def plays_well(done: Done) -> bool:
+    """Whether a motion ran dry in less than a twentieth of its frames, and was limited nowhere else than there."""
+    return (
+        20 * done.underruns <= done.frames and done.gate_clipped_frames <= MOST_CLIPPED_IN_AN_UNDERRUN * done.underruns
+    )
