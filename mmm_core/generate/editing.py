@@ -15,7 +15,7 @@ from torch import Tensor
 from mmm_core.errors import GenerationError
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.motion_model import check_seed
-from mmm_core.model.sampling import fill
+from mmm_core.generate.shown_edits import Edited, filled
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, tokens_for_frames
 from mmm_core.motion.motion import FPS, Motion
 
@@ -42,7 +42,7 @@ def part_names(engine: Engine) -> tuple[str, ...]:
     return engine.model.tokenizer.part_names
 
 
-def edit(engine: Engine, motion: Motion, what: Edit | Sequence[Edit], text: str, *, seed: int = 0) -> Motion:
+def edit(engine: Engine, motion: Motion, what: Edit | Sequence[Edit], text: str, *, seed: int = 0) -> Edited:
     """`motion` with the segments in `what` generated anew for `text`; all other ids stay as they are.
 
     In-betweening is a segment in the middle, out-painting two at the ends. Segments widen to whole tokens (0.2 s).
@@ -72,7 +72,7 @@ def edit(engine: Engine, motion: Motion, what: Edit | Sequence[Edit], text: str,
 
 def extend(
     engine: Engine, motion: Motion, text: str, *, before_s: float = 0.0, after_s: float = 0.0, seed: int = 0
-) -> Motion:
+) -> Edited:
     """`motion` with a new beginning of `before_s` and a new end of `after_s` seconds for `text`.
 
     Raises:
@@ -90,7 +90,7 @@ def extend(
     return _filled(engine, row, text, seed, None)
 
 
-def in_between(engine: Engine, first: Motion, second: Motion, seconds: float, text: str, *, seed: int = 0) -> Motion:
+def in_between(engine: Engine, first: Motion, second: Motion, seconds: float, text: str, *, seed: int = 0) -> Edited:
     """`first`, then `seconds` of new motion for `text`, then `second`.
 
     Raises:
@@ -108,12 +108,12 @@ def in_between(engine: Engine, first: Motion, second: Motion, seconds: float, te
     return _filled(engine, row, text, seed, None)
 
 
-def _filled(engine: Engine, row: Tensor, text: str, seed: int, n_frames: int | None) -> Motion:
+def _filled(engine: Engine, row: Tensor, text: str, seed: int, n_frames: int | None) -> Edited:
     states, verdict = engine.understand(text)
     if verdict.status == "rejected":
         raise GenerationError(f"the text '{text[:80]}' was given: {verdict.reason}", "what this model can do")
-    ids = fill(engine.model.transformer, states, [row], [seed], engine.settings)[0]
-    return engine.motion(ids, text, seed, verdict, n_frames)
+    with torch.inference_mode():
+        return filled(engine, row, text, states, verdict, seed, n_frames)
 
 
 def _span(one: Edit, n_tokens: int) -> slice:
