@@ -187,7 +187,8 @@ class GeneratorClient:
         """`motion` with a stretch or some parts made again for `text`.
 
         Raises:
-            GeneratorError: as `generate`; `bad_edit` when it does not fit the motion or the model.
+            GeneratorError: as `generate`; `bad_edit` when it does not fit the motion or the model, `not_reached` when no
+                edited motion shows the text.
         """
         asked = f"an edit for {text!r}"
         await self._until_ready(asked)
@@ -293,6 +294,8 @@ def _generated(
         do = "see the daemon's output; say it in other words or with another seed"
         if reply.code in ("bad_edit", "bad_keyframes"):
             do = "correct it"
+        elif reply.code == "not_reached":
+            do = "edit a longer stretch or more parts of the body, or take other words or another seed"
         raise GeneratorError(reply.code, asked, reply.found, reply.allowed, do)
     if not isinstance(reply, GeneratedMessage):
         raise bad_motion(asked, f"the answer '{type(reply).__name__}'")

@@ -84,13 +84,22 @@ class EngineMaker:
         return self._generated(piece, verdict, began_s, msgspec.msgpack.encode(told))
 
     def edit(self, request: EditMessage) -> Generated:
-        """A motion of which a stretch or some parts are new."""
+        """A motion of which a stretch or some parts are new.
+
+        Raises:
+            UnfitRequestError: `bad_edit`, it does not fit the motion or the model; `not_reached`, no candidate shows the text.
+        """
         parts = self._parts(request.parts)
         what = Edit(request.start_s, request.end_s, parts or None)
 
         def made() -> Motion:
             motion = _with_features(motion_from(request.motion), self._engine.model.rest_pose)
-            return edit(self._engine, motion, what, request.text, seed=request.seed)
+            edited = edit(self._engine, motion, what, request.text, seed=request.seed)
+            if not edited.reached:
+                raise UnfitRequestError(
+                    "not_reached", f"not reached: {edited.missing}", f"a motion that {edited.asked}"
+                )
+            return edited.motion
 
         return self._unless_rejected(request.text, request.seed, made, "bad_edit")
 

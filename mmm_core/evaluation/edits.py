@@ -77,7 +77,9 @@ def read_cases(which: str) -> tuple[EditCase, ...]:
     return tuple(msgspec.json.decode(line, type=EditCase) for line in lines.splitlines())
 
 
-def evaluate_edits(engine: Engine, progress: Callable[[int], None] = lambda _n: None, stride: int = 1) -> dict[str, Any]:
+def evaluate_edits(
+    engine: Engine, progress: Callable[[int], None] = lambda _n: None, stride: int = 1
+) -> dict[str, Any]:
     """Shares of edits that show their text (`asked`), keep the rest (`kept`) and both (`share`), by kind and by set.
 
     `told` is the share of cases in which the editor's own verdict (reached or not) agrees with the check. `missed` lists
@@ -108,7 +110,9 @@ def evaluate_edits(engine: Engine, progress: Callable[[int], None] = lambda _n: 
         **figures(rows),
         "kinds": {kind: figures([r for r in rows if r[1].kind == kind]) for kind in KINDS},
         **{which: figures([r for r in rows if r[0] == which]) for which in SETS},
-        "missed": [f"{which} {c.kind}: {c.base} / {c.text}" for which, c, asked, kept, _ in rows if not (asked and kept)],
+        "missed": [
+            f"{which} {c.kind}: {c.base} / {c.text}" for which, c, asked, kept, _ in rows if not (asked and kept)
+        ],
     }
 
 

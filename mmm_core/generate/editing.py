@@ -1,4 +1,4 @@
-"""Edits of a motion: each masks the ids to generate anew and keeps the rest as context.
+"""Edits of a motion: each masks the ids to generate anew and keeps the rest as context (`shown_edits` fills them).
 
 MMM (arXiv 2312.03596) sec. 3.3 and 3.4: in-betweening, a new beginning or end, any other segment, and single body parts
 (the paper's upper body given the lower; here any of the tokenizer's parts).
@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
-from torch import Tensor
 
 from mmm_core.errors import GenerationError
 from mmm_core.generate.engine import Engine
@@ -67,7 +66,7 @@ def edit(engine: Engine, motion: Motion, what: Edit | Sequence[Edit], text: str,
     row, mask = ids.clone(), engine.model.transformer.ids.mask
     for one in [what] if isinstance(what, Edit) else what:
         row[_span(one, len(row)), _books(engine, one)] = mask
-    return _filled(engine, row, text, seed, len(motion.features))
+    return filled(engine, row, text, seed, len(motion.features))
 
 
 def extend(
@@ -87,7 +86,7 @@ def extend(
         raise GenerationError(asked, f"at least {TOKEN_S} s more, and at most {MAX_TOKENS * TOKEN_S:.1f} s together")
     mask = engine.model.transformer.ids.mask
     row = torch.cat([ids.new_full((n_before, ids.shape[1]), mask), ids, ids.new_full((n_after, ids.shape[1]), mask)])
-    return _filled(engine, row, text, seed, None)
+    return filled(engine, row, text, seed, None)
 
 
 def in_between(engine: Engine, first: Motion, second: Motion, seconds: float, text: str, *, seed: int = 0) -> Edited:
@@ -105,15 +104,7 @@ def in_between(engine: Engine, first: Motion, second: Motion, seconds: float, te
                               f"at least {TOKEN_S} s, and at most {MAX_TOKENS * TOKEN_S:.1f} s together")  # fmt: skip
     mask = engine.model.transformer.ids.mask
     row = torch.cat([left, left.new_full((n_new, left.shape[1]), mask), right])
-    return _filled(engine, row, text, seed, None)
-
-
-def _filled(engine: Engine, row: Tensor, text: str, seed: int, n_frames: int | None) -> Edited:
-    states, verdict = engine.understand(text)
-    if verdict.status == "rejected":
-        raise GenerationError(f"the text '{text[:80]}' was given: {verdict.reason}", "what this model can do")
-    with torch.inference_mode():
-        return filled(engine, row, text, states, verdict, seed, n_frames)
+    return filled(engine, row, text, seed, None)
 
 
 def _span(one: Edit, n_tokens: int) -> slice:

@@ -14,23 +14,22 @@ from dataclasses import dataclass, replace
 import torch
 from torch import Tensor
 
+from mmm_core.errors import GenerationError
 from mmm_core.generate.engine import Engine
 from mmm_core.language.count_words import count_asked
-from mmm_core.language.scope import ScopeVerdict
 from mmm_core.model.sampling import fill
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from mmm_core.motion.motion import FPS, Motion
 from mmm_core.recognition.named import families_named, sentences
-from mmm_core.recognition.seen import STILL_FAMILIES, Act, Scene, lost, scenes_seen, sentence
+from mmm_core.recognition.seen import NOTHING_MOVES, STILL_FAMILIES, Act, Scene, lost, scenes_seen, sentence
 
 CANDIDATES = 8
 """Motions generated for a text alone, at most, after the one that is filled in context."""
-SEAM_TOKENS = 1
-"""Tokens beside kept ids that are masked again and filled in context."""
+SEAM_TOKENS = 2
+"""Tokens beside kept ids that are masked again and filled in context; as many as between two scenes of a story."""
 REFERENCES = 3
 """Motions for the text alone, at most, until each of its commands shows a gesture with a name."""
-FEWEST_TOKENS = 2
 EDIT_STRIDE = 32_452_843
 """Distance between the seeds of candidates."""
 _LIMBS = {"left_arm": ("left",), "right_arm": ("right",)}
@@ -44,17 +43,17 @@ class Edited:
         motion: the whole motion.
         asked: what a motion for the text alone shows, as a sentence without its subject; "" where it is not judged, because
             the model was imported.
-        found: what is missing of it in the edited motion; "" where it is reached.
-        reached: whether nothing is missing.
+        missing: what of it the edited motion does not show; "" where it shows all.
     """
 
     motion: Motion
     asked: str = ""
-    found: str = ""
+    missing: str = ""
 
     @property
     def reached(self) -> bool:
-        return not self.found
+        """Whether nothing is missing."""
+        return not self.missing
 
 
 @dataclass(frozen=True)
@@ -68,19 +67,42 @@ class _Asked:
     def is_named(self) -> bool:
         return all(any(act.family for act in acts) for acts in self.acts)
 
-    def missing(self, motion: Motion, start: int, end: int) -> list[str]:
-        """What of it frames `start` to `end` do not show."""
-        part = _frames(motion, start, end)
+    @property
+    def is_still(self) -> bool:
+        """Whether it shows nothing that moves, though the text names no standing."""
+        acts = [act for acts in self.acts for act in acts]
+        named = [family for scene in self.scenes for family in families_named(scene.words)]
+        return all(act.sentence == NOTHING_MOVES for act in acts) and not any(f in STILL_FAMILIES for f in named)
+
+    def missing(self, motion: Motion, span: tuple[int, int]) -> list[str]:
+        """What of it the motion does not show at the positions of `span`."""
+        if self.is_still:
+            return ["a motion for the text alone shows nothing that moves"]
+        part = _frames(motion, *(at * FRAMES_PER_TOKEN for at in span))
         scale = part.duration_s / self.scenes[-1].end_s
         scenes = [replace(scene, end_s=scene.end_s * scale) for scene in self.scenes]
         return [what for _, what in lost(part, scenes, self.acts)]
 
 
-def filled(engine: Engine, row: Tensor, text: str, states: TextStates, verdict: ScopeVerdict, seed: int, n_frames: int | None) -> Edited:
+def filled(engine: Engine, row: Tensor, text: str, seed: int, n_frames: int | None) -> Edited:
     """The motion of a row (L, C) whose [MASK]s are filled, of all candidates the first that shows what the text asks.
 
     Where none does, the one that misses least.
+
+    Args:
+        engine: the model.
+        row: kept ids, and [MASK] in the body parts and at the positions that are edited.
+        text: a command for them.
+        seed: any integer from 0 to 2^31 - 1.
+        n_frames: length that the motion is cut to; None keeps all frames of the row.
+
+    Raises:
+        GenerationError: the text is rejected.
     """
+    states, verdict = engine.understand(text)
+    if verdict.status == "rejected":
+        raise GenerationError(f"the text '{text[:80]}' was given: {verdict.reason}", "what this model can do")
+
     def motion_of(ids: Tensor) -> Motion:
         return engine.motion(ids, text, seed, verdict, n_frames)
 
@@ -88,62 +110,56 @@ def filled(engine: Engine, row: Tensor, text: str, states: TextStates, verdict: 
     in_context = fill(engine.model.transformer, states, [row], [seed], engine.settings)[0]
     if not engine.model.is_ours:
         return Edited(motion_of(in_context))
-    asked = _asked(engine, text, seed, _edited_sides(engine, opened))
-    spans = [(a * FRAMES_PER_TOKEN, b * FRAMES_PER_TOKEN) for a, b in _spans(opened)]
-    best: tuple[int, Edited] | None = None
+    spans = _spans(opened)
+    asked = _asked(engine, text, seed, spans, _edited_sides(engine, opened))
+    best: tuple[list[str], Motion] | None = None
     for ids in _candidates(engine, row, in_context, text, states, seed):
         motion = motion_of(ids)
-        missing = [what for a, b in spans for what in asked.missing(motion, a, min(b, len(motion.joints_m)))]
-        if not any(act.limb for acts in asked.acts for act in acts) and not _means_stillness(asked):
-            missing = missing or ["nothing moves"]
-        edited = Edited(motion, sentence(asked.acts), "; ".join(dict.fromkeys(missing)))
-        if best is None or len(missing) < best[0]:
-            best = (len(missing), edited)
+        missing = [what for span in spans for what in asked.missing(motion, span)]
+        if best is None or len(missing) < len(best[0]):
+            best = (missing, motion)
         if not missing:
             break
     assert best is not None
-    return best[1]
+    return Edited(best[1], sentence(asked.acts), "; ".join(dict.fromkeys(best[0])))
 
 
-def _candidates(engine: Engine, row: Tensor, in_context: Tensor, text: str, states: TextStates, seed: int) -> Iterator[Tensor]:
+def _candidates(
+    engine: Engine, row: Tensor, in_context: Tensor, text: str, states: TextStates, seed: int
+) -> Iterator[Tensor]:
+    """(L, C) ids: those filled in context, then those of motions for the text alone, of the segment's length and of their own."""
     yield in_context
-    opened = row == engine.model.transformer.ids.mask
+    mask = engine.model.transformer.ids.mask
+    opened = row == mask
     for k in range(CANDIDATES):
-        ids, seams = row.clone(), torch.zeros(len(row), dtype=torch.bool)
+        ids = row.clone()
         for start, end in _spans(opened):
-            n = end - start
-            fresh = _fresh(engine, text, (seed + k * EDIT_STRIDE) % 2**31, n, own_length=bool(k % 2))
-            at = start + (n - len(fresh)) // 2
-            books = opened[start:end]
-            new = ids[start:end].clone()
-            new[at - start : at - start + len(fresh)] = fresh
-            ids[start:end] = torch.where(books, new, ids[start:end])
-            seams |= _seams(opened, start, end)
-        ids = torch.where(opened & seams[:, None], engine.model.transformer.ids.mask, ids)
-        if bool((ids == engine.model.transformer.ids.mask).any()):
+            fresh = _fresh(engine, text, (seed + k * EDIT_STRIDE) % 2**31, end - start, own_length=bool(k % 2))
+            at = start + (end - start - len(fresh)) // 2
+            there = slice(at, at + len(fresh))
+            ids[there] = torch.where(opened[there], fresh, ids[there])
+            for seam in _seams(start, end, len(row)):
+                ids[seam] = torch.where(opened[seam], mask, ids[seam])
+        if bool((ids == mask).any()):
             ids = fill(engine.model.transformer, states, [ids], [seed], engine.settings)[0]
         yield ids
 
 
 def _fresh(engine: Engine, text: str, seed: int, n_tokens: int, *, own_length: bool) -> Tensor:
     """(at most n_tokens, C) ids of a motion for the text alone: of `n_tokens`, or of the text's own length if that is shorter."""
-    if own_length:
+    if own_length and engine.model.length is not None:
         ids = engine.ids_of(engine.generate(text, seed=seed).motion)
         if len(ids) <= n_tokens:
             return ids
     return engine.ids_of(engine.generate(text, seed=seed, seconds=n_tokens * FRAMES_PER_TOKEN / FPS).motion)
 
 
-def _seams(opened: Tensor, start: int, end: int) -> Tensor:
-    """(L,) positions of a segment that stand beside kept ids of the same body part."""
-    seams = torch.zeros(len(opened), dtype=torch.bool)
+def _seams(start: int, end: int, n_tokens: int) -> list[slice]:
+    """Positions of a segment beside kept ones; none in a segment that would have no others."""
     if end - start <= 2 * SEAM_TOKENS:
-        return seams
-    if start > 0:
-        seams[start : start + SEAM_TOKENS] = True
-    if end < len(opened):
-        seams[end - SEAM_TOKENS : end] = True
-    return seams
+        return []
+    first, last = slice(start, start + SEAM_TOKENS), slice(end - SEAM_TOKENS, end)
+    return [first] * (start > 0) + [last] * (end < n_tokens)
 
 
 def _spans(opened: Tensor) -> list[tuple[int, int]]:
@@ -153,13 +169,17 @@ def _spans(opened: Tensor) -> list[tuple[int, int]]:
     return [(i, next(j for j in range(i, len(opened) + 1) if j not in at)) for i in starts]
 
 
-def _asked(engine: Engine, text: str, seed: int, sides: tuple[str, ...] | None) -> _Asked:
+def _asked(
+    engine: Engine, text: str, seed: int, spans: Sequence[tuple[int, int]], sides: tuple[str, ...] | None
+) -> _Asked:
     """What a motion for the text alone shows, of the first of `REFERENCES` seeds that shows gestures with a name."""
     found: _Asked | None = None
+    longest_s = max(end - start for start, end in spans) * FRAMES_PER_TOKEN / FPS
     for k in range(REFERENCES):
-        made = engine.generate(text, seed=(seed + k * EDIT_STRIDE) % 2**31)
-        acts = tuple(_of_text(seen, text, sides) for seen in scenes_seen(made.motion, made.scenes))
-        asked = _Asked(made.scenes, acts)
+        seconds = None if engine.model.length is not None else longest_s
+        made = engine.generate(text, seed=(seed + k * EDIT_STRIDE) % 2**31, seconds=seconds)
+        seen = scenes_seen(made.motion, made.scenes)
+        asked = _Asked(made.scenes, tuple(_of_text(acts, text, sides) for acts in seen))
         if asked.is_named:
             return asked
         found = found or asked
@@ -187,10 +207,6 @@ def _edited_sides(engine: Engine, opened: Tensor) -> tuple[str, ...] | None:
     if len(edited) == len(names):
         return None
     return tuple(side for name in edited for side in _LIMBS.get(name, ()))
-
-
-def _means_stillness(asked: _Asked) -> bool:
-    return any(family in STILL_FAMILIES for scene in asked.scenes for family in families_named(scene.words))
 
 
 def _frames(motion: Motion, start: int, end: int) -> Motion:

@@ -203,6 +203,10 @@ ANSWERED = (
         "not_running", "a command to cancel that does not run", "`mmmd status` says what runs", "daemon/scheduling/test_sequences.py",
     ),
     Answered(
+        "not_reached", "no edited motion shows what the text asks", "edit a longer stretch or more parts, or take other words or another seed",
+        "daemon/cli/test_edit_command.py",
+    ),
+    Answered(
         "out_of_scope", "nothing that an upper body can do, or no English", "ask for a gesture of head, arms or torso", "daemon/front/test_front.py",
     ),
     Answered(

@@ -35,6 +35,9 @@ def edit(
 ) -> int:
     """Make a part of a motion again for a text and keep the rest: into a file with --out, else on the robot.
 
+    Of several candidates the first is taken that shows what the text asks. Where none does, the status is 1 and the message
+    says what is missing ("not reached"): the robot does not move, and with --out the nearest motion is written.
+
     Example, on the robot: mmmd edit gesture:wave_right "raise your left arm" --part left_arm
 
     Example, the middle: mmmd edit wave.npz "clap your hands" --start-s 1 --end-s 2.5 --out edited.npz
@@ -96,11 +99,17 @@ def edit(
         made = extend(engine, first, text, before_s=before_s, after_s=after_s, seed=seed)
     else:
         made = edit_motion(engine, first, Edit(start_s or 0.0, end_s, part or None), text, seed=seed)
-    made.save_npz(out)
+    made.motion.save_npz(out)
     if bvh is not None:
-        save_bvh(made, bvh)
-    sys.stdout.write(f"{out}: {len(made.joints_m)} frames at {made.fps:g} fps\n")
-    return 0
+        save_bvh(made.motion, bvh)
+    shows = f"; the new part {made.asked}" if made.asked and made.reached else ""
+    sys.stdout.write(f"{out}: {len(made.motion.joints_m)} frames at {made.motion.fps:g} fps{shows}\n")
+    if not made.reached:
+        sys.stderr.write(
+            f"mmmd: edit: not reached: asked was a motion that {made.asked}; found: {made.missing}; edit a longer stretch or more "
+            "parts of the body, or take other words or another --seed\n"
+        )
+    return 0 if made.reached else 1
 
 
 def _request(

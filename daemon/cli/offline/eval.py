@@ -17,7 +17,7 @@ from daemon.errors import CommandError
 if TYPE_CHECKING:
     from mmm_core.motion.motion import Motion
 
-EvalName = Literal["probes", "fidelity", "scope", "tokenizer", "real", "paper"]
+EvalName = Literal["probes", "fidelity", "edits", "scope", "tokenizer", "real", "paper"]
 MIRRORED_SEEDS = 2
 """Seeds with which each probe that names a side is compared with its mirror image."""
 MOST_REPEATS = 1000
@@ -59,6 +59,9 @@ def eval(
     held-out seeds: sign, arms, way, pose, number, pace and size of strokes, round paths, arms in step, hands that meet. A check
     counts for a family when the corpus itself passes it in 9 of 10; share is the model's part of what the corpus passes.
 
+    edits: whether 100 edits show what their text asks and keep the rest: body parts, stretches, new beginnings, new ends,
+    in-betweening; half of them are a development set (docs/evaluation.md).
+
     scope: refusals on 487 prompts kept apart, half of which the model can do: AUROC of the score, false refusals, false
     acceptances by kind, milliseconds a decision (docs/scope.md).
 
@@ -80,6 +83,8 @@ def eval(
     Example: mmmd eval fidelity --seeds 10 --json
 
     Example: mmmd eval fidelity --families row flap march_arms --steps 8
+
+    Example: mmmd eval edits --json
 
     Example: mmmd eval scope --json
 
@@ -115,6 +120,8 @@ def eval(
         figures, shown = _probes(model[0] if model else None, seeds, robots, _seeds_executed(executed, seeds), probes)
     elif name == "fidelity":
         figures, shown = _fidelity(model[0] if model else None, seeds, families, steps)
+    elif name == "edits":
+        figures = shown = _edits(model[0] if model else None)
     elif name == "tokenizer":
         figures = shown = _tokenizer(model[0] if model else None)
     elif name == "scope":
@@ -249,6 +256,23 @@ def _fidelity(
     )
     figures |= {"steps": steps, "checkpoint": engine.checkpoint_hash, **context(0, method)}
     return figures, {key: figures[key] for key in ("share", "least", "worst", "n")}
+
+
+def _edits(model: Path | None) -> dict[str, Any]:
+    """The cases of both sets, each edited once."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from daemon.bench.report import context
+    from mmm_core.evaluation.edits import SETS, evaluate_edits, read_cases
+    from mmm_core.generate.engine import Engine
+
+    engine = Engine.load(model)
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("edits", total=sum(len(read_cases(which)) for which in SETS))
+        figures = evaluate_edits(engine, lambda n: bar.update(task, completed=n))
+    method = "edits of generated motions, judged by kinematic signs; mmm_core/evaluation/edits.py"
+    return {**figures, "checkpoint": engine.checkpoint_hash, **context(0, method)}
 
 
 def _scope(model: Path | None) -> dict[str, Any]:

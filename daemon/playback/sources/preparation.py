@@ -46,7 +46,7 @@ PREFIX_FRAMES = 32
 """So much of what is played is shown to the generator, however little of it is the prefix: ids depend on what was before."""
 FIRST_MAKE_S = 0.1
 """Assumed time until a motion with a prefix is made; later ones are measured."""
-_THEIRS = ("bad_edit", "bad_keyframes")
+_THEIRS = ("bad_edit", "bad_keyframes", "not_reached")
 """Failures of the generator that tell of the request and not of the generator."""
 T = TypeVar("T")
 

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from daemon.cli import main
+from daemon.generator.messages import EditMessage, GenerateMessage, UnfitRequestError, arrays_of
+from daemon.generator.service import EngineMaker
+from mmm_core.generate.engine import Engine
 from mmm_core.motion.motion import load_npz
+
+WRIST, SHOULDER = 20, 16
+"""Joints of the left arm."""
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +28,8 @@ def test_one_part_of_a_motion_is_made_again(wave: Path, tmp_path: Path) -> None:
     command = ["edit", str(wave), "raise your left arm", "--part", "left_arm", "--out", str(out)]
     assert main([*command, "--bvh", str(tmp_path / "e.bvh")]) == 0
     before, after = load_npz(wave), load_npz(out)
-    assert not np.array_equal(before.tokens, after.tokens)
+    assert before.joints_m[:, WRIST, 1].max() < before.joints_m[:, SHOULDER, 1].min(), "the arm hangs"
+    assert after.joints_m[:, WRIST, 1].max() > after.joints_m[:, SHOULDER, 1].max() + 0.2, "the arm is raised"
     assert (tmp_path / "e.bvh").read_text().startswith("HIERARCHY")
 
 
@@ -31,6 +37,29 @@ def test_a_motion_grows_at_its_end(wave: Path, tmp_path: Path) -> None:
     out = tmp_path / "longer.npz"
     assert main(["edit", str(wave), "bow", "--after-s", "2", "--out", str(out)]) == 0
     assert len(load_npz(out).joints_m) == 100
+
+
+def test_what_is_not_reached_ends_with_status_1(wave: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The nearest motion is written, so that it can be looked at."""
+    out = tmp_path / "near.npz"
+    nod = tmp_path / "nod.npz"
+    assert main(["generate", "nod twice", "--seconds", "3", "--out", str(nod)]) == 0
+    capsys.readouterr()
+    assert main(["edit", str(nod), "clap your hands", "--part", "left_arm", "--out", str(out)]) == 1
+    said = capsys.readouterr()
+    assert "not reached: asked was a motion that claps" in said.err
+    assert str(out) in said.out
+    assert len(load_npz(out).joints_m) == 60
+
+
+def test_the_generator_says_what_is_not_reached() -> None:
+    """`rejected` with `not_reached`: the robot does not move."""
+    maker = EngineMaker(Engine.load(threads=None))
+    (nod,) = maker.generate(GenerateMessage(id=1, text="nod twice", seconds=3.0))
+    with pytest.raises(UnfitRequestError) as caught:
+        maker.edit(EditMessage(id=2, motion=arrays_of(nod.motion), text="clap your hands", parts=["left_arm"]))
+    assert caught.value.code == "not_reached"
+    assert caught.value.allowed.startswith("a motion that claps")
 
 
 @pytest.mark.parametrize(

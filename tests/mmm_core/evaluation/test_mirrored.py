@@ -72,7 +72,7 @@ def test_the_mirrored_text_gives_the_mirrored_motion(engine: Engine, one: str, o
 
 def test_a_mirrored_motion_can_be_edited(engine: Engine) -> None:
     motion = engine.generate("wave with your left hand", seed=1, seconds=4).motion
-    again = edit(engine, motion, Edit(start_s=3.0), "wave with your left hand", seed=2)
+    again = edit(engine, motion, Edit(start_s=3.0), "wave with your left hand", seed=2).motion
     kept = np.linalg.norm(again.joints_m[:40] - motion.joints_m[:40], axis=-1)
     assert kept.mean() < 0.05
 

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mmm_core.errors import GenerationError
+from mmm_core.evaluation.edits import KINDS, SETS, read_cases, run_case, shows_asked
 from mmm_core.generate.editing import Edit, edit, extend, in_between, part_names
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.story import Scene, check_scenes, generate_story
@@ -18,6 +19,8 @@ from mmm_core.model.sampling import empty_row, fill
 from mmm_core.model.streaming_decoder import StreamingDecoder
 from mmm_core.model.vqvae import VqVae, VqVaeConfig
 from mmm_core.motion.features import Root, joints_from_positions, recover, root_after
+from mmm_core.motion.motion import FPS
+from mmm_core.motion.posture_features import part, posture_features
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +35,7 @@ def ids(engine: Engine, motion: object) -> torch.Tensor:
 class TestEdit:
     def test_a_stretch_changes_and_the_rest_stays(self, engine: Engine) -> None:
         motion = engine.generate("wave with your right hand", seed=3, seconds=4).motion
-        changed = edit(engine, motion, Edit(1.0, 3.0), "raise your left arm", seed=3)
+        changed = edit(engine, motion, Edit(1.0, 3.0), "raise your left arm", seed=3).motion
         before, after = ids(engine, motion), ids(engine, changed)
         assert torch.equal(before[:5], after[:5])
         assert torch.equal(before[15:], after[15:])
@@ -42,12 +45,12 @@ class TestEdit:
     def test_in_betweening_from_both_ends(self, engine: Engine) -> None:
         """Out-painting: the middle is kept, both ends are made again."""
         motion = engine.generate("clap your hands", seed=1, seconds=4).motion
-        changed = edit(engine, motion, [Edit(0, 1), Edit(3)], "clap your hands", seed=9)
+        changed = edit(engine, motion, [Edit(0, 1), Edit(3)], "clap your hands", seed=9).motion
         assert torch.equal(ids(engine, motion)[5:15], ids(engine, changed)[5:15])
 
     def test_one_arm_is_made_again_and_the_other_keeps_its_ids(self, engine: Engine) -> None:
         motion = engine.generate("wave with your right hand", seed=3, seconds=4).motion
-        changed = edit(engine, motion, Edit(parts=("left_arm",)), "raise your left arm", seed=3)
+        changed = edit(engine, motion, Edit(parts=("left_arm",)), "raise your left arm", seed=3).motion
         before, after = ids(engine, motion), ids(engine, changed)
         left, *others = (part_names(engine).index(p) for p in ("left_arm", "right_arm", "rest"))
         assert torch.equal(before[:, others], after[:, others])
@@ -56,7 +59,7 @@ class TestEdit:
     def test_a_motion_of_another_program_is_encoded(self, engine: Engine) -> None:
         motion = engine.generate("nod", seed=1, seconds=3).motion
         foreign = type(motion)(**{**vars(motion), "tokens": np.zeros(0, np.int32)})
-        changed = edit(engine, foreign, Edit(1, 2), "nod", seed=2)
+        changed = edit(engine, foreign, Edit(1, 2), "nod", seed=2).motion
         assert np.isfinite(changed.joints_m).all()
 
     @pytest.mark.parametrize(
@@ -78,17 +81,60 @@ class TestEdit:
             edit(engine, motion, Edit(), "  ")
 
 
+class TestWhatAnEditShows:
+    """`mmmd edit` left the arm down and reported success: kept ids were tested, what the text asks was not."""
+
+    @pytest.mark.parametrize("kind", KINDS)
+    def test_most_edits_show_their_text_and_keep_the_rest(self, engine: Engine, kind: str) -> None:
+        """Two of three, of a few cases: the figure for all is `mmmd eval edits`."""
+        cases = [case for case in read_cases("development") if case.kind == kind][:3]
+        done = [run_case(engine, case) for case in cases]
+        assert sum(asked and kept for _, asked, kept in done) >= 2
+        assert all(kept for _, _, kept in done)
+
+    def test_both_sets_have_fifty_cases_of_all_kinds(self) -> None:
+        for which in SETS:
+            cases = read_cases(which)
+            assert len(cases) == 50
+            assert {case.kind for case in cases} == set(KINDS)
+
+    def test_the_check_tells_the_old_motion_from_an_edited_one(self, engine: Engine) -> None:
+        """A motion that was not edited shows none of the texts."""
+        for case in read_cases("test"):
+            if case.kind in ("part", "stretch"):
+                base = engine.generate(case.base, seed=case.seed, seconds=case.seconds).motion
+                shown = posture_features(base.joints_m, base.head_quat_wxyz, base.forearm_twist_rad)
+                end = None if case.end_s is None else round(case.end_s * FPS)
+                shown = part(shown, round((case.start_s or 0) * FPS), end or len(base.joints_m))
+                assert not shows_asked(shown, case), case
+
+    def test_what_cannot_be_shown_is_said(self, engine: Engine) -> None:
+        """One arm alone claps no hands while the other one hangs."""
+        motion = engine.generate("nod twice", seed=3, seconds=3).motion
+        edited = edit(engine, motion, Edit(parts=("left_arm",)), "clap your hands", seed=3)
+        assert not edited.reached
+        assert edited.asked == "claps the hands" or edited.asked.startswith("claps"), edited.asked
+        assert "right arm" in edited.missing or "clap" in edited.missing, edited.missing
+
+    def test_seams_are_filled_and_no_mask_is_left(self, engine: Engine) -> None:
+        motion = engine.generate("wave with your right hand", seed=3, seconds=5).motion
+        for text in ("clap your hands", "bow", "nod"):
+            changed = edit(engine, motion, Edit(1.0, 4.0), text, seed=1).motion
+            assert int(ids(engine, changed).max()) < engine.model.tokenizer.config.n_codes
+            assert torch.equal(ids(engine, changed)[:5], ids(engine, motion)[:5])
+
+
 class TestExtend:
     def test_new_ends_leave_the_middle(self, engine: Engine) -> None:
         motion = engine.generate("wave with your right hand", seed=3, seconds=3).motion
-        longer = extend(engine, motion, "bow", before_s=1, after_s=2, seed=5)
+        longer = extend(engine, motion, "bow", before_s=1, after_s=2, seed=5).motion
         assert len(longer.joints_m) == 20 * 6
         assert torch.equal(ids(engine, longer)[5:20], ids(engine, motion))
 
     def test_in_between_two_motions(self, engine: Engine) -> None:
         first = engine.generate("wave with your right hand", seed=3, seconds=2).motion
         second = engine.generate("clap your hands", seed=3, seconds=2).motion
-        joined = in_between(engine, first, second, 1.0, "clap your hands", seed=5)
+        joined = in_between(engine, first, second, 1.0, "clap your hands", seed=5).motion
         all_ids = ids(engine, joined)
         assert torch.equal(all_ids[:10], ids(engine, first))
         assert torch.equal(all_ids[-10:], ids(engine, second))
