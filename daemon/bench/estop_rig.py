@@ -7,6 +7,7 @@ import os
 import signal
 import socket
 import subprocess
+import sys
 import time
 import uuid
 from collections.abc import Callable
@@ -33,6 +34,8 @@ BUS, CTL = "daemon.control.process", "daemon.ctl.process"
 CLIENT_PRIORITY = 20
 READY_TIMEOUT_S = 60.0
 STATE_TIMEOUT_S = 20.0
+_LEAD_TRIES = 4
+"""A machine that stands still for a moment lets servos fall silent on the way to a state: the robot is led there again."""
 _LOG_LINES = 40
 """Lines of the daemon's log that go with an error."""
 
@@ -132,15 +135,19 @@ class EstopRig:
         Raises:
             DaemonError: the daemon does not get ready, or the robot not into the state; with the end of the daemon's log.
         """
-        if self._process is None or self._process.poll() is not None:
-            self.kill_all()
-            self.start()
-        try:
-            self._until_ready()
-            with Client(self.endpoints) as client:
-                _lead_to(client, state)
-        except DaemonError as error:
-            raise DaemonError(f"{error}; the daemon's log ends with:\n{self.said}") from error
+        for tries_left in reversed(range(_LEAD_TRIES)):
+            if self._process is None or self._process.poll() is not None:
+                self.kill_all()
+                self.start()
+            try:
+                self._until_ready()
+                with Client(self.endpoints) as client:
+                    _lead_to(client, state)
+                return
+            except DaemonError as error:
+                if not tries_left:
+                    raise DaemonError(f"{error}; the daemon's log ends with:\n{self.said}") from error
+                sys.stderr.write(f"led to {state} again: {error}\n")
 
     def until_listening(self) -> None:
         """Wait until `ctl` takes connections, whatever else the daemon does not do yet."""
@@ -210,14 +217,20 @@ def _lead_to(client: Client, state: str) -> None:
         elif client.status().state != "limp":
             client.park()
         client.arm(wait=False)
-        client.wait_for("arming", timeout_s=STATE_TIMEOUT_S)
+        _wait_for(client, "arming")
         return
     arm_again(client)
     client.gesture("wave_right", loop=True, wait=False)
-    client.wait_for("moving", timeout_s=STATE_TIMEOUT_S)
+    _wait_for(client, "moving")
     if state == "parking":
         client.park(wait=False)
-        client.wait_for("parking", timeout_s=STATE_TIMEOUT_S)
+        _wait_for(client, "parking")
+
+
+def _wait_for(client: Client, state: str) -> None:
+    status = client.wait_for(state, *HALTED, timeout_s=STATE_TIMEOUT_S)
+    if status.state != state:
+        raise DaemonError(f"the robot is in {status.state} instead of {state}: {status.reason}")
 
 
 def _cycles(client: Client) -> int:
