@@ -150,6 +150,7 @@ def _port_lost(rig: EstopRig, rng: np.random.Generator) -> Generator[None]:
 
 DISTURBANCES: dict[str, Disturbance] = {
     "flood_cmd": Disturbance(_flood("cmd")),
+    "flood_ctl": Disturbance(_flood("ctl")),
     "flood_pub": Disturbance(_flood("pub")),
     "flood_stream": Disturbance(_flood("stream")),
     "connections_1000": Disturbance(_connections, newcomer=True),

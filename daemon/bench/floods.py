@@ -20,7 +20,7 @@ import zmq
 from daemon.errors import DaemonError
 from daemon.host.descriptors import die_with_parent, raise_descriptor_limit
 from daemon.wire.codec import encode
-from daemon.wire.requests import Capabilities
+from daemon.wire.requests import Capabilities, Reset, Status
 
 N_PEERS = 4
 """Clients that flood `cmd` or `stream` together."""
@@ -39,6 +39,15 @@ def flood_cmd(endpoint: str) -> None:
     """Send requests that cost the daemon an answer, and bytes that are none, as fast as they are taken; read no answer."""
     peers = _peers(endpoint, zmq.DEALER)
     frames = (encode(Capabilities(id="flood")), b"x" * _FRAME_BYTES, b'{"type": ' * 100)
+    for peer, frame in zip(itertools.cycle(peers), itertools.cycle(frames), strict=False):
+        with contextlib.suppress(zmq.Again):
+            peer.send(frame, zmq.DONTWAIT)
+
+
+def flood_ctl(endpoint: str) -> None:
+    """Ask for the state and for resets, and send bytes that are none, as fast as they are taken; read no answer."""
+    peers = _peers(endpoint, zmq.DEALER)
+    frames = (encode(Status(id="flood")), encode(Reset(id="flood")), b"x" * _FRAME_BYTES, b'{"type": ' * 100)
     for peer, frame in zip(itertools.cycle(peers), itertools.cycle(frames), strict=False):
         with contextlib.suppress(zmq.Again):
             peer.send(frame, zmq.DONTWAIT)
@@ -82,7 +91,7 @@ def idle_connections(endpoint: str) -> None:
 
 
 FLOODS: dict[str, Callable[[str], None]] = {
-    "cmd": flood_cmd, "pub": flood_pub, "stream": flood_stream, "connections": idle_connections,
+    "cmd": flood_cmd, "ctl": flood_ctl, "pub": flood_pub, "stream": flood_stream, "connections": idle_connections,
 }  # fmt: skip
 
 

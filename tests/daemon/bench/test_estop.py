@@ -13,7 +13,7 @@ AWAY = {"bus_killed", "bus_frozen", "start", "port_lost"}
 
 
 def test_there_is_a_disturbance_for_each_socket_process_and_phase():
-    floods = {"flood_cmd", "flood_pub", "flood_stream", "connections_1000"}
+    floods = {"flood_cmd", "flood_ctl", "flood_pub", "flood_stream", "connections_1000"}
     processes = {"front_frozen", "front_killed", "bus_killed", "bus_frozen"}
     assert set(DISTURBANCES) == floods | processes | {"start", "arming", "parking", "port_lost"}
     for name, one in DISTURBANCES.items():
