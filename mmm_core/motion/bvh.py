@@ -1,17 +1,23 @@
 """BVH export: a joint tree and its rotations, as Blender and other programs import it. NumPy only.
 
 Lengths are centimetres, y is up, the person starts facing +z; the format has no place to say so. Bone rotations are
-those of the motion, so that the head's orientation and the forearms' twist survive. Each bone that leaves a joint with
-several bones (pelvis, spine3) has a node of its own there, named `PARENT_CHILD`: they do not move rigidly together.
+those of the motion, so that the head's orientation and the forearms' twist survive. There are two trees:
+
+- `mmmd`: our joints. Each bone that leaves a joint with several bones (pelvis, spine3) has a node of its own there, named
+  `PARENT_CHILD`: they do not move rigidly together. Joints are exact.
+- `cmu` and `mixamo` (`bvh_standard.py`): the bones and names that retargeting programs know, in a T pose at rest.
 """
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
+from mmm_core.motion.bvh_node import CM_PER_M, Node, bone_lengths_m
+from mmm_core.motion.bvh_standard import standard_nodes
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import (
     JOINT_NAMES,
@@ -23,13 +29,18 @@ from mmm_core.motion.skeleton import (
     matrix_from_quat,
 )
 
-CM_PER_M = 100.0
+BvhNames = Literal["mmmd", "cmu", "mixamo"]
 _CHILDREN = tuple(tuple(j for j, p in enumerate(PARENTS) if p == parent) for parent in range(len(PARENTS)))
 _ROTATION_CHANNELS = "Yrotation Xrotation Zrotation"
 
 
-def save_bvh(motion: Motion, path: Path | str) -> None:
+def save_bvh(motion: Motion, path: Path | str, names: BvhNames = "mmmd") -> None:
     """Write a motion; an older file stays whole if writing fails.
+
+    Args:
+        motion: at least one frame.
+        path: of the file.
+        names: which bones, and their names.
 
     Raises:
         ValueError: the motion has no frames.
@@ -40,14 +51,27 @@ def save_bvh(motion: Motion, path: Path | str) -> None:
     path = Path(path)
     partial = path.with_name(path.name + ".part")
     try:
-        partial.write_text(bvh_text(motion), "ascii")
+        partial.write_text(bvh_text(motion, names), "ascii")
         os.replace(partial, path)
     finally:
         partial.unlink(missing_ok=True)
 
 
-def bvh_text(motion: Motion) -> str:
+def bvh_text(motion: Motion, names: BvhNames = "mmmd") -> str:
     """The file's text. Bone lengths are the motion's own (their median); orientation wins where they disagree."""
+    joints = np.asarray(motion.joints_m, np.float64)
+    nodes = _own_nodes(motion) if names == "mmmd" else standard_nodes(motion, names)
+    lines, order = ["HIERARCHY"], list[int]()
+    _write_node(0, nodes, 0, lines, order)
+    lines += ["MOTION", f"Frames: {len(joints)}", f"Frame Time: {1 / motion.fps:.6f}"]
+    angles_deg = np.rad2deg(np.concatenate([_euler_yxz(nodes[n].turn) for n in order], axis=1))
+    rows = np.concatenate([CM_PER_M * joints[:, 0], angles_deg], axis=1)
+    lines += [" ".join(f"{value:.5f}" for value in row) for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def _own_nodes(motion: Motion) -> list[Node]:
+    """A node for each bone, at the bone's start: it turns the bone that ends in its joint."""
     joints = np.asarray(motion.joints_m, np.float64)
     local = local_rotations(
         joints,
@@ -55,39 +79,31 @@ def bvh_text(motion: Motion) -> str:
         matrix_from_quat(motion.head_quat_wxyz),
         motion.forearm_twist_rad.astype(np.float64),
     )
-    lengths_m = np.zeros(len(PARENTS))
-    lengths_m[1:] = np.median(np.linalg.norm(joints[:, 1:] - joints[:, list(PARENTS[1:])], axis=-1), axis=0)
-    offsets_cm = CM_PER_M * lengths_m[:, None] * REST_DIRECTIONS
-    lines = ["HIERARCHY", f"ROOT {JOINT_NAMES[0]}", "{", "  OFFSET 0 0 0"]
-    lines.append(f"  CHANNELS 6 Xposition Yposition Zposition {_ROTATION_CHANNELS}")
-    order: list[int] = []
-    for child in _CHILDREN[0]:
-        _write_bone(child, np.zeros(3), offsets_cm, 1, lines, order)
-    lines += ["}", "MOTION", f"Frames: {len(joints)}", f"Frame Time: {1 / motion.fps:.6f}"]
-    angles_deg = np.rad2deg(np.concatenate([_euler_yxz(local[:, j]) for j in (0, *order)], axis=1))
-    rows = np.concatenate([CM_PER_M * joints[:, 0], angles_deg], axis=1)
-    lines += [" ".join(f"{value:.5f}" for value in row) for row in rows]
-    return "\n".join(lines) + "\n"
+    offsets_cm = CM_PER_M * bone_lengths_m(joints)[:, None] * REST_DIRECTIONS
+    nodes = [Node(JOINT_NAMES[0], -1, np.zeros(3), local[:, 0])]
+    for joint, parent in enumerate(PARENTS[1:], 1):
+        several = len(_CHILDREN[parent]) > 1
+        name = f"{JOINT_NAMES[parent]}_{JOINT_NAMES[joint]}" if several else JOINT_NAMES[parent]
+        end = None if _CHILDREN[joint] else offsets_cm[joint]
+        nodes.append(Node(name, parent, offsets_cm[parent] if parent else np.zeros(3), local[:, joint], end))
+    return nodes
 
 
-def _write_bone(joint: int, at_cm: Array, offsets_cm: Array, depth: int, lines: list[str], order: list[int]) -> None:
-    """The node that turns the bone ending in `joint`; it sits at the bone's start, `at_cm` from the node above."""
-    parent = PARENTS[joint]
-    name = JOINT_NAMES[parent]
-    if len(_CHILDREN[parent]) > 1:
-        name = f"{name}_{JOINT_NAMES[joint]}"
-    pad = "  " * depth
+def _write_node(i: int, nodes: list[Node], depth: int, lines: list[str], order: list[int]) -> None:
+    node, pad = nodes[i], "  " * depth
+    place = "3" if depth else "6 Xposition Yposition Zposition"
     lines += [
-        f"{pad}JOINT {name}",
+        f"{pad}{'JOINT' if depth else 'ROOT'} {node.name}",
         f"{pad}{{",
-        f"{pad}  OFFSET {_numbers(at_cm)}",
-        f"{pad}  CHANNELS 3 {_ROTATION_CHANNELS}",
+        f"{pad}  OFFSET {_numbers(node.offset_cm)}",
+        f"{pad}  CHANNELS {place} {_ROTATION_CHANNELS}",
     ]
-    order.append(joint)
-    for child in _CHILDREN[joint]:
-        _write_bone(child, offsets_cm[joint], offsets_cm, depth + 1, lines, order)
-    if not _CHILDREN[joint]:
-        lines += [f"{pad}  End Site", f"{pad}  {{", f"{pad}    OFFSET {_numbers(offsets_cm[joint])}", f"{pad}  }}"]
+    order.append(i)
+    for child, other in enumerate(nodes):
+        if other.parent == i:
+            _write_node(child, nodes, depth + 1, lines, order)
+    if node.end_cm is not None:
+        lines += [f"{pad}  End Site", f"{pad}  {{", f"{pad}    OFFSET {_numbers(node.end_cm)}", f"{pad}  }}"]
     lines.append(f"{pad}}}")
 
 

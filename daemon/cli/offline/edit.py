@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import tyro
 from tyro.conf import OmitArgPrefixes
@@ -26,6 +26,7 @@ def edit(
     then: Path | None = None,
     seed: int = 0,
     bvh: Path | None = None,
+    bvh_names: Literal["mmmd", "cmu", "mixamo"] = "mmmd",
     model: Path | None = None,
     threads: int = 1,
     how: OmitArgPrefixes[PlayFlags] = PlayFlags(),  # noqa: B008
@@ -61,6 +62,7 @@ def edit(
         then: a second motion that follows.
         seed: the same input and seed give the same motion.
         bvh: BVH file to write as well.
+        bvh_names: its bones: mixamo or cmu as retargeting programs know them, or our joints.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
         how: on the robot: how it is to be played.
@@ -101,7 +103,7 @@ def edit(
         made = edit_motion(engine, first, Edit(start_s or 0.0, end_s, part or None), text, seed=seed)
     made.motion.save_npz(out)
     if bvh is not None:
-        save_bvh(made.motion, bvh)
+        save_bvh(made.motion, bvh, bvh_names)
     shows = f"; the new part {made.asked}" if made.asked and made.reached else ""
     sys.stdout.write(f"{out}: {len(made.motion.joints_m)} frames at {made.motion.fps:g} fps{shows}\n")
     if not made.reached:

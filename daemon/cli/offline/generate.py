@@ -37,6 +37,7 @@ class SceneLine(msgspec.Struct, forbid_unknown_fields=True):
     seconds: float | None = None
 
 
+BvhNames = Literal["mmmd", "cmu", "mixamo"]
 Precision = Literal["fp32", "bf16", "int8", "auto"]
 Line = TypeVar("Line", bound=msgspec.Struct)
 
@@ -47,6 +48,7 @@ def generate(
     seed: int = 0,
     seconds: float | None = None,
     bvh: Path | None = None,
+    bvh_names: BvhNames = "mmmd",
     batch: Path | None = None,
     story: Path | None = None,
     candidates: int | None = None,
@@ -61,6 +63,8 @@ def generate(
 
     Example: mmmd generate "wave with your right hand" --seed 7 --out wave.npz --bvh wave.bvh
 
+    Example for a retargeting program: mmmd generate "bow" --out bow.npz --bvh bow.bvh --bvh-names mixamo
+
     Example for many: mmmd generate --batch prompts.jsonl --out motions
 
     Example for one long motion: mmmd generate --story scenes.jsonl --out story.npz
@@ -71,6 +75,7 @@ def generate(
         seed: the same text, seed and seconds give the same motion.
         seconds: length of the motion; the model chooses when it is not given.
         bvh: BVH file to write as well.
+        bvh_names: its bones: mixamo or cmu as retargeting programs know them, in a T pose at rest; mmmd has our joints.
         batch: JSON lines of {"id", "text", "seed", "seconds"}: one .npz named by its id for each.
         story: JSON lines of {"text", "seconds"}: one motion with generated transitions, of any length.
         candidates: motions made at once, of which the model's likeliest is kept; with two or more, a number of strokes that the
@@ -94,7 +99,7 @@ def generate(
     if story is not None:
         if candidates is not None:
             raise CommandError("generate: --candidates does not go with --story; leave it out")
-        return _tell(story, out, bvh, seed, _load(model, threads, precision))
+        return _tell(story, out, bvh, bvh_names, seed, _load(model, threads, precision))
     prompt = Prompt("", text or "", seed, seconds)
     problem = _problem(prompt)
     if problem:
@@ -116,7 +121,7 @@ def generate(
     if bvh is not None:
         from mmm_core.motion.bvh import save_bvh
 
-        save_bvh(made.motion, bvh)
+        save_bvh(made.motion, bvh, bvh_names)
     _say(_summary(prompt, made, out), json)
     return 0
 
@@ -156,7 +161,7 @@ def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candida
     return int(refused == len(prompts))
 
 
-def _tell(path: Path, out: Path, bvh: Path | None, seed: int, engine: Engine) -> int:
+def _tell(path: Path, out: Path, bvh: Path | None, bvh_names: BvhNames, seed: int, engine: Engine) -> int:
     """Write a story as one motion; the parts that were rejected are said."""
     from mmm_core.generate.story import Scene, check_scenes, generate_story
     from mmm_core.motion.bvh import save_bvh
@@ -171,7 +176,7 @@ def _tell(path: Path, out: Path, bvh: Path | None, seed: int, engine: Engine) ->
     whole = joined(pieces)
     whole.save_npz(out)
     if bvh is not None:
-        save_bvh(whole, bvh)
+        save_bvh(whole, bvh, bvh_names)
     sys.stdout.write(f"{out}: {len(whole.joints_m)} frames at {whole.fps:g} fps from {len(scenes)} texts\n")
     return 0 if len(whole.joints_m) else 1
 

@@ -94,3 +94,14 @@ def test_a_bad_scene_is_named_by_its_line(tmp_path: Path, capsys: pytest.Capture
     scenes.write_text('{"text": "bow"}\n{"txt": "bow"}\n')
     assert main(["generate", "--story", str(scenes), "--out", str(tmp_path / "s.npz")]) == 2
     assert "line 2" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("names", "bone"), [("cmu", "LowerBack"), ("mixamo", "mixamorig:Spine2"), ("mmmd", "spine1")])
+def test_bvh_is_written_with_the_names_that_are_asked_for(wave: Path, tmp_path: Path, names: str, bone: str) -> None:
+    out = ["--out", str(tmp_path / "m.npz"), "--bvh", str(tmp_path / "m.bvh"), "--bvh-names", names]
+    assert main(["generate", "nod", "--seconds", "2", *out]) == 0
+    assert f"JOINT {bone}\n" in (tmp_path / "m.bvh").read_text()
+    assert main(["retarget", str(tmp_path / "m.bvh"), "--out", str(tmp_path / "ticks.npz")]) == 0
+    (tmp_path / "m.bvh").unlink()
+    assert main(["edit", str(wave), "nod", "--part", "rest", *out]) == 0
+    assert f"JOINT {bone}\n" in (tmp_path / "m.bvh").read_text()

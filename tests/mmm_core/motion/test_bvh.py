@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from mmm_core.corpus.families import Gesture
+from mmm_core.corpus.synthesis import ClipSpec, synthesise_spec
+from mmm_core.evaluation.robot_capability import as_motion
+from mmm_core.imports.recordings.bvh import read_bvh
 from mmm_core.motion.bvh import bvh_text, save_bvh
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import (
@@ -15,6 +20,7 @@ from mmm_core.motion.skeleton import (
     facing_yaw_rad,
     forward_kinematics,
     local_rotations,
+    matrix_from_quat,
     quat_wxyz,
     rotation_about,
     rotation_y,
@@ -36,6 +42,18 @@ def a_motion(turn_rad: float, seed: int = 0, T: int = 30) -> Motion:
     joints, world = forward_kinematics(local, root)
     return Motion(joints.astype(np.float32), 20.0, quat_wxyz(world[:, 15]).astype(np.float32), np.full((T, 2), 0.4, np.float32),
                   np.zeros((T, 263), np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0)  # fmt: skip
+
+
+def a_gesture(family: str, turn_rad: float = 0.0) -> Motion:
+    """A gesture of the corpus, turned about the vertical."""
+    gesture = Gesture(family, *{"clap": ("both", 2), "wave": ("left", 3), "twist": ("", 1, "left")}.get(family, ()))
+    clip = synthesise_spec(ClipSpec((gesture,)), np.random.default_rng(3))
+    assert clip is not None
+    motion, turn = as_motion(clip.body.features()), rotation_y(np.array(turn_rad))
+    head = quat_wxyz(turn @ matrix_from_quat(motion.head_quat_wxyz.astype(float)))
+    return replace(
+        motion, joints_m=(motion.joints_m @ turn.T).astype(np.float32), head_quat_wxyz=head.astype(np.float32)
+    )
 
 
 def parse(text: str):
@@ -138,3 +156,44 @@ def test_a_motion_without_frames_is_refused(tmp_path):
     with pytest.raises(ValueError, match="no BVH"):
         save_bvh(empty, tmp_path / "x.bvh")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("names", "prefix"), [("cmu", ""), ("mixamo", "mixamorig:")])
+class TestStandardNames:
+    """Retargeting programs find bones by name: those of Mixamo's rig, and of the CMU recordings' BVH conversion."""
+
+    def test_bones_have_the_names_that_programs_know(self, names, prefix):
+        nodes, *_ = parse(bvh_text(a_motion(0.0), names))
+        sided = [f"{side}{bone}" for side in ("Left", "Right") for bone in
+                 ("UpLeg", "Leg", "Foot", "ToeBase", "Shoulder", "Arm", "ForeArm", "Hand")]  # fmt: skip
+        spine = {"cmu": ["LowerBack", "Spine", "Spine1"], "mixamo": ["Spine", "Spine1", "Spine2"]}[names]
+        wanted = {prefix + bone for bone in ("Hips", *spine, "Neck", "Head", *sided)}
+        assert {n for n in nodes if not n.endswith("_end")} == wanted
+
+    def test_no_bone_has_length_zero_and_arms_rest_in_a_t(self, names, prefix):
+        nodes, *_ = parse(bvh_text(a_motion(0.0), names))
+        assert all(np.linalg.norm(offset) > 1 for parent, offset, _ in nodes.values() if parent is not None)
+        for side, sign in (("Left", 1), ("Right", -1)):
+            for bone in ("ForeArm", "Hand"):
+                offset = nodes[f"{prefix}{side}{bone}"][1]
+                assert offset[0] * sign == pytest.approx(np.linalg.norm(offset))
+
+    @pytest.mark.parametrize(
+        ("family", "turn_deg"), [("clap", 0), ("bow", 90), ("twist", -135), ("wave", 180), ("nod", 0)]
+    )
+    def test_our_reader_finds_the_motion_again(self, names, prefix, family, turn_deg, tmp_path):
+        """Pelvis and chest are rigid in these skeletons: a motion that bends them has its joints within two centimetres."""
+        motion = a_gesture(family, np.deg2rad(turn_deg))
+        save_bvh(motion, tmp_path / "motion.bvh", names)
+        again = read_bvh(tmp_path / "motion.bvh")
+        off = np.linalg.norm(again.joints_m - motion.joints_m, axis=-1)
+        assert off.max() < 0.02, off.max()
+        turned = matrix_from_quat(again.head_quat_wxyz) @ np.swapaxes(matrix_from_quat(motion.head_quat_wxyz), -1, -2)
+        cosine = np.clip((np.trace(turned, axis1=1, axis2=2) - 1) / 2, -1, 1)
+        assert np.rad2deg(np.arccos(cosine)).max() < 4, (
+            "the reader's upright is the line from pelvis to shoulders: 3.4 degrees"
+        )
+
+    def test_angles_do_not_jump(self, names, prefix):
+        _, _, rows, _ = parse(bvh_text(a_gesture("clap", np.pi), names))
+        assert np.abs(np.diff(rows[:, 3:], axis=0)).max() < 40
