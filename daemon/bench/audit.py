@@ -1,7 +1,7 @@
 """Many texts through the daemon's bus side on every robot: model, retargeting, hand-over, gate, codec, servos.
 
-Virtual time: the same `Streamer`, `Gate`, `ServoBus` and simulated servos as in a run, without waiting. Every third text
-interrupts the one before at a random moment; every tenth run is stopped half way. Then fewer texts once more, while the
+Virtual time: the same `ControlLoop`, `SafetyLimiter`, `ServoBus` and simulated servos as in a run, without waiting. Every third
+text interrupts the one before at a random moment; every tenth run is stopped half way. Then fewer texts once more, while the
 wire and the servos fail on a schedule, requests come at random and frames are nonsense. The simulator audits every goal.
 """
 

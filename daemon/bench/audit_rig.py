@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.control.control_loop import Streamer
+from daemon.control.control_loop import ControlLoop
 from daemon.control.turns import TURNS_UNKNOWN
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.servo_bus import ServoBus
@@ -34,7 +34,7 @@ _REPORTED = (
 
 
 class AuditRig:
-    """Streamer, gate, servo bus and codec over simulated servos, without waiting.
+    """Control loop, safety limiter, servo bus and codec over simulated servos, without waiting.
 
     Args:
         robot: which one.
@@ -53,7 +53,7 @@ class AuditRig:
         self._port = SimPort(self._bus, self._clock)
         self._link = BusLink.create(robot.n_joints, robot.n_servos)
         servo_bus = ServoBus(self._port, robot.servos, self._clock)
-        self._streamer = Streamer(robot, servo_bus, self._link, self._clock, watch_front=False)
+        self._streamer = ControlLoop(robot, servo_bus, self._link, self._clock, watch_front=False)
         self._period_s, self._due_s = robot.bus.period_s, 0.0
         self._last: Array = robot.rest_rad
         self._velocity: Array = np.zeros(robot.n_joints)

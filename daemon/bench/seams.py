@@ -12,10 +12,10 @@ from daemon.bench.daemon_rig import percentile
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
 from daemon.playback.setpoint_buffer import FADE_FRAMES
-from daemon.playback.sources.preparation import PREFIX_FRAMES
+from daemon.playback.sources.source_factory import PREFIX_FRAMES
 from daemon.poses.cycles import closed, find_loop
-from daemon.poses.idle import IdleScore
-from daemon.poses.pose_sequence import Posture, distance_deg, faded_in, joined, posture_of, standing
+from daemon.poses.idle import IdleSource
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, faded_in, joined, posture_of, standing
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import FPS, Motion
@@ -81,7 +81,7 @@ def bench_seams(n: int = 60, seed: int = 0, robot: str = "reference", data: str 
 
 
 def _prompt_seams(
-    clips: list[Posture], rng: np.random.Generator, retargeter: Retargeter
+    clips: list[PoseSequence], rng: np.random.Generator, retargeter: Retargeter
 ) -> tuple[list[float], list[float]]:
     """Peak jerk where one text takes over from another, and the velocity steps of the joints there."""
     jerk: list[float] = []
@@ -134,28 +134,28 @@ def _draft_seams(engine: Engine, motions: list[Motion], rng: np.random.Generator
     return jerk
 
 
-def _idle_seam(p: Posture, rng: np.random.Generator) -> float:
+def _idle_seam(p: PoseSequence, rng: np.random.Generator) -> float:
     """Peak jerk where a text takes over from idle movements."""
-    score = IdleScore("lively", int(rng.integers(1000)))
+    score = IdleSource("lively", int(rng.integers(1000)))
     idle = joined([score.next()[0] for _ in range(4)])
     k = int(rng.integers(WINDOW, len(idle) - FADE_FRAMES))
     after = faded_in(p, idle.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
     return _peak_jerk(joined([idle[:k], after]), k)
 
 
-def _closure_deg(p: Posture, loop: tuple[int, int]) -> float:
+def _closure_deg(p: PoseSequence, loop: tuple[int, int]) -> float:
     """How far the loop's last frame is from the frame before its first."""
     return float(distance_deg(closed(p, loop)[-1:], p.at(np.array([loop[0] - 1])))[0])
 
 
-def _peak_jerk(p: Posture, at: int) -> float:
+def _peak_jerk(p: PoseSequence, at: int) -> float:
     """Largest jerk within half a second of frame `at`, m/s3."""
     joints = _on_common_body(p).motion().joints_m.astype(np.float64)[:, UPPER]
     around = joints[max(0, at - WINDOW // 2) : at + WINDOW // 2]
     return float(np.linalg.norm(np.diff(around, n=3, axis=0), axis=-1).max()) * FPS**3
 
 
-def _on_common_body(p: Posture) -> Posture:
+def _on_common_body(p: PoseSequence) -> PoseSequence:
     return replace(p, lengths_m=standing().lengths_m)
 
 
@@ -173,7 +173,7 @@ def _real_jerk(folder: Any, rng: np.random.Generator) -> float:
     return float(np.mean(np.sort(peaks)[len(peaks) // 2 :]))
 
 
-def _posture_of_joints(recovered: Any) -> Posture:
+def _posture_of_joints(recovered: Any) -> PoseSequence:
     from mmm_core.motion.motion import N_FEATURES, Motion
 
     T = len(recovered.joints_m)

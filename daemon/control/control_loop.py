@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from daemon.control.arming import Armed, arm_in_steps
 from daemon.control.derating import Derating
-from daemon.control.fault_detector import MAY_HAVE_TRIPPED_S, Judge
+from daemon.control.fault_detector import MAY_HAVE_TRIPPED_S, FaultDetector
 from daemon.control.leading_back import LeadingBack
-from daemon.control.point_to_point import SlowMove
-from daemon.control.safety_limiter import Gate
-from daemon.control.time_scaling import Pace, SlowedSetpoints
+from daemon.control.point_to_point import PointToPointMove
+from daemon.control.safety_limiter import SafetyLimiter
+from daemon.control.time_scaling import ScaledSetpoints, TimeScaling
 from daemon.control.torque_ramp import EFFORT_START, TorqueRamp
 from daemon.control.turns import TurnWatch
 from daemon.dynamixel.multi import RobotBus
@@ -29,7 +29,7 @@ from daemon.dynamixel.reading import BusReading
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.host.clock import Clock
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
-from daemon.shared_memory.heartbeat import Silence
+from daemon.shared_memory.heartbeat import HeartbeatWatch
 from daemon.shared_memory.request_words import ESTOPS, Asked
 from retarget.path.collision import SelfContact
 from retarget.robot.robot import RobotModel
@@ -61,7 +61,7 @@ _COMES_TO = {
 _ARMED = (BusState.ARMING, BusState.HOLDING, BusState.PLAYING, BusState.STOPPING, BusState.PARKING)
 
 
-class Streamer:
+class ControlLoop:
     """State and loop of the bus process."""
 
     def __init__(
@@ -72,8 +72,8 @@ class Streamer:
         self._turns = TurnWatch(robot, self._ticks, bus)
         self._leading = LeadingBack(self._ticks, np.array([s.model.ticks_per_turn for s in robot.servos]))
         contact = SelfContact(robot)
-        self._gate = Gate(robot, contact=contact)
-        self._slow = SlowMove(robot, contact, self._gate)
+        self._gate = SafetyLimiter(robot, contact=contact)
+        self._slow = PointToPointMove(robot, contact, self._gate)
         self._period_s = robot.bus.period_s
         self._watch_front = watch_front
         self.state = BusState.LIMP
@@ -92,11 +92,11 @@ class Streamer:
         self._torque_off_left = 0
         self._made_limp = self._limp_at_rest = self._may_hold = False
         self._arming: Generator[None, None, Armed] | None = None
-        self._judge, self._ramp = Judge(robot, bus), TorqueRamp(bus, robot.bus.period_s)
+        self._judge, self._ramp = FaultDetector(robot, bus), TorqueRamp(bus, robot.bus.period_s)
         self._derating = Derating(robot.n_servos, robot.bus.period_s)
-        self._setpoints, self._pace = SlowedSetpoints(link), Pace(robot.bus.period_s)
+        self._setpoints, self._pace = ScaledSetpoints(link), TimeScaling(robot.bus.period_s)
         self._owed: list[Asked] = []
-        self._ctl_silence = Silence(CTL_LOST_S, robot.bus.period_s)
+        self._ctl_silence = HeartbeatWatch(CTL_LOST_S, robot.bus.period_s)
         self._fed_s = clock.now_s()
 
     def run(self) -> None:

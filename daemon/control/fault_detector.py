@@ -27,7 +27,7 @@ MAY_HAVE_TRIPPED_S = 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S
 """After so long without a packet a servo's watchdog may have run out."""
 
 
-class Judge:
+class FaultDetector:
     """Judges each reading of a robot with torque; names what is a fault."""
 
     def __init__(self, robot: RobotModel, bus: RobotBus) -> None:

@@ -7,8 +7,8 @@ import logging
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.control.ptp_trajectory import Approach
-from daemon.control.safety_limiter import Gate
+from daemon.control.ptp_trajectory import PtpTrajectory
+from daemon.control.safety_limiter import SafetyLimiter
 from retarget.path.collision import SelfContact
 from retarget.path.rrt_connect import WaySearch
 from retarget.robot.robot import RobotModel
@@ -22,7 +22,7 @@ HELD_S, SEARCHES = 0.5, 3
 """A move that the gate has held for so long is looked for anew from where it stands, so many times."""
 
 
-class SlowMove:
+class PointToPointMove:
     """Comes to rest, looks for a way that is free, and goes it; a step in each bus cycle.
 
     Args:
@@ -36,7 +36,7 @@ class SlowMove:
         blocked: the search that found no way, or the last of too many; None while there is hope.
     """
 
-    def __init__(self, robot: RobotModel, contact: SelfContact, gate: Gate) -> None:
+    def __init__(self, robot: RobotModel, contact: SelfContact, gate: SafetyLimiter) -> None:
         self._robot, self._contact, self._gate = robot, contact, gate
         self._period_s = robot.bus.period_s
         self._pieces = max(1, round(SEARCH_PIECES_PER_S * robot.bus.period_s))
@@ -44,7 +44,7 @@ class SlowMove:
 
     def begin(self) -> None:
         """Forget the way: the next step begins anew from where the robot stands then."""
-        self._approach: Approach | None = None
+        self._approach: PtpTrajectory | None = None
         self._search: WaySearch | None = None
         self._searches = 0
         self._gone_s = self._held_s = 0.0
@@ -86,4 +86,4 @@ class SlowMove:
             self.blocked = search
             return
         log.info("way of %d lines, %d pieces", len(search.way) - 1, search.pieces)
-        self._approach, self._gone_s, self._held_s = Approach(search.way, self._gate.limits), 0.0, 0.0
+        self._approach, self._gone_s, self._held_s = PtpTrajectory(search.way, self._gate.limits), 0.0, 0.0

@@ -10,7 +10,7 @@ import threading
 import time
 from pathlib import Path
 
-from daemon.control.control_loop import Streamer
+from daemon.control.control_loop import ControlLoop
 from daemon.control.starting import start
 from daemon.dynamixel.multi import RobotBus, open_bus
 from daemon.host.clock import RealClock
@@ -75,7 +75,7 @@ def main() -> int:
     return 0
 
 
-def _end_with_parent(streamer: Streamer, parent: Parent) -> None:
+def _end_with_parent(streamer: ControlLoop, parent: Parent) -> None:
     """Give the port back once the front is gone for good: when the robot is parked, or nobody came in a while."""
     while not parent.gone:
         time.sleep(ORPHAN_CHECK_S)

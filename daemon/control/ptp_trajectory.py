@@ -19,7 +19,7 @@ ACCELERATION_RAD_S2 = 3.0
 JERK_RAD_S3 = 20.0
 
 
-class Approach:
+class PtpTrajectory:
     """A move of all joints at once, each slower than its own limits, on straight lines, at rest at the end of each.
 
     Args:

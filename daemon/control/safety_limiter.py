@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from retarget.path.collision import SelfContact
 from retarget.path.limits import JointLimits, brake, limit_step
-from retarget.path.safety_filter import GuardedSteps
+from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
@@ -24,7 +24,7 @@ GATE_SHARE = 0.3
 """Share of the margin of self-contact that is kept here: less than what paths and streams keep, so that those pass."""
 
 
-class Gate:
+class SafetyLimiter:
     """Holds what the joints were told last, and lets nothing through that they cannot follow.
 
     Args:
@@ -45,7 +45,7 @@ class Gate:
         self.velocity_rad_s: Array = np.zeros(robot.n_joints)
         self.clipped: NDArray[np.bool_] = np.zeros(robot.n_joints, bool)
         self.refused = 0
-        self._guarded = None if contact is None else GuardedSteps(robot, contact, GATE_SHARE)
+        self._guarded = None if contact is None else SafetyFilter(robot, contact, GATE_SHARE)
         self.reset(robot.park_rad)
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 
-from daemon.control.control_loop import Streamer
+from daemon.control.control_loop import ControlLoop
 from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.ports.adapter import latency_advice
 from daemon.dynamixel.setup.checks import ADVISED, NEEDED, check_servos, require_needed
@@ -27,8 +27,8 @@ _HELD_BEFORE = "servo {} had torque before it was armed: who drove it may have b
 
 def start(
     robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock, *, after_loss: bool = False
-) -> Streamer | None:
-    """Open and verify the bus; a `Streamer` when the robot is there, else None and the reason in the link.
+) -> ControlLoop | None:
+    """Open and verify the bus; a `ControlLoop` when the robot is there, else None and the reason in the link.
 
     `after_loss`, or a servo that has torque already, starts it in a latched fault: nothing may move by itself, and nothing
     may be taken for limp that is not. An e-stop or torque off that nobody has carried out cuts torque before anything else.
@@ -71,7 +71,7 @@ def start(
         bus.close()
         link.set_ready(Readiness.FAILED, str(error))
         return None
-    streamer = Streamer(robot, bus, link, clock)
+    streamer = ControlLoop(robot, bus, link, clock)
     link.drop_queued()
     why = AFTER_LOSS if after_loss else _HELD_BEFORE.format(holding) if holding else ""
     if why:

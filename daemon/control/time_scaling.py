@@ -20,7 +20,7 @@ REJOIN_PER_S = 2.0
 _REJOINED = 0.5
 
 
-class Pace:
+class TimeScaling:
     """The share of full speed at which setpoints are taken, brought up to date once a cycle."""
 
     def __init__(self, period_s: float) -> None:
@@ -46,7 +46,7 @@ class Source(Protocol):
         ...
 
 
-class SlowedSetpoints:
+class ScaledSetpoints:
     """Setpoints at a share of their rate, between two of them where a cycle falls between.
 
     At full speed they pass as they are, so that a replay is the same bit for bit.

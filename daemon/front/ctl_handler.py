@@ -12,7 +12,7 @@ import time
 from collections.abc import Awaitable, Callable
 
 from daemon.ctl.channel import FRONT_SERVES_S, Answered, Channel, Handed, Ready, Told
-from daemon.scheduling.scheduler import Performer
+from daemon.scheduling.scheduler import Scheduler
 from daemon.shared_memory.bus_link import BusLink
 from daemon.shared_memory.request_words import Asked, BusRequest
 from daemon.state.ledger import Ledger
@@ -34,7 +34,7 @@ UNTOLD_S = 0.1
 """A halt that the bus process was asked for so long ago and that nobody has told of: who had to tell it was killed."""
 
 
-class CtlDesk:
+class CtlHandler:
     """Serves what the process behind `ctl` hands over, in the event loop.
 
     Args:
@@ -49,7 +49,7 @@ class CtlDesk:
     def __init__(
         self,
         link: BusLink,
-        performer: Performer,
+        performer: Scheduler,
         ledger: Ledger,
         drain_cmd: Callable[[], Awaitable[None]],
         state: Callable[[], StateEvent],

@@ -17,12 +17,12 @@ import msgspec
 import zmq
 import zmq.asyncio
 
-from daemon.front.ctl_handler import CtlDesk
+from daemon.front.ctl_handler import CtlHandler
 from daemon.front.rate_limits import RATE_HZ, RequestLimits
-from daemon.front.request_handler import TOPICS, Desk
+from daemon.front.request_handler import TOPICS, RequestHandler
 from daemon.front.stop_texts import stops
 from daemon.front.subscriptions import MOST_BYTES, RECEIVE_QUEUE, LastValues
-from daemon.front.target_handler import TargetDesk
+from daemon.front.target_handler import TargetHandler
 from daemon.generator.client import GeneratorClient
 from daemon.gestures.library import GestureLibrary
 from daemon.logs.log_feed import EVENT_LOGGER
@@ -30,10 +30,10 @@ from daemon.network.connections import ConnectionGuard, Share
 from daemon.network.inbox import Inbox, Message
 from daemon.network.keys import Doorkeeper, KeyFolder
 from daemon.network.sockets import bind, publish_now, send_now
-from daemon.playback.bus_follower import Follower
-from daemon.playback.setpoint_buffer import Planner
-from daemon.playback.sources.preparation import Sources
-from daemon.scheduling.scheduler import Performer
+from daemon.playback.bus_follower import BusFollower
+from daemon.playback.setpoint_buffer import SetpointBuffer
+from daemon.playback.sources.source_factory import SourceFactory
+from daemon.scheduling.scheduler import Scheduler
 from daemon.scheduling.until_armed import TICK_S
 from daemon.settings.config import DaemonConfig
 from daemon.shared_memory.bus_link import BusLink, BusRequest
@@ -92,12 +92,12 @@ class Front:
         self._generator, self._record = generator, record
         self.machine = StateMachine(auto_arm=config.auto_arm)
         self.view = BusView(link, robot)
-        planner = Planner(robot, link, self.view, config.queue_s, config.stream_queue_s)
-        self.follower = Follower(link, self.view, planner, self.machine)
+        planner = SetpointBuffer(robot, link, self.view, config.queue_s, config.stream_queue_s)
+        self.follower = BusFollower(link, self.view, planner, self.machine)
         self.ledger = Ledger(self._send, self._publish_event)
-        sources = Sources(config, robot, generator, GestureLibrary(config.gestures))
-        self.performer = Performer(config, link, planner, self.follower, self.ledger, sources)
-        self._desk = Desk(config, robot, self.performer, sources, self.ledger, generator, self.state_event)
+        sources = SourceFactory(config, robot, generator, GestureLibrary(config.gestures))
+        self.performer = Scheduler(config, link, planner, self.follower, self.ledger, sources)
+        self._desk = RequestHandler(config, robot, self.performer, sources, self.ledger, generator, self.state_event)
         self._started_s = time.monotonic()
         self.recording = str(config.log) if config.log else ""
         self._rates = RequestLimits()
@@ -110,8 +110,8 @@ class Front:
         self._pub.setsockopt(zmq.XPUB_NODROP, 1)
         self._stream = context.socket(zmq.SUB)
         self._stream.subscribe(b"")  # not CONFLATE, with which libzmq aborts the process upon a message of two parts
-        self._targets = TargetDesk(robot, self.performer, self.ledger, self._publish_event)
-        self.ctl = CtlDesk(link, self.performer, self.ledger, self.drain_cmd, self.state_event, self._publish_event)
+        self._targets = TargetHandler(robot, self.performer, self.ledger, self._publish_event)
+        self.ctl = CtlHandler(link, self.performer, self.ledger, self.drain_cmd, self.state_event, self._publish_event)
         sys.setswitchinterval(SWITCH_S)
         keys = KeyFolder(config.endpoints.keys) if config.endpoints.keys is not None else None
         self._doorkeeper = Doorkeeper(context, keys) if keys is not None else None

@@ -9,9 +9,9 @@ from daemon.errors import ClipError, GestureExistsError
 from daemon.front.stop_texts import asks_to_stop
 from daemon.generator.client import GeneratorClient
 from daemon.gestures.library import GestureLibrary
-from daemon.playback.sources.preparation import Sources
+from daemon.playback.sources.source_factory import SourceFactory
 from daemon.poses.layers import gaze_note
-from daemon.scheduling.scheduler import Performer
+from daemon.scheduling.scheduler import Scheduler
 from daemon.settings.config import DaemonConfig
 from daemon.state.ledger import Ledger, Route
 from daemon.wire.event_base import Event
@@ -51,7 +51,7 @@ TOPICS = {
 }
 
 
-class Desk:
+class RequestHandler:
     """Answers requests.
 
     Args:
@@ -62,8 +62,8 @@ class Desk:
         self,
         config: DaemonConfig,
         robot: RobotModel,
-        performer: Performer,
-        sources: Sources,
+        performer: Scheduler,
+        sources: SourceFactory,
         ledger: Ledger,
         generator: GeneratorClient,
         state: Callable[[], StateEvent],

@@ -6,8 +6,8 @@ import logging
 import time
 from collections.abc import Callable
 
-from daemon.front.target_parsing import StreamInbox
-from daemon.scheduling.scheduler import Performer
+from daemon.front.target_parsing import TargetParser
+from daemon.scheduling.scheduler import Scheduler
 from daemon.state.ledger import Ledger
 from daemon.wire.codec import WireError, error_event
 from daemon.wire.event_base import Event
@@ -19,7 +19,7 @@ from retarget.robot.robot import RobotModel
 log = logging.getLogger(__name__)
 
 
-class TargetDesk:
+class TargetHandler:
     """Hands targets to the performer.
 
     Args:
@@ -30,10 +30,10 @@ class TargetDesk:
     """
 
     def __init__(
-        self, robot: RobotModel, performer: Performer, ledger: Ledger, publish: Callable[[Event], None]
+        self, robot: RobotModel, performer: Scheduler, ledger: Ledger, publish: Callable[[Event], None]
     ) -> None:
         self._performer, self._ledger, self._publish = performer, ledger, publish
-        self._inbox = StreamInbox(robot)
+        self._inbox = TargetParser(robot)
 
     @property
     def secret(self) -> str:

@@ -19,7 +19,7 @@ FARTHEST_RAD = 1000.0
 """No joint of any robot goes so far: a number of another unit, or none."""
 
 
-class StreamInbox:
+class TargetParser:
     """Reads targets for one robot.
 
     Attributes:

@@ -55,7 +55,7 @@ MOST_BEGUN = 8
 """Motions of which only the draft is made; with so many the oldest is made before anything else."""
 
 
-class Maker(Protocol):
+class MotionService(Protocol):
     """What makes motions: `daemon.generator.service` with the model, others in tests."""
 
     def generate(self, request: GenerateMessage) -> Iterator[Generated]:
@@ -75,7 +75,7 @@ class Maker(Protocol):
         ...
 
 
-def answers(request: ToGenerator, maker: Maker, checkpoint_hash: str) -> Iterator[FromGenerator]:
+def answers(request: ToGenerator, maker: MotionService, checkpoint_hash: str) -> Iterator[FromGenerator]:
     """What is replied to one request; an error of the model becomes a `failure`, never the end of the process."""
     if request.v != GENERATION_VERSION:
         found, allowed = f"version {request.v} of the generator's protocol", f"version {GENERATION_VERSION}"
@@ -93,7 +93,9 @@ def answers(request: ToGenerator, maker: Maker, checkpoint_hash: str) -> Iterato
             yield FailureMessage(id=request.id, code="generator_error", found=shortened(error), allowed="a motion")
 
 
-def _made(request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage, maker: Maker) -> Iterator[Generated]:
+def _made(
+    request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage, maker: MotionService
+) -> Iterator[Generated]:
     if isinstance(request, SceneMessage):
         yield maker.scene(request)
     elif isinstance(request, EditMessage):
@@ -106,7 +108,7 @@ def _made(request: GenerateMessage | SceneMessage | EditMessage | BetweenMessage
 
 def serve(
     socket: zmq.Socket[bytes],
-    maker: Maker,
+    maker: MotionService,
     checkpoint_hash: str,
     alive: Callable[[], bool],
     received: Callable[[int], None] = lambda _fd: None,
@@ -154,9 +156,9 @@ def run(
     """
     check_endpoint("bind", bind, keys=keys is not None)
     os.nice(NICENESS)
-    from daemon.generator.service import EngineMaker
+    from daemon.generator.service import EngineService
 
-    maker = EngineMaker.load(model, threads)
+    maker = EngineService.load(model, threads)
     checkpoint_hash = maker.checkpoint_hash
     context = zmq.Context()
     socket = context.socket(zmq.ROUTER)

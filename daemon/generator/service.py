@@ -34,7 +34,7 @@ HALVES = {"upper": ("left_arm", "right_arm"), "lower": ("rest",)}
 """The halves of the body in a model without an upper and a lower codebook: both arms, and all the rest of it."""
 
 
-class EngineMaker:
+class EngineService:
     """Answers requests with one engine."""
 
     def __init__(self, engine: Engine) -> None:
@@ -42,7 +42,7 @@ class EngineMaker:
         self.checkpoint_hash = engine.checkpoint_hash
 
     @classmethod
-    def load(cls, model: Path | None, threads: int) -> EngineMaker:
+    def load(cls, model: Path | None, threads: int) -> EngineService:
         """With the checkpoint at `model` (the shipped one when None), warmed up.
 
         Raises:

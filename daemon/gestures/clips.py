@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from daemon.errors import ClipError
 from daemon.poses.cycles import Marks
-from daemon.poses.pose_sequence import Posture, standing
+from daemon.poses.pose_sequence import PoseSequence, standing
 from mmm_core.motion.arrays import read_npz
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.skeleton import BONE_LENGTHS_M, normalise
@@ -46,7 +46,7 @@ class Clip:
 
     name: str
     text: str
-    posture: Posture
+    posture: PoseSequence
     marks: Marks
     mirror: str = ""
     source: str = ""
@@ -109,7 +109,7 @@ def _clip(name: str, row: dict[str, Any], data: Mapping[str, NDArray[Any]]) -> C
         raise ValueError(f"clip '{name}' has arrays or marks that do not fit its {T} frames")
     bones = standing().at(np.zeros(T, np.intp)).bones.copy()
     bones[:, _KEPT] = normalise(kept)
-    posture = Posture(
+    posture = PoseSequence(
         bones, BONE_LENGTHS_M.copy(), np.asarray(normalise(head), np.float64), twist / _UNIT * _TWIST_RAD, FPS
     )
     return Clip(name, str(row["text"]), posture, Marks(loop, int(row["hold"])), str(row["mirror"]), str(row["source"]))

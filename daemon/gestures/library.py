@@ -11,7 +11,7 @@ from pathlib import Path
 from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
 from daemon.gestures.clips import Clip, load_clips, save_clips
 from daemon.poses.cycles import marks_of
-from daemon.poses.pose_sequence import Posture, at_tempo
+from daemon.poses.pose_sequence import PoseSequence, at_tempo
 from daemon.wire.status import GestureInfo
 from mmm_core.motion.motion import FPS
 
@@ -53,7 +53,7 @@ class GestureLibrary:
             raise UnknownGestureError(name, difflib.get_close_matches(name, names, 4, 0.5), len(names))
         return clip
 
-    def keep(self, name: str, text: str, posture: Posture, source: str, *, replace: bool = False) -> Clip:
+    def keep(self, name: str, text: str, posture: PoseSequence, source: str, *, replace: bool = False) -> Clip:
         """Make a clip of the user's own.
 
         Args:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 
-from daemon.playback.setpoint_buffer import Planner
+from daemon.playback.setpoint_buffer import SetpointBuffer
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.machine import ImpossibleTransitionError, RobotState, StateMachine, Trigger
@@ -19,7 +19,7 @@ _PLACES = {state: place for place, state in enumerate(RobotState)}
 REPORTS = {state: Trigger[f"BUS_{state.name}"] for state in BusState}
 
 
-class Follower:
+class BusFollower:
     """The robot's state, brought up to date once a tick.
 
     Attributes:
@@ -29,7 +29,7 @@ class Follower:
         idling: whether what is played are idle movements.
     """
 
-    def __init__(self, link: BusLink, view: BusView, planner: Planner, machine: StateMachine) -> None:
+    def __init__(self, link: BusLink, view: BusView, planner: SetpointBuffer, machine: StateMachine) -> None:
         self._link, self._view, self._planner, self.machine = link, view, planner, machine
         self.bus_alive = True
         self.fault_reason = ""

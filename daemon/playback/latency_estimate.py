@@ -8,7 +8,7 @@ _SPREADS = 0.7
 """Mean deviations beyond the mean: a hand-over that is missed costs a whole attempt more."""
 
 
-class Lead:
+class LatencyEstimate:
     """Seconds, learnt from each path.
 
     Attributes:

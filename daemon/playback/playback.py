@@ -14,21 +14,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playback.bus_follower import Follower
-from daemon.playback.segments import Stretches
-from daemon.playback.setpoint_buffer import Planner
-from daemon.playback.sources.clip_source import ClipScore, Score
-from daemon.playback.sources.preview_source import DraftScore
+from daemon.playback.bus_follower import BusFollower
+from daemon.playback.segments import Segments
+from daemon.playback.setpoint_buffer import SetpointBuffer
+from daemon.playback.sources.clip_source import ClipSource, MotionSource
+from daemon.playback.sources.preview_source import PreviewSource
 from daemon.playback.sources.showing import Verdict
-from daemon.playback.sources.story_source import StoryScore
-from daemon.playback.sources.stream_source import StreamScore
-from daemon.playback.stream_trajectory import StreamPlan
+from daemon.playback.sources.story_source import StorySource
+from daemon.playback.sources.stream_source import StreamSource
+from daemon.playback.stream_trajectory import StreamTrajectory
 from daemon.playback.stream_watch import StreamWatch
-from daemon.playback.trajectory import Plan
+from daemon.playback.trajectory import Trajectory
 from daemon.playback.trajectory_statistics import SAMPLED_HZ
-from daemon.poses.idle import IdleScore
+from daemon.poses.idle import IdleSource
 from daemon.poses.layers import Layers
-from daemon.poses.pose_sequence import Posture, standing
+from daemon.poses.pose_sequence import PoseSequence, standing
 from daemon.state.ledger import Entry, Ledger
 from daemon.state.machine import RobotState
 from daemon.state.replies import NotPlayableError, as_failure, ending, failed
@@ -48,7 +48,7 @@ IDLE_AFTER_S = 0.8
 GAZE_S = 0.8
 BRAKING_TIMEOUT_S = 2.0
 
-Judge = Callable[[Entry, NDArray[np.float64], float], Verdict]
+ShownCheck = Callable[[Entry, NDArray[np.float64], float], Verdict]
 """Whether goals (T, J) of so many a second have shown what a command's motion shows."""
 
 
@@ -56,7 +56,7 @@ def _not_judged(_entry: Entry, _q_rad: NDArray[np.float64], _fps: float) -> Verd
     return Verdict()
 
 
-class Player:
+class Playback:
     """What is played, and its end.
 
     Attributes:
@@ -64,24 +64,34 @@ class Player:
     """
 
     def __init__(
-        self, planner: Planner, follower: Follower, ledger: Ledger, layers: Layers, judge: Judge = _not_judged
+        self,
+        planner: SetpointBuffer,
+        follower: BusFollower,
+        ledger: Ledger,
+        layers: Layers,
+        judge: ShownCheck = _not_judged,
     ) -> None:
         self._planner, self._follower, self._ledger, self._layers = planner, follower, ledger, layers
         self._judge = judge
         self.entry: Entry | None = None
-        self._score: Score | StreamScore | None = None
+        self._score: MotionSource | StreamSource | None = None
         self._stream = StreamWatch(planner, ledger)
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._feeding = False
-        self._stretches = Stretches(planner, layers)
+        self._stretches = Segments(planner, layers)
         self._moving_told = False
         self._held = False
         self._held_since_s: float | None = None
         self._still_since_s = time.monotonic()
 
     async def take_over(
-        self, entry: Entry | None, score: Score | StreamScore, plan_id: int, epoch: int, alive: Callable[[], bool]
+        self,
+        entry: Entry | None,
+        score: MotionSource | StreamSource,
+        plan_id: int,
+        epoch: int,
+        alive: Callable[[], bool],
     ) -> bool:
         """Play a score from the state of the joints on; false when it was ended meanwhile.
 
@@ -89,10 +99,10 @@ class Player:
             RetargetError: its motion does not fit the robot; what was played goes on.
         """
         async with self._lock:
-            if isinstance(score, StreamScore):
+            if isinstance(score, StreamSource):
                 assert entry is not None, "a lease is a command"
                 return await self._take_over_stream(entry, score, plan_id, epoch, alive)
-            stretch: tuple[Posture, bool] | None = None
+            stretch: tuple[PoseSequence, bool] | None = None
             took_s = 0.0
             while True:
                 if self._planner.dry:
@@ -111,7 +121,7 @@ class Player:
                     break
                 took_s = time.monotonic() - began_s
             before, previous = self.entry, self._planner.current
-            if isinstance(previous, StreamPlan):
+            if isinstance(previous, StreamTrajectory):
                 self._stream.end(previous)
             self._begin(entry, score)
             t_received_ns = entry.t_received_ns if entry is not None else time.monotonic_ns()
@@ -122,7 +132,7 @@ class Player:
             return True
 
     async def _take_over_stream(
-        self, entry: Entry, score: StreamScore, plan_id: int, epoch: int, alive: Callable[[], bool]
+        self, entry: Entry, score: StreamSource, plan_id: int, epoch: int, alive: Callable[[], bool]
     ) -> bool:
         """Let a lease begin in the next frame. Its first target is measured from its own arrival."""
         if self._planner.dry:
@@ -140,7 +150,7 @@ class Player:
         self._stream.begin(entry, plan_id)
         return True
 
-    def _tell_taken_over(self, before: Entry | None, previous: Plan | None, entry: Entry | None) -> None:
+    def _tell_taken_over(self, before: Entry | None, previous: Trajectory | None, entry: Entry | None) -> None:
         if before is not None and entry is not None:
             by = f"{tag_of(entry.request)} {entry.id}"
             self._ledger.emit(before, Cancelled(plan_id=previous.plan_id if previous else 0, by=by))
@@ -154,14 +164,14 @@ class Player:
             self._ledger.emit(entry, ending(plan.plan_id if plan is not None else 0, by, failure))
 
     @property
-    def stream(self) -> StreamScore | None:
+    def stream(self) -> StreamSource | None:
         """The lease that is played, None when there is none."""
-        return self._score if isinstance(self._score, StreamScore) else None
+        return self._score if isinstance(self._score, StreamSource) else None
 
     def target(self, q_rad: NDArray[np.float64]) -> bool:
         """A checked target (J,) of the lease that is played; false when it takes none any more."""
         plan = self._planner.current
-        return isinstance(plan, StreamPlan) and self._stream.take(plan, q_rad)
+        return isinstance(plan, StreamTrajectory) and self._stream.take(plan, q_rad)
 
     def current_command(self) -> CurrentCommand | None:
         """What is being played."""
@@ -188,11 +198,11 @@ class Player:
         if entry is not None and not self._moving_told and statistics.first_motion_ms is not None:
             self._moving_told = True
             first_ms = round(statistics.first_motion_ms, 2)
-            came_s = plan.first_target_s if isinstance(plan, StreamPlan) else None
+            came_s = plan.first_target_s if isinstance(plan, StreamTrajectory) else None
             moving = Progress(plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms, target_t_mono=came_s)
             self._ledger.emit(entry, moving)
         self._follow_score(self._score, plan.plan_id, finish_loop=finish_loop, is_to_last=is_to_last)
-        if isinstance(plan, StreamPlan) and entry is not None:
+        if isinstance(plan, StreamTrajectory) and entry is not None:
             self._stream.look(plan, entry)
         if not plan.complete:
             ready = self._stretches.unfinished or self._score.ready
@@ -206,7 +216,7 @@ class Player:
         stalled = self._held_since_s is not None and time.monotonic() - self._held_since_s > STALL_S
         if plan.played or (stalled and statistics.dropped):
             self._forget()
-            if isinstance(plan, StreamPlan):
+            if isinstance(plan, StreamTrajectory):
                 self._stream.end(plan)
             if entry is not None:
                 verdict = self._judge(entry, statistics.goals_rad, SAMPLED_HZ)
@@ -218,18 +228,18 @@ class Player:
         """Begin idle movements after a while of stillness, end them when they are switched off."""
         wanted = self._layers.idle_style and not self._follower.stopped and not self._held
         if self._follower.idling and self._score is not None and not self._layers.idle_style:
-            if isinstance(self._score, IdleScore):
+            if isinstance(self._score, IdleSource):
                 self._score.finish()
         still = free and self._score is None and self._follower.machine.state is RobotState.IDLE
         if not (wanted and still and self._follower.can_take_over):
             self._still_since_s = time.monotonic()
         elif time.monotonic() - self._still_since_s > IDLE_AFTER_S and not self._lock.locked():
             self._still_since_s = time.monotonic()
-            self.start(self._take_idle(IdleScore(self._layers.idle_style)))
+            self.start(self._take_idle(IdleSource(self._layers.idle_style)))
 
     async def follow_gaze(self) -> None:
         """Let what is played, or the pose that is held, go on with the gaze that is now set."""
-        if isinstance(self._score, StreamScore):
+        if isinstance(self._score, StreamSource):
             async with self._lock:
                 gaze = self._layers.over(standing()) if self._layers.gaze_deg is not None else None
                 self._score.look({} if gaze is None else self._planner.gaze_rad(gaze))
@@ -255,7 +265,7 @@ class Player:
         if not task.cancelled() and (error := task.exception()) is not None:
             log.error("a stretch could not be made", exc_info=error)
 
-    def _begin(self, entry: Entry | None, score: Score | StreamScore) -> None:
+    def _begin(self, entry: Entry | None, score: MotionSource | StreamSource) -> None:
         self.entry, self._score = entry, score
         self._stretches.forget()
         self._moving_told, self._held_since_s = False, None
@@ -275,7 +285,7 @@ class Player:
             failure = failed("bus_dropped", found, "all of them", "see the daemon's log")
             self._ledger.emit(entry, ending(plan_id, "", failure))
 
-    async def _take_idle(self, score: Score | None) -> None:
+    async def _take_idle(self, score: MotionSource | None) -> None:
         """Play idle movements, or without a score just the pose that is held, with the gaze."""
         epoch, entry, halted = self._planner.epoch, self.entry, self._follower.stopped
         if score is None:
@@ -292,17 +302,19 @@ class Player:
             self._planner.give_up()
             log.error("idle movements could not be made: %s", error)
 
-    def _follow_score(self, score: Score | StreamScore, plan_id: int, *, finish_loop: bool, is_to_last: bool) -> None:
+    def _follow_score(
+        self, score: MotionSource | StreamSource, plan_id: int, *, finish_loop: bool, is_to_last: bool
+    ) -> None:
         """What is to be done of a score beside playing it."""
-        if isinstance(score, StoryScore):
+        if isinstance(score, StorySource):
             self._tell_scenes(score, plan_id)
-        if finish_loop and isinstance(score, (ClipScore, StoryScore)):
+        if finish_loop and isinstance(score, (ClipSource, StorySource)):
             score.finish()
-        if isinstance(score, DraftScore) and score.may_go_over and is_to_last and not self._feeding:
+        if isinstance(score, PreviewSource) and score.may_go_over and is_to_last and not self._feeding:
             self._feeding = True
             self.start(self._go_over(score))
 
-    async def _go_over(self, score: DraftScore) -> None:
+    async def _go_over(self, score: PreviewSource) -> None:
         """Let the motion take the place of its draft, from where the draft is being played."""
         took_s = 0.0
         try:
@@ -337,12 +349,12 @@ class Player:
         finally:
             self._feeding = False
 
-    async def _append(self, score: Score | StreamScore | None) -> None:
+    async def _append(self, score: MotionSource | StreamSource | None) -> None:
         async with self._lock:
-            if score is not None and score is self._score and not isinstance(score, StreamScore):
+            if score is not None and score is self._score and not isinstance(score, StreamSource):
                 await self._stretches.append(score, lambda: score is self._score)
 
-    def _give_up(self, score: Score | StreamScore | None, event: Rejected | Failed) -> None:
+    def _give_up(self, score: MotionSource | StreamSource | None, event: Rejected | Failed) -> None:
         """End the command whose next stretch failed; what is in the bus process is played, then it brakes and holds."""
         entry, plan = self.entry, self._planner.current
         if score is None or score is not self._score:
@@ -352,7 +364,7 @@ class Player:
         if entry is not None:
             self._ledger.emit(entry, ending(plan.plan_id if plan is not None else 0, "", as_failure(event)))
 
-    def _tell_scenes(self, score: StoryScore, plan_id: int) -> None:
+    def _tell_scenes(self, score: StorySource, plan_id: int) -> None:
         while self.entry is not None and score.news:
             n = score.news.popleft()
             self._ledger.emit(self.entry, Progress(
@@ -371,9 +383,9 @@ class _Pose:
 
     ready = True
 
-    def __init__(self, stretch: Posture) -> None:
+    def __init__(self, stretch: PoseSequence) -> None:
         self._stretch = stretch
 
-    def next(self) -> tuple[Posture, bool]:
+    def next(self) -> tuple[PoseSequence, bool]:
         """All of it."""
         return self._stretch, True

@@ -9,23 +9,23 @@ import asyncio
 import math
 from collections.abc import Callable, Iterator
 
-from daemon.playback.setpoint_buffer import FADE_FRAMES, HandOver, Planner
-from daemon.playback.sources.clip_source import Score
-from daemon.playback.sources.preview_source import DraftScore
-from daemon.playback.trajectory import Piece
+from daemon.playback.setpoint_buffer import FADE_FRAMES, SetpointBuffer, SplicePoint
+from daemon.playback.sources.clip_source import MotionSource
+from daemon.playback.sources.preview_source import PreviewSource
+from daemon.playback.trajectory import Chunk
 from daemon.poses.layers import Layers
-from daemon.poses.pose_sequence import Posture, distance_deg, faded_in
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, faded_in
 
 _EASY_DEG_S = 60.0
 """Idle movements lead back to standing no faster."""
 
 
-class Stretches:
+class Segments:
     """Of one plan at a time."""
 
-    def __init__(self, planner: Planner, layers: Layers) -> None:
+    def __init__(self, planner: SetpointBuffer, layers: Layers) -> None:
         self._planner, self._layers = planner, layers
-        self._pieces: Iterator[Piece] | None = None
+        self._pieces: Iterator[Chunk] | None = None
         self._is_last = False
 
     @property
@@ -37,7 +37,7 @@ class Stretches:
         """What was to come is not wanted any more."""
         self._pieces = None
 
-    def making(self, raw: Posture, start: HandOver, *, complete: bool, easy: bool = False) -> Iterator[Piece]:
+    def making(self, raw: PoseSequence, start: SplicePoint, *, complete: bool, easy: bool = False) -> Iterator[Chunk]:
         """The path of a stretch, growing out of what was before, piece by piece. Asked for in a worker thread.
 
         Args:
@@ -55,11 +55,11 @@ class Stretches:
             posture = faded_in(posture, start.before, n)
         yield from self._planner.pieces(posture, raw, start.state, complete=complete)
 
-    def go_on(self, pieces: Iterator[Piece], made: Piece, *, is_last: bool) -> None:
+    def go_on(self, pieces: Iterator[Chunk], made: Chunk, *, is_last: bool) -> None:
         """Keep what is left of a stretch of which one piece is made, and whether it is the plan's last."""
         self._pieces, self._is_last = None if made.is_last else pieces, is_last
 
-    async def append(self, score: Score, wanted: Callable[[], bool]) -> None:
+    async def append(self, score: MotionSource, wanted: Callable[[], bool]) -> None:
         """Make the next piece of the plan, of the next stretch where need be, and append it if it is still wanted then.
 
         Raises:
@@ -72,7 +72,7 @@ class Stretches:
         pieces, last = self._pieces, self._is_last
         if pieces is None:
             raw, last = await asyncio.to_thread(score.next)
-            start = HandOver(plan.state_at(plan.n_frames - 1), raw, plan.n_frames - 1)
+            start = SplicePoint(plan.state_at(plan.n_frames - 1), raw, plan.n_frames - 1)
             pieces = self.making(raw, start, complete=last)
         piece = await asyncio.to_thread(next, pieces)
         if plan is self._planner.current and plan.epoch == self._planner.epoch and wanted():
@@ -80,7 +80,7 @@ class Stretches:
             self.go_on(pieces, piece, is_last=last)
             self._planner.pump()
 
-    async def make_again(self, draft: DraftScore | None = None, *, took_s: float = 0.0) -> bool:
+    async def make_again(self, draft: PreviewSource | None = None, *, took_s: float = 0.0) -> bool:
         """What is left of the plan, with the layers as they now are; of a draft, the motion that it was of.
 
         Whether that is what is played now.

@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playback.latency_estimate import Lead
-from daemon.playback.sources.stream_source import StreamScore
-from daemon.playback.stream_trajectory import StreamPlan
-from daemon.playback.trajectory import Piece, Plan
-from daemon.playback.trajectory_statistics import PlanStatistics
-from daemon.poses.pose_sequence import Posture, joined, posture_of, standing
+from daemon.playback.latency_estimate import LatencyEstimate
+from daemon.playback.sources.stream_source import StreamSource
+from daemon.playback.stream_trajectory import StreamTrajectory
+from daemon.playback.trajectory import Chunk, Trajectory
+from daemon.playback.trajectory_statistics import TrajectoryStatistics
+from daemon.poses.pose_sequence import PoseSequence, joined, posture_of, standing
 from daemon.shared_memory.bus_link import N_SETPOINTS, BusLink
 from daemon.state.bus_view import BusView
 from mmm_core.motion.motion import FPS
@@ -39,7 +39,7 @@ FADE_FRAMES = 8
 
 
 @dataclass(frozen=True)
-class HandOver:
+class SplicePoint:
     """Where a new path begins.
 
     Attributes:
@@ -49,11 +49,11 @@ class HandOver:
     """
 
     state: JointState
-    before: Posture
+    before: PoseSequence
     frame: int | None
 
 
-class Planner:
+class SetpointBuffer:
     """Keeps about `queue_s` of setpoints in the bus process. For one thread."""
 
     def __init__(
@@ -67,20 +67,20 @@ class Planner:
         self._stream_frames = max(2, math.ceil(stream_queue_s * self._rate_hz))
         self._from_rest = False
         self._handing_over: int | None = None
-        self._lead = Lead(FIRST_RETARGET_S)
+        self._lead = LatencyEstimate(FIRST_RETARGET_S)
         self._handed_over_s = time.monotonic()
         self._last_goal_tick: NDArray[np.int32] | None = None
-        self._plans: list[Plan] = []
+        self._plans: list[Trajectory] = []
         self._last_id = 0
-        self._posture: Posture = standing()
-        self._raw: Posture = standing()
+        self._posture: PoseSequence = standing()
+        self._raw: PoseSequence = standing()
 
     @property
     def epoch(self) -> int:
         """Grows with each stop, e-stop and park; a plan of a text that came before is never played."""
         return self._link.epoch
 
-    def hand_over(self, *, took_s: float = 0.0) -> HandOver:
+    def hand_over(self, *, took_s: float = 0.0) -> SplicePoint:
         """Where a new path must start; `commit`, `go_on_otherwise` or `give_up` must follow.
 
         That is a frame of the running plan so far ahead that the first piece of the path will be there in time; the plan
@@ -93,34 +93,34 @@ class Planner:
         self._handed_over_s = time.monotonic()
         if took_s:
             self._lead.took(took_s)
-        if isinstance(plan, StreamPlan) and self.running and self._ran_dry(plan):
+        if isinstance(plan, StreamTrajectory) and self.running and self._ran_dry(plan):
             plan.end, self._from_rest = plan.pushed, True  # nothing moves until `commit`, or `give_up`
             at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
-            return HandOver(at_rest, plan.posture_from(plan.n_frames - 1, FADE_FRAMES), None)
+            return SplicePoint(at_rest, plan.posture_from(plan.n_frames - 1, FADE_FRAMES), None)
         if plan is None or not self.running or self._ran_dry(plan):
             self.drop()
             at_rest = JointState(self._view.goal_rad.copy(), np.zeros(self.robot.n_joints))
-            return HandOver(at_rest, self._posture, None)
+            return SplicePoint(at_rest, self._posture, None)
         ahead_s = max(self._lead.seconds, RETRY_MARGIN * took_s)
         frame = self._frame_within(plan, ahead_s)
-        if isinstance(plan, StreamPlan):
+        if isinstance(plan, StreamTrajectory):
             plan.extend(frame + 1)
         frame = max(0, min(frame, plan.n_frames - 1))
         self._handing_over = frame
-        return HandOver(plan.state_at(frame), plan.posture_from(frame, FADE_FRAMES), frame)
+        return SplicePoint(plan.state_at(frame), plan.posture_from(frame, FADE_FRAMES), frame)
 
-    def hand_over_at_once(self) -> HandOver:
+    def hand_over_at_once(self) -> SplicePoint:
         """The same after the last frame pushed, with the difference quotient as velocity; `commit_stream` must follow."""
         plan = self.current
         if plan is None or not self.running or self._ran_dry(plan):
             return self.hand_over()
-        if isinstance(plan, StreamPlan):
+        if isinstance(plan, StreamTrajectory):
             plan.extend(plan.pushed)
         self._from_rest, frame = False, max(0, min(plan.pushed, plan.n_frames) - 1)
         self._handing_over = frame
-        return HandOver(plan.step_at(frame), plan.posture_from(frame, FADE_FRAMES), frame)
+        return SplicePoint(plan.step_at(frame), plan.posture_from(frame, FADE_FRAMES), frame)
 
-    def pieces(self, posture: Posture, raw: Posture, start: JointState, *, complete: bool) -> Iterator[Piece]:
+    def pieces(self, posture: PoseSequence, raw: PoseSequence, start: JointState, *, complete: bool) -> Iterator[Chunk]:
         """The path of a posture from `start`, piece by piece as it is made; each may be asked for in a worker thread.
 
         Args:
@@ -139,7 +139,7 @@ class Planner:
             paths = iter([(self._retargeter.retarget(motion, start, settle=complete), len(posture))])
         for path, n in paths:
             is_last = first + n >= len(posture)
-            yield Piece(path, posture[first:], raw[first:], is_last, is_last and complete)
+            yield Chunk(path, posture[first:], raw[first:], is_last, is_last and complete)
             first += n
 
     @property
@@ -157,29 +157,29 @@ class Planner:
         self._last_id += 1
         return self._last_id
 
-    def commit(self, piece: Piece, plan_id: int, command_id: str, epoch: int, t_received_ns: int) -> Plan:
+    def commit(self, piece: Chunk, plan_id: int, command_id: str, epoch: int, t_received_ns: int) -> Trajectory:
         """Make a path the current plan; its frames follow those of the plan before it.
 
         So many of those as the bus process takes beyond the hand-over meanwhile, which begin as the new ones do, are left
         out of the new ones.
         """
-        statistics = PlanStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
-        plan = Plan(plan_id, command_id, epoch, self._rate_hz, statistics)
+        statistics = TrajectoryStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
+        plan = Trajectory(plan_id, command_id, epoch, self._rate_hz, statistics)
         plan.append(piece)
         self._lead.took(time.monotonic() - self._handed_over_s)
         plan.pushed = min(self._succeed(plan), plan.n_frames - 1)
         self.pump()
         return plan
 
-    def commit_stream(self, score: StreamScore, plan_id: int, command_id: str, epoch: int, t_received_ns: int) -> None:
+    def commit_stream(self, score: StreamSource, plan_id: int, command_id: str, epoch: int, t_received_ns: int) -> None:
         """Make a lease that has begun the current plan."""
-        statistics = PlanStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
-        self._succeed(StreamPlan(plan_id, command_id, epoch, self._rate_hz, statistics, score, self._shown))
+        statistics = TrajectoryStatistics(self.robot, plan_id, t_received_ns, self._last_goal_tick)
+        self._succeed(StreamTrajectory(plan_id, command_id, epoch, self._rate_hz, statistics, score, self._shown))
 
     def stream_on(self) -> None:
         """Make the frames of a lease that are due, and push them; call it after `read_cycles`."""
         plan = self.current
-        if not isinstance(plan, StreamPlan) or plan.end is not None or plan.epoch != self.epoch:
+        if not isinstance(plan, StreamTrajectory) or plan.end is not None or plan.epoch != self.epoch:
             return
         plan.check_lost()
         if plan.lost or plan.resting:
@@ -193,7 +193,7 @@ class Planner:
         plan.extend(plan.pushed + self._stream_frames - self._link.queued_frames - waiting)
         self.pump()
 
-    def gaze_rad(self, posture: Posture) -> dict[int, float]:
+    def gaze_rad(self, posture: PoseSequence) -> dict[int, float]:
         """Angles of the head's joints, by index, that show the head of a posture of one frame."""
         q_rad = self._retargeter.solve(read_human(posture.motion()))[0]
         return {j: float(q_rad[j]) for j, joint in enumerate(self.robot.joints) if joint.role.startswith("head")}
@@ -204,7 +204,7 @@ class Planner:
         if self.current is not None:
             self.current.end = None
 
-    def go_on_otherwise(self, piece: Piece) -> None:
+    def go_on_otherwise(self, piece: Chunk) -> None:
         """What follows the frame of the hand-over is another path of the same plan, of which this is the first piece."""
         plan, frame = self.current, self._handing_over
         assert plan is not None and frame is not None, "after a hand-over that is not from rest"
@@ -222,18 +222,18 @@ class Planner:
         self._plans = []
 
     @property
-    def posture_now(self) -> Posture:
+    def posture_now(self) -> PoseSequence:
         """One frame: how the person is held that the robot shows."""
         plan = self.current
         return self._posture if plan is None else plan.posture_from(max(0, plan.statistics.last_frame), 1)
 
     @property
-    def raw_now(self) -> Posture:
+    def raw_now(self) -> PoseSequence:
         """The same without layers."""
         plan = self.current
         return self._raw if plan is None else plan.posture_from(max(0, plan.statistics.last_frame), 1, raw=True)
 
-    def committed(self, n: int, ahead_s: float) -> Posture:
+    def committed(self, n: int, ahead_s: float) -> PoseSequence:
         """`n` frames of posture at 20 fps as they are played, up to about where a motion that takes `ahead_s` takes over."""
         plan = self.current
         if plan is None or not self.running:
@@ -253,7 +253,7 @@ class Planner:
         self._posture = self._raw = standing()
 
     @property
-    def current(self) -> Plan | None:
+    def current(self) -> Trajectory | None:
         """The newest plan."""
         return self._plans[-1] if self._plans else None
 
@@ -285,11 +285,11 @@ class Planner:
         if len(records):
             self._last_goal_tick = np.array(records["goal_tick"][-1])
 
-    def _next_frame(self, plan: Plan) -> int:
+    def _next_frame(self, plan: Trajectory) -> int:
         """The frame of the newest plan that the bus process takes next."""
         return plan.pushed - min(self._link.queued_frames, plan.pushed)
 
-    def _frame_within(self, plan: Plan, ahead_s: float) -> int:
+    def _frame_within(self, plan: Trajectory, ahead_s: float) -> int:
         """The last frame of the newest plan that the bus process takes until `ahead_s` from now; -1: none yet."""
         since_s = (time.monotonic() - self._view.goals_s) % (1.0 / self._rate_hz)  # since it took the last one
         cycles = math.floor((since_s + ahead_s) * self._rate_hz)
@@ -307,14 +307,14 @@ class Planner:
         plan.pushed = min(plan.pushed, plan.end)
         return beyond
 
-    def _succeed(self, plan: Plan) -> int:
+    def _succeed(self, plan: Trajectory) -> int:
         """Let a plan follow the current one; how many frames beyond the hand-over are played already."""
         beyond = self._end_at_hand_over()
         self._plans = [p for p in self._plans if p.pushed < p.limit]
         self._plans.append(plan)
         return beyond
 
-    def _shown(self, q_rad: NDArray[np.float64]) -> Posture:
+    def _shown(self, q_rad: NDArray[np.float64]) -> PoseSequence:
         """One frame: a person held as the robot in a pose (J,)."""
         joints, head = joints_of_path(self._retargeter.kinematics, q_rad[None])
         person = standing().motion()
@@ -323,15 +323,15 @@ class Planner:
             forearm_twist_rad=np.zeros((1, 2), np.float32),
         ))  # fmt: skip
 
-    def _push(self, plan: Plan, count: int) -> None:
+    def _push(self, plan: Trajectory, count: int) -> None:
         if plan.epoch != self._link.epoch:
             return
         frames = plan.frames(plan.pushed, plan.pushed + count)
         last = plan.ends_here and plan.pushed + len(frames) >= plan.n_frames
         plan.pushed += self._link.push(frames, plan.plan_id, plan.pushed, plan.epoch, last=last)
 
-    def _ran_dry(self, plan: Plan) -> bool:
+    def _ran_dry(self, plan: Trajectory) -> bool:
         """Whether the bus process has none of the plan's frames in hand though more were to come."""
-        if isinstance(plan, StreamPlan) and plan.end is None and not plan.resting:
+        if isinstance(plan, StreamTrajectory) and plan.end is None and not plan.resting:
             return plan.lost  # else more is made in a moment
         return 0 < plan.pushed and not plan.all_pushed and plan.pushed >= plan.limit and self._link.queued_frames == 0

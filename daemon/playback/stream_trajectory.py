@@ -8,16 +8,16 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playback.sources.stream_source import StreamScore
-from daemon.playback.trajectory import KEPT_FRAMES, Plan
-from daemon.playback.trajectory_statistics import PlanStatistics
-from daemon.poses.pose_sequence import Posture
+from daemon.playback.sources.stream_source import StreamSource
+from daemon.playback.trajectory import KEPT_FRAMES, Trajectory
+from daemon.playback.trajectory_statistics import TrajectoryStatistics
+from daemon.poses.pose_sequence import PoseSequence
 from retarget.path.paths import JointState
 
 Array = NDArray[np.float64]
 
 
-class StreamPlan(Plan):
+class StreamTrajectory(Trajectory):
     """Frames of a lease. For one thread.
 
     Args:
@@ -32,8 +32,8 @@ class StreamPlan(Plan):
     """
 
     def __init__(
-        self, plan_id: int, command_id: str, epoch: int, rate_hz: float, statistics: PlanStatistics,
-        score: StreamScore, shown: Callable[[Array], Posture],
+        self, plan_id: int, command_id: str, epoch: int, rate_hz: float, statistics: TrajectoryStatistics,
+        score: StreamSource, shown: Callable[[Array], PoseSequence],
     ) -> None:  # fmt: skip
         super().__init__(plan_id, command_id, epoch, rate_hz, statistics)
         self.score, self._shown = score, shown
@@ -83,7 +83,7 @@ class StreamPlan(Plan):
         at = frame - (self.n_frames - len(self._made))
         return JointState(*self._made[at]) if 0 <= at < len(self._made) else self._start
 
-    def posture_from(self, frame: int, n: int, *, raw: bool = False) -> Posture:
+    def posture_from(self, frame: int, n: int, *, raw: bool = False) -> PoseSequence:
         """The person who is held as the robot at a frame, `n` times: what a target leads to nobody knows."""
         del raw
         return self._shown(self.state_at(frame).position_rad).at(np.zeros(n, np.intp))

@@ -7,9 +7,9 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playback.setpoint_buffer import Planner
+from daemon.playback.setpoint_buffer import SetpointBuffer
 from daemon.playback.sources.stream_source import SELF_COLLISION
-from daemon.playback.stream_trajectory import StreamPlan
+from daemon.playback.stream_trajectory import StreamTrajectory
 from daemon.state.ledger import Entry, Ledger
 from daemon.wire.events import Progress
 
@@ -20,7 +20,7 @@ TOLD_EVERY_S = 0.5
 class StreamWatch:
     """Looks after one lease at a time."""
 
-    def __init__(self, planner: Planner, ledger: Ledger) -> None:
+    def __init__(self, planner: SetpointBuffer, ledger: Ledger) -> None:
         self._planner, self._ledger = planner, ledger
         self._told = ""
         self._told_s = float("-inf")
@@ -31,7 +31,7 @@ class StreamWatch:
         self._ledger.emit(entry, Progress(plan_id=plan_id, stage="leased"))
         self._planner.stream_on()
 
-    def take(self, plan: StreamPlan, q_rad: NDArray[np.float64]) -> bool:
+    def take(self, plan: StreamTrajectory, q_rad: NDArray[np.float64]) -> bool:
         """A checked target (J,); what it moves goes out at once. False when the lease takes none any more."""
         if not plan.score.take(q_rad, time.monotonic()):
             return False
@@ -42,7 +42,7 @@ class StreamWatch:
         self._planner.stream_on()
         return True
 
-    def look(self, plan: StreamPlan, entry: Entry) -> None:
+    def look(self, plan: StreamTrajectory, entry: Entry) -> None:
         """Once a tick."""
         now_s, score = time.monotonic(), plan.score
         score.clock.look(now_s)
@@ -61,6 +61,6 @@ class StreamWatch:
             progress = Progress(plan_id=plan.plan_id, stage="streaming")
         self._ledger.emit(entry, progress)
 
-    def end(self, plan: StreamPlan) -> None:
+    def end(self, plan: StreamTrajectory) -> None:
         """Figures for its last event."""
         plan.statistics.take_changes(plan.score.clipped, plan.score.holds)

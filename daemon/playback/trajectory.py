@@ -11,8 +11,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playback.trajectory_statistics import PlanStatistics
-from daemon.poses.pose_sequence import Posture, joined
+from daemon.playback.trajectory_statistics import TrajectoryStatistics
+from daemon.poses.pose_sequence import PoseSequence, joined
 from retarget.path.paths import JointPath, JointState
 
 Array = NDArray[np.float64]
@@ -22,7 +22,7 @@ KEPT_FRAMES = 512
 
 
 @dataclass(frozen=True)
-class Piece:
+class Chunk:
     """A path, as far as it is made.
 
     Attributes:
@@ -34,22 +34,22 @@ class Piece:
     """
 
     path: JointPath
-    posture: Posture
-    raw: Posture
+    posture: PoseSequence
+    raw: PoseSequence
     is_last: bool
     complete: bool
 
 
 @dataclass(frozen=True)
-class Stretch:
+class Segment:
     """A piece in its plan: its bus frames begin at `first` and end before `end`."""
 
     first: int
     end: int
-    piece: Piece
+    piece: Chunk
 
 
-class Plan:
+class Trajectory:
     """Frames of one command. For one thread.
 
     Attributes:
@@ -63,10 +63,12 @@ class Plan:
         pushed: frames pushed so far.
     """
 
-    def __init__(self, plan_id: int, command_id: str, epoch: int, rate_hz: float, statistics: PlanStatistics) -> None:
+    def __init__(
+        self, plan_id: int, command_id: str, epoch: int, rate_hz: float, statistics: TrajectoryStatistics
+    ) -> None:
         self.plan_id, self.command_id, self.epoch, self.statistics = plan_id, command_id, epoch, statistics
         self._rate_hz = rate_hz
-        self._stretches: list[Stretch] = []
+        self._stretches: list[Segment] = []
         self._frames: list[Array] = []
         self._kept_from = 0
         self.n_frames: int = 0
@@ -74,10 +76,10 @@ class Plan:
         self.end: int | None = None
         self.pushed = 0
 
-    def append(self, piece: Piece) -> None:
+    def append(self, piece: Chunk) -> None:
         """Add a piece, which must begin where `state_at(n_frames - 1)` ends."""
         frames, report = piece.path.at_rate(self._rate_hz), piece.path.report
-        self._stretches.append(Stretch(self.n_frames, self.n_frames + len(frames), piece))
+        self._stretches.append(Segment(self.n_frames, self.n_frames + len(frames), piece))
         self._frames.append(frames)
         self.n_frames += len(frames)
         self.complete = piece.complete
@@ -151,13 +153,13 @@ class Plan:
         before, here = self.frames(frame - 1, frame + 1)
         return JointState(here.copy(), (here - before) * self._rate_hz)
 
-    def posture_from(self, frame: int, n: int, *, raw: bool = False) -> Posture:
+    def posture_from(self, frame: int, n: int, *, raw: bool = False) -> PoseSequence:
         """`n` frames of posture that follow bus frame `frame`; what is not planned stays as the last one is."""
         stretch = self._stretch(max(0, min(frame, self.n_frames - 1)))
         posture = stretch.piece.raw if raw else stretch.piece.posture
         return posture.at(self._posture_frame(stretch, frame) + np.arange(n))
 
-    def rest_raw(self, frame: int) -> Posture:
+    def rest_raw(self, frame: int) -> PoseSequence:
         """What is to follow bus frame `frame`, made already or not, without layers; at least one frame."""
         stretch = self._stretch(frame)
         first = self._posture_frame(stretch, frame)
@@ -167,10 +169,10 @@ class Plan:
                 parts.append(following.piece.raw)
         return joined(parts)
 
-    def _posture_frame(self, stretch: Stretch, frame: int) -> int:
+    def _posture_frame(self, stretch: Segment, frame: int) -> int:
         return round((frame - stretch.first + 1) / self._rate_hz * stretch.piece.posture.fps)
 
-    def _stretch(self, frame: int) -> Stretch:
+    def _stretch(self, frame: int) -> Segment:
         for stretch in self._stretches:
             if frame < stretch.end:
                 return stretch

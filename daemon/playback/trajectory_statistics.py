@@ -15,7 +15,7 @@ SAMPLED_HZ = 20.0
 LONGEST_SAMPLED_S = 20.0
 
 
-class PlanStatistics:
+class TrajectoryStatistics:
     """Gathers the cycle records of one plan.
 
     Args:

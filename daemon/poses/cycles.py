@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.poses.pose_sequence import Posture, distance_deg, mixed, smooth_step, standing
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, mixed, smooth_step, standing
 
 Array = NDArray[np.float64]
 
@@ -32,12 +32,12 @@ class Marks:
     hold: int
 
 
-def marks_of(posture: Posture) -> Marks:
+def marks_of(posture: PoseSequence) -> Marks:
     """Find loop and hold of a clip."""
     return Marks(find_loop(posture), find_hold(posture))
 
 
-def find_loop(p: Posture) -> tuple[int, int] | None:
+def find_loop(p: PoseSequence) -> tuple[int, int] | None:
     """First frame and end of the part that best goes round; None when there is none.
 
     It ends as it begins, is lively, and stays away from standing where it can: a wave goes on above the shoulder. A part
@@ -65,7 +65,7 @@ def find_loop(p: Posture) -> tuple[int, int] | None:
     return None if best is None else best[1:]
 
 
-def closed(p: Posture, loop: tuple[int, int]) -> Posture:
+def closed(p: PoseSequence, loop: tuple[int, int]) -> PoseSequence:
     """The frames of a loop, the last of which are led to those before its first: going round makes no step."""
     a, b = loop
     n = min(round(CLOSING_S * p.fps), (b - a) // 2)
@@ -74,7 +74,7 @@ def closed(p: Posture, loop: tuple[int, int]) -> Posture:
     return mixed(p[a:b], p.at(np.arange(2 * a - b, a)), weight)
 
 
-def after_loop(p: Posture, loop: tuple[int, int]) -> Posture:
+def after_loop(p: PoseSequence, loop: tuple[int, int]) -> PoseSequence:
     """What follows the last round: it grows out of the loop's beginning into the end of the motion."""
     a, b = loop
     tail = p[b:]
@@ -84,12 +84,12 @@ def after_loop(p: Posture, loop: tuple[int, int]) -> Posture:
     return mixed(p.at(np.arange(a, a + len(tail))), tail, weight)
 
 
-def find_hold(p: Posture) -> int:
+def find_hold(p: PoseSequence) -> int:
     """The frame in which the motion says most while it moves least: where it is held."""
     away = distance_deg(_stand(p), p)
     speed = np.concatenate([[0.0], distance_deg(p[1:], p[:-1])]) * p.fps
     return int((away - 0.3 * speed).argmax())
 
 
-def _stand(p: Posture) -> Posture:
+def _stand(p: PoseSequence) -> PoseSequence:
     return standing().at(np.zeros(len(p), np.intp))

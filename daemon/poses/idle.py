@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.poses.pose_sequence import Posture, mixed, smooth_step, standing
+from daemon.poses.pose_sequence import PoseSequence, mixed, smooth_step, standing
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.skeleton import JOINT_NAMES, normalise
 
@@ -41,7 +41,7 @@ class IdleStyle:
 STYLES = {"calm": IdleStyle(1.5, 6.0, 2.5, 0.6), "lively": IdleStyle(2.5, 16.0, 6.0, 1.8)}
 
 
-class IdleScore:
+class IdleSource:
     """Idle movements without end."""
 
     def __init__(self, style: str, seed: int = 0) -> None:
@@ -59,7 +59,7 @@ class IdleScore:
         """The next stretch leads to stillness and is the last."""
         self._finishing = True
 
-    def next(self) -> tuple[Posture, bool]:
+    def next(self) -> tuple[PoseSequence, bool]:
         """The next two seconds."""
         n = round(STRETCH_S * FPS)
         t_s = (self._frame + np.arange(n)) / FPS
@@ -71,7 +71,7 @@ class IdleScore:
             rise = rise * (1 - smooth_step(n))
         return self._posture(t_s, rise), last
 
-    def _posture(self, t_s: Array, rise: Array) -> Posture:
+    def _posture(self, t_s: Array, rise: Array) -> PoseSequence:
         style = self._style
         stand = standing().at(np.zeros(len(t_s), np.intp))
         breath = np.deg2rad(style.breath_deg) * rise * (1 - np.cos(2 * np.pi * _BREATH_HZ * t_s)) / 2
@@ -100,7 +100,7 @@ def head_wxyz(yaw_rad: Array, pitch_rad: Array) -> Array:
     return np.stack([cy * cp, cy * sp, sy * cp, zero - sy * sp], -1)
 
 
-def looking(p: Posture, yaw_rad: float, pitch_rad: float, weight: Array) -> Posture:
+def looking(p: PoseSequence, yaw_rad: float, pitch_rad: float, weight: Array) -> PoseSequence:
     """`p` with the head turned to a direction, frame by frame by `weight` (T,)."""
     n = len(p)
     aim = replace(p, head_wxyz=np.repeat(head_wxyz(np.array([yaw_rad]), np.array([pitch_rad])), n, 0))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from daemon.poses.pose_sequence import Posture, mixed
+from daemon.poses.pose_sequence import PoseSequence, mixed
 
 REACH_S = 1.0
 """So long before a pose is due the motion begins to be led to it, and so long after it is free again."""
@@ -18,10 +18,10 @@ class KeyPose:
     """One frame of posture, due at a time from the motion's start."""
 
     at_s: float
-    pose: Posture
+    pose: PoseSequence
 
 
-def led_through(p: Posture, keys: Sequence[KeyPose]) -> Posture:
+def led_through(p: PoseSequence, keys: Sequence[KeyPose]) -> PoseSequence:
     """`p` that shows each pose in the frame in which it is due.
 
     The weight of a pose rises and falls on a minimum-jerk curve over `REACH_S`, or over the time to the next pose where
@@ -37,5 +37,5 @@ def led_through(p: Posture, keys: Sequence[KeyPose]) -> Posture:
         u = np.clip(1 - np.abs(t) / np.maximum(reach, 1), 0, 1)
         w = u**3 * (10 - 15 * u + 6 * u**2)
         still = key.pose.at(np.zeros(len(p), np.intp))
-        p = mixed(p, Posture(still.bones, p.lengths_m, still.head_wxyz, still.twist_rad, p.fps), w)
+        p = mixed(p, PoseSequence(still.bones, p.lengths_m, still.head_wxyz, still.twist_rad, p.fps), w)
     return p

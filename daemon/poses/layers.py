@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from daemon.poses.idle import looking
-from daemon.poses.pose_sequence import Posture
+from daemon.poses.pose_sequence import PoseSequence
 from retarget.robot.robot import RobotModel
 
 
@@ -21,7 +21,7 @@ class Layers:
         self.idle_style = "" if idle_style == "off" else idle_style
         self.gaze_deg: tuple[float, float] | None = None
 
-    def over(self, p: Posture) -> Posture:
+    def over(self, p: PoseSequence) -> PoseSequence:
         """`p` as it is to be played."""
         if self.gaze_deg is None:
             return p

@@ -38,7 +38,7 @@ _STANDING = {
 
 
 @dataclass(frozen=True)
-class Posture:
+class PoseSequence:
     """T frames of one person, facing +z with the pelvis at the origin.
 
     Attributes:
@@ -58,12 +58,12 @@ class Posture:
     def __len__(self) -> int:
         return len(self.bones)
 
-    def __getitem__(self, frames: slice) -> Posture:
+    def __getitem__(self, frames: slice) -> PoseSequence:
         return replace(
             self, bones=self.bones[frames], head_wxyz=self.head_wxyz[frames], twist_rad=self.twist_rad[frames]
         )
 
-    def at(self, frames: NDArray[np.intp]) -> Posture:
+    def at(self, frames: NDArray[np.intp]) -> PoseSequence:
         """The frames at `frames`; before the first and after the last these go on."""
         k = np.clip(frames, 0, len(self) - 1)
         return replace(self, bones=self.bones[k], head_wxyz=self.head_wxyz[k], twist_rad=self.twist_rad[k])
@@ -87,7 +87,7 @@ class Posture:
         )
 
 
-def posture_of(motion: Motion) -> Posture:
+def posture_of(motion: Motion) -> PoseSequence:
     """How the person of a motion is held."""
     joints = motion.joints_m.astype(np.float64)
     bones = np.zeros_like(joints)
@@ -97,24 +97,24 @@ def posture_of(motion: Motion) -> Posture:
     R_facing_world = np.swapaxes(rotation_y(facing_yaw_rad(joints)), -1, -2)
     bones = np.einsum("tij,tkj->tki", R_facing_world, normalise(bones))
     head = R_facing_world @ matrix_from_quat(motion.head_quat_wxyz.astype(np.float64))
-    return Posture(
+    return PoseSequence(
         bones, lengths, np.asarray(quat_wxyz(head), np.float64), motion.forearm_twist_rad.astype(np.float64), motion.fps
     )
 
 
 @cache
-def standing() -> Posture:
+def standing() -> PoseSequence:
     """One frame of a person who stands with hanging arms and looks ahead."""
     bones = np.zeros((1, len(PARENTS), 3))
     for j, name in enumerate(JOINT_NAMES[1:], 1):
         side, _, part = name.partition("_")
         bones[0, j] = np.array(_STANDING[part]) * (_FLIP_X if side == "right" else 1.0)
-    return Posture(
+    return PoseSequence(
         np.asarray(normalise(bones), np.float64), BONE_LENGTHS_M.copy(), _IDENTITY_WXYZ[None].copy(), np.zeros((1, 2))
     )
 
 
-def mixed(a: Posture, b: Posture, weight: Array) -> Posture:
+def mixed(a: PoseSequence, b: PoseSequence, weight: Array) -> PoseSequence:
     """Frame by frame from `a` (weight 0) to `b` (weight 1), along the shortest arcs; beyond 1 past `b`.
 
     `a` may be a single frame. Lengths and rate are those of `b`.
@@ -128,7 +128,7 @@ def mixed(a: Posture, b: Posture, weight: Array) -> Posture:
     )
 
 
-def joined(parts: list[Posture]) -> Posture:
+def joined(parts: list[PoseSequence]) -> PoseSequence:
     """One after the other; lengths and rate are those of the first."""
     return replace(
         parts[0],
@@ -138,7 +138,7 @@ def joined(parts: list[Posture]) -> Posture:
     )
 
 
-def mirrored(p: Posture) -> Posture:
+def mirrored(p: PoseSequence) -> PoseSequence:
     """Left for right."""
     return replace(
         p,
@@ -149,18 +149,18 @@ def mirrored(p: Posture) -> Posture:
     )
 
 
-def scaled(p: Posture, amplitude: float) -> Posture:
+def scaled(p: PoseSequence, amplitude: float) -> PoseSequence:
     """Every deviation from standing times `amplitude`."""
     return mixed(standing(), p, np.full(len(p), amplitude))
 
 
-def at_tempo(p: Posture, tempo: float) -> Posture:
+def at_tempo(p: PoseSequence, tempo: float) -> PoseSequence:
     """`tempo` times as fast, at the same rate of frames."""
     n = max(2, round((len(p) - 1) / tempo) + 1)
     return at_steps(p, np.linspace(0, len(p) - 1, n))
 
 
-def at_steps(p: Posture, places: Array) -> Posture:
+def at_steps(p: PoseSequence, places: Array) -> PoseSequence:
     """`p` at (n,) places between its frames, counted in frames."""
     before = np.floor(places).astype(np.intp)
     return mixed(p.at(before), p.at(before + 1), places - before)
@@ -172,14 +172,14 @@ def smooth_step(n: int) -> Array:
     return u**3 * (10 - 15 * u + 6 * u**2)
 
 
-def faded_in(p: Posture, before: Posture, n: int) -> Posture:
+def faded_in(p: PoseSequence, before: PoseSequence, n: int) -> PoseSequence:
     """`p` whose first `n` frames grow out of `before`, which goes on from its last frame where it is shorter."""
     n = min(n, len(p))
     grown = mixed(before.at(np.arange(n)), p[:n], smooth_step(n))
     return joined([grown, p[n:]])
 
 
-def distance_deg(a: Posture, b: Posture) -> Array:
+def distance_deg(a: PoseSequence, b: PoseSequence) -> Array:
     """(T,) largest angle between the two in arms, spine and head."""
     seen = [3, 6, 9, 12, 18, 19, 20, 21]
     cos = np.clip((a.bones[:, seen] * b.bones[:, seen]).sum(-1), -1, 1)

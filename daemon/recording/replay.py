@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.control.control_loop import Streamer
+from daemon.control.control_loop import ControlLoop
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import DaemonError, LogError
 from daemon.host.clock import Clock
@@ -141,13 +141,13 @@ def replay(
 
 
 class _Player:
-    """Drives a `Streamer` one cycle at a time."""
+    """Drives a `ControlLoop` one cycle at a time."""
 
     def __init__(self, robot: RobotModel, bus: ServoBus, link: BusLink, clock: Clock) -> None:
         self._robot, self._link, self._clock = robot, link, clock
         goals = [m.table["goal_position"] for m in bus.models]
         self._tap = bus.port = Wiretap(bus.port, robot.servo_ids, {(g.address, g.size) for g in goals})
-        self._streamer = Streamer(robot, bus, link, clock, watch_front=False)
+        self._streamer = ControlLoop(robot, bus, link, clock, watch_front=False)
         self._index = link.n_cycles
         self._due_s = clock.now_s()
 

@@ -3,7 +3,7 @@
 The order of commands is that in which they are to take effect: a `now` and an `after` from when they came, an `at` from
 when its time has come. A command ends those before it in that moment in which it is accepted (an `at`: in which its time
 has come), never by being asked alone: one that is refused ends nothing but itself. As long as a `now` is being made that
-may be about to win, an older one does not begin to move (`Performer`), but only so long as that usually takes.
+may be about to win, an older one does not begin to move (`Scheduler`), but only so long as that usually takes.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Stamps that would need more than that to be true are taken for wrong."""
 
 
 @dataclass(eq=False)
-class Pending:
+class QueuedCommand:
     """One command on its way.
 
     Attributes:
@@ -77,7 +77,7 @@ class _Stamp:
         )
 
 
-class Halts:
+class StopOrdering:
     """When a person last stopped, parked or cut torque, and what that means for a command.
 
     Times are compared only where they are of one clock: what was sent from this machine against when the halt came here,
@@ -138,11 +138,11 @@ class Halts:
         return True if stamp.came_s > halt.came_s or halt.sent_before(stamp) else None
 
 
-class WaitingRoom:
+class CommandQueue:
     """All commands on their way, in order of arrival."""
 
     def __init__(self) -> None:
-        self._all: list[Pending] = []
+        self._all: list[QueuedCommand] = []
 
     def __iter__(self):
         return iter(list(self._all))
@@ -158,36 +158,36 @@ class WaitingRoom:
         """Whether no more may wait."""
         return len(self._all) >= MOST_WAITING
 
-    def add(self, pending: Pending) -> None:
+    def add(self, pending: QueuedCommand) -> None:
         """A command came."""
         self._all.append(pending)
 
-    def remove(self, pending: Pending) -> None:
+    def remove(self, pending: QueuedCommand) -> None:
         """It is played or has ended."""
         if pending in self._all:
             self._all.remove(pending)
 
-    def renew(self, pending: Pending) -> None:
+    def renew(self, pending: QueuedCommand) -> None:
         """Its time has come: it is the newest of all."""
         self._all.remove(pending)
         self._all.append(pending)
 
-    def overtaken_by(self, newest: Pending) -> list[Pending]:
+    def overtaken_by(self, newest: QueuedCommand) -> list[QueuedCommand]:
         """Those that end because `newest` takes over: all before it but those whose time has not come."""
         before = self._all[: self._all.index(newest)]
         return [p for p in before if not p.committing and not (p.when == "at" and not p.turn)]
 
-    def may_be_overtaken(self, pending: Pending) -> bool:
+    def may_be_overtaken(self, pending: QueuedCommand) -> bool:
         """Whether a newer `now` is being made of which is not known yet whether it is accepted."""
         newer = self._all[self._all.index(pending) + 1 :]
         return any(p.undecided for p in newer)
 
     @property
-    def oldest_undecided(self) -> Pending | None:
+    def oldest_undecided(self) -> QueuedCommand | None:
         """The first `now` that is still being made."""
         return next((p for p in self._all if p.undecided), None)
 
-    def is_next(self, pending: Pending) -> bool:
+    def is_next(self, pending: QueuedCommand) -> bool:
         """Whether no command stands before this one that waits for its turn."""
         for p in self._all:
             if p is pending:

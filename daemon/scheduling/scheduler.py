@@ -14,13 +14,13 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.playback.bus_follower import Follower
-from daemon.playback.playback import Player
-from daemon.playback.setpoint_buffer import Planner
-from daemon.playback.sources.preparation import Prepared, Sources
-from daemon.playback.sources.stream_source import StreamScore
+from daemon.playback.bus_follower import BusFollower
+from daemon.playback.playback import Playback
+from daemon.playback.setpoint_buffer import SetpointBuffer
+from daemon.playback.sources.source_factory import PreparedSource, SourceFactory
+from daemon.playback.sources.stream_source import StreamSource
 from daemon.poses.layers import Layers
-from daemon.scheduling.command_queue import MOST_WAITING, Halts, Pending, WaitingRoom
+from daemon.scheduling.command_queue import MOST_WAITING, CommandQueue, QueuedCommand, StopOrdering
 from daemon.scheduling.until_armed import TICK_S, until_armed
 from daemon.settings.config import DaemonConfig
 from daemon.shared_memory.bus_link import BusLink, BusRequest
@@ -50,7 +50,7 @@ ARMING_S = 1.5
 """A limp robot cannot begin a motion sooner: what has a shorter deadline is rejected at once."""
 
 
-class Performer:
+class Scheduler:
     """Plays commands on the robot.
 
     Attributes:
@@ -63,17 +63,17 @@ class Performer:
         self,
         config: DaemonConfig,
         link: BusLink,
-        planner: Planner,
-        follower: Follower,
+        planner: SetpointBuffer,
+        follower: BusFollower,
         ledger: Ledger,
-        sources: Sources,
+        sources: SourceFactory,
     ) -> None:
         self._config, self._link, self._ledger, self._sources = config, link, ledger, sources
         self.planner, self.follower = planner, follower
         self.layers = Layers(config.idle)
-        self.halts = Halts()
-        self._waiting = WaitingRoom()
-        self._player = Player(planner, follower, ledger, self.layers, sources.verdict)
+        self.halts = StopOrdering()
+        self._waiting = CommandQueue()
+        self._player = Playback(planner, follower, ledger, self.layers, sources.verdict)
 
     @property
     def machine(self) -> StateMachine:
@@ -93,7 +93,7 @@ class Performer:
         if isinstance(entry.request, Lease) and (lease := self.lease) is not None:
             self._ledger.emit(entry, lease_held(lease))
             return
-        pending = Pending(entry, self.planner.epoch)
+        pending = QueuedCommand(entry, self.planner.epoch)
         if self._waiting.full and entry.request.when == "now":  # which is let in always: one still being made gives way
             if (oldest := self._waiting.oldest_undecided) is not None:
                 self._drop(oldest, _named(entry))
@@ -135,7 +135,7 @@ class Performer:
         return next((entry for entry in entries if isinstance(entry.request, Lease) and not entry.ended), None)
 
     @property
-    def stream(self) -> StreamScore | None:
+    def stream(self) -> StreamSource | None:
         """The lease that is played."""
         return self._player.stream
 
@@ -226,18 +226,18 @@ class Performer:
         elif state in (RobotState.LIMP, RobotState.PARKING):
             self._player.end("park")  # a command on its way is refused or arms again by itself
 
-    def _overtake(self, newest: Pending) -> None:
+    def _overtake(self, newest: QueuedCommand) -> None:
         for pending in self._waiting.overtaken_by(newest):
             self._drop(pending, _named(newest.entry))
 
-    def _drop(self, pending: Pending, by: str, failure: Failed | None = None) -> None:
+    def _drop(self, pending: QueuedCommand, by: str, failure: Failed | None = None) -> None:
         pending.cancelled_by = by
         self._waiting.remove(pending)
         if not pending.committing and pending.task is not None:
             pending.task.cancel()
         self._ledger.emit(pending.entry, ending(0, by, failure))
 
-    async def _perform(self, pending: Pending) -> None:
+    async def _perform(self, pending: QueuedCommand) -> None:
         entry = pending.entry
         try:
             prepared = await self._sources.prepare(entry, self.planner)
@@ -290,7 +290,7 @@ class Performer:
         if earliest_s > entry.deadline_s:
             raise too_late(entry, found)
 
-    async def _turn(self, pending: Pending) -> None:
+    async def _turn(self, pending: QueuedCommand) -> None:
         """Wait for the command's turn or time; it has the right to take over afterwards."""
         request = pending.entry.request
         if request.when == "now":
@@ -307,13 +307,13 @@ class Performer:
                     raise too_late(pending.entry, "its turn did not come in time")
         pending.turn = True
 
-    async def _yield(self, pending: Pending) -> None:
+    async def _yield(self, pending: QueuedCommand) -> None:
         """Wait a moment where a newer command may be about to take over: the robot does not set out twice."""
         end_s = min(time.monotonic() + YIELD_S, pending.entry.deadline_s)
         while self._waiting.may_be_overtaken(pending) and time.monotonic() < end_s:
             await asyncio.sleep(TICK_S)
 
-    async def _take_over(self, pending: Pending, prepared: Prepared, plan_id: int) -> None:
+    async def _take_over(self, pending: QueuedCommand, prepared: PreparedSource, plan_id: int) -> None:
         """Make it what is played; what was played ends in `cancelled`."""
         entry = pending.entry
         pending.committing = True

@@ -6,7 +6,7 @@ import asyncio
 import time
 from collections.abc import Callable
 
-from daemon.playback.bus_follower import Follower
+from daemon.playback.bus_follower import BusFollower
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.machine import CommandRefusedError, RobotState, Trigger
 
@@ -16,7 +16,7 @@ ARM_ANSWER_S = 2.0
 """How long the bus process may take to begin arming."""
 
 
-async def until_armed(follower: Follower, link: BusLink, tell: Callable[[], None]) -> None:
+async def until_armed(follower: BusFollower, link: BusLink, tell: Callable[[], None]) -> None:
     """Arm where a command may do so, and wait until the robot can move; `tell` is called when it has to be armed first.
 
     Raises:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-class Silence:
+class HeartbeatWatch:
     """Counts the steps in which a beat stood still.
 
     The clock alone would not do: a machine that stands still for a second holds up both sides.

@@ -11,7 +11,7 @@ from daemon.ctl.channel import Channel, Ready, pair
 from daemon.errors import ConfigError, DaemonError
 from daemon.settings.config import DaemonConfig, EndpointInUseError
 from daemon.shared_memory.bus_link import BusLink
-from daemon.shared_memory.heartbeat import Silence
+from daemon.shared_memory.heartbeat import HeartbeatWatch
 from daemon.supervisor.children import Child
 from retarget.robot.robot import RobotModel
 
@@ -100,7 +100,7 @@ class CtlKeeper:
 
     async def _lost(self, child: Child) -> int:
         """Wait for its end, which a frozen one is brought to; its status."""
-        silence, ended = Silence(SILENT_S, LOOK_S), asyncio.create_task(child.ended())
+        silence, ended = HeartbeatWatch(SILENT_S, LOOK_S), asyncio.create_task(child.ended())
         while not ended.done():
             await asyncio.wait({ended}, timeout=LOOK_S)
             if silence.lasts(self._link.ctl_beat) and not ended.done():

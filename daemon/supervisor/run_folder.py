@@ -16,7 +16,7 @@ _BEGINS_S = 60.0
 """Seconds in which a folder may be new and its lock not taken yet."""
 
 
-class OwnFolder:
+class RunFolder:
     """A folder that only this user can enter, while this process lives."""
 
     def __init__(self) -> None:

@@ -38,7 +38,7 @@ from daemon.shared_memory.request_words import ESTOPS, BusRequest
 from daemon.state.machine import RobotState
 from daemon.supervisor.children import Child
 from daemon.supervisor.ctl_keeper import CtlKeeper
-from daemon.supervisor.run_folder import OwnFolder
+from daemon.supervisor.run_folder import RunFolder
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 
@@ -76,7 +76,7 @@ class Supervisor:
         self._config = config
         self._robot: RobotModel = load_robot(config.robot)
         self._link = BusLink.create(self._robot.n_joints, self._robot.n_servos)
-        self._folder = OwnFolder()
+        self._folder = RunFolder()
         self._context = zmq.asyncio.Context()
         self._children: list[Child] = []
         self._tasks: list[asyncio.Task[None]] = []

@@ -17,7 +17,7 @@ import numpy as np
 from daemon.gestures.clips import Clip, save_clips
 from daemon.gestures.library import SHIPPED
 from daemon.poses.cycles import marks_of
-from daemon.poses.pose_sequence import Posture, distance_deg, mirrored, posture_of, standing
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, mirrored, posture_of, standing
 from mmm_core.corpus.heldout import Probe
 from mmm_core.motion.motion import Motion
 from retarget.pipeline import Retargeter
@@ -141,7 +141,7 @@ def main() -> int:
     clips: dict[str, Clip] = {}
     missing: list[Wanted] = []
     for wanted in WANTED:
-        passed: list[tuple[float, int, Posture]] = []
+        passed: list[tuple[float, int, PoseSequence]] = []
         for seed in SEEDS:
             motion = engine.generate(wanted.probe.text, seed=seed, seconds=wanted.seconds).motion
             if (cost := _cost(motion, wanted, retargeter)) is not None:

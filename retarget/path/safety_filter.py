@@ -21,7 +21,7 @@ _NEARER_M = 1e-6
 """Poses that are within the margin already may not come nearer to themselves than by rounding."""
 
 
-class GuardedSteps:
+class SafetyFilter:
     """One robot's next positions towards a target, step by step. No clock, no I/O; not for several threads.
 
     Args:

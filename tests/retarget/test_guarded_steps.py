@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from retarget.path.collision import SelfContact
 from retarget.path.limits import brake
-from retarget.path.safety_filter import GuardedSteps
+from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 
 ROBOTS = {name: load_robot(name) for name in ("reference", "toddlerbot", "op2")}
-GUARDS = {name: GuardedSteps(robot) for name, robot in ROBOTS.items()}
+GUARDS = {name: SafetyFilter(robot) for name, robot in ROBOTS.items()}
 BODIES = {name: SelfContact(robot, margin_m=0.0) for name, robot in ROBOTS.items()}
 """Without a margin: what it calls contact is contact."""
 
@@ -24,14 +24,14 @@ jumps = st.lists(
 )  # fmt: skip
 
 
-def begun(name: str) -> tuple[RobotModel, GuardedSteps]:
+def begun(name: str) -> tuple[RobotModel, SafetyFilter]:
     robot, guard = ROBOTS[name], GUARDS[name]
     guard.reset(robot.rest_rad, np.zeros(robot.n_joints))
     guard.holds = 0
     return robot, guard
 
 
-def assert_kept(robot: RobotModel, guard: GuardedSteps, path: np.ndarray) -> None:
+def assert_kept(robot: RobotModel, guard: SafetyFilter, path: np.ndarray) -> None:
     period, limits = robot.bus.period_s, guard.limits
     whole = np.vstack([robot.rest_rad, robot.rest_rad, path])
     assert (path >= limits.position_min_rad - 1e-9).all() and (path <= limits.position_max_rad + 1e-9).all()

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.control.safety_limiter import Gate
+from daemon.control.safety_limiter import SafetyLimiter
 from retarget.errors import RobotFileError, UnknownRobotError
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
@@ -137,7 +137,7 @@ def test_an_absurd_number_anywhere_is_refused_or_leaves_a_robot_whose_figures_ar
     except RobotFileError as error:
         assert len(str(error)) < 3000
         return
-    ticks, gate = JointServoMap(robot), Gate(robot)
+    ticks, gate = JointServoMap(robot), SafetyLimiter(robot)
     low, high = ticks.position_range_rad
     assert (low < high).all() and np.abs([low, high]).max() < 13
     for figures in (

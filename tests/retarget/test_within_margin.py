@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from daemon.control.safety_limiter import GATE_SHARE, Gate
+from daemon.control.safety_limiter import GATE_SHARE, SafetyLimiter
 from retarget.path.collision import KEPT, SelfContact
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointState
@@ -43,7 +43,7 @@ def test_a_motion_leaves_a_pose_within_the_margin(name: str) -> None:
         margin_m = start_m - contact.room_m(pose, 1.0)
         least_m = np.minimum(KEPT * margin_m, start_m - 0.1 * margin_m)
         assert (contact.distances_m(q_rad) >= least_m - 1e-5).all()
-        gate, goals = Gate(robot, contact=contact), []
+        gate, goals = SafetyLimiter(robot, contact=contact), []
         gate.reset(pose)
         for target in path.at_rate(robot.bus.rate_hz):
             goals.append(gate.step(target))

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from daemon.control.control_loop import Streamer
+from daemon.control.control_loop import ControlLoop
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.robot.loading import load_robot
@@ -36,7 +36,7 @@ class Rig:
         self.sim = SimBus(robot, FaultSchedule(tuple(faults)), start)
         self.port = SimPort(self.sim, self.clock)
         self.bus = ServoBus(self.port, robot.servos, self.clock, slow_every=slow_every)
-        self.streamer = Streamer(robot, self.bus, link, self.clock, watch_front=watch_front)
+        self.streamer = ControlLoop(robot, self.bus, link, self.clock, watch_front=watch_front)
         self.records: list[np.void] = []
         self._due_s = 0.0
         self._index = 0

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from daemon.poses.cycles import Marks, after_loop, closed, marks_of
-from daemon.poses.pose_sequence import Posture, at_tempo, faded_in, joined, mirrored, scaled
+from daemon.poses.pose_sequence import PoseSequence, at_tempo, faded_in, joined, mirrored, scaled
 from daemon.wire.requests import Play
 
 AGAIN_FADE_FRAMES = 8
@@ -20,7 +20,7 @@ LOOP_STRETCH_S = 1.5
 """Rounds are joined to stretches of at least this length."""
 
 
-class Score(Protocol):
+class MotionSource(Protocol):
     """Stretches of posture in order."""
 
     @property
@@ -28,15 +28,15 @@ class Score(Protocol):
         """Whether `next` has something without waiting; asked often, in the event loop."""
         ...
 
-    def next(self) -> tuple[Posture, bool]:
+    def next(self) -> tuple[PoseSequence, bool]:
         """The next stretch, and whether it is the last; not called again after that."""
         ...
 
 
-class ClipScore:
+class ClipSource:
     """A clip as the options of `Play` want it."""
 
-    def __init__(self, posture: Posture, play: Play, marks: Marks | None = None) -> None:
+    def __init__(self, posture: PoseSequence, play: Play, marks: Marks | None = None) -> None:
         needed = play.loop or play.hold or play.repeat > 1
         self._marks = marks or (marks_of(posture) if needed else Marks(None, len(posture) - 1))
         self._posture, self._play = posture, play
@@ -48,7 +48,7 @@ class ClipScore:
         """Always: the clip is there."""
         return True
 
-    def next(self) -> tuple[Posture, bool]:
+    def next(self) -> tuple[PoseSequence, bool]:
         """The next stretch, and whether it is the last."""
         stretch, last = self._next()
         return varied(stretch, self._play), last
@@ -57,7 +57,7 @@ class ClipScore:
         """Go round no more: the next stretch leads to the end."""
         self._rounds_left = 0
 
-    def _next(self) -> tuple[Posture, bool]:
+    def _next(self) -> tuple[PoseSequence, bool]:
         p, loop = self._posture, self._marks.loop
         begun, self._begun = self._begun, True
         end = self._marks.hold + 1 if self._play.hold else len(p)
@@ -83,7 +83,7 @@ class ClipScore:
             self._rounds_left -= rounds
         return rounds
 
-    def _last_rounds(self) -> tuple[Posture, bool]:
+    def _last_rounds(self) -> tuple[PoseSequence, bool]:
         loop = self._marks.loop
         assert loop is not None, "asked only of a clip that goes round"
         tail = after_loop(self._posture, loop)
@@ -95,12 +95,12 @@ class ClipScore:
             tail = closed(self._posture, loop)
         return tail, True
 
-    def _again(self, end: int) -> Posture:
+    def _again(self, end: int) -> PoseSequence:
         p = self._posture
         return faded_in(p[:end], p[len(p) - 1 :], AGAIN_FADE_FRAMES)
 
 
-def varied(p: Posture, play: Play) -> Posture:
+def varied(p: PoseSequence, play: Play) -> PoseSequence:
     """Mirror, size and tempo of `play`."""
     if play.mirror:
         p = mirrored(p)

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from daemon.poses.pose_sequence import Posture
+from daemon.poses.pose_sequence import PoseSequence
 from mmm_core.motion.motion import Motion
 from mmm_core.recognition.seen import Scene
 
@@ -26,7 +26,7 @@ class KeptMotion:
     """
 
     words: str
-    posture: Posture
+    posture: PoseSequence
     motion: Motion
     scenes: Sequence[Scene] = ()
     plan_id: int = 0
@@ -44,7 +44,7 @@ class KeptMotions:
         while len(self._kept) > KEPT:
             self._kept.popitem(last=False)
 
-    def renew(self, command_id: str, posture: Posture, motion: Motion, scenes: Sequence[Scene]) -> None:
+    def renew(self, command_id: str, posture: PoseSequence, motion: Motion, scenes: Sequence[Scene]) -> None:
         """What was kept of a command, if it still is, was a draft of this."""
         if command_id in self._kept:
             self._kept[command_id] = replace(self._kept[command_id], posture=posture, motion=motion, scenes=scenes)

@@ -12,20 +12,22 @@ from collections.abc import Callable
 import numpy as np
 
 from daemon.generator.messages import Generated
-from daemon.poses.pose_sequence import Posture
+from daemon.poses.pose_sequence import PoseSequence
 
 MOST_TRIES = 5
 """A machine that is late so often plays the draft to its end."""
 
 
-class DraftScore:
+class PreviewSource:
     """A draft, then what follows it. In the event loop, but for `next`, which may run in a worker thread.
 
     Attributes:
         tries_left: how often the motion may still be tried to be put in the draft's place; 0 once it is there.
     """
 
-    def __init__(self, draft: Posture, whole: asyncio.Task[Generated], posture: Callable[[Generated], Posture]) -> None:
+    def __init__(
+        self, draft: PoseSequence, whole: asyncio.Task[Generated], posture: Callable[[Generated], PoseSequence]
+    ) -> None:
         """Begin with `draft`; `posture` is how what the generator gives is played."""
         self._draft, self._whole, self._posture = draft, whole, posture
         self._begun, self.tries_left = False, MOST_TRIES
@@ -35,7 +37,7 @@ class DraftScore:
         """Whether the draft has not been given out, or it is known what follows it."""
         return not self._begun or self._whole.done()
 
-    def next(self) -> tuple[Posture, bool]:
+    def next(self) -> tuple[PoseSequence, bool]:
         """The draft, or the motion if that is there already; then what the motion has after the draft."""
         if not self._begun:
             self._begun = True
@@ -54,7 +56,7 @@ class DraftScore:
     def _has_come(self) -> bool:
         return self._whole.done() and not self._whole.cancelled() and self._whole.exception() is None
 
-    def rest(self, n_left: int) -> Posture:
+    def rest(self, n_left: int) -> PoseSequence:
         """What is to follow where `n_left` frames of the draft are left: of the motion, or of the draft if there is none."""
         of = self._posture(self._whole.result()) if self._has_come else self._draft
         place = len(self._draft) - n_left

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.playback.sources.lacking import instead, lacking
-from daemon.poses.pose_sequence import Posture
+from daemon.poses.pose_sequence import PoseSequence
 from mmm_core.recognition.named import families_named
 from mmm_core.recognition.seen import HARDLY, NOTHING_MOVES, Scene, lost, scenes_seen, sentence
 from retarget.pipeline import Retargeter
@@ -58,7 +58,7 @@ class Showing:
         self._retargeter, self._lock = Retargeter(robot), threading.Lock()
         families_named("wave")  # its tables are read now and not with the first text
 
-    def of(self, posture: Posture, scenes: Sequence[Scene], *, draft: bool = False) -> Shows:
+    def of(self, posture: PoseSequence, scenes: Sequence[Scene], *, draft: bool = False) -> Shows:
         """What a motion shows, and what the robot lacks for it.
 
         Args:
@@ -74,7 +74,7 @@ class Showing:
             lacks = lacking(self._retargeter, motion, acts)
         return Shows(", then ".join([sentence(acts, counted=not draft), *to_come]), lacks)
 
-    def verdict(self, posture: Posture, scenes: Sequence[Scene], q_rad: Array, fps: float) -> Verdict:
+    def verdict(self, posture: PoseSequence, scenes: Sequence[Scene], q_rad: Array, fps: float) -> Verdict:
         """Whether the robot has shown a motion.
 
         Args:

@@ -17,7 +17,7 @@ import numpy as np
 
 from daemon.generator.client import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
-from daemon.poses.pose_sequence import Posture, at_steps, joined, mirrored, posture_of, scaled, standing
+from daemon.poses.pose_sequence import PoseSequence, at_steps, joined, mirrored, posture_of, scaled, standing
 from daemon.state.replies import NotPlayableError, generator_failed
 from daemon.wire.requests import Story
 from mmm_core.recognition.seen import Scene, scenes_seen, sentence
@@ -59,12 +59,12 @@ class SceneNews:
 
 @dataclass(frozen=True)
 class _Piece:
-    posture: Posture
+    posture: PoseSequence
     last: bool
     news: tuple[SceneNews, ...]
 
 
-class StoryScore:
+class StorySource:
     """A story as the options of `Play` want it. `next` may run in a worker thread, all else in the event loop.
 
     Attributes:
@@ -76,7 +76,7 @@ class StoryScore:
         n_scenes = len(request.scenes)
         self._n_all = None if request.loop else n_scenes * request.repeat
         self._n_asked = self._n_barren = 0
-        self._parts: list[Posture] = []
+        self._parts: list[PoseSequence] = []
         self._news: list[SceneNews] = []
         self._told = b""
         self._complete = False
@@ -111,7 +111,7 @@ class StoryScore:
             self._task = asyncio.create_task(self._make_patiently())
         return bool(self._pieces) or self._failure is not None
 
-    def next(self) -> tuple[Posture, bool]:
+    def next(self) -> tuple[PoseSequence, bool]:
         """The next stretch, and whether it is the last.
 
         Raises:
@@ -183,7 +183,7 @@ class StoryScore:
             self._news.append(SceneNews(place + 1, scene.text, m.status, generated.reason, shows, m.scope_score))
         return generated
 
-    def _varied(self, p: Posture) -> Posture:
+    def _varied(self, p: PoseSequence) -> PoseSequence:
         """Mirror, size and tempo, piece by piece as on the whole."""
         if self._request.mirror:
             p = mirrored(p)
@@ -197,9 +197,9 @@ class _Tempo:
 
     def __init__(self, tempo: float) -> None:
         self._tempo, self._at = tempo, 0.0
-        self._before: Posture | None = None
+        self._before: PoseSequence | None = None
 
-    def of(self, p: Posture) -> Posture:
+    def of(self, p: PoseSequence) -> PoseSequence:
         """The frames that fall into a piece; the last frame of the one before is kept for those between the two."""
         if self._tempo == 1.0:
             return p

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from daemon.state.lease import LeaseClock, LeaseState
 from retarget.path.paths import JointState
-from retarget.path.safety_filter import GuardedSteps
+from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
@@ -59,7 +59,7 @@ class Glide:
         return self._at_rad
 
 
-class StreamScore:
+class StreamSource:
     """Frames of one lease.
 
     Args:
@@ -73,7 +73,7 @@ class StreamScore:
         clipped: targets beyond a position limit, which were met as far as it goes.
     """
 
-    def __init__(self, robot: RobotModel, guard: GuardedSteps, clock: LeaseClock, holder: str) -> None:
+    def __init__(self, robot: RobotModel, guard: SafetyFilter, clock: LeaseClock, holder: str) -> None:
         self._guard, self.clock, self.holder = guard, clock, holder
         self._glide = Glide(robot.bus.rate_hz)
         self._gaze_rad: dict[int, float] = {}

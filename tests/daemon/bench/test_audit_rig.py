@@ -77,7 +77,7 @@ def test_what_cannot_be_repaired_is_said():
 
 def test_contacts_that_are_commanded_are_reported(monkeypatch):
     """With the gate's knowledge of the body taken away a plan into the body shows in the report."""
-    from daemon.control.safety_limiter import Gate
+    from daemon.control.safety_limiter import SafetyLimiter
     from retarget.path.collision import SelfContact
     from retarget.path.limits import JointLimits
 
@@ -85,7 +85,7 @@ def test_contacts_that_are_commanded_are_reported(monkeypatch):
     draw = np.random.default_rng(0)
     poses = draw.uniform(limits.position_min_rad, limits.position_max_rad, (2000, ROBOT.n_joints))
     inside = np.repeat(poses[body.clearance_m(poses).argmin()][None], 300, 0)
-    monkeypatch.setattr("daemon.control.control_loop.Gate", lambda robot, contact: Gate(robot))
+    monkeypatch.setattr("daemon.control.control_loop.Gate", lambda robot, contact: SafetyLimiter(robot))
     rig = AuditRig(ROBOT)
     rig.make_ready()
     rig.play(inside)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from daemon.control.leading_back import LeadingBack
-from daemon.control.safety_limiter import Gate
+from daemon.control.safety_limiter import SafetyLimiter
 from daemon.control.turns import TurnWatch
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import ServoFaultError
@@ -42,12 +42,12 @@ def paired(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @cache
-def parts(name: str) -> tuple[RobotModel, JointServoMap, TurnWatch, Gate]:
+def parts(name: str) -> tuple[RobotModel, JointServoMap, TurnWatch, SafetyLimiter]:
     robot = load_robot(name)
     ticks = JointServoMap(robot)
     clock = RealClock()
     bus = ServoBus(SimPort(SimBus(robot), clock), robot.servos, clock)
-    return robot, ticks, TurnWatch(robot, ticks, bus), Gate(robot)
+    return robot, ticks, TurnWatch(robot, ticks, bus), SafetyLimiter(robot)
 
 
 @pytest.mark.parametrize("name", [*list_robots(), "paired"])

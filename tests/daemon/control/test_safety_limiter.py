@@ -3,11 +3,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.control.safety_limiter import Gate
+from daemon.control.safety_limiter import SafetyLimiter
 from retarget.robot.loading import load_robot
 
 ROBOT = load_robot("reference")
-LOW, HIGH = Gate(ROBOT).limits.position_min_rad, Gate(ROBOT).limits.position_max_rad
+LOW, HIGH = SafetyLimiter(ROBOT).limits.position_min_rad, SafetyLimiter(ROBOT).limits.position_max_rad
 PERIOD_S = ROBOT.bus.period_s
 
 anything = st.floats(allow_nan=True, allow_infinity=True) | st.floats(-10, 10) | st.sampled_from([0.0, 1e300, -1e-300])
@@ -30,7 +30,7 @@ def assert_within(goals: np.ndarray, start: np.ndarray) -> None:
 @given(targets, st.integers(0, 2**32 - 1))
 def test_no_input_breaks_a_limit(commands, seed):
     """NaN, infinities, teleports, noise, brakes in any order: every goal is finite and inside every bound."""
-    gate, random = Gate(ROBOT), np.random.default_rng(seed)
+    gate, random = SafetyLimiter(ROBOT), np.random.default_rng(seed)
     start = random.uniform(LOW, HIGH)
     gate.reset(start)
     goals = []
@@ -54,7 +54,7 @@ def test_no_input_breaks_a_limit(commands, seed):
 def test_what_keeps_the_limits_passes_bit_for_bit(seed, share):
     """The gate's own output, fed to a second gate, comes back unchanged and is not called clipped."""
     random = np.random.default_rng(seed)
-    first, second = Gate(ROBOT), Gate(ROBOT)
+    first, second = SafetyLimiter(ROBOT), SafetyLimiter(ROBOT)
     start = random.uniform(LOW, HIGH)
     first.reset(start)
     second.reset(start)
@@ -68,7 +68,7 @@ def test_what_keeps_the_limits_passes_bit_for_bit(seed, share):
 
 
 def test_an_input_that_is_not_finite_brakes_and_is_counted():
-    gate = Gate(ROBOT)
+    gate = SafetyLimiter(ROBOT)
     gate.reset(ROBOT.rest_rad)
     far = np.clip(ROBOT.rest_rad + 0.5, LOW, HIGH)
     for _ in range(5):
@@ -82,7 +82,7 @@ def test_an_input_that_is_not_finite_brakes_and_is_counted():
 
 
 def test_braking_comes_to_rest_and_stays():
-    gate = Gate(ROBOT)
+    gate = SafetyLimiter(ROBOT)
     gate.reset(ROBOT.rest_rad)
     for _ in range(30):
         gate.step(HIGH)
@@ -97,7 +97,7 @@ def test_braking_comes_to_rest_and_stays():
 
 
 def test_a_target_is_reached_and_held_exactly():
-    gate = Gate(ROBOT)
+    gate = SafetyLimiter(ROBOT)
     gate.reset(ROBOT.park_rad)
     for _ in range(600):
         gate.step(ROBOT.rest_rad)
@@ -107,7 +107,7 @@ def test_a_target_is_reached_and_held_exactly():
 
 @pytest.mark.parametrize("asked_rad", [HIGH[0] + 1.0, HIGH[0] + 0.1, HIGH[0] - 0.1, LOW[0]])
 def test_a_joint_outside_its_range_never_goes_further_out(asked_rad):
-    gate = Gate(ROBOT)
+    gate = SafetyLimiter(ROBOT)
     start, target = ROBOT.rest_rad.copy(), ROBOT.rest_rad.copy()
     start[0], target[0] = HIGH[0] + 0.2, asked_rad
     gate.reset(start)
@@ -120,4 +120,4 @@ def test_a_joint_outside_its_range_never_goes_further_out(asked_rad):
 
 def test_a_start_that_is_not_finite_is_refused():
     with pytest.raises(ValueError, match="not finite"):
-        Gate(ROBOT).reset(np.full(ROBOT.n_joints, np.nan))
+        SafetyLimiter(ROBOT).reset(np.full(ROBOT.n_joints, np.nan))

@@ -136,7 +136,7 @@ def repairs(w: World) -> list[World]:
 
 
 def bus_steps(w: World) -> list[World]:
-    """One step of the bus process, as `start` and `Streamer.cycle` make it."""
+    """One step of the bus process, as `start` and `ControlLoop.cycle` make it."""
     words = words_of(w)
     if w.bus == "starting":
         if not w.port:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.control.control_loop import Streamer
+from daemon.control.control_loop import ControlLoop
 from daemon.dynamixel.multi import MultiBus, RobotBus, bus_on, open_bus
 from daemon.dynamixel.registers.models import MODELS
 from daemon.dynamixel.servo_bus import ServoBus
@@ -140,7 +140,7 @@ def test_when_one_port_is_lost_the_servos_of_the_other_come_to_rest_within_their
                 servo.set(
                     "present_position", int(JointServoMap(ROBOT).rad_to_tick(ROBOT.park_rad)[ROBOT.servo_ids.index(i)])
                 )
-        streamer = Streamer(ROBOT, joined(ports, clock), link, clock, watch_front=False)
+        streamer = ControlLoop(ROBOT, joined(ports, clock), link, clock, watch_front=False)
         link.request(BusRequest.ARM)
         goals: list[list[int]] = []
 

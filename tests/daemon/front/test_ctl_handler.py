@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from daemon.ctl.channel import FRONT_SERVES_S, Answered, Channel, Handed, pair
-from daemon.front.ctl_handler import UNTOLD_S, CtlDesk
-from daemon.scheduling.command_queue import Halts
+from daemon.front.ctl_handler import UNTOLD_S, CtlHandler
+from daemon.scheduling.command_queue import StopOrdering
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.shared_memory.request_words import Asker
 from daemon.state.ledger import Ledger
@@ -25,7 +25,7 @@ class Front:
 
     def __init__(self, link: BusLink, state: RobotState = RobotState.MOVING) -> None:
         self.link, self.ctl = link, BusLink.attach(link.path, link.n_joints, asker=Asker.CTL)
-        self.machine, self.halts, self.ended = StateMachine(), Halts(), []
+        self.machine, self.halts, self.ended = StateMachine(), StopOrdering(), []
         self.machine.state = state
         self.follower = SimpleNamespace(stopped=False, bus_alive=True)
         performer = SimpleNamespace(
@@ -37,7 +37,7 @@ class Front:
         self.drained = asyncio.Event()
         self.published: list[ev.Event] = []
         ledger = Ledger(lambda *_: None, self.published.append)
-        self.desk = CtlDesk(link, performer, ledger, self.drained.wait, lambda: None, self.published.append)
+        self.desk = CtlHandler(link, performer, ledger, self.drained.wait, lambda: None, self.published.append)
         ours, theirs = pair()
         self.far = Channel(theirs)
         self.desk.attach(Channel(ours))

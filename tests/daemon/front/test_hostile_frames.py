@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.front.target_parsing import StreamInbox
+from daemon.front.target_parsing import TargetParser
 from daemon.recording.mcap_log import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.shared_memory.bus_link import BusRequest, cycle_dtype
@@ -84,7 +84,7 @@ def test_a_hostile_event_is_refused_by_the_client():
 
 
 def test_no_hostile_frame_ends_the_reader_of_stream():
-    inbox = StreamInbox(load_robot("reference"))
+    inbox = TargetParser(load_robot("reference"))
     for text in HOSTILE.values():
         with pytest.raises(wire.WireError) as caught:
             inbox.read([text.encode()], "lease", "nobody", "a-secret-of-a-lease")

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.front.target_parsing import NAMED_EVERY_S, StreamInbox
+from daemon.front.target_parsing import NAMED_EVERY_S, TargetParser
 from daemon.wire.codec import WireError
 from retarget.robot.loading import load_robot
 
@@ -22,8 +22,8 @@ def target(**fields) -> bytes:
     return json.dumps({"type": "target", "id": "L", "secret": SECRET, **fields}).encode()
 
 
-def read(frame: bytes, inbox: StreamInbox | None = None) -> np.ndarray:
-    return (inbox or StreamInbox(ROBOT)).read([frame], "L", "stream of me", SECRET)
+def read(frame: bytes, inbox: TargetParser | None = None) -> np.ndarray:
+    return (inbox or TargetParser(ROBOT)).read([frame], "L", "stream of me", SECRET)
 
 
 def test_all_joints_in_order_or_some_by_name():
@@ -65,7 +65,7 @@ def test_all_joints_in_order_or_some_by_name():
     ],
 )
 def test_what_is_wrong_has_a_name_and_is_counted(frame, code):
-    inbox = StreamInbox(ROBOT)
+    inbox = TargetParser(ROBOT)
     with pytest.raises(WireError) as caught:
         read(frame, inbox)
     assert caught.value.code == code and inbox.bad == {code: 1}
@@ -73,7 +73,7 @@ def test_what_is_wrong_has_a_name_and_is_counted(frame, code):
 
 
 def test_a_stranger_is_told_who_holds_the_lease_or_that_nobody_does():
-    inbox = StreamInbox(ROBOT)
+    inbox = TargetParser(ROBOT)
     with pytest.raises(WireError, match="stream of me holds lease 'L'"):
         inbox.read([target(q_rad=[0.0] * N).replace(b'"L"', b'"X"')], "L", "stream of me", SECRET)
     with pytest.raises(WireError, match="nobody holds a lease"):
@@ -81,7 +81,7 @@ def test_a_stranger_is_told_who_holds_the_lease_or_that_nobody_does():
 
 
 def test_a_flood_of_bad_messages_is_named_once_a_second_with_its_number():
-    inbox, told = StreamInbox(ROBOT), []
+    inbox, told = TargetParser(ROBOT), []
     for k in range(3000):
         with pytest.raises(WireError):
             read(b"{", inbox)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.playback.bus_follower import BUS_SILENT_S, Follower
-from daemon.playback.setpoint_buffer import Planner
+from daemon.playback.bus_follower import BUS_SILENT_S, BusFollower
+from daemon.playback.setpoint_buffer import SetpointBuffer
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.machine import RobotState, StateMachine
@@ -23,7 +23,7 @@ class Front:
         monkeypatch.setattr("daemon.state.bus_view.time.monotonic", lambda: self.now_s)
         view = BusView(r.link, ROBOT)
         self.machine = StateMachine()
-        self.follower = Follower(r.link, view, Planner(ROBOT, r.link, view, 0.1), self.machine)
+        self.follower = BusFollower(r.link, view, SetpointBuffer(ROBOT, r.link, view, 0.1), self.machine)
 
     def tick(self, cycles: int = 1, seconds: float = 0.01) -> RobotState:
         self.rig.cycle(cycles)

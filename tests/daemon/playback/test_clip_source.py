@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.playback.sources.clip_source import ClipScore
+from daemon.playback.sources.clip_source import ClipSource
 from daemon.poses.cycles import Marks, after_loop, closed, find_hold, find_loop, marks_of
-from daemon.poses.idle import STYLES, IdleScore, looking
-from daemon.poses.pose_sequence import Posture, distance_deg, joined, posture_of, standing
+from daemon.poses.idle import STYLES, IdleSource, looking
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, joined, posture_of, standing
 from daemon.wire.requests import Say
 from mmm_core.motion.motion import FPS
 from retarget.pipeline import Retargeter
@@ -19,7 +19,7 @@ from tests.support.kinematic import FPS as KINEMATIC_FPS
 ARM = posture_of(raised_arm("right", 1.5, 1.3, "right"))
 
 
-def waving(strokes: int = 4, stroke_s: float = 0.8) -> Posture:
+def waving(strokes: int = 4, stroke_s: float = 0.8) -> PoseSequence:
     """The right arm goes up, its forearm swings `strokes` times, and it comes down."""
     from mmm_core.motion.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
 
@@ -50,7 +50,7 @@ def waving(strokes: int = 4, stroke_s: float = 0.8) -> Posture:
 WAVE = waving()
 
 
-def played(score, most: int = 50) -> tuple[list[Posture], bool]:
+def played(score, most: int = 50) -> tuple[list[PoseSequence], bool]:
     """Stretches up to the last, or `most` of them."""
     stretches = []
     for _ in range(most):
@@ -61,7 +61,7 @@ def played(score, most: int = 50) -> tuple[list[Posture], bool]:
     return stretches, False
 
 
-def steps_deg(p: Posture) -> np.ndarray:
+def steps_deg(p: PoseSequence) -> np.ndarray:
     return distance_deg(p[1:], p[:-1])
 
 
@@ -95,7 +95,7 @@ def test_what_follows_the_last_round_grows_out_of_it():
 @pytest.mark.parametrize("repeat", [1, 2, 3, 7])
 def test_repeats_are_counted(repeat):
     loop = find_loop(WAVE)
-    stretches, ended = played(ClipScore(WAVE, Say(text="wave", repeat=repeat)))
+    stretches, ended = played(ClipSource(WAVE, Say(text="wave", repeat=repeat)))
     assert ended
     n = sum(map(len, stretches))
     assert n == len(WAVE) + (repeat - 1) * (loop[1] - loop[0])
@@ -104,12 +104,12 @@ def test_repeats_are_counted(repeat):
 
 def test_a_motion_without_loop_is_done_again_as_a_whole():
     p = WAVE[:40]
-    stretches, ended = played(ClipScore(p, Say(text="x", repeat=3), Marks(None, 20)))
+    stretches, ended = played(ClipSource(p, Say(text="x", repeat=3), Marks(None, 20)))
     assert ended and [len(s) for s in stretches] == [40] * 3
 
 
 def test_a_loop_has_no_end_until_it_is_finished():
-    score = ClipScore(WAVE, Say(text="wave", loop=True))
+    score = ClipSource(WAVE, Say(text="wave", loop=True))
     stretches, ended = played(score, 30)
     assert not ended and all(len(s) >= 16 for s in stretches)
     score.finish()
@@ -122,14 +122,14 @@ def test_a_loop_has_no_end_until_it_is_finished():
 def test_hold_ends_in_the_pose_that_says_most():
     hold = find_hold(ARM)
     assert 10 <= hold <= 20  # the arm is highest in the middle
-    stretches, ended = played(ClipScore(ARM, Say(text="raise", hold=True)))
+    stretches, ended = played(ClipSource(ARM, Say(text="raise", hold=True)))
     assert ended and len(stretches[0]) == hold + 1
     assert distance_deg(standing(), stretches[0][-1:])[0] > 0.9 * distance_deg(standing(), ARM).max()
 
 
 def test_options_change_every_stretch():
-    plain, _ = played(ClipScore(WAVE, Say(text="w", repeat=2)))
-    fast, _ = played(ClipScore(WAVE, Say(text="w", repeat=2, tempo=2.0, mirror=True, amplitude=0.5)))
+    plain, _ = played(ClipSource(WAVE, Say(text="w", repeat=2)))
+    fast, _ = played(ClipSource(WAVE, Say(text="w", repeat=2, tempo=2.0, mirror=True, amplitude=0.5)))
     for a, b in zip(plain, fast, strict=True):
         assert len(b) == pytest.approx(len(a) / 2, abs=1)
     assert distance_deg(standing(), joined(fast)).max() == pytest.approx(
@@ -143,7 +143,7 @@ def test_marks_can_be_given():
 
 @pytest.mark.parametrize("style", STYLES)
 def test_idle_movements_are_small_slow_continuous_and_never_end(style):
-    score = IdleScore(style, seed=4)
+    score = IdleSource(style, seed=4)
     p = joined([score.next()[0] for _ in range(60)])
     away = distance_deg(standing(), p)
     assert away[0] < 0.5 and 1.0 < away.max() < 40.0
@@ -156,7 +156,7 @@ def test_idle_movements_are_small_slow_continuous_and_never_end(style):
 @pytest.mark.parametrize("name", ["reference", "op3"])
 def test_idle_movements_need_no_help_to_stay_within_the_robot(name):
     retargeter = Retargeter(load_robot(name))
-    score = IdleScore("lively")
+    score = IdleSource("lively")
     state = None
     for _ in range(6):
         p, _ = score.next()

@@ -8,14 +8,14 @@ from collections.abc import Awaitable, Callable
 import numpy as np
 
 from daemon.generator.messages import Generated
-from daemon.playback.sources.preview_source import MOST_TRIES, DraftScore
-from daemon.poses.pose_sequence import Posture, posture_of
+from daemon.playback.sources.preview_source import MOST_TRIES, PreviewSource
+from daemon.poses.pose_sequence import PoseSequence, posture_of
 from tests.support.kinematic import raised_arm
 
 DRAFT, WHOLE = raised_arm(seconds=1.0, angle_rad=0.6), raised_arm(seconds=2.0, angle_rad=1.2)
 
 
-async def score_of() -> tuple[DraftScore, Callable[..., Awaitable[None]]]:
+async def score_of() -> tuple[PreviewSource, Callable[..., Awaitable[None]]]:
     """A score, and what lets its motion come, or an error."""
     comes: asyncio.Future[Generated] = asyncio.get_running_loop().create_future()
 
@@ -31,10 +31,10 @@ async def score_of() -> tuple[DraftScore, Callable[..., Awaitable[None]]]:
             comes.set_exception(error)
         await asyncio.wait({whole})
 
-    return DraftScore(posture_of(DRAFT), whole, lambda generated: posture_of(generated.motion)), come
+    return PreviewSource(posture_of(DRAFT), whole, lambda generated: posture_of(generated.motion)), come
 
 
-def same(a: Posture, b: Posture) -> bool:
+def same(a: PoseSequence, b: PoseSequence) -> bool:
     return np.array_equal(a.bones, b.bones)
 
 

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from daemon.control.control_loop import Streamer
+from daemon.control.control_loop import ControlLoop
 from daemon.dynamixel.servo_bus import ServoBus
-from daemon.playback.latency_estimate import Lead
-from daemon.playback.setpoint_buffer import Planner
+from daemon.playback.latency_estimate import LatencyEstimate
+from daemon.playback.setpoint_buffer import SetpointBuffer
 from daemon.poses.pose_sequence import at_tempo, distance_deg, posture_of, standing
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from daemon.state.bus_view import BusView
@@ -38,11 +38,11 @@ class Bench:
         self.sim = SimBus(ROBOT)
         port = SimPort(self.sim, self.clock)
         self.link = BusLink.create(ROBOT.n_joints)
-        self.streamer = Streamer(
+        self.streamer = ControlLoop(
             ROBOT, ServoBus(port, ROBOT.servos, self.clock), self.link, self.clock, watch_front=False
         )
         self.view = BusView(self.link, ROBOT)
-        self.planner = Planner(ROBOT, self.link, self.view, queue_s)
+        self.planner = SetpointBuffer(ROBOT, self.link, self.view, queue_s)
         self.records: list[np.ndarray] = []
 
     def cycle(self, n: int = 1, pump: bool = True) -> None:
@@ -196,7 +196,7 @@ def test_what_is_committed_is_what_will_have_been_played(bench, ahead_s, fps):
     plan = bench.play(replace(RIGHT, fps=fps))
     whole = at_tempo(posture_of(RIGHT), fps / 20.0)
     bench.cycle(30)
-    bench.planner._lead = Lead(0.03)  # measured, else
+    bench.planner._lead = LatencyEstimate(0.03)  # measured, else
     shown = bench.planner.committed(8, ahead_s)
     assert shown.fps == whole.fps == 20.0
     end_s = (plan.statistics.last_frame + 1) * PERIOD_S + ahead_s + bench.planner._lead.seconds

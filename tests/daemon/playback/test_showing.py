@@ -10,7 +10,7 @@ import pytest
 from daemon.gestures.clips import load_clips
 from daemon.gestures.library import SHIPPED
 from daemon.playback.sources.showing import Showing, Verdict
-from daemon.poses.pose_sequence import Posture, standing
+from daemon.poses.pose_sequence import PoseSequence, standing
 from mmm_core.motion.motion import FPS
 from mmm_core.recognition.seen import Scene
 from retarget.pipeline import Retargeter
@@ -22,15 +22,15 @@ def showing(robot: str) -> Showing:
     return Showing(load_robot(robot))
 
 
-def clip(name: str) -> Posture:
+def clip(name: str) -> PoseSequence:
     return load_clips(SHIPPED)[name].posture
 
 
-def scenes(posture: Posture, words: str) -> list[Scene]:
+def scenes(posture: PoseSequence, words: str) -> list[Scene]:
     return [Scene(len(posture) / posture.fps, words)]
 
 
-def verdict(robot: str, posture: Posture, words: str) -> Verdict:
+def verdict(robot: str, posture: PoseSequence, words: str) -> Verdict:
     path = Retargeter(load_robot(robot)).retarget(posture.motion())
     goals_rad = path.at_rate(FPS)
     return showing(robot).verdict(posture, scenes(posture, words), goals_rad, FPS)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.playback.sources import story_source as story_score
-from daemon.playback.sources.story_source import PIECES_AHEAD, StoryScore
+from daemon.playback.sources.story_source import PIECES_AHEAD, StorySource
 from daemon.poses.key_poses import KeyPose, led_through
 from daemon.poses.pose_sequence import at_tempo, distance_deg, joined, posture_of, standing
 from daemon.state.replies import NotPlayableError
@@ -45,9 +45,9 @@ def story(*texts: str, **options) -> Story:
     return Story(scenes=[SceneOf(text=t) for t in texts], **options)
 
 
-async def tell(request: Story, teller: Teller, most: int = 100) -> tuple[StoryScore, list, bool]:
+async def tell(request: Story, teller: Teller, most: int = 100) -> tuple[StorySource, list, bool]:
     """Play up to `most` stretches."""
-    score = StoryScore(request, teller, 5.0)
+    score = StorySource(request, teller, 5.0)
     await score.begin()
     stretches = []
     for _ in range(most):
@@ -89,7 +89,7 @@ def test_a_loop_has_no_end_and_never_more_than_two_pieces_in_hand():
 def test_a_loop_that_is_finished_ends_with_its_round(told):
     async def run() -> None:
         teller = Teller()
-        score = StoryScore(story("a", "b", loop=True), teller, 5.0)
+        score = StorySource(story("a", "b", loop=True), teller, 5.0)
         await score.begin()
         while len(teller.asked) < told:
             if score.ready and len(score._pieces) == PIECES_AHEAD:
@@ -122,7 +122,7 @@ def test_what_is_left_out_is_told_and_the_rest_goes_on():
 @pytest.mark.parametrize("options", [{}, {"loop": True}, {"repeat": 1000}], ids=str)
 def test_a_story_of_nothing_that_can_be_done_is_empty_and_ends(options):
     async def run() -> None:
-        score = StoryScore(story("away", "away", **options), teller := Teller(), 5.0)
+        score = StorySource(story("away", "away", **options), teller := Teller(), 5.0)
         news = await score.begin()
         assert score.empty and len(news) == 2 == len(teller.asked)
 
@@ -154,7 +154,7 @@ def test_a_generator_that_is_lost_and_comes_back_loses_no_scene(code, monkeypatc
 
     async def run() -> None:
         teller = Teller()
-        score = StoryScore(story("a", "b", "c"), teller, 5.0)
+        score = StorySource(story("a", "b", "c"), teller, 5.0)
         await score.begin()
         teller.errors = [lost(code)] * 5
         last = False
@@ -175,7 +175,7 @@ def test_what_does_not_come_back_ends_the_story_in_its_name(code, patience_s, mo
 
     async def run() -> None:
         teller = Teller()
-        score = StoryScore(story("a", "b"), teller, 5.0)
+        score = StorySource(story("a", "b"), teller, 5.0)
         await score.begin()
         teller.errors = [lost(code)] * 1000
         assert len(score.next()[0]) == 20  # what was made is played

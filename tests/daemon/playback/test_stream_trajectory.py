@@ -10,14 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.playback.setpoint_buffer import Planner
-from daemon.playback.sources.stream_source import StreamScore
-from daemon.playback.stream_trajectory import StreamPlan
+from daemon.playback.setpoint_buffer import SetpointBuffer
+from daemon.playback.sources.stream_source import StreamSource
+from daemon.playback.stream_trajectory import StreamTrajectory
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.lease import LeaseClock, LeaseState
 from retarget.path.collision import SelfContact
-from retarget.path.safety_filter import GuardedSteps
+from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.loading import load_robot
 from tests.support.rig import Rig, rig
 
@@ -30,8 +30,8 @@ class Streaming:
     def __init__(self, bench: Rig) -> None:
         self.bench, self.robot = bench, bench.robot
         self.view = BusView(bench.link, bench.robot)
-        self.planner = Planner(bench.robot, bench.link, self.view, 0.1)
-        self.guard = GuardedSteps(bench.robot)
+        self.planner = SetpointBuffer(bench.robot, bench.link, self.view, 0.1)
+        self.guard = SafetyFilter(bench.robot)
         self.plan_ids = 0
         self.score = self.lease()
 
@@ -40,14 +40,14 @@ class Streaming:
         return self.bench.clock.now_s()
 
     @property
-    def plan(self) -> StreamPlan:
-        assert isinstance(self.planner.current, StreamPlan)
+    def plan(self) -> StreamTrajectory:
+        assert isinstance(self.planner.current, StreamTrajectory)
         return self.planner.current
 
-    def lease(self) -> StreamScore:
+    def lease(self) -> StreamSource:
         """A new lease from where the robot is led."""
         self.planner.read_cycles()
-        score = StreamScore(self.robot, self.guard, LeaseClock(0.2, 5.0), "test")
+        score = StreamSource(self.robot, self.guard, LeaseClock(0.2, 5.0), "test")
         self.score = score
         score.begin(self.planner.hand_over_at_once().state, self.now_s)
         self.plan_ids += 1

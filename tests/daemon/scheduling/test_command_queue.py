@@ -7,7 +7,7 @@ import time
 import pytest
 
 from daemon.host.clock import clock_id
-from daemon.scheduling.command_queue import CLOCKS_KEPT, SHADOW_S, Halts
+from daemon.scheduling.command_queue import CLOCKS_KEPT, SHADOW_S, StopOrdering
 from daemon.state.ledger import Entry
 from daemon.wire.requests import Say, Stop
 
@@ -22,9 +22,9 @@ def said(clock: str | None, t_mono: float | None, *, ago_s: float = 0.0) -> Entr
     return Entry("a", Say(text="wave", clock=clock, t_mono=t_mono), came_ns, [])
 
 
-def halted(clock: str | None, sent_s: float | None, *, ago_s: float = 0.0) -> Halts:
+def halted(clock: str | None, sent_s: float | None, *, ago_s: float = 0.0) -> StopOrdering:
     """Stopped by a request that was sent at `sent_s` of `clock` and came `ago_s` ago."""
-    halts = Halts(HERE)
+    halts = StopOrdering(HERE)
     halts.note("stop", Stop(clock=clock, t_mono=sent_s))
     halts.served()
     halts.at_s -= ago_s
@@ -116,11 +116,11 @@ def test_of_two_stops_that_crossed_on_their_way_the_later_one_counts():
 
 
 def test_without_a_stop_nothing_is_overtaken():
-    assert not any(Halts(HERE).overtook(said(c, t)) for c in (HERE, THERE, None) for t in (None, -1e9, 0.0, 1e9))
+    assert not any(StopOrdering(HERE).overtook(said(c, t)) for c in (HERE, THERE, None) for t in (None, -1e9, 0.0, 1e9))
 
 
 def test_clocks_that_are_remembered_are_bounded():
-    halts = Halts(HERE)
+    halts = StopOrdering(HERE)
     for i in range(10 * CLOCKS_KEPT):
         halts.note("stop", Stop(clock=f"c{i}", t_mono=1.0))
     assert len(halts._stamps) == CLOCKS_KEPT and halts.spares(said(f"c{10 * CLOCKS_KEPT - 1}", 2.0))

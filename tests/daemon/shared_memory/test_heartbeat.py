@@ -6,19 +6,19 @@ import pytest
 
 from daemon.control.control_loop import CTL_LOST_S
 from daemon.shared_memory.bus_link import BusRequest, BusState
-from daemon.shared_memory.heartbeat import Silence
+from daemon.shared_memory.heartbeat import HeartbeatWatch
 from tests.support.rig import lead_to, rig
 
 
 def test_a_beat_that_stands_still_is_lost_after_the_limit_and_back_with_the_next():
-    silence = Silence(0.18, 0.01)
+    silence = HeartbeatWatch(0.18, 0.01)
     assert not any(silence.lasts(7) for _ in range(18))
     assert silence.lasts(7) and silence.lasts(7)
     assert not silence.lasts(8)
 
 
 def test_who_has_not_begun_is_waited_for():
-    silence = Silence(0.18, 0.01)
+    silence = HeartbeatWatch(0.18, 0.01)
     assert not any(silence.lasts(0) for _ in range(1000))
 
 

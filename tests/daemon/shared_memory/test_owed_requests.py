@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 
 import pytest
 
-from daemon.control.control_loop import Streamer
+from daemon.control.control_loop import ControlLoop
 from daemon.control.starting import start
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
@@ -53,7 +53,7 @@ class Robot:
         self.sim = SimBus(robot, FaultSchedule(tuple(faults)))
         self.steps = 0
         self.at: dict[int, Callable[[], None]] = {}
-        self.streamer: Streamer | None = None
+        self.streamer: ControlLoop | None = None
 
     def _step(self) -> None:
         self.steps += 1

@@ -14,7 +14,7 @@ import pytest
 from daemon.dynamixel.ports.lock import LockFileError, PortLock
 from daemon.dynamixel.ports.serial_port import SerialPort
 from daemon.errors import PortError
-from daemon.supervisor.run_folder import OwnFolder
+from daemon.supervisor.run_folder import RunFolder
 
 
 @pytest.fixture(autouse=True)
@@ -32,7 +32,7 @@ def aged(path: Path) -> Path:
 
 
 def test_the_folder_of_a_killed_daemon_goes_with_the_next_start_and_those_of_others_stay(temporary: Path) -> None:
-    living = OwnFolder()
+    living = RunFolder()
     (living.path / "log").touch()
     code = (
         "import os, tempfile; from daemon.supervisor.run_folder import OwnFolder; "
@@ -41,7 +41,7 @@ def test_the_folder_of_a_killed_daemon_goes_with_the_next_start_and_those_of_oth
     killed = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, timeout=60, check=False)
     left = Path(killed.stdout.strip())
     assert left.is_dir()
-    OwnFolder().close()
+    RunFolder().close()
     assert left.is_dir(), "it could be of a daemon that just starts"
     aged(left)
     aged(living.path)
@@ -52,7 +52,7 @@ def test_the_folder_of_a_killed_daemon_goes_with_the_next_start_and_those_of_oth
     link.symlink_to(elsewhere)
     (temporary / "mmmd-run-bare").mkdir()
     aged(temporary / "mmmd-run-bare")
-    OwnFolder().close()
+    RunFolder().close()
     assert not left.exists()
     assert living.path.is_dir() and (elsewhere / "owned").exists() and (temporary / "mmmd-run-bare").is_dir()
     living.close()

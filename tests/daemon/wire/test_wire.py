@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.playback.sources.preparation import PREFIX_FRAMES
+from daemon.playback.sources.source_factory import PREFIX_FRAMES
 from daemon.wire import codec as wire
 from daemon.wire import events, requests
 from docs.tools.wire_schemas import schemas, text_of

@@ -19,16 +19,16 @@ from daemon.errors import ClipError
 from daemon.generator.client import GeneratorClient, no_answer
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.gestures.library import GestureLibrary
-from daemon.playback.sources.clip_source import ClipScore, Score, varied
+from daemon.playback.sources.clip_source import ClipSource, MotionSource, varied
 from daemon.playback.sources.kept_motions import KeptMotion, KeptMotions
 from daemon.playback.sources.originals import Originals
-from daemon.playback.sources.preview_source import DraftScore
+from daemon.playback.sources.preview_source import PreviewSource
 from daemon.playback.sources.showing import Showing, Shows, Verdict, at_tempo
-from daemon.playback.sources.story_source import SceneNews, StoryScore
-from daemon.playback.sources.stream_source import StreamScore
+from daemon.playback.sources.story_source import SceneNews, StorySource
+from daemon.playback.sources.stream_source import StreamSource
 from daemon.poses.cycles import Marks
 from daemon.poses.key_poses import KeyPose, led_through
-from daemon.poses.pose_sequence import Posture, joined, mirrored, posture_of
+from daemon.poses.pose_sequence import PoseSequence, joined, mirrored, posture_of
 from daemon.settings.config import DaemonConfig
 from daemon.state.lease import LeaseClock
 from daemon.state.ledger import Entry
@@ -38,7 +38,7 @@ from daemon.wire.requests import Command, Edit, Gesture, Inbetween, Lease, Play,
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.motion.motion import Motion
 from mmm_core.recognition.seen import Scene
-from retarget.path.safety_filter import GuardedSteps
+from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.robot import RobotModel
 
 OUT_OF_SCOPE_DO = "ask for gestures of head, arms and torso, in English, e.g. 'wave with your right hand'"
@@ -55,20 +55,20 @@ class Played(Protocol):
     """What is known of the motion that is played."""
 
     @property
-    def raw_now(self) -> Posture:
+    def raw_now(self) -> PoseSequence:
         """One frame, how the robot is held, without layers."""
         ...
 
-    def committed(self, n: int, ahead_s: float) -> Posture:
+    def committed(self, n: int, ahead_s: float) -> PoseSequence:
         """`n` frames up to where a motion would take over that takes `ahead_s` to make."""
         ...
 
 
 @dataclass(frozen=True)
-class Prepared:
+class PreparedSource:
     """A motion ready to be played, and what is told about it when it is accepted."""
 
-    score: Score | StreamScore
+    score: MotionSource | StreamSource
     duration_s: float
     status: str = "accepted"
     understood: str = ""
@@ -96,7 +96,7 @@ class Prepared:
         )
 
 
-class Sources:
+class SourceFactory:
     """Turns requests into scores."""
 
     def __init__(
@@ -109,7 +109,7 @@ class Sources:
         self._make_s = FIRST_MAKE_S
         self._originals = Originals(library, self.kept, config.motions or Path())
 
-    async def prepare(self, entry: Entry, played: Played) -> Prepared:
+    async def prepare(self, entry: Entry, played: Played) -> PreparedSource:
         """The motion of a command.
 
         Raises:
@@ -128,7 +128,7 @@ class Sources:
             motion = await asyncio.to_thread(self._originals.motion, request)
             posture = await asyncio.to_thread(posture_of, motion)
             score, shows = await self._score(entry, posture, motion, words=motion.text)
-            return Prepared(
+            return PreparedSource(
                 score, _duration_s(posture, request), understood=shows.sentence, nearest=motion.text, lacks=shows.lacks
             )
         if isinstance(request, Gesture):
@@ -136,7 +136,7 @@ class Sources:
             motion = clip.posture.motion(text=clip.name)
             score, shows = await self._score(entry, clip.posture, motion, marks=clip.marks, words=clip.text)
             nearest = f"{clip.text} (gesture {clip.name})"
-            return Prepared(
+            return PreparedSource(
                 score, _duration_s(clip.posture, request), understood=shows.sentence, nearest=nearest, lacks=shows.lacks
             )
         if isinstance(request, Lease):
@@ -160,7 +160,7 @@ class Sources:
 
     async def _generated(
         self, entry: Entry, ask: Callable[[float], Awaitable[Generated]], keys: list[KeyPose] | None = None
-    ) -> Prepared:
+    ) -> PreparedSource:
         """What the generator makes of one request, led through `keys`."""
         generated = await self._asked(entry, ask)
         _check_in_scope(entry, generated)
@@ -183,7 +183,7 @@ class Sources:
         kept = self.kept.of_command(entry.id)
         return Verdict() if kept is None else self._showing.verdict(kept.posture, kept.scenes, q_rad, fps)
 
-    async def _drafted(self, entry: Entry, request: Say) -> Prepared:
+    async def _drafted(self, entry: Entry, request: Say) -> PreparedSource:
         """What can be played at once of a text, while the generator goes on with it."""
         ask = self._generator.draft
         first, whole = await self._asked(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
@@ -195,7 +195,7 @@ class Sources:
         if whole is None:
             return _prepared(first, score, _duration_s(draft, request), shows)
 
-        def posture(generated: Generated) -> Posture:
+        def posture(generated: Generated) -> PoseSequence:
             return varied(posture_of(generated.motion), request)
 
         def keep(done: asyncio.Task[Generated]) -> None:
@@ -207,9 +207,9 @@ class Sources:
 
         whole.add_done_callback(keep)
         duration_s = first.draft_of / draft.fps / request.tempo
-        return _prepared(first, DraftScore(varied(draft, request), whole, posture), duration_s, shows)
+        return _prepared(first, PreviewSource(varied(draft, request), whole, posture), duration_s, shows)
 
-    async def _said(self, entry: Entry, request: Say, played: Played) -> Prepared:
+    async def _said(self, entry: Entry, request: Say, played: Played) -> PreparedSource:
         ask = self._generator.generate
         if not request.prefix_s:
             if request.when == "now" and not (request.loop or request.hold or request.repeat > 1):
@@ -223,16 +223,16 @@ class Sources:
         self._make_s += 0.3 * (time.monotonic() - began_s - self._make_s)
         return prepared
 
-    async def _lease(self, request: Lease) -> Prepared:
+    async def _lease(self, request: Lease) -> PreparedSource:
         silence_s = self._config.lease_s if request.silence_s is None else request.silence_s
-        guard = await asyncio.to_thread(GuardedSteps, self._robot)
+        guard = await asyncio.to_thread(SafetyFilter, self._robot)
         clock = LeaseClock(silence_s, self._config.lease_park_s)
-        score = StreamScore(self._robot, guard, clock, request.holder)
+        score = StreamSource(self._robot, guard, clock, request.holder)
         understood = f"joint targets to {self._config.endpoints.stream}, at least one every {silence_s:g} s"
-        return Prepared(score, 0.0, understood=understood, silence_s=silence_s)
+        return PreparedSource(score, 0.0, understood=understood, silence_s=silence_s)
 
-    async def _story(self, entry: Entry, request: Story) -> Prepared:
-        score = StoryScore(request, self._generator, self._config.generate_timeout_s)
+    async def _story(self, entry: Entry, request: Story) -> PreparedSource:
+        score = StorySource(request, self._generator, self._config.generate_timeout_s)
 
         async def begin(timeout_s: float) -> list[SceneNews]:
             async with asyncio.timeout(timeout_s):
@@ -245,9 +245,9 @@ class Sources:
         first = next(n for n in news if n.status != "rejected")
         status = "degraded" if any(n.status != "accepted" for n in news) else "accepted"
         reason = "; ".join([*away, *(n.reason for n in news if n.status == "degraded")])[:1000]
-        return Prepared(score, 0.0, status, first.understood, reason, first.scope_score, score.generate_ms)
+        return PreparedSource(score, 0.0, status, first.understood, reason, first.scope_score, score.generate_ms)
 
-    async def _inbetween(self, entry: Entry, request: Inbetween, now: Posture) -> Prepared:
+    async def _inbetween(self, entry: Entry, request: Inbetween, now: PoseSequence) -> PreparedSource:
         keys = [self._originals.pose(asked) for asked in request.poses]
         if keys[0].at_s >= 1 / now.fps:
             near = keys[0].at_s < 0.2  # in the token in which the motion begins: the first pose stands for both
@@ -257,7 +257,7 @@ class Sources:
         ask = self._generator.between
         return await self._generated(entry, lambda t: ask(poses, at_s, request.text, request.seed, t), keys)
 
-    async def _edit(self, entry: Entry, request: Edit) -> Prepared:
+    async def _edit(self, entry: Entry, request: Edit) -> PreparedSource:
         motion = await asyncio.to_thread(self._originals.motion, request)
         what = (request.parts, request.start_s, request.end_s)
         ask = self._generator.edit
@@ -289,9 +289,9 @@ class Sources:
             raise NotPlayableError(generator_failed(error, self._generator.state)) from caught
 
     async def _score(
-        self, entry: Entry, posture: Posture, motion: Motion, scenes: Sequence[Scene] = (), *, words: str,
+        self, entry: Entry, posture: PoseSequence, motion: Motion, scenes: Sequence[Scene] = (), *, words: str,
         marks: Marks | None = None, draft: bool = False,
-    ) -> tuple[Score, Shows]:  # fmt: skip
+    ) -> tuple[MotionSource, Shows]:  # fmt: skip
         """The score of a motion, and what it shows; it is kept under the command's id.
 
         Args:
@@ -312,15 +312,15 @@ class Sources:
         self.kept.add(entry.id, KeptMotion(said, as_played, motion, parts))
         shows = await asyncio.to_thread(self._showing.of, as_played, parts, draft=draft)
         if play.loop or play.hold or play.repeat > 1:  # looking for the loop takes a while
-            return await asyncio.to_thread(ClipScore, posture, play, marks), shows
-        return ClipScore(posture, play, marks), shows
+            return await asyncio.to_thread(ClipSource, posture, play, marks), shows
+        return ClipSource(posture, play, marks), shows
 
 
-def _prepared(generated: Generated, score: Score, duration_s: float, shows: Shows) -> Prepared:
+def _prepared(generated: Generated, score: MotionSource, duration_s: float, shows: Shows) -> PreparedSource:
     """With what the generator tells of a motion, and what the motion shows."""
     motion, made_ms = generated.motion, sum(generated.timings_ms.values())
     how = (motion.status, shows.sentence, generated.reason, motion.scope_score, made_ms)
-    return Prepared(score, duration_s, *how, nearest=generated.understood, lacks=shows.lacks)
+    return PreparedSource(score, duration_s, *how, nearest=generated.understood, lacks=shows.lacks)
 
 
 def _scenes(scenes: Sequence[Scene], motion: Motion, words: str) -> Sequence[Scene]:
@@ -351,6 +351,6 @@ def _out_of_scope(entry: Entry, reason: str, understood: str, score: float) -> N
     ))  # fmt: skip
 
 
-def _duration_s(posture: Posture, request: Command) -> float:
+def _duration_s(posture: PoseSequence, request: Command) -> float:
     """Length of one performance at the asked tempo."""
     return len(posture) / posture.fps / (request.tempo if isinstance(request, Play) else 1.0)
