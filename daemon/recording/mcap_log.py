@@ -1,8 +1,9 @@
 """Logs in MCAP: what is written, and how it is read again, whole or cut off.
 
 Channels: `v1/cycle` (one JSON message a bus cycle, floats exact) and the topics of the front's publisher
-(`v1/event`, `v1/state`, ...), each with the JSON schema of its messages. Metadata `mmmd`: format, robot name and file, versions,
-the daemon's settings; at the end `mmmd.end`: what could not be recorded. A chunk is ended about every
+(`v1/event`, `v1/state`, ...), each with the JSON schema of its messages; beside them joint angles, transforms and the log in
+Foxglove's schemas (`foxglove.py`), which are for viewers and are not read again. Metadata `mmmd`: format, robot name and
+file, versions, the daemon's settings; at the end `mmmd.end`: what could not be recorded. A chunk is ended about every
 second, so that a killed recorder loses a second at most. Each chunk has a checksum, and a chunk that fails it is not
 played. Opens in Foxglove, PlotJuggler and Rerun.
 """
@@ -25,7 +26,8 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.writer import Writer
 
 from daemon.errors import LogError
-from daemon.recording.schemas import schema_of
+from daemon.recording.foxglove import LOG_TOPIC, SCHEMAS, FoxgloveMessages, log_line
+from daemon.recording.schemas import LOG_LINES, schema_of
 from daemon.shared_memory.bus_link import BusState
 from retarget.robot.robot import RobotModel
 
@@ -42,6 +44,20 @@ _ARRAYS = (
     "setpoint_rad", "goal_rad", "velocity_rad_s", "goal_tick", "present_tick", "present_velocity_raw",
     "present_current_raw", "error", "valid", "clipped",
 )  # fmt: skip
+_UNITS = {
+    "setpoint_rad": "radians, one for each joint",
+    "goal_rad": "radians, one for each joint",
+    "velocity_rad_s": "radians per second, one for each joint",
+    "goal_tick": "ticks, one for each servo",
+    "present_tick": "ticks, one for each servo; /joint_states has them as angles",
+    "present_velocity_raw": "the register's unit, one for each servo",
+    "present_current_raw": "the register's unit, one for each servo",
+    "error": "error byte of each servo",
+    "valid": "1 for each servo that answered",
+    "clipped": "1 for each joint whose setpoint was changed",
+    "t_mono_ns": "nanoseconds of the monotonic clock",
+}
+"""Units of a cycle's fields; joints and servos are in the order of the metadata."""
 _VERSIONS = ("numpy", "pyzmq", "msgspec", "mujoco", "torch")
 _SCALARS = ("cycle", "plan_id", "frame", "underrun", "torque", "late_cycles")
 
@@ -72,6 +88,7 @@ def _cycle_schema() -> bytes:
     number, text = {"type": "number"}, {"type": "string"}
     properties: dict[str, Any] = {name: {"type": "array", "items": number} for name in _ARRAYS}
     properties |= dict.fromkeys((*_SCALARS, "t_mono_ns"), number) | {"state": text}
+    properties |= {name: properties[name] | {"description": unit} for name, unit in _UNITS.items()}
     return msgspec.json.encode({"type": "object", "title": "one cycle of the bus process", "properties": properties})
 
 
@@ -105,6 +122,10 @@ class LogWriter:
         schema = self._writer.register_schema("mmmd.Cycle", "jsonschema", _cycle_schema())
         self._cycle_channel = self._writer.register_channel(CYCLE_TOPIC, "json", schema, {"robot": robot.name})
         self._channels: dict[str, int] = {}
+        self._foxglove = FoxgloveMessages(robot)
+        for topic, its_schema in SCHEMAS.items():
+            schema = self._writer.register_schema(its_schema["title"], "jsonschema", msgspec.json.encode(its_schema))
+            self._channels[topic] = self._writer.register_channel(topic, "json", schema)
         # Wall time of monotonic zero, so that viewers show dates.
         self._wall_ns = time.time_ns() - time.monotonic_ns()
 
@@ -114,7 +135,10 @@ class LogWriter:
         message["t_mono_ns"] = int(record["t_mono_ns"])
         message["state"] = BusState(int(record["state"])).name.lower()
         message |= {name: record[name].tolist() for name in _ARRAYS}
-        self._add(self._cycle_channel, int(record["t_mono_ns"]), msgspec.json.encode(message))
+        t_mono_ns = int(record["t_mono_ns"])
+        self._add(self._cycle_channel, t_mono_ns, msgspec.json.encode(message))
+        for topic, data in self._foxglove.of_cycle(record, t_mono_ns + self._wall_ns):
+            self._add(self._channels[topic], t_mono_ns, data)
 
     def event(self, topic: str, payload: bytes) -> None:
         """Write one message of the front, JSON as published; what is no JSON (a plain text for `say`) as a string."""
@@ -125,7 +149,10 @@ class LogWriter:
         if topic not in self._channels:
             schema = self._writer.register_schema(f"mmmd.{topic}", "jsonschema", schema_of(topic))
             self._channels[topic] = self._writer.register_channel(topic, "json", schema)
-        self._add(self._channels[topic], time.monotonic_ns(), payload)
+        t_mono_ns = time.monotonic_ns()
+        self._add(self._channels[topic], t_mono_ns, payload)
+        if topic == LOG_LINES:
+            self._add(self._channels[LOG_TOPIC], t_mono_ns, log_line(payload, t_mono_ns + self._wall_ns))
 
     def flush(self) -> None:
         """End the chunk: what was written so far survives a kill."""
@@ -249,7 +276,7 @@ def _take(path: Path, records: list[McapRecord], topics: dict[int, str], log: Lo
         elif isinstance(record, Message):
             if topics[record.channel_id] == CYCLE_TOPIC:
                 cycles.append(_cycle(record.data))
-            else:
+            elif topics[record.channel_id] not in SCHEMAS:
                 n_events += 1
                 if topics[record.channel_id] == _EVENT_TOPIC:
                     texts |= _plan_text(record.data)

@@ -10,6 +10,8 @@ from daemon.wire.events import EVENTS
 from daemon.wire.requests import CMD_TYPES, STREAM_TYPES
 from daemon.wire.status import HealthEvent, LogEvent, StateEvent
 
+LOG_LINES = "v1/log"
+"""Lines of the daemon's log."""
 DROPPED_TOPIC = "v1/dropped"
 """Messages of the front that the recorder was too slow for, so far: `{"messages": N}`, at the place of the loss."""
 
@@ -30,7 +32,7 @@ _KINDS: dict[str, tuple[type[msgspec.Struct], ...]] = {
     "v1/state": (StateEvent,),
     "v1/health": (HealthEvent,),
     "v1/event": EVENTS,
-    "v1/log": (LogEvent,),
+    LOG_LINES: (LogEvent,),
     "cmd": (*CMD_TYPES, PlainText),
     "stream": STREAM_TYPES,
     DROPPED_TOPIC: (Dropped,),
