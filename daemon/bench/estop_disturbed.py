@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import sys
 import tempfile
 import time
@@ -68,14 +67,15 @@ def measure_disturbed(
 def give_one(rig: EstopRig, disturbance: Disturbance, rng: np.random.Generator) -> Outcome:
     """Lead the robot to the state, disturb the daemon, give an e-stop and watch the servos."""
     rig.bring_to(disturbance.state)
-    with contextlib.ExitStack() as stack:
-        button = None if disturbance.newcomer else stack.enter_context(Button(rig.endpoints.ctl, has_fifo=rig.has_fifo))
-        stack.enter_context(disturbance.act(rig, rng))
-        asked_s = time.monotonic()
-        if button is None:
-            button = stack.enter_context(Button(rig.endpoints.ctl, has_fifo=rig.has_fifo))
-        button.press()
-        return _watched(rig, button, asked_s, disturbance)
+    with Button(rig.endpoints.ctl, has_fifo=rig.has_fifo) as button:
+        if not disturbance.newcomer:
+            button.connect()
+        with disturbance.act(rig, rng):
+            asked_s = time.monotonic()
+            if disturbance.newcomer:
+                button.connect()
+            button.press()
+            return _watched(rig, button, asked_s, disturbance)
 
 
 def summary(outcomes: Sequence[Outcome], disturbance: Disturbance) -> dict[str, Any]:

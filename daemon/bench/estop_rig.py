@@ -171,7 +171,7 @@ class EstopRig:
 
 
 class Button:
-    """A client of `ctl` that can do nothing but give an e-stop; connected from the start.
+    """A client of `ctl` that can do nothing but give an e-stop.
 
     Args:
         endpoint: `ctl` of the daemon.
@@ -183,8 +183,10 @@ class Button:
         if has_fifo:  # libzmq aborts where it is not permitted
             self._context.set(zmq.THREAD_SCHED_POLICY, os.SCHED_FIFO)
             self._context.set(zmq.THREAD_PRIORITY, CLIENT_PRIORITY)
-        self._socket = self._context.socket(zmq.DEALER)
-        self._socket.connect(endpoint)
+        self._socket = self._context.socket(
+            zmq.DEALER
+        )  # starts the I/O thread here: its wait for a core is not the daemon's
+        self._endpoint = endpoint
         self._id = uuid.uuid4().hex
 
     def __enter__(self) -> Self:
@@ -194,6 +196,10 @@ class Button:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._context.destroy(linger=0)
+
+    def connect(self) -> None:
+        """Begin to connect; `press` need not wait for it."""
+        self._socket.connect(self._endpoint)
 
     def press(self) -> None:
         """Ask for an e-stop."""
