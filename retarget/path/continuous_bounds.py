@@ -69,7 +69,9 @@ class Spans:
         beside = (above[None] == (above[a] * above[b])[:, None]).all(2)  # shapes fixed to what carries both
         self.known: NDArray[np.bool_] = np.asarray(beside.any(1), bool)
         """(P,) of which pairs a shape is fixed to the last body that carries both; the others have no bound here."""
-        self._carrier: Indices = beside.argmax(1)
+        self._carrier: Indices = (
+            beside.argmax(1) if beside.size else np.zeros(len(pairs), np.intp)
+        )  # a robot without shapes
 
     def bends_m(self, step_rad: Array, bend_rad: Array, moved_m: Array) -> Array:
         """(N - 2, P) A / 8 of a spline's segments.

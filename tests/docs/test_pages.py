@@ -168,12 +168,38 @@ def prepared(folder: Path):
     (folder / "scenes.jsonl").write_text('{"text": "bow", "seconds": 2.5}\n{"text": "wave"}\n')
     (folder / "prompts.jsonl").write_text('{"id": "a", "text": "nod twice", "seed": 1, "seconds": 2}\n')
     shutil.copy(ROOT / "retarget/robots/reference/robot.xml", folder / "my_torso.xml")
-    shutil.copy(next((ROOT / "retarget/robots").rglob("*.urdf")), folder / "my.urdf")
+    (folder / "my.urdf").write_text(urdf())
     (folder / "path.jsonl").write_text("".join(f'{{"right_elbow": {0.2 + 0.001 * i:.3f}}}\n' for i in range(20)))
     faults = next(b for b in PAGES["docs/simulator.md"] if b.kind == "toml")
     for name in ("f.toml", "faults.toml"):
         (folder / name).write_text("\n".join(faults.lines))
     return terminal(folder)
+
+
+def urdf() -> str:
+    """A torso of six joints: two for each shoulder, and elbows."""
+    links, joints = ['<link name="torso"/>'], list[str]()
+    for side, y in (("l", 0.1), ("r", -0.1)):
+        above = "torso"
+        for name, axis, at in (
+            ("pitch", "0 1 0", f"0 {y} 0.3"),
+            ("roll", "1 0 0", "0 0 0"),
+            ("elbow", "0 1 0", "0 0 -0.2"),
+        ):
+            links.append(
+                f'<link name="{side}_{name}_link"><visual><geometry><box size="0.03 0.03 0.1"/></geometry></visual></link>'
+            )
+            joints.append(
+                f'<joint name="{side}_{name}" type="revolute"><parent link="{above}"/><child link="{side}_{name}_link"/>'
+                f'<origin xyz="{at}"/><axis xyz="{axis}"/><limit lower="-1.5" upper="1.5" effort="1" velocity="3"/></joint>'
+            )
+            above = f"{side}_{name}_link"
+        links.append(f'<link name="{side}_hand"/>')
+        joints.append(
+            f'<joint name="{side}_wrist" type="fixed"><parent link="{above}"/><child link="{side}_hand"/>'
+            '<origin xyz="0 0 -0.2"/></joint>'
+        )
+    return f'<robot name="mine">{"".join(links + joints)}</robot>'
 
 
 FIRST = (

@@ -326,3 +326,10 @@ def test_an_unknown_servo_lists_the_known_ones(tmp_path: Path) -> None:
     (tmp_path / "mine.xml").write_text(two_arms())
     with pytest.raises(RobotFileError, match=r"'XL999'.*XM430-W350"):
         propose(tmp_path / "mine.xml", tmp_path / "robot.toml", "XL999")
+
+
+def test_a_description_without_shapes_is_proposed_and_follows_a_motion(tmp_path: Path) -> None:
+    """A URDF of visuals alone ended in an internal error: there is no pair of shapes that could touch."""
+    robot_file = proposed(tmp_path, re.sub(r"<geom[^>]*/>", "", two_arms()))
+    retargeter = Retargeter(load_robot(str(robot_file), blanks=True))
+    assert not retargeter.contact.frames(np.zeros((2, len(retargeter.robot.joints)))).any()
