@@ -15,7 +15,7 @@ from daemon.errors import CommandError
 
 def keys(
     verb: Annotated[Literal["new", "allow", "trust", "list"], tyro.conf.Positional],
-    name: Annotated[str, tyro.conf.Positional] = "",
+    name: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[NAME]")] = "",
     key: Annotated[str, tyro.conf.Positional] = "",
     keys: Path | None = None,
 ) -> int:

@@ -82,6 +82,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "train": CommandEntry("daemon.cli.offline.train:train", "train the motion model"),
     "eval": CommandEntry("daemon.cli.offline.eval:eval", "how good the model is"),
     "bench": CommandEntry("daemon.cli.bench:bench", "how fast and how safe it all is"),
+    "completion": CommandEntry("daemon.cli.completion:completion", "completion for bash, zsh and fish"),
 }
 GOOD, FAILED, BAD_USE, ROBOT_FAULT = 0, 1, 2, 3
 

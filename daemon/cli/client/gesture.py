@@ -19,7 +19,7 @@ WIDE = 100
 
 def gesture(
     verb: Annotated[Literal["play", "list", "record", "add"], tyro.conf.Positional],
-    name: Annotated[str, tyro.conf.Positional] = "",
+    name: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[NAME]")] = "",
     file: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="[F.npz]")] = None,
     command: str = "",
     replace: bool = False,
@@ -75,14 +75,13 @@ def _list(folder: Path | None, json: bool) -> int:
         sys.stdout.write(msgspec.json.encode(infos).decode() + "\n")
         return 0
     from rich.console import Console
-    from rich.table import Table
+
+    from daemon.cli.tables import table_of
 
     console = Console()
     columns = ("name", "shows", "s", "goes round", "held at", "other side", "own")
     shown = columns if console.width >= WIDE else columns[:3]  # a name that is cut cannot be typed
-    table = Table(title=f"{len(infos)} gestures")
-    for column in shown:
-        table.add_column(column, overflow="fold", no_wrap=column in ("name", "other side"))
+    table = table_of(shown, ("name", "other side"), f"{len(infos)} gestures")
     for i in infos:
         loop, own = "in part" if i.loop else "as a whole", "yes" if i.own else ""
         row = (i.name, i.text, f"{i.seconds:.1f}", loop, f"{i.hold_s:.1f} s", i.mirror, own)

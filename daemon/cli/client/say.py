@@ -12,7 +12,7 @@ from daemon.cli.play_flags import PlayFlags, built, play
 
 
 def say(
-    text: Annotated[str, tyro.conf.Positional],
+    text: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="TEXT")],
     seed: int = 0,
     seconds: float | None = None,
     prefix_s: float = 0.0,

@@ -16,6 +16,8 @@ def watch(
 ) -> int:
     """Follow events, log lines and changes of state and of servos' health until interrupted.
 
+    Each line begins with the seconds of the daemon's clock, as `t_mono` of its events.
+
     Example: mmmd watch --json
 
     Args:
@@ -35,19 +37,19 @@ def watch(
                 if event.state == last_state:
                     continue
                 last_state = event.state
-                line = f"{event.t_mono:.3f} state {event.state}" + (f": {event.reason}" if event.reason else "")
+                line = f"{event.t_mono:.3f} s: state {event.state}" + (f": {event.reason}" if event.reason else "")
             elif isinstance(event, HealthEvent):
                 health = ", ".join(f"servo {s.id} ({s.joint}) {s.state}" for s in event.servos if s.state != "ok")
                 if health == last_health:
                     continue
                 last_health = health
-                line = f"{event.t_mono:.3f} health {health or 'every servo ok'}"
+                line = f"{event.t_mono:.3f} s: health {health or 'every servo ok'}"
             elif isinstance(event, LogEvent):
-                line = f"{event.t_mono:.3f} {event.process} {event.level} {event.text}"
+                line = f"{event.t_mono:.3f} s: {event.process} {event.level} {event.text}"
             else:
                 from daemon.client.event_text import describe
 
-                line = f"{event.t_mono:.3f} {topic} {event.id[:8]} {describe(event)}"
+                line = f"{event.t_mono:.3f} s: {topic} {event.id[:8]} {describe(event)}"
             sys.stdout.write(line + "\n")
             sys.stdout.flush()
             shown += 1

@@ -125,11 +125,10 @@ def _confirmed(console: Console, doubts: Sequence[Calibrated]) -> bool:
 
 
 def _table(model: RobotModel, ranges: Ranges) -> Table:
-    from rich.table import Table
+    from daemon.cli.tables import table_of
 
-    table = Table()
-    for column in ("joint", "servo", "tick", "lowest", "highest", "range deg"):
-        table.add_column(column, justify="left" if column == "joint" else "right")
+    columns = ("joint", "servo", "tick", "lowest", "highest", "range deg")
+    table = table_of(columns, ("joint", "servo"), right=columns[1:])
     for i, servo in enumerate(model.servos):
         low, high = int(ranges.low[i]), int(ranges.high[i])
         degrees = math.degrees((high - low) / abs(servo.ticks_per_rad))

@@ -23,8 +23,8 @@ def doctor(robot: str = "reference", bus: str = "dxl:///dev/ttyUSB0", fix: bool 
         json: print one JSON object.
     """
     from rich.console import Console
-    from rich.table import Table
 
+    from daemon.cli.tables import table_of
     from daemon.dynamixel.multi import open_ports
     from daemon.dynamixel.ports.opening import PortContext
     from daemon.dynamixel.setup.doctor import ADVICE, BAD, GOOD, diagnose
@@ -38,9 +38,7 @@ def doctor(robot: str = "reference", bus: str = "dxl:///dev/ttyUSB0", fix: bool 
         console.out(json_module.dumps({"bad": diagnosis.bad, "checks": checks, "budget": diagnosis.budget}))
         return int(diagnosis.bad)
     colours = {GOOD: "green", ADVICE: "yellow", BAD: "red"}
-    table = Table(title=f"{model.name} on {bus}")
-    for column in ("", "what", "found", "remedy"):
-        table.add_column(column, overflow="fold")
+    table = table_of(("", "what", "found", "remedy"), ("",), f"{model.name} on {bus}")
     for c in diagnosis.checks:
         table.add_row(f"[{colours[c.verdict]}]{c.verdict}[/]", c.what, c.found, c.remedy)
     console.print(table)

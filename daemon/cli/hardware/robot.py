@@ -17,7 +17,7 @@ _NEEDS_NAME = {"new": "the description, an .xml or .urdf", "check": "a robot", "
 
 def robot(
     verb: Annotated[Literal["list", "new", "check", "show"], tyro.conf.Positional],
-    name: Annotated[str, tyro.conf.Positional] = "",
+    name: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[NAME]")] = "",
     out: Path | None = None,
     servo: str = "?",
     text: str = "wave with your right hand",

@@ -30,8 +30,8 @@ def scan(
     """
     from rich.console import Console
     from rich.progress import Progress
-    from rich.table import Table
 
+    from daemon.cli.tables import table_of
     from daemon.dynamixel.ports.serial_port import SerialPort
     from daemon.dynamixel.scan import BAUDS
     from daemon.dynamixel.scan import scan as scan_port
@@ -60,9 +60,8 @@ def scan(
         others = {"garbled_bauds": result.garbled_bauds, "impossible_bauds": result.impossible_bauds}
         console.out(json_module.dumps({"device": device, "found": rows, **others}))
         return 0 if rows else 1
-    table = Table(title=f"{len(result.found)} servos on {device}")
-    for column in ("id", "model", "firmware", "protocol", "baud"):
-        table.add_column(column)
+    columns = ("id", "model", "firmware", "protocol", "baud")
+    table = table_of(columns, ("id", "model", "baud"), f"{len(result.found)} servos on {device}")
     for f in result.found:
         table.add_row(str(f.servo_id), f.model_name, str(f.firmware), f"{f.protocol}", str(f.baud))
     console.print(table)

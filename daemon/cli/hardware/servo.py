@@ -97,11 +97,9 @@ def servo(
 
 def _table(title: str, items: Sequence[Item], values: Mapping[str, int]) -> Table:
     """Items of a servo with their values and what those mean."""
-    from rich.table import Table
+    from daemon.cli.tables import table_of
 
-    table = Table(title=title)
-    for column in ("address", "item", "value", "", "access"):
-        table.add_column(column)
+    table = table_of(("address", "item", "value", "meaning", "access"), ("item", "value"), title)
     for item in items:
         value = values[item.name]
         meaning = f"{value * item.scale:g} {item.unit}" if item.unit and item.unit != "tick" else ""

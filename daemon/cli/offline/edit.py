@@ -16,7 +16,7 @@ from daemon.errors import CommandError
 
 def edit(
     motion: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="F.npz|gesture:NAME|command:ID|plan:N")],
-    text: Annotated[str, tyro.conf.Positional],
+    text: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="TEXT")],
     out: Path | None = None,
     start_s: float | None = None,
     end_s: float | None = None,

@@ -35,6 +35,7 @@ def train(
     tensorboard: bool = False,
     variant: tuple[str, ...] = (),
     models: tuple[Path, ...] = (),
+    yes: bool = False,
 ) -> int:
     """Train a model, or one stage of it with what it needs, from one TOML recipe.
 
@@ -73,6 +74,7 @@ def train(
         tensorboard: write TensorBoard events as well (extra `train`).
         variant: names of variants (ablation); all when none is given.
         models: checkpoints, two or more, of which the mean is taken (average).
+        yes: begin without a question. Only a person at a terminal is asked, and only before a run that is new.
     """
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     import torch
@@ -97,6 +99,8 @@ def train(
             f"train tokenizer: {config} goes on from {recipe.start}, whose tokenizer stays; train another stage"
         )
     folder = run_dir or Path("runs") / Path(config).stem
+    if not yes and stage in _HOURS and not folder.exists() and not _agreed(stage, config, folder):
+        return 1
     where = Run(folder, device, precision, sample_every, tensorboard)
     distributed.start(where.torch_device)
     if stage == "ablation":
@@ -115,6 +119,21 @@ def train(
     if distributed.rank() == 0:
         sys.stdout.write(f"{written}\n")
     return 0
+
+
+_HOURS = ("all", "tokenizer", "transformer", "evaluator", "ablation")
+"""Stages that take hours."""
+
+
+def _agreed(stage: str, config: str, folder: Path) -> bool:
+    """Whether a person at a terminal says yes to hours of work; where nobody can be asked it was meant."""
+    if not sys.stdin.isatty():
+        return True
+    sys.stdout.write(
+        f"This trains ({stage}, recipe {config}) for hours, in {folder}; it can be interrupted. Go on? [y/N] "
+    )
+    sys.stdout.flush()
+    return sys.stdin.readline().strip().lower() in ("y", "yes")
 
 
 def _average(models: Sequence[Path], out: Path | None) -> int:

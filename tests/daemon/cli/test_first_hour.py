@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import io
 import os
+import re
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from rich.console import Console
 
 from daemon.cli.client.status import gaze_words
+from daemon.cli.hardware.calibrate import _table as calibration_table
+from daemon.cli.hardware.servo import _table as servo_table
 from daemon.cli.help_text import cleaned
 from daemon.cli.program import COMMANDS, main
+from daemon.cli.tables import table_of
 from daemon.client import RefusedError
+from daemon.dynamixel.registers.models import MODELS
+from retarget.robot.loading import load_robot
 from tests.support.harness import START_TIMEOUT_S, RunningDaemon
 
 WITHOUT_TORCH = """\
@@ -150,6 +160,43 @@ def test_names_of_gestures_are_whole_in_a_narrow_terminal(monkeypatch, capsys):
     assert main(["gesture", "list"]) == 0
     words = set(capsys.readouterr().out.split())
     assert {info.name for info in GestureLibrary().infos()} <= words
+
+
+@pytest.mark.parametrize("width", [40, 60, 100])
+def test_what_has_to_be_typed_is_whole_in_every_table(width, capsys):
+    """Items of servos, joints, servo ids and bauds, as `mmmd servo`, `calibrate` and `scan` print them."""
+    items = list(MODELS[1020].table.values())
+    joints = load_robot("op3").servos
+    ranges = SimpleNamespace(low=np.zeros(20), high=np.full(20, 4000), tick=np.full(20, 2048))
+    scanned = table_of(("id", "model", "firmware", "protocol", "baud"), ("id", "model", "baud"))
+    scanned.add_row("253", "XM540-W270", "45", "2.0", "4500000")
+    tables = {
+        servo_table("servo 1", items, {item.name: 1 for item in items}): [item.name for item in items],
+        calibration_table(load_robot("op3"), ranges): [servo.joint_name for servo in joints],
+        scanned: ["253", "XM540-W270", "4500000"],
+    }
+    for table, names in tables.items():
+        Console(width=width).print(table)
+        words = set(re.split(r"[\s│┃|]+", capsys.readouterr().out))
+        assert set(names) <= words, set(names) - words
+
+
+def test_a_wrong_option_is_told_what_it_is_like(capsys):
+    assert main(["say", "wave", "--temop", "2"]) == 2
+    assert "--tempo" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("answer", "options", "status"), [("n\n", [], 1), ("", [], 1), ("n\n", ["--yes"], 2)])
+def test_hours_of_training_are_asked_for_at_a_terminal(answer, options, status, tmp_path, monkeypatch, capsys):
+    """`mmmd train` by itself began at once. With --yes it goes on, here to the data that are missing."""
+    terminal = io.StringIO(answer)
+    monkeypatch.setattr(terminal, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr("sys.stdin", terminal)
+    found = main(["train", "--run", str(tmp_path / "run"), "--data", str(tmp_path / "none"), *options])
+    assert found in ((status,) if status == 1 else (1, 2))
+    said = capsys.readouterr()
+    assert ("for hours" in said.out) == (not options)
+    assert bool(said.err) == bool(options)
 
 
 def test_a_service_is_not_installed_unasked(capsys):
