@@ -448,4 +448,5 @@ class ControlLoop:
         record["present_velocity_raw"], record["present_current_raw"] = reading.velocity_raw, reading.current_raw
         record["error"] = reading.error
         self._bus.show_health(self._link.health)
+        self._link.health["temperature_c"] = reading.temperature_c
         self._link.publish()

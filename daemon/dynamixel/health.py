@@ -35,7 +35,7 @@ class Health(IntEnum):
 
 
 COUNTERS = ("timeouts", "crc", "late", "retries", "alerts")
-HEALTH = np.dtype([("state", "u1"), ("_", "V3"), *((name, "u4") for name in COUNTERS)])
+HEALTH = np.dtype([("state", "u1"), ("_", "V1"), ("temperature_c", "i2"), *((name, "u4") for name in COUNTERS)])
 """A servo as the bus process shows it to others."""
 
 

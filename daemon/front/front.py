@@ -93,6 +93,7 @@ class Front:
         self.machine = StateMachine(auto_arm=config.auto_arm)
         self.view = BusView(link, robot)
         planner = SetpointBuffer(robot, link, self.view, config.queue_s, config.stream_queue_s)
+        self._planner = planner
         self.follower = BusFollower(link, self.view, planner, self.machine)
         self.ledger = Ledger(self._send, self._publish_event)
         sources = SourceFactory(config, robot, generator, GestureLibrary(config.gestures))
@@ -290,6 +291,7 @@ class Front:
 
     def state_event(self) -> StateEvent:
         """The robot and the daemon now."""
+        posture = self._planner.posture_now
         return StateEvent(
             robot=self._robot.name,
             bus=self._config.bus,
@@ -316,6 +318,9 @@ class Front:
             gaze_deg=self.performer.layers.gaze_deg,
             stream=self._targets.info(self._config.endpoints.stream),
             servos_not_ok=[s for s in self.view.health() if s.state != "ok"],
+            person_m=posture.joints_m()[0].round(3).ravel().tolist(),
+            person_faces=posture.faces()[0].round(3).tolist(),
+            effort=self.view.effort.round(1).tolist(),
         )
 
 

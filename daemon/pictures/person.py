@@ -38,6 +38,20 @@ class Stand:
     scale: float
 
 
+_HAND_SHARE, _HAND_RADIUS_SHARE = 0.4, 0.85
+"""Length of a hand as a share of the forearm's, and its radius as one of a limb's."""
+
+
+def radii_m() -> dict[str, float]:
+    """Radii of limb, hand and skull of a person of true size."""
+    return {"limb": _LIMB_RADIUS_M, "hand": _HAND_RADIUS_SHARE * _LIMB_RADIUS_M, "skull": _SKULL_RADIUS_M}
+
+
+def hand_share() -> float:
+    """Length of a hand as a share of the forearm's."""
+    return _HAND_SHARE
+
+
 def bones(joints_m: Array, head_faces: Array | None, stand: Stand) -> list[Bone]:
     """The bones of a person with joints (22, 3) whose head faces along (3,), forward if None."""
     points = joints_m[:, _TO_ROBOT_AXES] * stand.scale
@@ -51,7 +65,9 @@ def bones(joints_m: Array, head_faces: Array | None, stand: Stand) -> list[Bone]
             drawn.append(Bone(points[parent], points[joint], radius_m, _colour(JOINT_NAMES[joint])))
     for side in ("left", "right"):
         elbow, wrist = (points[JOINT_NAMES.index(f"{side}_{part}")] for part in ("elbow", "wrist"))
-        drawn.append(Bone(wrist, wrist + 0.4 * (wrist - elbow), 0.85 * radius_m, _colour(f"{side}_hand")))
+        drawn.append(
+            Bone(wrist, wrist + _HAND_SHARE * (wrist - elbow), _HAND_RADIUS_SHARE * radius_m, _colour(f"{side}_hand"))
+        )
     faces = np.array([0.0, 0.0, 1.0]) if head_faces is None else head_faces
     return drawn + _head(points[_NECK], points[_HEAD], faces[_TO_ROBOT_AXES], stand.scale)
 

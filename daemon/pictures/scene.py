@@ -30,6 +30,8 @@ _GHOST_OPACITY = 0.35
 _MAX_GEOMS = 4000
 _STAGE_RADIUS = 6.0
 """Radius of the floor in lengths of the robot's arm."""
+ASIDE = 3.4
+"""Lengths of the robot's arm from the robot to the person at its left."""
 _PERSON_ARM_M, _PERSON_SHOULDER_M = 0.514, 1.42
 """Metres: shoulder to wrist, and height of the shoulders, of the skeleton that motions are made for."""
 
@@ -61,11 +63,11 @@ class Scene:
     def __init__(self, robot: RobotModel | None, size_px: tuple[int, int], *, person: bool = True) -> None:
         self._size = size_px
         self._opengl = _opengl_context(*size_px)
-        shoulder_m, self._arm_m = _shoulder_and_arm(robot)
-        self._scale = self._arm_m / _PERSON_ARM_M
-        self._aside_m = 3.4 * self._arm_m if robot is not None and person else 0.0
+        shoulder_m, self._arm_m = shoulder_and_arm(robot)
+        stand, floor_m = person_stand(shoulder_m, self._arm_m)
+        self._scale = stand.scale
+        self._aside_m = ASIDE * self._arm_m if robot is not None and person else 0.0
         self._shoulder_m = shoulder_m
-        floor_m = float(shoulder_m[2]) - _PERSON_SHOULDER_M * self._scale
         self._model: Any = _stage(robot, size_px, floor_m, self._arm_m).compile()
         self._data: Any = mujoco.MjData(self._model)
         self._ghost: Any = mujoco.MjData(self._model)
@@ -159,7 +161,14 @@ class Scene:
         mujoco.mjv_connector(geom, kind, bone.radius_m, bone.start_m, bone.end_m)
 
 
-def _shoulder_and_arm(robot: RobotModel | None) -> tuple[Array, float]:
+def person_stand(shoulder_m: Array, arm_m: float) -> tuple[Stand, float]:
+    """Where a person stands at the left of a robot with shoulders at (3,) and arms of `arm_m`; the floor's height in metres."""
+    scale = arm_m / _PERSON_ARM_M
+    stand = Stand(shoulder_m + np.array([0.0, ASIDE * arm_m, 0.0]), scale)
+    return stand, float(shoulder_m[2]) - _PERSON_SHOULDER_M * scale
+
+
+def shoulder_and_arm(robot: RobotModel | None) -> tuple[Array, float]:
     """Where the middle between the shoulders is, and metres from shoulder to wrist; those of a person without a robot."""
     if robot is None:
         return np.array([0.0, 0.0, _PERSON_SHOULDER_M]), _PERSON_ARM_M
@@ -195,9 +204,9 @@ def _stage(robot: RobotModel | None, size_px: tuple[int, int], floor_m: float, a
     light: Any = spec.worldbody.add_light(pos=[2 * arm_m, -2 * arm_m, floor_m + 9 * arm_m], dir=[-0.25, 0.2, -0.95])
     light.type, light.diffuse, light.specular = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, [0.45] * 3, [0.05] * 3
     _add_column(spec, _STAGE_RADIUS * arm_m, floor_m - 0.02 * arm_m, floor_m, 0.88)
-    lowest_m = _lowest_m(robot) if robot else floor_m
-    if lowest_m > floor_m:
-        _add_column(spec, 0.18 * arm_m, floor_m, lowest_m, 0.80)
+    foot_m = lowest_m(robot) if robot else floor_m
+    if foot_m > floor_m:
+        _add_column(spec, 0.18 * arm_m, floor_m, foot_m, 0.80)
     return spec
 
 
@@ -207,7 +216,7 @@ def _add_column(spec: Any, radius_m: float, bottom_m: float, top_m: float, grey:
     column.rgba = [grey, grey + 0.02, grey + 0.05, 1.0]
 
 
-def _lowest_m(robot: RobotModel) -> float:
+def lowest_m(robot: RobotModel) -> float:
     """Height of the lowest shape that does not move with the arms: where the robot stands."""
     model = load_description(robot)
     data = mujoco.MjData(model)
@@ -225,12 +234,18 @@ def _lowest_m(robot: RobotModel) -> float:
     return min(lowest, default=0.0)
 
 
-def _paint(model: Any, robot: RobotModel) -> None:
-    """Colour each shape of the robot by the side of the limb that it moves with."""
+def limb_of_bodies(model: Any, robot: RobotModel) -> list[str]:
+    """What each body moves with: left, right, head, waist, or nothing; by the joint nearest above it."""
     role = {int(model.jnt_bodyid[model.joint(j.name).id]): j.role.split("_")[0] for j in robot.joints}
     sides = [""] * model.nbody
     for body in range(1, model.nbody):
         sides[body] = role.get(body, sides[int(model.body_parentid[body])])
+    return sides
+
+
+def _paint(model: Any, robot: RobotModel) -> None:
+    """Colour each shape of the robot by the side of the limb that it moves with."""
+    sides = limb_of_bodies(model, robot)
     for geom in range(model.ngeom):
         if body := int(model.geom_bodyid[geom]):
             model.geom_rgba[geom] = (*COLOURS.get(sides[body], COLOURS[""]), 1.0)

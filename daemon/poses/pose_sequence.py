@@ -68,13 +68,21 @@ class PoseSequence:
         k = np.clip(frames, 0, len(self) - 1)
         return replace(self, bones=self.bones[k], head_wxyz=self.head_wxyz[k], twist_rad=self.twist_rad[k])
 
-    def motion(self, like: Motion | None = None, text: str = "") -> Motion:
-        """The motion record of these frames; text, seed and status are those of `like`."""
+    def joints_m(self) -> Array:
+        """(T, 22, 3) places of the joints in metres."""
         joints = np.zeros((len(self), len(PARENTS), 3))
         for j, parent in enumerate(PARENTS[1:], 1):
             joints[:, j] = joints[:, parent] + self.lengths_m[j] * self.bones[:, j]
+        return joints
+
+    def faces(self) -> Array:
+        """(T, 3) unit vectors to where the head faces."""
+        return np.asarray(matrix_from_quat(self.head_wxyz)[..., 2], np.float64)
+
+    def motion(self, like: Motion | None = None, text: str = "") -> Motion:
+        """The motion record of these frames; text, seed and status are those of `like`."""
         return Motion(
-            joints_m=joints.astype(np.float32),
+            joints_m=self.joints_m().astype(np.float32),
             fps=self.fps,
             head_quat_wxyz=self.head_wxyz.astype(np.float32),
             forearm_twist_rad=self.twist_rad.astype(np.float32),

@@ -13,6 +13,7 @@ from daemon.wire.requests import IDLE_STYLES, LONGEST_SILENCE_S, SHORTEST_SILENC
 
 ESTOP_WAYS = ("cut", "hold")
 CMD_PORT, CTL_PORT, PUB_PORT, STREAM_PORT = 5871, 5872, 5873, 5875
+HTTP_ADDRESS = "127.0.0.1:5880"
 
 
 class EndpointInUseError(ConfigError):
@@ -143,6 +144,8 @@ class DaemonConfig:
         motions: folder in which `edit` looks for files; None takes the folder the daemon was started in.
         model_hash: beginning of the checkpoint's hash that the generator must have; empty takes any.
         metrics: HOST:PORT of Prometheus metrics, on a loopback address; empty for none.
+        http: HOST:PORT of HTTP and WebSocket; empty for none, or for `HTTP_ADDRESS` with `view`.
+        view: whether the web page is served there as well.
         queue_s: setpoints kept ready in the bus process.
         state_rate_hz: how often `v1/state` is published.
         generate_timeout_s: longest wait for the generator.
@@ -168,6 +171,8 @@ class DaemonConfig:
     motions: Path | None = None
     model_hash: str = ""
     metrics: str = ""
+    http: str = ""
+    view: bool = False
     queue_s: float = 0.1
     state_rate_hz: float = 20.0
     generate_timeout_s: float = 10.0

@@ -22,7 +22,7 @@ DEFAULTS: dict[str, Any] = {
     "log_total_mb": _CONFIG.log_total_mb, "generator": None, "model": None, "model_hash": "", "auto_arm": True,
     "estop": _CONFIG.estop, "idle": "off", "gestures": None, "motions": None,
     "cmd": _ENDPOINTS.cmd, "ctl": _ENDPOINTS.ctl, "pub": _ENDPOINTS.pub, "stream": "", "keys": None,
-    "metrics": "", "queue_s": _CONFIG.queue_s, "state_rate_hz": _CONFIG.state_rate_hz,
+    "metrics": "", "http": "", "view": False, "queue_s": _CONFIG.queue_s, "state_rate_hz": _CONFIG.state_rate_hz,
     "generate_timeout_s": _CONFIG.generate_timeout_s, "park_timeout_s": _CONFIG.park_timeout_s, "lease_s": _CONFIG.lease_s,
     "lease_park_s": _CONFIG.lease_park_s, "lease_limp_s": _CONFIG.lease_limp_s,
     "stream_queue_s": _CONFIG.stream_queue_s, "log_json": False,

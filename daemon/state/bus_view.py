@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from daemon.control.derating import DeratedBy
 from daemon.dynamixel.health import Health
+from daemon.dynamixel.reading import UNKNOWN
+from daemon.dynamixel.registers.models import MODELS
 from daemon.shared_memory.bus_link import BusLink, BusState
 from daemon.wire.status import ServoHealth
 from retarget.robot.robot import RobotModel
@@ -28,6 +30,7 @@ class BusView:
         present_rad: (J,) what they last measured.
         valid: (S,) whether each servo's last reading is from the newest cycle.
         error: (S,) error bits of the last replies.
+        effort: (S,) current of each servo in mA, or load in percent where it measures none; `health` names the unit.
         at_rest: whether the last cycle moved no goal.
         silent_s: age of the newest cycle at the last update, before the first since the first look for one. Not of now: a front
             that was held up between looking and judging would take its own pause for the bus process's.
@@ -49,6 +52,13 @@ class BusView:
         self.present_rad: Array = robot.park_rad.copy()
         self.valid = np.zeros(robot.n_servos, bool)
         self.error = np.zeros(robot.n_servos, np.uint8)
+        self.effort: Array = np.zeros(robot.n_servos)
+        models = [
+            MODELS.get(servo.model.model_number) for servo in robot.servos
+        ]  # the bus process refuses unknown ones
+        efforts = [model.table[model.effort_item] if model else None for model in models]
+        self._effort_scale = np.array([item.scale if item else 1.0 for item in efforts])
+        self._effort_units = [item.unit if item else "" for item in efforts]
         self.lost = 0
         self.underruns = 0
 
@@ -65,6 +75,7 @@ class BusView:
             self.goal_rad, self.goals_s = np.array(last["goal_rad"]), int(last["t_mono_ns"]) * 1e-9
             self.present_rad = self._servo_map.tick_to_rad(last["present_tick"])
             self.valid, self.error = last["valid"] != 0, np.array(last["error"])
+            self.effort = last["present_current_raw"] * self._effort_scale
             self.underruns += int((records["underrun"] != 0).sum())
             self.at_rest = not np.any(last["velocity_rad_s"])
             self.state = BusState(int(last["state"]))
@@ -83,8 +94,18 @@ class BusView:
         if not self._link.n_cycles:
             return []
         return [
-            ServoHealth(s.servo_id, s.joint_name, Health(state).name.lower(), *counts)
-            for s, (state, _, *counts) in zip(self._robot.servos, self._link.health.tolist(), strict=True)
+            ServoHealth(
+                s.servo_id,
+                s.joint_name,
+                Health(state).name.lower(),
+                *counts,
+                temperature_c=None if temperature_c == UNKNOWN else temperature_c,
+                effort=round(float(effort), 1),
+                effort_unit=unit,
+            )
+            for s, (state, _, temperature_c, *counts), effort, unit in zip(
+                self._robot.servos, self._link.health.tolist(), self.effort, self._effort_units, strict=True
+            )
         ]
 
     @property

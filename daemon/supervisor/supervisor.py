@@ -30,8 +30,9 @@ from daemon.host.notify import Notifier
 from daemon.host.realtime import BUS_PRIORITY, may_fifo
 from daemon.logs.log_feed import SOCKET_VARIABLE, LogFeed
 from daemon.network.keys import KeyFolder
+from daemon.network.web_access import address_of
 from daemon.recording.feed import RecorderFeed
-from daemon.settings.config import DaemonConfig, config_error
+from daemon.settings.config import HTTP_ADDRESS, DaemonConfig, config_error
 from daemon.settings.sources import settings_of
 from daemon.shared_memory.bus_link import BusLink, BusState, Readiness
 from daemon.shared_memory.request_words import ESTOPS, BusRequest
@@ -71,6 +72,8 @@ class Supervisor:
 
     def __init__(self, config: DaemonConfig) -> None:
         check_scheme(config.bus)
+        if config.http or config.view:
+            check_web_server(config.http or HTTP_ADDRESS)
         if config.model is not None:
             check_model(config.model)
         self._config = config
@@ -177,9 +180,27 @@ class Supervisor:
                 self._config.metrics, lambda: exposition(front.state_event(), front.ledger.counts, front.view.health())
             )  # fmt: skip
             await self._metrics.start()
+        if self._config.http or self._config.view:
+            self._watch(self._keep_web_server())
         self._notifier.ready(f"robot {self._robot.name} on {self._config.bus}")
         if self._notifier.watchdog_s is not None:
             self._watch(self._sign_of_life(self._notifier.watchdog_s / 3))
+
+    async def _keep_web_server(self) -> None:
+        """Serve HTTP, WebSocket and the page, again when that process ends; the robot needs it for nothing."""
+        ends, address = self._config.endpoints, self._config.http or HTTP_ADDRESS
+        arguments = ["--http", address, "--robot", self._config.robot, *(["--page"] if self._config.view else [])]
+        arguments += ["--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub, "--stream", ends.stream]
+        arguments += ["--keys", str(ends.keys)] if ends.keys is not None else []
+        child = Child("web server", "daemon.view.process", arguments, self._environment)
+        self._children.append(child)
+        back_off_s = FIRST_BACK_OFF_S
+        while True:
+            await child.start()
+            status = await child.ended()
+            back_off_s = FIRST_BACK_OFF_S if child.lived_s > GOOD_LIFE_S else min(2 * back_off_s, LONGEST_BACK_OFF_S)
+            log.error("the web server ended with status %d and starts again in %g s", status, back_off_s)
+            await asyncio.sleep(back_off_s)
 
     async def _sign_of_life(self, period_s: float) -> None:
         """The event loop runs: systemd may know. The bus process has its own supervision."""
@@ -375,6 +396,17 @@ def check_scheme(bus: str) -> None:
     if bus.partition(":")[0] not in known:
         allowed = ", ".join(f"{name}://" for name in known)
         raise config_error("bus", f"'{bus}', an unknown scheme", allowed, "for example dxl:///dev/ttyUSB0?baud=1000000")
+
+
+def check_web_server(address: str) -> None:
+    """Refuse an address that is none, and a server whose library is missing, before anything is started.
+
+    Raises:
+        ConfigError: either.
+    """
+    address_of(address)
+    if importlib.util.find_spec("tornado") is None:
+        raise config_error("http", "no tornado, the library that serves it", "mmmd[view]", "`pip install 'mmmd[view]'`")
 
 
 def check_model(path: Path) -> None:

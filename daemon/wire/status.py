@@ -137,6 +137,9 @@ class ServoHealth(msgspec.Struct):
         late: answers after the deadline.
         retries: questions outside the cycle that were asked again.
         alerts: hardware alerts that began.
+        temperature_c: of the motor; None before it was read.
+        effort: its current, or the load of a servo that measures no current.
+        effort_unit: mA, or %.
     """
 
     id: int
@@ -147,6 +150,9 @@ class ServoHealth(msgspec.Struct):
     late: int = 0
     retries: int = 0
     alerts: int = 0
+    temperature_c: int | None = None
+    effort: float = 0.0
+    effort_unit: str = ""
 
 
 class HealthEvent(Event, tag="health"):
@@ -199,6 +205,9 @@ class StateEvent(Event, tag="state"):
         present_rad: (J,) what they last measured.
         queued_ms: setpoints that the bus process has in hand.
         bus_info: counters of the bus process.
+        person_m: (66,) the person that the robot shows: x, y, z of each of the 22 joints in metres, x left, y up, z forward.
+        person_faces: (3,) unit vector to where the person's head faces, in the same axes.
+        effort: (S,) of each servo, in the order and unit of `v1/health`.
         servos_not_ok: those whose state is not ok; all are on `v1/health`.
         recording: path of the log, empty when there is none; says so when recording has stopped.
         uptime_s: since the start of the daemon.
@@ -223,3 +232,6 @@ class StateEvent(Event, tag="state"):
     gaze_deg: tuple[float, float] | None = None
     stream: StreamInfo | None = None
     servos_not_ok: list[ServoHealth] = msgspec.field(default_factory=list[ServoHealth])
+    person_m: list[float] = msgspec.field(default_factory=list[float])
+    person_faces: list[float] = msgspec.field(default_factory=list[float])
+    effort: list[float] = msgspec.field(default_factory=list[float])

@@ -34,6 +34,8 @@ def run(
     lease_park_s: float | None = None,
     lease_limp_s: float | None = None,
     metrics: str | None = None,
+    http: str | None = None,
+    view: bool = False,
     log_json: bool = False,
     quiet: bool = False,
 ) -> int:
@@ -71,6 +73,8 @@ def run(
         lease_park_s: silent for so long: its lease ends and the robot parks (5).
         lease_limp_s: so long in the park pose after that, then limp (2).
         metrics: HOST:PORT of Prometheus metrics, for this machine only (127.0.0.1:9109); none when it is not given.
+        http: HOST:PORT of HTTP and WebSocket (127.0.0.1:5880); beyond this machine it takes a token, which is printed.
+        view: the web page as well, at --http or http://127.0.0.1:5880.
         log_json: one JSON object a line instead of text.
         quiet: log only warnings.
     """
@@ -132,4 +136,5 @@ def _flags(given: dict[str, Any]) -> dict[str, Any]:
     flags = {key: value for key, value in given.items() if key not in ("config", "quiet")}
     flags["auto_arm"] = None if given["auto_arm"] else False
     flags["log_json"] = True if given["log_json"] else None
+    flags["view"] = True if given["view"] else None
     return flags

@@ -1,0 +1,193 @@
+// Robot, ghost and person, drawn by WebGL 2 without a library: triangles with one light from above, and nothing else.
+import { identity, multiply } from "./kinematics.js";
+
+const VERTEX = `#version 300 es
+in vec3 place; in vec3 normal; uniform mat4 view, model; out vec3 n, p;
+void main() { vec4 w = model * vec4(place, 1.0); p = w.xyz; n = mat3(model) * normal; gl_Position = view * w; }`;
+const FRAGMENT = `#version 300 es
+precision highp float; in vec3 n, p; uniform vec4 colour; uniform vec3 eye; uniform float plain; out vec4 seen;
+void main() {
+  vec3 flatN = cross(dFdx(p), dFdy(p));
+  vec3 m = dot(n, n) > 1e-8 ? normalize(n) : normalize(flatN);
+  if (dot(m, eye - p) < 0.0) m = -m;
+  float light = 0.62 + 0.16 * m.z + 0.34 * max(0.0, dot(m, normalize(vec3(0.6, 0.35, 0.75))));
+  seen = vec4(colour.rgb * mix(light, 1.0, plain), colour.a);
+}`;
+const BACK = [0.914, 0.929, 0.949];
+
+export class Scene {
+  constructor(canvas) {
+    this.canvas = canvas;
+    const gl = this.gl = canvas.getContext("webgl2", { antialias: true });
+    if (!gl) throw new Error("this browser has no WebGL 2");
+    const program = gl.createProgram();
+    for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, source); gl.compileShader(shader); gl.attachShader(program, shader);
+    }
+    gl.bindAttribLocation(program, 0, "place"); gl.bindAttribLocation(program, 1, "normal");
+    gl.linkProgram(program);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error("the shaders of the 3D view do not link");
+    gl.useProgram(program);
+    gl.enable(gl.DEPTH_TEST); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    this.at = Object.fromEntries(["view", "model", "colour", "eye", "plain"].map((name) => [name, gl.getUniformLocation(program, name)]));
+    this.ball = this.mesh(...sphere()); this.rod = this.mesh(...cylinder());
+    this.dense = Math.min(1.5, devicePixelRatio || 1); this.lateMs = 0; this.drawnMs = 0;
+    this.reset(); this.listen();
+  }
+  mesh(vertices, indices) {
+    const gl = this.gl, array = gl.createVertexArray();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer()); gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.STATIC_DRAW);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer()); gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
+    for (const k of [0, 1]) { gl.enableVertexAttribArray(k); gl.vertexAttribPointer(k, 3, gl.FLOAT, false, 24, 12 * k); }
+    return { array, count: indices.length };
+  }
+  show(robot) { this.robot = robot; this.body = this.mesh(robot.vertices, robot.indices); this.reset(); }
+  reset() { this.azimuth = -0.2; this.elevation = 0.12; this.zoom = 1; this.dirty = true; }
+  listen() {
+    const fingers = new Map(), c = this.canvas;
+    let apart = 0;
+    c.addEventListener("pointerdown", (e) => { c.setPointerCapture(e.pointerId); fingers.set(e.pointerId, e); apart = 0; });
+    for (const end of ["pointerup", "pointercancel"]) c.addEventListener(end, (e) => fingers.delete(e.pointerId));
+    c.addEventListener("pointermove", (e) => {
+      const before = fingers.get(e.pointerId);
+      if (!before) return;
+      fingers.set(e.pointerId, e);
+      if (fingers.size === 1) {
+        this.azimuth -= 0.008 * (e.clientX - before.clientX);
+        this.elevation = Math.max(-0.3, Math.min(1.4, this.elevation + 0.008 * (e.clientY - before.clientY)));
+      } else {
+        const [a, b] = fingers.values(), now = Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY);
+        if (apart) this.scale(apart / now);
+        apart = now;
+      }
+      this.dirty = true;
+    });
+    c.addEventListener("wheel", (e) => { e.preventDefault(); this.scale(Math.exp(0.001 * e.deltaY)); }, { passive: false });
+    c.addEventListener("dblclick", () => this.reset());
+    new ResizeObserver(() => { this.dirty = true; }).observe(c);
+  }
+  scale(by) { this.zoom = Math.max(0.3, Math.min(4, this.zoom * by)); this.dirty = true; }
+  camera(withPerson) {
+    const r = this.robot, arm = r.arm_m, c = this.canvas, aside = withPerson ? r.person.shoulder_m[1] / 2 : 0;
+    const target = [r.shoulder_m[0], r.shoulder_m[1] + aside, r.shoulder_m[2] - 0.6 * arm];
+    const half = Math.tan(0.22), ratio = c.width / c.height;
+    const far = this.zoom * Math.max(2.2 * arm, (1.6 * arm + aside) / ratio) / half;
+    const cos = Math.cos(this.elevation);
+    const away = [cos * Math.cos(this.azimuth), cos * Math.sin(this.azimuth), Math.sin(this.elevation)];
+    const eye = target.map((t, k) => t + far * away[k]);
+    const right = unit(cross([0, 0, 1], away)), up = cross(away, right), near = 0.05 * far, end = 60 * far;
+    const look = new Float32Array(16);
+    [right, up, away].forEach((row, r) => { for (let k = 0; k < 3; k++) look[4 * k + r] = row[k]; look[12 + r] = -dot(row, eye); });
+    look[15] = 1;
+    const lens = new Float32Array(16);
+    lens[0] = 1 / (half * ratio); lens[5] = 1 / half; lens[10] = (end + near) / (near - end); lens[11] = -1; lens[14] = 2 * end * near / (near - end);
+    return [multiply(lens, look), eye];
+  }
+  // q: measured angles; goal: commanded ones or null; person: 66 coordinates or null; faces: 3.
+  draw(q, goal, person, faces) {
+    this.dirty = false;
+    this.keepUp();
+    const gl = this.gl, c = this.canvas, dense = this.dense;
+    const width = Math.round(c.clientWidth * dense), height = Math.round(c.clientHeight * dense);
+    if (c.width !== width || c.height !== height) { c.width = width; c.height = height; }
+    gl.viewport(0, 0, width, height); gl.clearColor(...BACK, 1); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    if (!this.robot || !width || !height) return;
+    const [view, eye] = this.camera(person);
+    gl.uniformMatrix4fv(this.at.view, false, view); gl.uniform3fv(this.at.eye, eye);
+    this.ground();
+    const places = this.robot.places(q);
+    this.bodies(places, 1);
+    if (person) this.person(person, faces);
+    if (goal) { // first its depth alone, then only its nearest surface, so that no inner parts shine through
+      const ghost = this.robot.places(goal);
+      gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(4, 256); // behind the measured robot where both are in one place
+      gl.colorMask(false, false, false, false); this.bodies(ghost, 1); gl.colorMask(true, true, true, true);
+      gl.enable(gl.BLEND); gl.depthFunc(gl.EQUAL); this.bodies(ghost, 0.35); gl.depthFunc(gl.LESS); gl.disable(gl.BLEND); gl.disable(gl.POLYGON_OFFSET_FILL);
+    }
+  }
+  // Where frames come late, on a computer that draws without a GPU, fewer pixels are drawn.
+  keepUp() {
+    const now = performance.now(), gap = now - this.drawnMs;
+    this.drawnMs = now;
+    if (gap > 1000) return; // nothing had changed, or the page was hidden
+    this.lateMs = Math.max(0, 0.95 * this.lateMs + (gap - 60));
+    if (this.lateMs > 600 && this.dense > 0.5) { this.dense *= 0.8; this.lateMs = 0; }
+  }
+  bodies(places, opacity) {
+    const gl = this.gl;
+    gl.bindVertexArray(this.body.array);
+    this.robot.bodies.forEach((body, k) => {
+      if (!body.count) return;
+      gl.uniformMatrix4fv(this.at.model, false, places[k]); gl.uniform4f(this.at.colour, ...body.colour, opacity); gl.uniform1f(this.at.plain, 0);
+      gl.drawElements(gl.TRIANGLES, body.count, gl.UNSIGNED_INT, 4 * body.first);
+    });
+  }
+  ground() {
+    const r = this.robot, floor = r.floor_m, arm = r.arm_m;
+    this.capsule([0, 0, floor - 0.02 * arm], [0, 0, floor], 6 * arm, [0.86, 0.88, 0.90], false);
+    if (r.stand_m > floor) this.capsule([0, 0, floor], [0, 0, r.stand_m], 0.18 * arm, [0.78, 0.80, 0.83], false);
+  }
+  person(joints, faces) {
+    const p = this.robot.person, scale = p.scale, at = [], radius = p.radii_m.limb * scale;
+    const height = (joints[3 * 16 + 1] + joints[3 * 17 + 1]) / 2; // x left, y up, z forward: to the robot's axes
+    for (let j = 0; j < 22; j++) at.push([
+      (joints[3 * j + 2] - joints[2]) * scale + p.shoulder_m[0], (joints[3 * j] - joints[0]) * scale + p.shoulder_m[1],
+      (joints[3 * j + 1] - height) * scale + p.shoulder_m[2]]);
+    const colour = (limb) => p.colours[limb] ?? p.colours[""];
+    p.parents.forEach((parent, j) => { if (parent >= 0) this.capsule(at[parent], at[j], radius, colour(p.limbs[j])); });
+    for (const [elbow, wrist, side] of [[18, 20, "left"], [19, 21, "right"]]) {
+      const hand = at[wrist].map((v, k) => v + p.hand_share * (v - at[elbow][k]));
+      this.capsule(at[wrist], hand, p.radii_m.hand * scale, colour(side));
+    }
+    const up = unit(at[15].map((v, k) => v - at[12][k])), skull = p.radii_m.skull * scale, face = [faces[2], faces[0], faces[1]];
+    const head = at[15].map((v, k) => v + 0.07 * scale * up[k]);
+    this.capsule(head, head, skull, colour(""));
+    this.capsule(head.map((v, k) => v + 0.9 * skull * face[k]), head.map((v, k) => v + 1.3 * skull * face[k]), 0.22 * skull, p.colours.nose);
+  }
+  capsule(a, b, radius, colour, round = true) {
+    const gl = this.gl, along = b.map((v, k) => v - a[k]), length = Math.hypot(...along);
+    gl.uniform4f(this.at.colour, ...colour, 1); gl.uniform1f(this.at.plain, 0);
+    const draw = (mesh, m) => {
+      gl.uniformMatrix4fv(this.at.model, false, m); gl.bindVertexArray(mesh.array);
+      gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
+    };
+    if (length > 1e-9) {
+      const z = along.map((v) => v / length), x = unit(cross(Math.abs(z[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], z)), y = cross(z, x);
+      draw(this.rod, new Float32Array([...x.map((v) => v * radius), 0, ...y.map((v) => v * radius), 0, ...along, 0, ...a, 1]));
+    }
+    if (round) for (const end of length > 1e-9 ? [a, b] : [a]) {
+      const m = identity();
+      m[0] = m[5] = m[10] = radius; m.set(end, 12);
+      draw(this.ball, m);
+    }
+  }
+}
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const unit = (a) => { const n = Math.hypot(...a) || 1; return a.map((v) => v / n); };
+
+function grid(rows, columns, point) {
+  const vertices = [], indices = [];
+  for (let r = 0; r < rows; r++) for (let c = 0; c < columns; c++) vertices.push(...point(r / (rows - 1), 2 * Math.PI * c / (columns - 1)));
+  for (let r = 0; r + 1 < rows; r++) for (let c = 0; c + 1 < columns; c++) {
+    const k = r * columns + c;
+    indices.push(k, k + 1, k + columns + 1, k, k + columns + 1, k + columns);
+  }
+  return [new Float32Array(vertices), new Uint32Array(indices)];
+}
+function sphere() {
+  return grid(11, 19, (v, turn) => {
+    const up = Math.PI * (v - 0.5), p = [Math.cos(up) * Math.cos(turn), Math.cos(up) * Math.sin(turn), Math.sin(up)];
+    return [...p, ...p];
+  });
+}
+function cylinder() { // of height and radius 1, closed at both ends
+  const rows = [[0, 0, -1], [1, 0, -1], [1, 0, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1]];
+  return grid(rows.length, 25, (v, turn) => {
+    const [radius, z, end] = rows[Math.round(v * (rows.length - 1))], x = Math.cos(turn), y = Math.sin(turn);
+    return [radius * x, radius * y, z, ...(end ? [0, 0, end] : [x, y, 0])];
+  });
+}
