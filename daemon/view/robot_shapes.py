@@ -19,7 +19,7 @@ from retarget.robot.description import load_description, mujoco
 from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
-_AROUND = 20
+_AROUND = 14
 """Corners of the circles that round shapes are drawn with."""
 _Mesh = tuple[Array, Array, NDArray[np.int64]]
 """Vertices (V, 3) in metres, their normals (V, 3), zero for a flat face's own, and triangles (F, 3) of vertex indices."""

@@ -201,31 +201,22 @@ class _Run(_Handler):
 class _Socket(WebSocketHandler, _Handler):
     """A WebSocket whose frames go to the daemon and back."""
 
-    _counted = False
-
     def prepare(self) -> None:
         super().prepare()
         if self._finished or self.request.headers.get("Upgrade", "").lower() != "websocket":
             return
         if self.server.sockets >= MOST_SOCKETS:
             self._refuse(503, f"{MOST_SOCKETS} connections are open; close a page")
-            return
-        self.server.sockets += 1
-        self._counted = True
 
     def check_origin(self, origin: str) -> bool:
         return True  # `prepare` has judged it
 
-    def on_finish(self) -> None:
-        self._release()
+    def open(self, *_: str, **__: str) -> None:
+        self.server.sockets += 1
+        self.set_nodelay(True)
 
     def on_close(self) -> None:
-        self._release()
-
-    def _release(self) -> None:
-        if self._counted:
-            self._counted = False
-            self.server.sockets -= 1
+        self.server.sockets -= 1
 
 
 class _Requests(_Socket):
@@ -277,7 +268,7 @@ class _Requests(_Socket):
         await super().get(*args, **kwargs)
 
     def open(self, *args: str, **_: str) -> None:
-        self.set_nodelay(True)
+        super().open()
         self._daemon = self.server.relay.requests(args[0])
         self._back = asyncio.create_task(self._hand_back(self._daemon))
 
@@ -310,7 +301,7 @@ class _Published(_Socket):
     _task: asyncio.Task[None] | None = None
 
     def open(self, *args: str, **_: str) -> None:
-        self.set_nodelay(True)
+        super().open()
         self._reader = self.server.feed.join()
         self._task = asyncio.create_task(self._hand_on(self._reader))
 
@@ -336,7 +327,7 @@ class _Targets(_Socket):
     _daemon: zmq.asyncio.Socket | None = None
 
     def open(self, *args: str, **_: str) -> None:
-        self.set_nodelay(True)
+        super().open()
         self._daemon = self.server.relay.targets()
         self._rates = Rates(STREAM_RATE_HZ, STREAM_BURST)
 

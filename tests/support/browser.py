@@ -39,8 +39,16 @@ class Browser:
 
     def __init__(self, width: int = 1280, height: int = 800) -> None:
         self._folder = tempfile.TemporaryDirectory(prefix="mmmd-chromium-", ignore_cleanup_errors=True)
-        command = [chromium(), *FLAGS, f"--user-data-dir={self._folder.name}", f"--window-size={width},{height}", "about:blank"]
-        self._process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        command = [
+            chromium(),
+            *FLAGS,
+            f"--user-data-dir={self._folder.name}",
+            f"--window-size={width},{height}",
+            "about:blank",
+        ]
+        self._process = subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        )
         self._loop = asyncio.new_event_loop()
         self._calls = 0
         self.errors: list[str] = []
@@ -138,7 +146,9 @@ class Browser:
             if answer.get("method") == "Runtime.exceptionThrown":
                 self.errors.append(json.dumps(answer["params"]["exceptionDetails"])[:500])
             elif answer.get("method") == "Log.entryAdded" and answer["params"]["entry"]["level"] == "error":
-                self.errors.append(str(answer["params"]["entry"].get("text")) + str(answer["params"]["entry"].get("url")))
+                self.errors.append(
+                    str(answer["params"]["entry"].get("text")) + str(answer["params"]["entry"].get("url"))
+                )
             elif answer.get("id") == self._calls:
                 assert "error" not in answer, answer["error"]
                 return answer.get("result", {})

@@ -17,7 +17,7 @@ const REMEDY = {
   quarantined: "silent for long: cable, power, id; mmmd scan",
 };
 const LOST_S = 1.5;
-const view = { state: null, robot: null, seenS: 0, history: new History(), joint: 0, run: null, frames: 0 };
+const view = { state: null, robot: null, seenS: 0, history: new History(), joint: 0, run: null, frames: 0, passed: [] };
 globalThis.mmmd = view; // for tests and for the curious
 
 let scene = null;
@@ -25,9 +25,9 @@ try { scene = new Scene($("scene")); } catch (error) { $("legend").textContent =
 
 // ---- halts: first of all, and by two ways at once, so that one broken connection does not keep a stop
 const ctl = new Line("ctl", heardCtl);
-function halt(verb) {
+function halt(verb, pressedMs) {
   const id = newId(), body = JSON.stringify({ type: verb, id });
-  view.halt = { id, verb, sentMs: performance.now(), ackMs: null };
+  view.halt = { id, verb, pressedMs, ackMs: null };
   const again = () => { if (view.halt?.id === id && !view.halt.ackMs) get.post("/v1/ctl", body).then(heardCtl).catch(() => { $("halted").textContent = `${verb} NOT SENT. Use the power switch`; }); };
   const sent = ctl.send({ type: verb, id });
   $("halted").textContent = `${verb} sent`;
@@ -42,12 +42,12 @@ function heardCtl(event) {
     setTimeout(() => { $("halted").textContent = ""; }, 4000);
   } else if (event.found) answer(`${event.asked}: ${event.found}; ${event.do}`, "bad");
 }
-for (const verb of ["stop", "estop"]) $(verb).addEventListener("pointerdown", (e) => { e.preventDefault(); halt(verb); });
-for (const verb of ["stop", "estop"]) $(verb).addEventListener("click", (e) => { if (e.detail === 0) halt(verb); }); // by keyboard or a screen reader
+for (const verb of ["stop", "estop"]) $(verb).addEventListener("pointerdown", (e) => { e.preventDefault(); halt(verb, e.timeStamp); });
+for (const verb of ["stop", "estop"]) $(verb).addEventListener("click", (e) => { if (e.detail === 0) halt(verb, e.timeStamp); }); // by keyboard or a screen reader
 const typing = (target) => target.matches?.("input:not([type=range]):not([type=checkbox]), textarea");
 addEventListener("keydown", (e) => {
   if (view.run || e.repeat || !(e.key === "Escape" || (e.key === " " && !typing(e.target)))) return;
-  e.preventDefault(); halt("stop");
+  e.preventDefault(); halt("stop", e.timeStamp);
 }, true);
 addEventListener("keyup", (e) => { if (e.key === " " && !typing(e.target)) e.preventDefault(); }, true); // a focused button is not pressed
 
@@ -126,6 +126,7 @@ function lost(why) { $("lost").textContent = why; $("lost").hidden = !why; docum
 function heardState(s) {
   view.seenS = performance.now() / 1000;
   if (!view.state || view.state.robot !== s.robot) meet(s.robot);
+  if (view.state?.state !== s.state) { view.passed.push(s.state); view.passed.splice(0, view.passed.length - 50); listed({ type: "state", now: s.state, reason: s.reason }); }
   const again = view.state && s.uptime_s < view.state.uptime_s;
   view.state = s;
   if (again) cmd.send({ type: "capabilities", id: newId() });
@@ -186,7 +187,7 @@ async function meet(name) {
   $("joint").replaceChildren(...view.robot.joints.map((j, k) => Object.assign(document.createElement("option"), { value: k, textContent: j.name })));
   scene?.show(view.robot);
   const swatch = (side) => `rgb(${view.robot.person.colours[side].map((c) => Math.round(255 * c))})`;
-  $("legend").replaceChildren(...["left", "right"].flatMap((side) => [Object.assign(document.createElement("b"), { textContent: "● " }), `its ${side}  `]), "solid: measured, transparent: commanded; the person shows the motion that the robot follows");
+  $("legend").replaceChildren(...["left", "right"].flatMap((side) => [Object.assign(document.createElement("b"), { textContent: "● " }), `its ${side} `]), " · solid: measured, transparent: commanded; the person shows the motion that the robot follows");
   [...$("legend").querySelectorAll("b")].forEach((b, k) => { b.style.color = swatch(["left", "right"][k]); });
 }
 $("joint").addEventListener("change", () => { view.joint = +$("joint").value; });

@@ -18,7 +18,7 @@ const BACK = [0.914, 0.929, 0.949];
 export class Scene {
   constructor(canvas) {
     this.canvas = canvas;
-    const gl = this.gl = canvas.getContext("webgl2", { antialias: true });
+    const gl = this.gl = canvas.getContext("webgl2", { antialias: hasGpu() });
     if (!gl) throw new Error("this browser has no WebGL 2");
     const program = gl.createProgram();
     for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
@@ -100,7 +100,7 @@ export class Scene {
     const places = this.robot.places(q);
     this.bodies(places, 1);
     if (person) this.person(person, faces);
-    if (goal) { // first its depth alone, then only its nearest surface, so that no inner parts shine through
+    if (goal?.some((g, k) => Math.abs(g - q[k]) > 0.01)) { // first its depth alone, then only its nearest surface, so that no inner parts shine through
       const ghost = this.robot.places(goal);
       gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(4, 256); // behind the measured robot where both are in one place
       gl.colorMask(false, false, false, false); this.bodies(ghost, 1); gl.colorMask(true, true, true, true);
@@ -157,12 +157,19 @@ export class Scene {
       const z = along.map((v) => v / length), x = unit(cross(Math.abs(z[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], z)), y = cross(z, x);
       draw(this.rod, new Float32Array([...x.map((v) => v * radius), 0, ...y.map((v) => v * radius), 0, ...along, 0, ...a, 1]));
     }
-    if (round) for (const end of length > 1e-9 ? [a, b] : [a]) {
+    if (round) { // one bone's start is another's end
       const m = identity();
-      m[0] = m[5] = m[10] = radius; m.set(end, 12);
+      m[0] = m[5] = m[10] = radius; m.set(b, 12);
       draw(this.ball, m);
     }
   }
+}
+
+function hasGpu() {
+  const gl = document.createElement("canvas").getContext("webgl2"), info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl ? gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return !/swiftshader|llvmpipe|software/i.test(name);
 }
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -179,14 +186,14 @@ function grid(rows, columns, point) {
   return [new Float32Array(vertices), new Uint32Array(indices)];
 }
 function sphere() {
-  return grid(11, 19, (v, turn) => {
+  return grid(7, 13, (v, turn) => {
     const up = Math.PI * (v - 0.5), p = [Math.cos(up) * Math.cos(turn), Math.cos(up) * Math.sin(turn), Math.sin(up)];
     return [...p, ...p];
   });
 }
 function cylinder() { // of height and radius 1, closed at both ends
   const rows = [[0, 0, -1], [1, 0, -1], [1, 0, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1]];
-  return grid(rows.length, 25, (v, turn) => {
+  return grid(rows.length, 13, (v, turn) => {
     const [radius, z, end] = rows[Math.round(v * (rows.length - 1))], x = Math.cos(turn), y = Math.sin(turn);
     return [radius * x, radius * y, z, ...(end ? [0, 0, end] : [x, y, 0])];
   });

@@ -1,0 +1,81 @@
+"""Figures of the web page in a headless Chromium, as JSON, and the picture of it in the README.
+
+First paint, frames a second while the robot moves, and milliseconds from a press of STOP to the reply that a bus cycle has
+carried it out: `python -m docs.tools.page_figures docs/pictures/page.png`. It takes a machine that is otherwise idle.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from daemon.client import Client
+from daemon.demo.main_job import child, free_endpoints, wait_until_ready
+from tests.support.browser import Browser
+from tests.support.harness import free_ports
+
+STOPS = 20
+WATCHED_S = 5.0
+SIZE_PX = (1280, 800)
+
+
+def main(picture: Path | None) -> None:
+    """Start a daemon with the page, measure, print, and keep a picture of the page in mid-motion."""
+    with tempfile.TemporaryDirectory() as name:
+        folder, ends, (port,) = Path(name), free_endpoints(), free_ports(1)
+        at = ["--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub]
+        log = folder / "daemon.log"
+        with child(["run", "--view", "--http", f"127.0.0.1:{port}", *at], log) as daemon, Client(ends) as client:
+            wait_until_ready(client, daemon, log)
+            with Browser(*SIZE_PX) as browser:
+                sys.stdout.write(
+                    json.dumps(_measured(browser, f"http://127.0.0.1:{port}/", client, picture), indent=1) + "\n"
+                )
+
+
+def _measured(browser: Browser, url: str, client: Client, picture: Path | None) -> dict[str, Any]:
+    browser.open(url)
+    browser.wait(lambda: browser.js("globalThis.mmmd?.frames > 0 && !!mmmd.capable"), "the page", 60)
+    paint_ms = browser.js("performance.getEntriesByName('first-contentful-paint')[0].startTime")
+    client.arm()
+    client.say("wave with your right hand", wait=False, loop=True)
+    client.wait_for("moving", timeout_s=20)
+    before, began_s = browser.js("mmmd.frames"), time.monotonic()
+    time.sleep(WATCHED_S)
+    rate_hz = (browser.js("mmmd.frames") - before) / (time.monotonic() - began_s)
+    if picture is not None:
+        browser.js(
+            "{ const j = document.querySelector('#joint'); j.value = 11; j.dispatchEvent(new Event('change')); scrollTo(0, 0); }"
+        )
+        browser.js("document.querySelector('#loop').checked = false; document.querySelector('#text').focus()")
+        browser.type("salute with your right hand")
+        browser.key("Enter", "Enter", 13, "\r")
+        time.sleep(2.0)
+        browser.picture(picture)
+    stops_ms: list[float] = []
+    for _ in range(STOPS):
+        client.gesture("wave_right", wait=False, loop=True)
+        client.wait_for("moving", timeout_s=20)
+        time.sleep(0.3)
+        browser.js("mmmd.halt = null")
+        browser.press("#stop")
+        browser.wait(lambda: browser.js("mmmd.halt?.ackMs"), "the reply", 10)
+        assert "carried out" in browser.text("#halted")
+        stops_ms.append(browser.js("mmmd.halt.ackMs - mmmd.halt.pressedMs"))
+        client.wait_for("holding", timeout_s=10)
+        time.sleep(0.2)  # a command so soon after a stop would count as one from before it
+    return {
+        "first_paint_ms": round(paint_ms), "frames_per_s": round(rate_hz, 1), "stop_p50_ms": round(float(np.median(stops_ms)), 1),
+        "stop_p95_ms": round(float(np.percentile(stops_ms, 95)), 1), "n": STOPS, "cores": os.cpu_count(), "load": os.getloadavg()[0],
+    }  # fmt: skip
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else None)

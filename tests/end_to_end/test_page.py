@@ -1,0 +1,183 @@
+"""The web page in a real browser, on a whole daemon with simulated servos: what a person types, presses and sees."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.support.browser import Browser
+from tests.support.harness import MMMD, RunningDaemon, free_ports
+
+pytestmark = pytest.mark.realtime
+
+OUT = Path("out/page")
+SOON_S = 30.0
+SPACE = (" ", "Space", 32, " ")
+
+
+class Page:
+    """A daemon, `mmmd view` for it, and the page in a browser."""
+
+    def __init__(self, daemon: RunningDaemon, browser: Browser, url: str) -> None:
+        self.daemon, self.browser, self.url = daemon, browser, url
+
+    def load(self) -> None:
+        """Open the page and wait until it shows the robot."""
+        self.browser.open(self.url)
+        self.browser.wait(lambda: self.browser.js("globalThis.mmmd?.frames > 0 && !!mmmd.capable"), "the page", SOON_S)
+
+    def say(self, text: str) -> None:
+        self.browser.js("document.querySelector('#text').focus()")
+        self.browser.type(text)
+        self.browser.key("Enter", "Enter", 13, "\r")
+
+    def until(self, *states: str) -> None:
+        """Wait until the page says that the robot is in one of these states."""
+        self.browser.wait(lambda: self.browser.text("#state") in states, f"{states} on the page", SOON_S)
+
+    def until_passed(self, state: str, since: int) -> None:
+        """Wait until the page has shown a state, among those after the first `since` of them."""
+        self.browser.wait(
+            lambda: state in self.browser.js(f"mmmd.passed.slice({since})"), f"{state} on the page", SOON_S
+        )
+
+    def moving(self) -> None:
+        """Make the robot move for long, from whatever state."""
+        with self.daemon.armed():
+            pass
+        self.until("idle", "holding")
+        self.browser.js("mmmd.halt = null; document.querySelector('#halted').textContent = ''")
+        self.browser.js(
+            "document.querySelector('#hold').checked = false; document.querySelector('#loop').checked = true"
+        )
+        self.say("wave with your right hand")
+        self.until("moving")
+
+
+@pytest.fixture(scope="module")
+def page() -> Iterator[Page]:
+    (port,) = free_ports(1)
+    daemon = RunningDaemon()
+    log = (daemon.folder / "view").open("wb")
+    served = subprocess.Popen(
+        [*MMMD, "view", "--http", f"127.0.0.1:{port}", *daemon.at], stdout=log, stderr=log, start_new_session=True
+    )
+    try:
+        with Browser() as browser:
+            daemon.until_ready()
+            yield Page(daemon, browser, f"http://127.0.0.1:{port}/")
+            assert browser.errors == []
+        served.terminate()
+        assert served.wait(10) == 0
+    finally:
+        served.kill()
+        served.wait()
+        log.close()
+        daemon.close()
+
+
+def test_a_text_moves_the_arm_on_the_page(page: Page) -> None:
+    page.load()
+    browser = page.browser
+    assert browser.text("#kind") == "SIMULATOR"
+    page.until("limp")
+    assert "torque is off" in browser.text("#needs")
+    before, since = browser.js("[mmmd.state.present_rad, mmmd.passed.length]")
+    still = browser.picture(OUT / "limp.png")
+    browser.js("document.querySelector('#hold').checked = true")
+    page.say("raise your right arm")
+    page.until_passed("moving", since)
+    browser.wait(
+        lambda: max(abs(a - b) for a, b in zip(browser.js("mmmd.state.present_rad"), before, strict=True)) > 0.5,
+        "the arm",
+        SOON_S,
+    )
+    assert browser.picture(OUT / "moving.png") != still
+    browser.wait(
+        lambda: "understood" in browser.text("#answer") or "shown" in browser.text("#answer"), "the answer", SOON_S
+    )
+    browser.wait(lambda: "well" in browser.text("#well"), "the servos' health", SOON_S)
+    browser.wait(lambda: browser.text("#servos").count("°C") == 16, "every servo's temperature", SOON_S)
+
+
+@pytest.mark.parametrize("way", ["button", "space", "escape while typing"])
+def test_stop_brakes(page: Page, way: str) -> None:
+    page.moving()
+    if way == "button":
+        page.browser.press("#stop")
+    elif way == "space":
+        page.browser.key(*SPACE)
+    else:
+        page.browser.js("document.querySelector('#text').focus()")
+        page.browser.key("Escape", "Escape", 27)
+    page.until("holding")
+    page.browser.wait(lambda: "stop carried out" in page.browser.text("#halted"), "what became of the stop", SOON_S)
+
+
+def test_space_in_the_text_box_is_a_space(page: Page) -> None:
+    page.moving()
+    page.browser.js("document.querySelector('#text').focus()")
+    page.browser.key(*SPACE)
+    assert page.browser.js("mmmd.halt") is None
+    assert page.browser.js("document.querySelector('#text').value") == " "
+    page.browser.press("#stop")
+    page.until("holding")
+
+
+def test_estop_and_reset_on_a_phone(page: Page) -> None:
+    browser = page.browser
+    browser.size(390, 844, phone=True)
+    try:
+        page.moving()
+        browser.js("document.querySelectorAll('details').forEach((d) => { d.open = true; }); scrollTo(0, 1e6)")
+        for button in ("#stop", "#estop"):
+            place = browser.js(f"JSON.stringify(document.querySelector('{button}').getBoundingClientRect())")
+            left, top, right, bottom = (json.loads(place)[side] for side in ("left", "top", "right", "bottom"))
+            assert 0 <= top < bottom <= 844 and 0 <= left < right <= 390 and bottom - top >= 48
+        assert browser.js("document.documentElement.scrollWidth") <= 390
+        browser.picture(OUT / "phone.png")
+        browser.press("#estop")
+        page.until("estop")
+        assert "reset" in browser.text("#needs")
+        browser.js("document.querySelector('[data-verb=reset]').scrollIntoView({ block: 'center' })")
+        browser.press("[data-verb=reset]")
+        page.until("limp")
+    finally:
+        browser.size(1280, 800)
+
+
+def test_gestures_are_buttons(page: Page) -> None:
+    with page.daemon.armed():
+        page.browser.js(
+            "[...document.querySelectorAll('#gestures button')].find((b) => b.textContent === 'bow').click()"
+        )
+        page.until("moving")
+        page.browser.press("#stop")
+        page.until("holding")
+
+
+def test_a_frozen_and_a_dead_daemon_are_told_apart_from_a_live_one(page: Page) -> None:
+    browser, front = page.browser, page.daemon.process
+    os.kill(front.pid, signal.SIGSTOP)
+    try:
+        browser.wait(
+            lambda: (
+                "does not answer" in browser.text("#lost") and browser.js("!document.querySelector('#lost').hidden")
+            ),
+            "loss",
+            SOON_S,
+        )
+        assert browser.text("#state") == "unknown"
+        browser.picture(OUT / "lost.png")
+    finally:
+        os.kill(front.pid, signal.SIGCONT)
+    browser.wait(lambda: browser.js("document.querySelector('#lost').hidden"), "the daemon again", SOON_S)
+    assert json.loads(browser.js("JSON.stringify(mmmd.state)"))["robot"] == "reference"
+    front.kill()
+    browser.wait(lambda: browser.js("!document.querySelector('#lost').hidden"), "loss", SOON_S)
