@@ -7,7 +7,14 @@ from pathlib import Path
 from daemon.cli.cpu_torch import WHAT_TO_DO
 
 _WITH_TORCH = ("torch", "safetensors", "tokenizers")
-_EXTRAS = {"distributed": "dask", "dask": "dask", "tensorboard": "train", "mink": "bench", "rustypot": "bench", "tornado": "view"}
+_EXTRAS = {
+    "distributed": "dask",
+    "dask": "dask",
+    "tensorboard": "train",
+    "mink": "bench",
+    "rustypot": "bench",
+    "tornado": "view",
+}
 _RUN = (
     "numpy",
     "serial",

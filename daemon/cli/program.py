@@ -31,7 +31,9 @@ class CommandEntry:
 COMMANDS: dict[str, CommandEntry] = {
     "demo": CommandEntry("daemon.cli.demo:demo", "simulated robot, daemon, three texts, pictures: see it work"),
     "run": CommandEntry("daemon.cli.services.run:run", "the daemon: text over ZeroMQ in, servo motion out"),
-    "view": CommandEntry("daemon.cli.services.view:view", "the robot in a browser: 3D, text box, STOP; or a recorded run"),
+    "view": CommandEntry(
+        "daemon.cli.services.view:view", "the robot in a browser: 3D, text box, STOP; or a recorded run"
+    ),
     "config": CommandEntry("daemon.cli.services.run:config", "the settings of `run` and where each comes from"),
     "install-service": CommandEntry("daemon.cli.services.service:install_service", "systemd unit and udev rule"),
     "install-torch": CommandEntry(

@@ -41,6 +41,7 @@ NOT_RUN_IN_HELP = {
     "mmmd keys": "two machines; tests/daemon/network/test_keys.py",
     "mmmd retarget HumanML3D": "a data set, or a cluster, that is not here",
     "mmmd train": "hours of training; tests/mmm_core/training",
+    "mmmd view": "serves a page until Ctrl-C; tests/end_to_end/test_page.py",
     "my_tracker": "a program of the reader's own; tests/end_to_end/test_stream.py",
     "sudo": "rights over this machine; the same with --root is run",
     "torchrun": "hours of training",

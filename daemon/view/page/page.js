@@ -23,6 +23,8 @@ globalThis.mmmd = view; // for tests and for the curious
 let scene = null;
 try { scene = new Scene($("scene")); } catch (error) { $("legend").textContent = `No 3D view: ${error.message}. All else works.`; }
 
+view.scene = scene;
+
 // ---- halts: first of all, and by two ways at once, so that one broken connection does not keep a stop
 const ctl = new Line("ctl", heardCtl);
 function halt(verb, pressedMs) {
