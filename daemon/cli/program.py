@@ -172,11 +172,12 @@ def _explain(error: Exception) -> int:
 
     if missing := about_missing(error):
         return _failed(missing, FAILED)
-    from daemon.errors import CommandError, ConfigError, DaemonError
-    from mmm_core.errors import MmmError
-    from retarget.errors import RetargetError, RobotFileError, UnknownRobotError
+    from daemon.errors import CommandError, ConfigError, DaemonError, LogError
+    from mmm_core.errors import MmmError, MotionFileError
+    from retarget.errors import MotionError, RetargetError, RobotFileError, UnknownRobotError
 
-    bad_use = isinstance(error, (CommandError, ConfigError, RobotFileError, UnknownRobotError)) or _names_no_file(error)
+    wrong_files = (RobotFileError, MotionFileError, MotionError, LogError)
+    bad_use = isinstance(error, (CommandError, ConfigError, UnknownRobotError, *wrong_files)) or _names_no_file(error)
     if isinstance(error, (DaemonError, MmmError, RetargetError)):
         return _failed(str(error), int(getattr(error, "exit_status", BAD_USE if bad_use else FAILED)))
     if isinstance(error, OSError):

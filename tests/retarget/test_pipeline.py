@@ -191,10 +191,10 @@ def test_the_command_names_a_file_it_cannot_use(tmp_path: Path, capsys: pytest.C
     assert main(["retarget", str(tmp_path / "none.npz"), "--out", str(tmp_path / "out.npz")]) == 2
     assert "no such file" in capsys.readouterr().err
     np.savez(tmp_path / "bad.npz", joints=np.zeros((4, 21, 3)), fps=20.0)
-    assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 1
+    assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 2
     assert "(T, 22, 3)" in capsys.readouterr().err
     (tmp_path / "text.npz").write_text("a note")
-    assert main(["retarget", str(tmp_path / "text.npz"), "--out", str(tmp_path / "out.npz")]) == 1
+    assert main(["retarget", str(tmp_path / "text.npz"), "--out", str(tmp_path / "out.npz")]) == 2
     assert "not even a zip archive" in capsys.readouterr().err
     assert not (tmp_path / "out.npz").exists()
 
@@ -272,7 +272,7 @@ def test_a_bad_file_is_named_with_its_key(
     fields: dict[str, object] = {"joints": random_motion(0, 30, "smooth").joints_m, "fps": 20.0}
     fields |= {k: v(fields[k]) if callable(v) else v for k, v in change.items()}
     np.savez(tmp_path / "bad.npz", **{k: np.asarray(v) for k, v in fields.items() if v is not None})
-    assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 1
+    assert main(["retarget", str(tmp_path / "bad.npz"), "--out", str(tmp_path / "out.npz")]) == 2
     error = capsys.readouterr().err
     assert re.search(said, error) and str(tmp_path / "bad.npz") in error and "Traceback" not in error, error
     assert not (tmp_path / "out.npz").exists()

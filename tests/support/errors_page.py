@@ -121,8 +121,12 @@ TYPED = (
     ),
     Typed(("retarget", "missing.npz", "--out", "ticks.npz"), 2, "a motion that is not there", "name the file"),
     Typed(
-        ("retarget", "notes.npz", "--out", "ticks.npz"), 1, "a file that is no motion", "write one with `mmmd generate`",
+        ("retarget", "notes.npz", "--out", "ticks.npz"), 2, "a file that is no motion", "write one with `mmmd generate`",
         (("notes.npz", "these are notes"),),
+    ),
+    Typed(
+        ("replay", "notes.mcap", "--bus", "sim://"), 2, "a file that is no log", "name a log of `mmmd run --log`",
+        (("notes.mcap", "these are notes"),),
     ),
     Typed(("replay", "missing.mcap", "--bus", "sim://"), 2, "a log that is not there", "name the file"),
     Typed(("robot", "check", "opp3"), 2, "an unknown robot", "mmmd robot list"),
