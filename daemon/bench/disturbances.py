@@ -16,8 +16,9 @@ import numpy as np
 from daemon.bench.estop_rig import BUS, EstopRig
 from daemon.bench.floods import flooded
 
-ALIVE_BOUND_S, RESTART_BOUND_S = 1.0, 15.0
-"""Seconds after which an e-stop counts as lost: with a bus process and its port alive; where one of them has to come back."""
+ALIVE_BOUND_S, RESTART_BOUND_S = 1.0, 60.0
+"""Seconds after which an e-stop counts as lost: with a bus process and its port alive; where one of them has to come back, which
+takes Python more than ten on a machine whose cores are all busy."""
 LONGEST_WAIT_S = 0.6
 """Longest time from the disturbance to the request; each is drawn at random."""
 SHORTEST_WAIT_S = 0.01
