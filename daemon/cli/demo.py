@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import subprocess
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +17,7 @@ def demo(
     texts: Annotated[tuple[str, ...], tyro.conf.Positional] = (),
     robot: str = "reference",
     out: Path = Path("out/demo"),
+    view: bool = False,
 ) -> int:
     """Start simulated servos on a tty and the daemon on them, send three texts, draw and replay what happened.
 
@@ -27,6 +30,7 @@ def demo(
         texts: three commands of your own.
         robot: name of a packaged robot, or the path of a robot.toml.
         out: folder for what it writes.
+        view: serve the page at http://127.0.0.1:5880 and open it; after the texts the robot is yours until Ctrl-C.
     """
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TextColumn
@@ -52,9 +56,7 @@ def demo(
         raise CommandError(f"{len(texts)} texts; the demo takes {len(TEXTS)}, or none for its own")
     console = Console(highlight=False, soft_wrap=True)
     model = load_robot(robot)
-    out.mkdir(parents=True, exist_ok=True)
-    link, log_file, audit_file = out / "servos", out / "run.mcap", out / "audit.json"
-    log_file.unlink(missing_ok=True)  # of an earlier demo
+    link, log_file, audit_file = _files_in(out)
     shown = [Shown(text, seed) for seed, text in enumerate(texts or TEXTS)]
     endpoints, baud = free_endpoints(), str(model.bus.baud)
     with Progress(SpinnerColumn(), TextColumn("{task.description}"), console=console, transient=True) as bar:
@@ -65,13 +67,30 @@ def demo(
             _wait_for(link)
             bus = f"dxl://{link}?baud={baud}"
             ends = ["--cmd", endpoints.cmd, "--ctl", endpoints.ctl, "--pub", endpoints.pub]
-            command = ["run", "--robot", robot, "--bus", bus, "--log", str(log_file), *ends]
+            command = [
+                "run",
+                "--robot",
+                robot,
+                "--bus",
+                bus,
+                "--log",
+                str(log_file),
+                *ends,
+                *(["--view"] if view else []),
+            ]
             with child(command, out / "daemon.log") as daemon, Client(endpoints) as client:
                 wait_until_ready(client, daemon, out / "daemon.log")
+                if view:
+                    console.print(f"page: {_open_page(out / 'daemon.log')}")
                 bar.update(task, description="arming: torque on over the measured pose, then a slow way to rest")
                 client.arm()
                 bar.update(task, description="three texts, the third while the robot still moves")
                 perform(endpoints, shown)
+                if view:
+                    bar.update(
+                        task, description="the robot is yours, on the page; Ctrl-C parks it and draws what happened"
+                    )
+                    _until_interrupted(daemon)
                 bar.update(task, description="parking")
                 daemon_status = end(daemon)
             end(servos)
@@ -95,6 +114,36 @@ def demo(
     good = daemon_status == 0 and replay["identical"] and not audit["violations"] and not audit["self_contacts"]
     good = good and not any(violations for _, violations in audited.values())
     return 0 if good and all(one.accepted is not None for one in shown) else 1
+
+
+def _files_in(out: Path) -> tuple[Path, Path, Path]:
+    """The servos' tty, the log and the audit in the folder, which is made; the log of an earlier demo goes."""
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "run.mcap").unlink(missing_ok=True)
+    return out / "servos", out / "run.mcap", out / "audit.json"
+
+
+def _open_page(log: Path) -> str:
+    """Open the page that the daemon's log names; its address."""
+    import re
+    import time
+    import webbrowser
+
+    from daemon.errors import DaemonError
+
+    deadline = time.monotonic() + 20
+    while not (found := re.search(r"page at (http://\S+)", log.read_text("utf-8", "replace"))):
+        if time.monotonic() > deadline:
+            raise DaemonError(f"the page did not come up; see {log}")
+        time.sleep(0.05)
+    webbrowser.open(found[1])
+    return found[1]
+
+
+def _until_interrupted(daemon: subprocess.Popen[bytes]) -> None:
+    """Wait for Ctrl-C, or for the end of the daemon."""
+    with contextlib.suppress(KeyboardInterrupt):
+        daemon.wait()
 
 
 def _wait_for(link: Path) -> None:

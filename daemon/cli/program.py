@@ -98,6 +98,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _guarded(name, arguments)
     if name in ("", "-h", "--help", "help"):
         _out(_overview())
+        if not name:
+            _out(_found())
         return GOOD if name else BAD_USE
     if name in ("-V", "--version"):
         _out(f"mmmd {importlib.metadata.version('mmmd')}")
@@ -211,6 +213,16 @@ def _overview() -> str:
         "  mmmd run --robot reference --bus sim://     in one terminal",
         '  mmmd say "wave with your right hand"        in another',
     ])  # fmt: skip
+
+
+def _found() -> str:
+    """What was found on this machine and what to type next; nothing where only the client is installed."""
+    try:
+        from daemon.cli.first_look import first_look
+
+        return "\n" + "\n".join(first_look().lines())
+    except ImportError:
+        return ""
 
 
 def _out(text: str) -> None:

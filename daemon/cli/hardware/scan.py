@@ -73,7 +73,12 @@ def scan(
         console.print(f"not looked for: the port does not take {', '.join(map(str, result.impossible_bauds))} baud")
     if len({f.baud for f in result.found} | {f.protocol for f in result.found}) > 2:
         console.print("servos at different bauds or protocols cannot share one bus: mmmd servo baud")
-    if not result.found:
+    if result.found:
+        from daemon.cli.first_look import fit_line, robots_that_fit
+
+        fitting = robots_that_fit((f.servo_id, f.model_number) for f in result.found)
+        console.print(fit_line(fitting, device, result.found[0].baud))
+    else:
         console.print(
             "nothing answers: is the supply on, the cable in the right socket, the adapter's switch on its bus?"
         )

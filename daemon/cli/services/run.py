@@ -90,6 +90,11 @@ def run(
     as_json = bool(settings["log_json"].value)
     start_logging("front", level=logging.WARNING if quiet else logging.INFO, as_json=as_json, stamp=True)
     chosen = config_of(settings)
+    if settings["robot"].source == "default" and not quiet:
+        from daemon.cli.first_look import first_look
+
+        told = ("no --robot: the reference robot", *first_look().lines()[:1], "`mmmd run --help` tells how to choose")
+        sys.stderr.write("".join(f"mmmd: {line}\n" for line in told))
     if chosen.log is not None:
         path = log_file(chosen.log)
         chosen = replace(chosen, log=path)
