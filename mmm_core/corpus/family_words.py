@@ -1,4 +1,5 @@
-"""The words by which phrases name each gesture family, for `mmm_core/recognition/family_words.txt`.
+"""The words by which phrases name each gesture family, for `mmm_core/recognition/family_words.txt`, and all words of the corpus,
+for `mmm_core/language/words/corpus_words.txt`.
 
 Run `python -m mmm_core.corpus.family_words` after phrases have changed; a test says when that is needed.
 """
@@ -11,7 +12,10 @@ from collections import Counter
 from pathlib import Path
 
 from mmm_core.corpus.families import FAMILIES
-from mmm_core.corpus.grammar import plain_phrases
+from mmm_core.corpus.grammar import manner_phrases, plain_phrases
+from mmm_core.language.inflection import NUMBERS
+from mmm_core.language.word_tables import CORPUS_WORDS_FILE
+from mmm_core.language.word_tables import lines as table_lines
 from mmm_core.recognition.named import HIGHEST_LEVEL, WORDS_FILE, content_words
 
 
@@ -37,5 +41,29 @@ def family_words() -> str:
     return "".join(lines)
 
 
+def corpus_words() -> str:
+    """The content of `corpus_words.txt`: the words of phrases, manner, order and everyday requests, the commonest first."""
+    phrases = [phrase for several in family_phrases().values() for phrase in several]
+    counts = Counter(word for phrase in phrases for word in _words(phrase))
+    often = max(counts.values()) // 40
+    for phrase in (*manner_phrases(), *NUMBERS, *_ALSO):
+        counts.update(dict.fromkeys(_words(phrase), often))
+    counts.update(word for line in table_lines("everyday") for word in _words(line))
+    return "".join(f"{word}\n" for word, _ in sorted(counts.items(), key=lambda item: (-item[1], item[0])))
+
+
+def _words(phrase: str) -> set[str]:
+    return set(re.findall(r"[a-z]{2,}", phrase.lower()))
+
+
+_ALSO = (
+    "not never without instead rather except anything nothing but only just leave still again once twice thrice times more "
+    "another other others same while during meanwhile together both then after before next first finally afterwards "
+    "follow followed start finish begin end until seconds second minutes hold keep stay please could would can thanks want "
+    "slowly slow quickly quick fast faster slower slightly little tiny huge big small large deeply hello goodbye"
+).split()  # fmt: skip
+"""Words of contrast, order, time and manner that requests have and phrases hardly."""
+
 if __name__ == "__main__":
     Path(str(WORDS_FILE)).write_text(family_words(), encoding="utf-8")
+    Path(str(CORPUS_WORDS_FILE)).write_text(corpus_words(), encoding="utf-8")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 
 import numpy as np
 
@@ -330,6 +331,12 @@ def known_commands(most_of_a_row: int = 12) -> frozenset[str]:
                             text = phrase.replace("{S}", side).replace("{D}", direction)
                             found.add(" ".join(text.replace("{n}", often).replace("{N}", number).split()))
     return frozenset(text for text in found if not is_withheld(text))
+
+
+def manner_phrases() -> tuple[str, ...]:
+    """Words of manner, of order, of requests and of persons, as sentences have them around the phrases."""
+    forms = (*_SLOW, *_FAST, *_LARGE, *_SMALL, *_HOLDS, *_THEN, *_AT_ONCE_TERSE, *REQUESTS, *_PRETEND, *_IN_TURNS)
+    return tuple(re.sub(r"\{.\}|\^", " ", form) for form in forms)
 
 
 def usual_counts(family: str) -> tuple[int, ...]:

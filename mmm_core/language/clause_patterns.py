@@ -92,7 +92,7 @@ NO_COMMAND = _pattern(
 OPENING = _pattern(
     r"^\W*(?:(?:"
     + _any(
-        "and", "please", "ok(?:ay)?", "so", "now", "well", "alright", "(?:go|come) on(?=,|$)", "right(?=,|$)", "then",
+        "and", "please", "ok(?:ay)?", "so", "now", "well", "alright", "(?:go|come) on(?=,|$)", "right(?=,)", "then",
         "first(?:ly)?(?: of all| off)?", "to (?:begin|start)(?: with)?",
         "(?:you )?(?:start|begin|finish|end|lead)(?: off| out| up| things off)? (?:by|with|on)", "let's have",
     )
@@ -138,10 +138,12 @@ _ACT = _any(
     "lean", "beckon", "hug", "stretch", "twist", "tilt", "facepalm", "cheer", "pray", "scratch", "rub", "pat", "knock",
     "push", "pull", "throw", "catch", "jab", "box", "flap", "swim", "march", "danc", "drum", "circl", "spread", "open",
     "touch", "cover", "blow", "wip", "stir", "typ", "applau", "conduct", "greet", "swing", "bend", "turn", "reach", "mak",
-    "giv", "tak", "do", "play", "act", "show", "strik", "thumb", "flex", "high", "lower",
+    "giv", "tak", "do", "play", "act", "show", "strik", "thumb", "flex", "high", "lower", "put", "let", "bring", "hold", "keep",
+    "drop", "place", "extend", "straighten", "sway", "pump", "roll", "nudg", "sink", "glanc", "gaz", "peek", "stare", "shade",
+    "cup", "hide", "facepalm", "uncross", "unfold", "press", "rock", "slump", "yawn", "breath", "conduct", "juggl",
 )  # fmt: skip
 SPEAKS_OF_AN_ACT = _pattern(rf"\b{_ACT}\w*")
-BEGINS_WITH_A_VERB = _pattern(rf"^(?:(?:{_MANNER}|to)\s+)*({_ACT})(?:e|p|s|es|d|ping|ing|ding)?\b")
+BEGINS_WITH_A_VERB = _pattern(rf"^(?:(?:{_MANNER}|to)\s+)*({_ACT})(?:e|p|s|es|d|ping|ing|ding|t|h)?\b")
 PREPARES = _pattern(
     r"^(?:(?:please|you|to)\s+)*(?:rais|lift|reach|open|turn|look)\w*\s?"
     r"(?:around|confused|(?:up|out|your|the|his|her|their|its|an?|one|both)\s.*)?$"

@@ -12,6 +12,8 @@ import re
 from dataclasses import dataclass
 
 from mmm_core.language import clause_patterns as words
+from mmm_core.language.at_once import are_at_once
+from mmm_core.language.ellipsis import completed
 
 MOST_COMMANDS, MOST_WORDS = 4, 60
 """Most commands and most words of a text that is divided; a longer text stays one command."""
@@ -54,13 +56,17 @@ def _divided(text: str) -> list[str]:
             return [late[1], late[2]]
     if not words.AT_ONCE.search(text) and not words.NOT.search(text):
         spans = [finer for span in spans for finer in _listed(text, span)]
-    parts: list[_Span] = []
-    for span in spans:
-        if parts and _leans(span.of(text)):
-            parts[-1] = _Span(parts[-1].start, span.end)
+    parts: list[str] = []
+    for i, span in enumerate(spans):
+        clause = span.of(text)
+        whole = completed(_bare(clause), _bare(parts[-1])) if parts else None
+        if whole is not None:
+            parts.append(whole)
+        elif parts and _leans(clause):
+            parts[-1] += text[spans[i - 1].end : span.end]
         else:
-            parts.append(span)
-    return [s.of(text) for s in parts]
+            parts.append(clause)
+    return parts
 
 
 def _spans(text: str, whole: _Span, between: re.Pattern[str]) -> list[_Span]:
@@ -73,9 +79,16 @@ def _spans(text: str, whole: _Span, between: re.Pattern[str]) -> list[_Span]:
 
 
 def _listed(text: str, whole: _Span) -> list[_Span]:
-    """'wave, nod and bow' where every part begins with a verb of its own; else the whole."""
+    """'wave, nod and bow' where every part begins with a verb of its own, or after a comma leaves it out; else the whole."""
     spans = _spans(text, whole, words.AND)
-    verbs = [words.BEGINS_WITH_A_VERB.match(_bare(s.of(text))) for s in spans]
+    parts = [_bare(s.of(text)) for s in spans]
+    if len(parts) == 2 and are_at_once(*parts):
+        return [whole]
+    verbs = [
+        words.BEGINS_WITH_A_VERB.match(part)
+        or (i and "," in text[spans[i - 1].end : spans[i].start] and completed(part, parts[i - 1]))
+        for i, part in enumerate(parts)
+    ]
     if not all(verbs) or len({_bare(s.of(text)).lower() for s in spans}) < len(spans):
         return [whole]
     prepares = len(spans) == 2 and words.PREPARES.match(_bare(spans[0].of(text)))

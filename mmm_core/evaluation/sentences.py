@@ -1,0 +1,243 @@
+"""Sentences as people say them: each is generated with several seeds and judged by what the motion shows, never by how it was read."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations, permutations
+from typing import Any
+
+import numpy as np
+
+from mmm_core.corpus.grammar import plain_phrases, times
+from mmm_core.corpus.heldout import Command, Probe, Sentence
+from mmm_core.evaluation.probes import MIN_PART, judge
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
+from mmm_core.motion.repetitions import body_path
+from mmm_core.motion.skeleton import standing_joints
+from mmm_core.recognition import checks
+from mmm_core.recognition.signs import shows
+
+Generate = Callable[[str, int], Motion]
+LEAST_CHANGE = 1.15
+"""Factor by which tempo or size must differ from the plain sentence's, the right way."""
+_MOVING = 0.2
+"""Share of the greatest speed above which a frame counts as moving."""
+_PART_STEP = 4
+"""Frames between two moments at which a motion is divided."""
+
+
+def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool]:
+    """Which expectations of a sentence a motion meets; tempo and size are judged by `judge_manner`."""
+    verdict: dict[str, bool] = {}
+    if sentence.nothing:
+        return {"denial": checks.limb(shown) == ""}
+    if len(sentence.commands) > 1:
+        verdict["order"] = _in_turn(sentence.commands, shown)
+    elif sentence.commands and len(sentence.commands[0]) > 1:
+        verdict["at_once"] = seen_at_once(sentence.commands[0], shown)
+    elif sentence.commands:
+        verdict = judge(_probe(sentence.commands[0][0]), shown, with_pose=True)
+    if sentence.denied or sentence.kind == "denial":
+        kept = not any(shows(shown, family) for family in sentence.denied)
+        verdict["denial"] = kept and all(ok for key, ok in verdict.items() if key != "count_exact")
+    return verdict
+
+
+def judge_manner(command: Command, motion: Motion, plain: Motion) -> dict[str, bool]:
+    """Whether tempo and size of a motion differ from the plain sentence's the right way by at least `LEAST_CHANGE`."""
+    verdict: dict[str, bool] = {}
+    if command.tempo:
+        faster = _pace(motion, command) / max(_pace(plain, command), 1e-6)
+        verdict["tempo"] = faster >= LEAST_CHANGE if command.tempo == "fast" else faster <= 1 / LEAST_CHANGE
+    if command.size:
+        larger = _reach(motion, command) / max(_reach(plain, command), 1e-6)
+        verdict["size"] = larger >= LEAST_CHANGE if command.size == "large" else larger <= 1 / LEAST_CHANGE
+    return verdict
+
+
+def plain_sentence(command: Command) -> str:
+    """The corpus's first sentence for a command without its manner."""
+    row = {"": ("any", "none", "both"), "both": ("both",), "alternating": ("alternating",)}.get(command.side, ("one",))
+    said = plain_phrases(command.family, command.direction)
+    fitting = [p for r, p in said if r in row and "{N}" not in p and (command.count is None or "{n}" in p)]
+    phrase = (fitting or [p for _, p in said if "{N}" not in p])[0]
+    often = "" if command.count is None else times(command.count, np.random.default_rng(3))
+    filled = phrase.replace("{S}", command.side).replace("{D}", command.direction).replace("{n}", often)
+    return " ".join(filled.split())
+
+
+def seen_at_once(commands: Sequence[Command], shown: PostureFeatures) -> bool:
+    """Whether a motion shows several commands, each on its own limb; arms without a side act on different sides."""
+    arms = [c for c in commands if c.limb == "arm"]
+    others = [c for c in commands if c.limb != "arm"]
+    armless = replace(shown, arms="")
+    if not all(_shows(c, armless) for c in others):
+        return False
+    if len(arms) == 1 or all(c.side for c in arms):
+        return all(_shows(c, shown) for c in arms)
+    return any(
+        all(_shows(replace(c, side=side), shown) for c, side in zip(arms, sides, strict=True))
+        for sides in permutations(("left", "right"))
+        if all(c.side in ("", side) for c, side in zip(arms, sides, strict=True))
+    )
+
+
+def evaluate_sentences(
+    generate: Generate, plain: Generate, sentences: Sequence[Sentence], seeds: Sequence[int],
+    progress: Callable[[int], None] = lambda _n: None,
+) -> dict[str, Any]:
+    """Shares of expectations met over all sentences and seeds, of whole sentences by kind, and the sentences missed most.
+
+    Args:
+        generate: maps a sentence and a seed to its motion; one without frames shows nothing.
+        plain: the same for the plain sentence that tempo and size are compared with, and for a sentence without slips.
+        sentences: those that are judged.
+        seeds: seeds of each.
+        progress: called with the number of motions done.
+    """
+    met: dict[str, list[bool]] = defaultdict(list)
+    whole: dict[str, list[bool]] = defaultdict(list)
+    clean: list[bool] = []
+    misses: dict[str, int] = defaultdict(int)
+    for i, sentence in enumerate(sentences):
+        for seed in seeds:
+            motion = generate(sentence.text, seed)
+            verdict = _verdict(sentence, motion)
+            command = sentence.commands[0][0] if sentence.kind == "manner" and len(sentence.commands) == 1 else None
+            if command is not None and (command.tempo or command.size):
+                verdict.pop("tempo", None)
+                shown = plain(plain_sentence(command), seed)
+                unseen = {key: False for key in ("tempo", "size") if getattr(command, key)}
+                verdict |= judge_manner(command, motion, shown) if len(motion.joints_m) else unseen
+            if sentence.clean:
+                clean.append(_all(_verdict(sentence, plain(sentence.clean, seed))))
+            for key, ok in verdict.items():
+                met[key].append(ok)
+            whole[sentence.kind].append(_all(verdict))
+            misses[sentence.text] += not _all(verdict)
+        progress((i + 1) * len(seeds))
+    slips = {"slips": round(sum(whole["slips"]) / max(1, sum(clean)), 4)} if clean else {}
+    return {
+        **{key: round(float(np.mean(values)), 4) for key, values in sorted(met.items())},
+        **slips,
+        "kinds": {kind: round(float(np.mean(values)), 4) for kind, values in sorted(whole.items())},
+        "n": len(sentences) * len(seeds),
+        "n_each": {key: len(values) for key, values in sorted(met.items())},
+        "most_missed": sorted(((n, text) for text, n in misses.items() if n), reverse=True),
+    }
+
+
+def _verdict(sentence: Sentence, motion: Motion) -> dict[str, bool]:
+    if len(motion.joints_m):
+        return judge_sentence(
+            sentence, posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+        )
+    if sentence.nothing:
+        return {"denial": True}
+    expected = judge_sentence(sentence, _nobody())
+    return dict.fromkeys(expected, False)
+
+
+def _nobody() -> PostureFeatures:
+    """What a person who stands still shows."""
+    joints = np.repeat(standing_joints().reshape(1, 22, 3), 30, 0)
+    return posture_features(joints, np.tile([1.0, 0, 0, 0], (30, 1)), np.zeros((30, 2)))
+
+
+def _all(verdict: Mapping[str, bool]) -> bool:
+    return all(ok for key, ok in verdict.items() if key != "count_exact")
+
+
+def _probe(c: Command) -> Probe:
+    return Probe("", c.family, c.limb, c.side, c.count, c.direction, c.hold_s)
+
+
+def _shows(c: Command, shown: PostureFeatures) -> bool:
+    if not shows(shown, c.family, c.side, c.direction):
+        return False
+    if not c.direction or c.family not in ("look", "tilt_head", "lean", "twist", "point"):
+        return True
+    arms = c.side if c.family == "point" and c.side else shown.arms
+    return checks.direction(replace(shown, arms=arms), c.family) == c.direction
+
+
+def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool:
+    """Whether some moments part the motion into the steps in their order; of two steps, none into the other order."""
+    T = len(shown.head_yaw_deg)
+    moments = range(MIN_PART, T - MIN_PART, _PART_STEP if len(steps) > 2 else 2)
+    parts: dict[tuple[int, int], PostureFeatures] = {}
+    seen: dict[tuple[int, int, int], bool] = {}
+
+    def is_seen(i: int, start: int, end: int) -> bool:
+        if (i, start, end) not in seen:
+            if (start, end) not in parts:
+                parts[start, end] = part(shown, start, end)
+            seen[i, start, end] = _step_seen(steps, i, parts[start, end])
+        return seen[i, start, end]
+
+    def parted(order: Sequence[int], cuts: Sequence[int]) -> bool:
+        edges = [0, *cuts, T]
+        if any(b - a < MIN_PART for a, b in zip(edges, edges[1:], strict=False)):
+            return False
+        return all(is_seen(i, edges[k], edges[k + 1]) for k, i in enumerate(order))
+
+    forward = list(range(len(steps)))
+    found = any(parted(forward, cuts) for cuts in combinations(moments, len(steps) - 1))
+    if len(steps) == 2 and found and steps[0] != steps[1]:
+        return not any(parted([1, 0], cuts) for cuts in combinations(moments, 1))
+    return found
+
+
+def _step_seen(steps: Sequence[Sequence[Command]], i: int, shown: PostureFeatures) -> bool:
+    """Whether a part shows a step: its limb, side and direction, and its sign where a neighbour has the same ones."""
+    step = steps[i]
+    if len(step) > 1:
+        return seen_at_once(step, shown)
+    c = step[0]
+    neighbours = [s[0] for k, s in enumerate(steps) if abs(k - i) == 1]
+    alike = any((n.limb, n.side, n.direction) == (c.limb, c.side, c.direction) for n in neighbours)
+    if alike and all(n == c for n in neighbours):
+        alike = False
+    if checks.limb(shown) != c.limb:
+        return False
+    if c.side and shown.arms != c.side:
+        return False
+    if c.direction and checks.direction(shown, c.family) != c.direction:
+        return False
+    return not alike or shows(shown, c.family, c.side, c.direction)
+
+
+def _pace(motion: Motion, command: Command) -> float:
+    """How fast a motion is: strokes a second, or where there are none, mean speed while moving as a share of its reach."""
+    s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    cycle = checks.cycle_s(s, command.family)
+    if cycle:
+        return 1 / cycle
+    path = _limb_path(motion, command)
+    speed = np.linalg.norm(np.diff(path, axis=0), axis=-1)
+    moving = speed[speed > _MOVING * speed.max()] if len(speed) and speed.max() > 0 else np.zeros(1)
+    return float(moving.mean()) * motion.fps / max(float(np.linalg.norm(path - path[0], axis=-1).max()), 1e-6)
+
+
+def _reach(motion: Motion, command: Command) -> float:
+    """How large a motion is: the range of its strokes, or where there are none, how far the limb goes from where it was."""
+    s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    signals = checks._stroke_signals(s, command.family)  # noqa: SLF001
+    ranges = [float(np.ptp(signal)) for signal, _ in signals if len(signal)]
+    if ranges and max(ranges) > 0:
+        return max(ranges)
+    path = _limb_path(motion, command)
+    return float(np.linalg.norm(path - path[0], axis=-1).max())
+
+
+def _limb_path(motion: Motion, command: Command) -> np.ndarray:
+    """(T, D) path of the limb that a command moves."""
+    path = body_path(motion)
+    columns = {"head": [6, 7, 8], "trunk": [9, 10, 11]}.get(command.limb)
+    if columns is None:
+        sides = {"left": [0, 1, 2], "right": [3, 4, 5]}
+        columns = sides.get(command.side, [0, 1, 2, 3, 4, 5])
+    return path[:, columns]

@@ -1,0 +1,185 @@
+"""Commands that a clause asks for at the same time, each for its own limbs: "left hand on your heart and salute with the right"."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+from mmm_core.language.word_tables import lines
+
+ARMS = frozenset({"left_arm", "right_arm"})
+HEAD, TRUNK = frozenset({"head"}), frozenset({"trunk"})
+SOME_ARM = frozenset({"some_arm"})
+"""One arm, whichever is free."""
+_LIMB = r"(?:hands?|arms?|fists?|palms?|fingers?|elbows?|forearms?|biceps|thumbs?)"
+_ARM_SIDE = re.compile(rf"\b(left|right)[- ](?:handed\b|{_LIMB}\b|index finger)|\b(?:with|using|use|in) (?:your |the )?(left|right)\b(?! side)|^(?:your |the )?(left|right) (?:up|out|down|forward|on|to|behind|over)\b")
+_BOTH = re.compile(
+    r"\bboth\b|\b(?:hands|arms|fists|palms|elbows|forearms|ears|eyes)\b|\b(?:clap|applaud|applause|shrug|hug|embrace|pray|cheer|flap|drum|juggle|zombie|cross your arms|guitar|piano|violin|flute|binoculars|hands on|T pose)"
+)
+_ARM = re.compile(
+    rf"\b{_LIMB}\b|\b(?:wav|clap|salut|point(?!less)|shrug|beckon|punch|scratch|pat\b|pats|patting|rub|cover|cross|hug|flex|applau|pray|throw|catch|knock|push|pull|"
+    r"stir|wip|shad|facepalm|blow|play|drum|conduct|cheer|reach|stretch|high five|toast|raise (?:a|your) glass|brush|eat|drink|yawn|hush|swim|row|climb|"
+    r"beat|bang|hold|carry|offer|touch|wring|clasp|steer|flap|jab|hammer|dab|dance|greet|signal|celebrat|victory)\w*"
+)
+_HEAD = re.compile(
+    r"\b(?:nod|nods|nodding|look|looks|looking|glanc|gaz|star(?:e|es|ing)|peek|peer|fac(?:e|ing) (?:left|right|up|down))\w*|"
+    r"^(?:\w+ )?(?:turn|shake|shaking|tilt|tilting|turning|move|moving|roll|rolling|wobble|bob|bobbing|raise|lift|lower|drop|bend|lean|tip|cock|rotate|wag|swivel|hang|throw) (?:your |the )?(?:head|chin|gaze|eyes|face|nose|neck)\b|"
+    r"^(?:your |the )?(?:head|chin|gaze|eyes|face)\b|\b(?:your|the) head (?:tilted|to|turned|up|down|bent|shak|nod)\w*"
+)
+_TRUNK = re.compile(
+    r"\b(?:bow|bows|bowing|lean|leans|leaning|bend|bends|bending|sway|sways|swaying|twist|twists|twisting|slump|slouch|curts)\w*\b|\b(?:torso|trunk|upper body|waist twist|body)\b"
+)
+_TRUNK_NOT = re.compile(r"\b(?:bow and arrow|sway (?:your|both) arms|bend (?:your|the|one) (?:left |right )?(?:arm|elbow)|around your body)\b")
+_POSE = re.compile(
+    rf"^(?:(?:and|also|with|please) )*(?:rais|lift|hold|keep|put|stretch|cross|fold|cover|shad|rest|plac|lean|look|tilt|turn|twist|point|spread|extend|reach|leav|clasp|lay|have|"
+    rf"(?:your |the |both |one )?(?:left |right )?{_LIMB}\b|(?:your |the )?head|gaz|glanc|flex|touch)\w*"
+)
+_ENDS = re.compile(r"\\b(?:bow|bows|curtsy|salute|slump|celebrate)\\b")
+"""Verbs of gestures that are done by themselves: "clap and bow" is in turn."""
+_VERB_FIRST = re.compile(r"^(?:also )?(?!(?:left|right|both|your|the|one|hands?|arms?|head|eyes|a|an)\b)\w+")
+_WHILE = re.compile(r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as)\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*")
+_AS_YOU = re.compile(r"\s*,?\s*\bas you(?: are)?\s+")
+_SAME_TIME = re.compile(r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same time|simultaneously|at once|together|in one go|all at once|concurrently)\b[,:]?\s*(?:and )?")
+_LEADING = re.compile(r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$")
+_WITH_POSE = re.compile(
+    rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{_LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to|at|in front|out|up|in|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
+)
+_AND = re.compile(r"\s*,\s*(?:and\s+|but\s+)?(?:also\s+)?|\s+(?:and|plus|but)\s+(?:also\s+)?")
+_FILLER = re.compile(r"^(?:and|also|then|with|keep|keeping|while|please|still)\s+(?=\w+ing\b|your|the|both|left|right)|\s+(?:too|as well|also)$|^(?:also|and)\s+")
+_FRONTED = re.compile(r"^(?:(?:and|with|using) )+(?:your |the )?(left|right)(?: hand| arm)?,? (?!(?:hand|arm|on|up|to|out|over|behind|down|forward|raised|stretched)\b)(\w.+)$")
+_GERUND = re.compile(r"^\w+(?:ing|ed)\b")
+_IS = re.compile(r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|stays?|remains?|goes|keeps?|rests?)(?: being| held)? (?P<rest>.+)$")
+
+
+def limbs_of(clause: str) -> frozenset[str]:
+    """Limbs that a clause moves: left_arm, right_arm, some_arm, head, trunk; empty where its words do not say.
+
+    >>> sorted(limbs_of("wave with your left hand")), sorted(limbs_of("scratch your head")), sorted(limbs_of("shake your head"))
+    (['left_arm'], ['some_arm'], ['head'])
+    """
+    if _HEAD.search(clause) and not re.search(rf"\b{_LIMB}\b", clause):
+        return HEAD
+    if _TRUNK.search(clause) and not _TRUNK_NOT.search(clause) and not re.search(rf"\b(?:left|right|your|both|the) {_LIMB}\b", clause):
+        return TRUNK
+    if sided := _ARM_SIDE.search(clause):
+        sides = {s for m in _ARM_SIDE.finditer(clause) for s in m.groups() if s}
+        return frozenset(f"{side}_arm" for side in sides) if sided else SOME_ARM
+    if _BOTH.search(clause):
+        return ARMS
+    return SOME_ARM if _ARM.search(clause) else frozenset()
+
+
+def are_at_once(a: str, b: str) -> bool:
+    """Whether "a and b" or "a, b" means both at the same time: on other limbs, and one of them a pose or without a verb."""
+    moved = limbs_of(a), limbs_of(b)
+    if not _apart(*moved):
+        return False
+    if set(moved) == {frozenset({"left_arm"}), frozenset({"right_arm"})} or not (_VERB_FIRST.match(a) and _VERB_FIRST.match(b)):
+        return True
+    return bool(_POSE.match(a)) or not any(_ENDS.search(part) for part in (a, b))
+
+
+def _apart(a: frozenset[str], b: frozenset[str]) -> bool:
+    if not a or not b or a & b - SOME_ARM:
+        return False
+    return not (a == SOME_ARM == b) and not (a | b >= ARMS | SOME_ARM)
+
+
+def divided(clause: str) -> list[str]:
+    """The commands of a clause that are done at the same time; one where there is only one.
+
+    >>> divided("wave with your right hand while nodding")
+    ['wave with your right hand', 'nod']
+    """
+    for pair, asked in _pairs(clause):
+        first, second = (_imperative(part) for part in pair)
+        a, b = limbs_of(first), limbs_of(second)
+        if a == SOME_ARM == b and asked:
+            return [_sided(first, "right"), _sided(second, "left")] if "hand" in clause else [first, second]
+        if not _apart(a, b):
+            continue
+        if not asked and not are_at_once(first, second):
+            continue
+        return [*divided(_freed(first, b)), *divided(_there(_freed(second, a), first))]
+    return [clause]
+
+
+def same_limbs(clause: str) -> list[str]:
+    """Two commands that a clause asks for at once of the same limbs, which can only follow each other; else the clause alone."""
+    for pair, asked in _pairs(clause):
+        first, second = (_imperative(part) for part in pair)
+        a, b = limbs_of(first), limbs_of(second)
+        if asked and a and b and (a & b or ARMS <= (a | b)) and not _apart(a, b):
+            return [first, second]
+    return [clause]
+
+
+def _pairs(clause: str) -> list[tuple[tuple[str, str], bool]]:
+    """Ways to part a clause in two, each with whether its words say that both are done at once."""
+    found: list[tuple[tuple[str, str], bool]] = []
+    if lead := _LEADING.match(clause):
+        found.append(((lead["first"], lead["second"]), True))
+    for pattern in (_WHILE, _AS_YOU):
+        if (m := pattern.search(clause)) and m.start() > 0:
+            found.append(((clause[: m.start()], clause[m.end() :]), True))
+    if m := _WITH_POSE.search(clause):
+        found.append(((clause[: m.start()], m["pose"]), True))
+    same = _SAME_TIME.search(clause)
+    if same and 0 < same.start() and same.end() < len(clause):
+        found.append(((clause[: same.start()], clause[same.end() :]), True))
+    rest = _SAME_TIME.sub(" ", clause).strip(" ,") if same else clause
+    found += [((rest[: m.start()], rest[m.end() :]), bool(same)) for m in _AND.finditer(rest)]
+    return [(pair, asked) for pair, asked in found if all(len(p.strip()) > 2 for p in pair)]
+
+
+def _imperative(part: str) -> str:
+    """A part as a command: "nodding" -> "nod", "your left arm is stretched forward" -> "left arm stretched forward"."""
+    part = _FRONTED.sub(r"\2 with your \1 hand", part.strip(" ,."))
+    while (shorter := _FILLER.sub("", part)) != part:
+        part = shorter
+    if stays := _IS.match(part):
+        part = f"{stays['limb']} {stays['rest']}"
+    if m := _GERUND.match(part):
+        part = base_of(m[0]) + part[m.end() :]
+    return part
+
+
+@cache
+def base_of(inflected: str) -> str:
+    """The verb of a gerund or a past form: "waving" -> "wave", "clapped" -> "clap"; the word itself where there is none.
+
+    >>> base_of("waving"), base_of("nodding"), base_of("clapped"), base_of("king")
+    ('wave', 'nod', 'clap', 'king')
+    """
+    words = _words()
+    stem = inflected.removesuffix("ing").removesuffix("ed")
+    doubled = stem[:-1] if len(stem) > 2 and stem[-1] == stem[-2] else ""
+    ranked = [word for word in (stem, f"{stem}e", doubled) if word in words and len(word) > 1]
+    return min(ranked, key=lambda word: words[word]) if ranked and stem != inflected else inflected
+
+
+@cache
+def _words() -> dict[str, int]:
+    return {word: i for i, word in enumerate(lines("corpus_words"))}
+
+
+def _freed(clause: str, other: frozenset[str]) -> str:
+    """A clause of some arm with the side that the other command leaves free."""
+    if limbs_of(clause) != SOME_ARM or not other & ARMS or other >= ARMS:
+        return clause
+    return _sided(clause, "left" if "right_arm" in other else "right")
+
+
+def _there(clause: str, first: str) -> str:
+    """ "look there" beside "point to the left" -> "look to the left"."""
+    way = re.search(r"\b(?:to (?:the |your )?(?:left|right)|up|down|left|right)\b(?! (?:hand|arm))", first)
+    if way is None or not re.match(r"look(?:ing)?(?: (?:there|that way|over there|in that direction))?$", clause):
+        return clause
+    return f"look {way[0]}"
+
+
+def _sided(clause: str, side: str) -> str:
+    if re.search(r"\b(?:left|right) (?:hand|arm)\b", clause):
+        return clause
+    named, n = re.subn(r"\b(?:your|one|a|the) (hand|arm|fist)\b", rf"your {side} \1", clause, count=1)
+    return named if n else f"{clause} with your {side} hand"

@@ -1,0 +1,151 @@
+"""What a text says not to do: "clap, but do not bow" -> "clap", denied "bow".
+
+A clause is a denial when it begins with words of denial and goes on with an act, a side or a direction; "no idea", "do not
+worry" and "do not stop waving" are none. A denied side names the other one: "wave without your left hand" is done with the
+right.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
+
+_NOT = (
+    r"(?:please )?(?:never ?mind (?:about )?|do not (?:you )?(?:dare (?:to )?|ever |even |think of |try to )?|never(?: ever)? |no more |no |not |you (?:must|should|may|can|shall|need|do) not (?:have to |need to )?|"
+    r"i (?:do not|would not) (?:want|like|need)(?: (?:you|to see you|to see))?(?: to)? |without |forget (?:about |the idea of )?|stop |quit |"
+    r"avoid |refrain from |skip |leave out |abstain from |there is no need (?:to|for you to) |no need to |instead of |rather than |"
+    r"anything (?:but|except(?: for)?|other than) |do (?:anything|everything|whatever you (?:like|want)) (?:but|except(?: for)?|other than) |"
+    r"(?:just |only )?not |in no case |under no circumstances |on no account |by no means |hold off on |no,? not )"
+)
+_DENIES = re.compile(rf"^\W*(?:and |but |so |or |just |please |now |only |ok,? |robot,? |hey,? |well,? |no,? )*{_NOT}(?P<what>.+)$")
+_BETWEEN = re.compile(
+    r"\s*(?:,\s*(?:and |but )?instead\b,?|[,;:.!]+(?=\s|$)|\s-+\s|\bbut(?= )(?! (?:not|no)\b)(?<!anything but)(?<!everything but)(?<!\bnothing but)(?<!\ball but)"
+    r"|\binstead,? (?!of\b)|\binstead$)\s*"
+)
+_INLINE = re.compile(
+    r"\s*,?\s*\b(?P<not>instead of|rather than|as opposed to|and not|but not|but without|and never|but never|without(?: using| moving)?|(?:and|but) do not|(?<!do )(?<!is )(?<!am )(?<!are )(?<!will )(?<!can )(?<!did )(?<!does )(?<!would )(?<!it )not(?! only)|and no|but no|(?:just|only) not|except(?: for)?(?: with)?)\s+"
+    r"(?P<what>[^,;:.!]+)"
+)
+_GERUND_FIRST = re.compile(r"^\W*(?:instead of|rather than|without) (?P<what>(?:\w+ing)(?: (?:your|the|at|to|with) \w+(?: \w+)?)?|(?:a|an) \w+),? (?=\w)")
+_NOT_A_BUT_B = re.compile(r"^\W*not (?!only\b)(?P<what>(?:an?|the|your|with|to)? ?[^,;]+?),? but (?:rather |instead )?(?P<rest>.+)$")
+_SIDE_ONLY = re.compile(
+    r"^(?:(?:with|use|using|move|moving|raise|lift|touch|from|involve|involving|take|on|wave|the use of)\s+)?(?:your |the |that |my )?(?P<side>left|right)"
+    r"(?: (?:hand|arm|one|side|fist|palm))?(?: (?:this time|at all|alone|though|please|either|now))?$"
+)
+_LEAVE = re.compile(
+    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:leave|keep|leaving|keeping|let)\s+(?:your |the )?(?P<side>left|right) (?:hand|arm)\s+"
+    r"(?:alone|out of it|out|still|down|hanging|at rest|where it is|at your side|rest|hang|by your side|in your pocket)\b,?\s*(?:and\s+)?"
+)
+_KEEP_STILL = re.compile(
+    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?(?:head|body|trunk|torso|upper body|shoulders|rest of (?:you|your body)|legs|feet|everything else)\s+"
+    r"(?:still|straight|alone|out of it|quiet|upright|where it is|where they are),?\s*(?:and\s+)?"
+)
+_DIRECTION_ONLY = re.compile(r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$")
+_WAVED_ASIDE = re.compile(
+    r"^(?:that (?:one|arm|hand|side|way)|this (?:one|arm|hand|side|way)|the other(?: one| way| hand| arm)?|it|that|the opposite|so|like that|"
+    r"be (?:shy|afraid|silly|scared|rude|lazy|so \w+)|worry|mind|wait|hesitate)$"
+)
+_NO_DENIAL = re.compile(
+    r"^\W*(?:do not (?:stop|forget to|hesitate to|be (?:shy|afraid))|never (?:stop|give up)|not only\b|no (?:idea|clue|problem|thanks|way|matter|doubt|one)\b|"
+    r"stop (?:sign|gesture|me\b|us\b|the traffic|traffic|them\b|him\b|her\b|here|there|signal|with)|no[, ]+no\b|not (?:bad|sure|yet|until|before))"
+)
+_KEEP_DOING = re.compile(r"^\W*(?:please )?(?:do not|never) stop (?P<rest>\w.+)$|^\W*(?:please )?do not (?:forget|hesitate) to (?P<other>.+)$")
+_ACTS_ALSO = re.compile(
+    r"\b(?:clap|bow|nod|wave|salut|point|rais|lift|shrug|shak|lean|cross|lower|mov|lookin?g?|danc|cheer|hand|arm|head|fist|finger|beckon|applau|punch|kneel|turn|tilt|touch|cover|hug|stretch|greet|twist|sway|rub|pat|fold|gestur)\w*"
+)
+_OTHER = {"left": "right", "right": "left"}
+_HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
+
+
+@dataclass(frozen=True)
+class Denial:
+    """A text without its denials.
+
+    Attributes:
+        rest: what is to be done; empty where nothing is left.
+        denied: what is not to be done, as it is said.
+        anything: whether anything else may be done: "anything but a bow".
+    """
+
+    rest: str
+    denied: tuple[str, ...] = ()
+    anything: bool = False
+
+
+def without_denial(text: str) -> Denial:
+    """The text, in lower case and plain spelling, without what it denies.
+
+    >>> without_denial("clap, but do not bow")
+    Denial(rest='clap', denied=('bow',), anything=False)
+    """
+    kept = _KEEP_DOING.match(text)
+    if kept:
+        return Denial(kept["rest"] or kept["other"])
+    denied: list[str] = []
+    side = ""
+    text, leaves = _LEAVE.subn(lambda m: _note(denied, f"the {m['side']} arm") + ", ", text)
+    if leaves:
+        side = "left" if "left" in denied[-1] else "right"
+    text = _KEEP_STILL.sub(" ", text).strip(" ,")
+    for pattern in (_GERUND_FIRST, _NOT_A_BUT_B):
+        found = pattern.match(text)
+        if found and _is_act(found["what"]):
+            denied.append(found["what"].strip())
+            text = found["rest"] if "rest" in pattern.groupindex else text[found.end() :]
+    rest: list[str] = []
+    anything = False
+    for clause in _BETWEEN.split(text):
+        clause = clause.strip(" ,")
+        if not clause:
+            continue
+        found = None if _NO_DENIAL.match(clause) else _DENIES.match(clause)
+        if found and (what := found["what"].strip(" ,")):
+            if only := _SIDE_ONLY.match(what):
+                side = only["side"]
+                denied.append(what)
+                continue
+            if _WAVED_ASIDE.match(what) or _DIRECTION_ONLY.match(what):
+                continue
+            if _is_act(what):
+                anything |= bool(re.search(r"\b(?:anything|everything|whatever)\b", clause))
+                denied.append(re.sub(r"\s+(?:is|are) (?:fine|ok|okay|good).*$", "", what))
+                continue
+        inline = None if _NO_DENIAL.match(clause) else _INLINE.search(clause)
+        if inline and inline.start() > 0:
+            what = inline["what"].strip()
+            only = _SIDE_ONLY.match(what)
+            if only or _DIRECTION_ONLY.match(what) or _is_act(what):
+                side = only["side"] if only else side
+                denied.append(what)
+                clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
+        if not re.fullmatch(r"(?:the|use the|with the|use) other(?: one| hand| arm| way)?|instead|(?:and |but )?that is it", clause):
+            rest.append(clause)
+    if not denied:
+        return Denial(text if not rest or leaves or len(rest) == 0 else _as_it_was(text, rest))
+    joined = ", ".join(rest)
+    if side and joined and not _HAS_SIDE.search(joined):
+        joined = _with_side(joined, _OTHER[side])
+    return Denial(joined, tuple(denied), anything)
+
+
+def _as_it_was(text: str, rest: list[str]) -> str:
+    """The text; without its clauses that were waved aside, where there were some."""
+    n = sum(bool(clause.strip(" ,")) for clause in _BETWEEN.split(text))
+    return text if n == len(rest) else ", ".join(rest)
+
+
+def _note(denied: list[str], what: str) -> str:
+    denied.append(what)
+    return ""
+
+
+def _is_act(what: str) -> bool:
+    return bool(SPEAKS_OF_AN_ACT.search(what) or _ACTS_ALSO.search(what))
+
+
+def _with_side(clause: str, side: str) -> str:
+    """A clause that names no side with the hand of a side."""
+    named, n = re.subn(r"\b(your|the|a|an|one) (hand|arm|fist)\b", rf"your {side} \2", clause, count=1)
+    return named if n else f"{clause} with your {side} hand"

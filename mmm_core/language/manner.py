@@ -1,0 +1,118 @@
+"""Tempo, size and hold that a clause names: factors and seconds that are applied to the motion, not read by the model."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cache
+
+from mmm_core.language.count_words import NUMBERS
+from mmm_core.language.word_tables import lines
+
+STRONGER = 1.25
+"""Factor, on the logarithm, of "very" and the like before a word of manner."""
+FASTEST, LARGEST = 2.0, 1.8
+"""Greatest factors of tempo and size; the least ones are their inverses."""
+LONGEST_HOLD_S = 30.0
+_GESTURES = (
+    "(?:waves?|nods?|bows?|claps?|claps|shrugs?|hugs?|salutes?|leans?|tilts?|punch(?:es)?|stretch(?:es)?|circles?|shakes?|turns?|"
+    "movements?|motions?|gestures?|steps?|kisses|kiss|pats?|taps?|knocks?|swings?|strokes?|bends?|twists?|sways?|beckons?|"
+    "head ?shakes?|applause|greeting|handshakes?|throws?|jabs?|hooks?|pumps?|cheers?|yawns?|points?|dips?|flaps?|sweeps?|arcs?|"
+    "glances?|looks?|rolls?|presses|press|push(?:es)?|pulls?|raises?|lifts?)"
+)
+"""Nouns of gestures, which an adjective of size stands before."""
+_VERY = r"(?:(?:very|really|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|way) )*"
+_STRONG = re.compile(r"\b(?:very|really|super|extremely|incredibly|ultra|extra|terribly|awfully|much|way|oh so)\b")
+_SECONDS = {**NUMBERS, "a": 1, "a couple of": 2, "a few": 3, "several": 4, "half a": 0.5}
+_NUMBER = r"(a couple of|a few|several|half a|a|\d+(?:\.\d+)?|" + "|".join(word for word in NUMBERS if word.isalpha()) + ")"
+_HOLD = re.compile(
+    r",?\s*(?:(?:and |then )?(?:hold|holding|keep|keeping|stay|staying|remain|freeze|wait|rest|leave|pause)"
+    r"(?: (?:it|them|that|this|there|still|so|like (?:that|this)|the (?:pose|position)|your (?:pose|position)|that (?:pose|position)|up|down|in place|"
+    r"(?:your|the) (?:left |right )?(?:hand|arm|head)s?))*\s+)?"
+    rf"(?:(?:for|about|exactly|at least|around|all of|a full|another) )*{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
+)
+_ONLY_SECONDS = re.compile(rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?")
+_KEEPS = re.compile(r"^(?:hold|keep|leave) (?=(?:your|the|both) )")
+
+
+@dataclass(frozen=True)
+class Manner:
+    """How a command is to be done.
+
+    Attributes:
+        tempo: times as fast as it would be.
+        size: times as large.
+        hold_s: seconds that the pose is kept; 0 where none are said.
+    """
+
+    tempo: float = 1.0
+    size: float = 1.0
+    hold_s: float = 0.0
+
+    @property
+    def plain(self) -> bool:
+        """Whether nothing is said."""
+        return self == Manner()
+
+
+def manner_of(clause: str) -> tuple[str, Manner]:
+    """A clause in lower case without its words of manner, and the manner.
+
+    >>> manner_of("nod very slowly"), manner_of("give a tiny bow")
+    (('nod', Manner(tempo=0.55..., size=1.0, hold_s=0.0)), ('give a bow', Manner(tempo=1.0, size=0.55, hold_s=0.0)))
+    """
+    rest, tempo = _factor(clause, "tempo", FASTEST)
+    rest, size = _factor(rest, "size", LARGEST)
+    rest, hold_s = _hold(rest)
+    rest = re.sub(r"\s+([,.])", r"\1", " ".join(rest.split()))
+    rest = re.sub(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+", "", rest)
+    rest = re.sub(r"\ba (?=[aeiou])(?!u\w*[aeiou])", "an ", rest)
+    if not re.search(r"[a-z]{2,}", rest):
+        return clause, Manner()
+    return rest, Manner(tempo, size, hold_s)
+
+
+def _factor(clause: str, table: str, most: float) -> tuple[str, float]:
+    factor = 1.0
+    for worth, pattern in _patterns(table):
+        found = pattern.search(clause)
+        if found is None or not _is_manner(clause, found):
+            continue
+        strength = worth ** (STRONGER if _STRONG.search(found[0]) else 1.0)
+        if abs(strength - 1) > abs(factor - 1) or factor == 1.0:
+            factor = strength
+        if not re.match(r"\s*waves?\b", clause[found.end() :]) or factor < 1 or table == "tempo":  # "a big wave" is a gesture of its own
+            clause = clause[: found.start()] + " " + clause[found.end() :]
+    return clause, min(most, max(1 / most, factor))
+
+
+def _is_manner(clause: str, found: re.Match[str]) -> bool:
+    """Whether a word of manner is one here: "slow" before a noun that is no gesture is not, nor is the whole clause."""
+    word = found[0].strip()
+    if clause.strip(" .,!") == word:
+        return False
+    if word.split()[-1] in ("fast", "quick", "slow", "gentle", "rapid", "brisk", "swift", "faster", "slower", "quicker"):
+        following = re.match(r"\s+(\w+)", clause[found.end() :])
+        return not following or bool(re.fullmatch(_GESTURES + "|and|with|to|at|for|then|now|please|on|in|twice|once|thrice|your|three|two|four|five|the|times|" + "left|right|up|down|back|forward|from", following[1]))
+    return True
+
+
+@cache
+def _patterns(table: str) -> tuple[tuple[float, re.Pattern[str]], ...]:
+    split = [line.partition(" ") for line in lines(table)]
+    return tuple(
+        (float(worth), re.compile(rf"\b{_VERY}(?:{pattern.replace('@NOUN', _GESTURES)})(?![\w-])")) for worth, _, pattern in split
+    )
+
+
+def _hold(clause: str) -> tuple[str, float]:
+    found = _HOLD.search(clause)
+    if found is None:
+        return clause, 0.0
+    if not re.search(r"[a-z]{2,}", clause[: found.start()] + clause[found.end() :]):
+        found = _ONLY_SECONDS.search(clause) or found
+    number = found[1]
+    seconds = float(_SECONDS[number]) if number in _SECONDS else float(number)
+    rest = clause[: found.start()] + " " + clause[found.end() :]
+    rest = _KEEPS.sub("raise ", rest) if re.search(r"\b(?:up|high|in the air|overhead)\b", rest) else rest
+    return rest, min(seconds, LONGEST_HOLD_S)

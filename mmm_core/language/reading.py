@@ -1,0 +1,138 @@
+"""Reads a sentence: plain commands in turn and at once, each with its parameters, in words the model knows.
+
+The order of the steps, nothing else: slips mended (`spelling`), words around the request taken off (`requests`), denials kept
+apart (`denial`), commands in turn (`clauses`) with what each leaves out (`ellipsis`), commands at once (`at_once`), manner
+(`manner`). A sentence in which nothing of this is found is passed on as it is. Rules and figures: docs/language.md.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+from mmm_core.language.at_once import SOME_ARM, base_of, divided, limbs_of, same_limbs
+from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
+from mmm_core.language.denial import without_denial
+from mmm_core.language.ellipsis import with_sides
+from mmm_core.language.manner import Manner, manner_of
+from mmm_core.language.requests import everyday, rewritten, without_request
+from mmm_core.language.spelling import mended, normalised
+
+MOST_AT_ONCE = 3
+"""Most commands of one step: the model has three body parts."""
+_PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red|need|feed)\b (?:hand|arm|fist)s?\b)\w+ed\b")
+"""The verb of "once you have clapped", "if you crossed"."""
+_ANYTHING = ("wave your right hand", "clap your hands")
+"""What is done where anything but the denied is asked for."""
+
+
+@dataclass(frozen=True)
+class PlainCommand:
+    """One command that the model is given.
+
+    Attributes:
+        text: its words.
+        manner: tempo, size and hold.
+        limbs: left_arm, right_arm, some_arm, head, trunk, as far as its words say so.
+    """
+
+    text: str
+    manner: Manner = Manner()  # noqa: RUF009
+    limbs: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What was read in a sentence.
+
+    Attributes:
+        text: the sentence.
+        steps: commands in turn, each with those done at once; none where nothing is to be done.
+        denied: what is not to be done.
+        notes: what was changed that the speaker may not expect.
+        plain: whether the sentence is passed on as it is.
+    """
+
+    text: str
+    steps: tuple[tuple[PlainCommand, ...], ...]
+    denied: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    plain: bool = False
+
+    @property
+    def words(self) -> str:
+        """The commands as one sentence: "raise your left hand and nod, then bow"."""
+        return ", then ".join(" and ".join(c.text for c in step) for step in self.steps)
+
+
+def read(text: str) -> Reading:
+    """The commands of a sentence.
+
+    >>> [[c.text for c in step] for step in read("turn your head left, then right").steps]
+    [['turn your head left'], ['turn your head right']]
+    """
+    if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
+        return Reading(text, ((PlainCommand(text),),), plain=True)
+    said = mended(text)
+    if known := everyday(said):
+        return _known(text, known)
+    bare = without_request(said)
+    if known := everyday(bare):
+        return _known(text, known)
+    denial = without_denial(rewritten(bare))
+    if denial.denied and not denial.rest and not denial.anything:
+        return Reading(text, (), denial.denied)
+    if denial.anything and not denial.rest:
+        does = next(c for c in _ANYTHING if c.split()[0] not in " ".join(denial.denied))
+        return Reading(text, ((_command(does),),), denial.denied)
+    rest = without_request(denial.rest) if denial.denied else denial.rest
+    steps: list[tuple[PlainCommand, ...]] = []
+    notes: list[str] = []
+    rest, hand = _for_all(rest)
+    for clause in commands_in_turn(with_sides(rest)):
+        steps += _steps(clause + hand if hand and limbs_of(clause) == SOME_ARM else clause, notes)
+    if _is_plain(text, said, steps):
+        return Reading(text, ((replace(steps[0][0], text=normalised(text)),),), plain=True)
+    return Reading(text, tuple(steps), denial.denied, tuple(notes))
+
+
+def _known(text: str, command: str) -> Reading:
+    """The reading of an everyday phrase."""
+    return Reading(text, ((PlainCommand(command, Manner(), limbs_of(command)),),))
+
+
+def _for_all(said: str) -> tuple[str, str]:
+    """A sentence without a hand that its end names for all of it: "..., both with the right hand"; and that hand."""
+    found = re.search(r",? (?:both|all)(?: of (?:it|them|that))? (?:with|using) (?:your |the )?(left|right) hand$", said)
+    return (said[: found.start()], f" with your {found[1]} hand") if found else (said, "")
+
+
+def _steps(clause: str, notes: list[str]) -> list[tuple[PlainCommand, ...]]:
+    """The steps of one clause: commands at once, or in turn where they want the same limb."""
+    clause = without_request(clause)
+    at_once = divided(clause)
+    if 1 < len(at_once) <= MOST_AT_ONCE:
+        return [tuple(_command(c) for c in at_once)]
+    follow = same_limbs(clause)
+    if len(follow) > 1:
+        notes.append(f"'{follow[0]}' and '{follow[1]}' move the same limb, so one follows the other")
+        return [(_command(c),) for c in follow]
+    return [(_command(clause),)]
+
+
+def _command(clause: str) -> PlainCommand:
+    rest, manner = manner_of(clause)
+    bare = _PAST.sub(lambda m: base_of(m[0]), without_request(rest))
+    words = rewritten(everyday(bare) or bare)
+    return PlainCommand(words, manner, limbs_of(words))
+
+
+def _is_plain(text: str, said: str, steps: list[tuple[PlainCommand, ...]]) -> bool:
+    """Whether the one command is the sentence itself, but for case and marks at its end."""
+    if len(steps) != 1 or len(steps[0]) != 1 or not steps[0][0].manner.plain:
+        return False
+    return _letters(steps[0][0].text) == _letters(said) == _letters(text)
+
+
+def _letters(text: str) -> str:
+    return re.sub(r"[^a-z0-9]+", " ", text.lower()).strip()

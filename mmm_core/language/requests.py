@@ -1,0 +1,84 @@
+"""Words around a request, everyday phrases and the words that the model knows for others: three tables and their use."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
+from mmm_core.language.word_tables import lines, substitutions
+
+_ACT = (
+    r"(?:also |just |please |can you |could you )*(?:wave|nod|bow|clap|shrug|salute|point|punch|shake|cross|fold|raise|lift|look|lean|beckon|hug|stretch|twist|tilt|cheer|pray|scratch|rub|pat|"
+    r"knock|push|pull|throw|catch|flap|march|dance|drum|circle|spread|open|touch|cover|blow|wipe|stir|applaud|conduct|greet|swing|bend|turn|reach|make|give|take|do|"
+    r"play|act|show|strike|flex|lower|put|hold|shade|celebrate|throw|welcome|thank|say|tell|hush|call|flex|pretend|move|bring|let us see you|sway|duck|facepalm)\b"
+)
+_END = re.compile(r"[\s,.!?;:]+$")
+
+
+@cache
+def _frames() -> tuple[tuple[re.Pattern[str], ...], tuple[re.Pattern[str], ...]]:
+    """Patterns at the front and at the end of a request."""
+    patterns = [line.replace("@ACT", _ACT) for line in lines("frames")]
+    front = tuple(re.compile(p) for p in patterns if p.startswith("^"))
+    return front, tuple(re.compile(p) for p in patterns if not p.startswith("^"))
+
+
+@cache
+def without_request(said: str) -> str:
+    """A sentence in lower case without the words around what it asks for; the sentence itself where nothing would be left.
+
+    >>> without_request("could you please wave for me"), without_request("i would love it if you could bow")
+    ('wave', 'bow')
+    """
+    front, back = _frames()
+    rest, before = said.strip(), ""
+    while rest != before:
+        before = rest
+        for pattern in front:
+            rest = _kept(rest, pattern.sub("", rest, count=1))
+        for pattern in back:
+            rest = _kept(rest, pattern.sub("", rest, count=1))
+    return _gerund_request(rest)
+
+
+def _kept(before: str, after: str) -> str:
+    after = after.strip(" ,")
+    return after if re.search(r"[a-z]{2,}", after) else before
+
+
+def _gerund_request(rest: str) -> str:
+    """ "shaking your head" -> "shake your head" at the front of a request."""
+    from mmm_core.language.at_once import base_of
+
+    found = re.match(r"^(?:you )?(\w+ing)\b(?= (?:your|the|to|at|with|me|down|up|and|goodbye|a|an)\b|$)", rest)
+    if found is None or not SPEAKS_OF_AN_ACT.match(found[1]):
+        return rest
+    return base_of(found[1]) + rest[found.end() :]
+
+
+@cache
+def everyday(said: str) -> str:
+    """The plain command that an everyday phrase means, "" where it is none.
+
+    >>> everyday("say hello"), everyday("say hello to my little friend")
+    ('wave your right hand', 'wave your right hand')
+    """
+    bare = _END.sub("", said).strip()
+    bare = re.sub(r"\s*[,.!?;:]+\s*", " ", bare) if not re.search(r",", bare) else bare
+    for pattern, words in _everyday():
+        if pattern.fullmatch(bare):
+            return words
+    return ""
+
+
+@cache
+def _everyday() -> tuple[tuple[re.Pattern[str], str], ...]:
+    return substitutions("everyday")
+
+
+def rewritten(clause: str) -> str:
+    """A clause with words that the model knows in place of others that mean the same."""
+    for pattern, words in substitutions("rewrites"):
+        clause = pattern.sub(words, clause)
+    return clause

@@ -1,0 +1,166 @@
+"""Text as people type and speak it -> the same text in plain spelling: chat words, fillers, restarts, homophones and slips.
+
+A word that is spelt right stays: every word of the corpus, and the 40,000 commonest of English. A slip is mended to the
+nearest corpus word by optimal string alignment, a Damerau-Levenshtein distance (rapidfuzz, MIT); of equally near words to the
+one that the corpus says most.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from functools import cache
+
+from rapidfuzz import process
+from rapidfuzz.distance import OSA
+
+from mmm_core.language.word_tables import lines, pairs, substitutions
+
+MOST_SLIPS = {3: 1, 4: 1, 5: 2}
+"""Letters of a word: greatest distance to the word that was meant; longer words 2."""
+NEAR_ENOUGH = 1.7
+"""Greatest weighted distance of a slip to its word."""
+_WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
+_FILLER = r"(?:u+h+m*|u+m+|e+r+m*|h+m+|ah+|eh+)"
+_RESTART = re.compile(rf"\b(\w+(?: \w+){{0,2}}),? (?:{_FILLER}|i mean|sorry|no wait)(?:,|\.{{2,}})? (?=\1\b)", re.IGNORECASE)
+_STUTTER = re.compile(r"\b(the|your|to|with|a|and|then|left|right|hand|arm|raise|turn|look|wave|lift|put|clap|nod|bow|shrug|point)(?:,|\.{2,}|-)? (?=\1\b)(?!\1 (?:and|then) \1)", re.IGNORECASE)  # fmt: skip
+_FILLERS = re.compile(rf"(?:^|(?<=[\s,.]))(?:{_FILLER}|you know|i mean|kinda|sorta)(?:\s*,|\s*\.{{2,}})?(?:\s+|$)", re.IGNORECASE)
+_DRAWN_OUT = re.compile(r"([a-z])\1{2,}", re.IGNORECASE)
+_MARKS = str.maketrans({"’": "'", "‘": "'", "“": '"', "”": '"', "–": "-", "—": ", ", "…": "... ", "´": "'", "`": "'"})  # noqa: RUF001
+_FIRST_LETTER, _EXCHANGED, _OTHER_KEY = 0.35, 0.25, 0.35
+"""Weights: another first letter; two letters that change places, which costs less than one lost or added; one letter for another
+that is neither a neighbour on the keyboard nor a vowel for a vowel."""
+_ENDINGS = re.compile(r"(?:ing|ed|er|es|s|ly)$")
+_ROWS = ("qwertyuiop", "asdfghjkl", "zxcvbnm")
+_NEIGHBOURS = {
+    key: "".join(other[max(0, i - 1) : i + 2] for other in _ROWS[max(0, r - 1) : r + 2])
+    for r, row in enumerate(_ROWS)
+    for i, key in enumerate(row)
+}
+"""Keys beside, above and below each key."""
+_RARE = 0.35
+"""Weight of how rare a word is in the corpus, from 0, the commonest, to 1."""
+
+
+def normalised(text: str) -> str:
+    """Text with one form of each quote and dash, single blanks, and no letters drawn out.
+
+    >>> normalised("wave  —  sloooowly")
+    'wave , slowly'
+    """
+    plain = unicodedata.normalize("NFKC", text).translate(_MARKS)
+    plain = _DRAWN_OUT.sub(_shortened, plain)
+    return " ".join(plain.split())
+
+
+def _shortened(found: re.Match[str]) -> str:
+    """A drawn-out letter twice where the word has it twice, else once: "loook" -> "look", "stooop" -> "stop" by `mended`."""
+    return found[1] * 2 if found[1].lower() in "oeh" else found[1]
+
+
+def mended(text: str) -> str:
+    """Text in lower case with chat words, fillers, restarts, homophones and slips mended; punctuation stays.
+
+    >>> mended("bwo deeply pls"), mended("wave um wave your left hand"), mended("Rays your write hand")
+    ('bow deeply please', 'wave your left hand', 'raise your right hand')
+    """
+    said = normalised(text).lower()
+    said = _chat(said)
+    said = _RESTART.sub("", said)
+    said = _FILLERS.sub("", said)
+    said = _STUTTER.sub("", said)
+    said = _homophones(said)
+    said = _slips(said)
+    return " ".join(_homophones(said).split())
+
+
+def _slips(said: str) -> str:
+    """A text whose slips are mended; it stays as it is where most words are unknown and one of them is near no word."""
+    words = _WORD.findall(said)
+    unknown = [word for word in words if not _is_right(word)]
+    foreign = 2 * len(unknown) >= len(words) and any(mended_word(word) == word for word in unknown)
+    return said if foreign else _WORD.sub(lambda found: mended_word(found[0]), said)
+
+
+def _chat(said: str) -> str:
+    words = dict(pairs("chat"))
+    tokens = [_chat_word(token, words) for token in said.split(" ")]
+    return " ".join(tokens)
+
+
+def _chat_word(token: str, words: dict[str, str]) -> str:
+    bare = token.strip(",.!?;:\"()")
+    if bare not in words or not bare:
+        return token
+    start = token.index(bare)
+    return token[:start] + words[bare] + token[start + len(bare) :]
+
+
+def _homophones(said: str) -> str:
+    for pattern, words in substitutions("homophones"):
+        said = pattern.sub(words, said)
+    return said
+
+
+@cache
+def _right() -> frozenset[str]:
+    return frozenset(lines("english_words") + lines("corpus_words") + lines("also_right"))
+
+
+def _is_right(word: str) -> bool:
+    """Whether a word or what it is inflected from is spelt right, or too short or strange to be judged."""
+    if len(word) < 3 or "'" in word or not word.isascii() or word in _right():
+        return True
+    ending = _ENDINGS.search(word)
+    stem = word[: ending.start()] if ending else ""
+    return len(stem) > 2 and (stem in _right() or f"{stem}e" in _right() or (ending is not None and ending[0] in ("ing", "ed", "er") and stem[-1] == stem[-2] and stem[:-1] in _right()))
+
+
+@cache
+def _meant() -> dict[str, float]:
+    """Words that a slip is mended to, with how rare each is in the corpus, from 0 to 1, by the logarithm of its rank."""
+    words = lines("corpus_words")
+    return {word: math.log(i + 1) / math.log(len(words)) for i, word in enumerate(words)}
+
+
+@cache
+def _by_length() -> dict[int, list[str]]:
+    found: dict[int, list[str]] = {}
+    for word in _meant():
+        found.setdefault(len(word), []).append(word)
+    return found
+
+
+@cache
+def mended_word(word: str) -> str:
+    """The word, or the corpus word that it is a slip of.
+
+    >>> mended_word("shurg"), mended_word("hnads"), mended_word("Grandma"), mended_word("tango")
+    ('shrug', 'hands', 'Grandma', 'tango')
+    """
+    lower = word.lower()
+    if _is_right(lower):
+        return word
+    most = MOST_SLIPS.get(len(lower), 2)
+    near = [w for n in range(len(lower) - most, len(lower) + most + 1) for w in _by_length().get(n, ())]
+    found = process.extract(lower, near, scorer=OSA.distance, score_cutoff=most, limit=None)
+    ranked = sorted((_cost(lower, str(meant), int(distance)), str(meant)) for meant, distance, _ in found)
+    return ranked[0][1] if ranked and ranked[0][0] <= NEAR_ENOUGH else word
+
+
+def _cost(word: str, meant: str, distance: int) -> float:
+    cost = float(distance) + _RARE * _meant()[meant]
+    if word[0] != meant[0]:
+        cost += _FIRST_LETTER
+    if len(word) == len(meant):
+        if sorted(word) == sorted(meant):
+            cost -= _EXCHANGED
+        else:
+            cost += sum(_OTHER_KEY for a, b in zip(word, meant, strict=True) if a != b and not _mixed_up(a, b))
+    return cost
+
+
+def _mixed_up(a: str, b: str) -> bool:
+    """Whether one letter is often typed for the other."""
+    return {a, b} <= set("aeiouy") or b in _NEIGHBOURS.get(a, "")
