@@ -86,7 +86,10 @@ def seen_at_once(commands: Sequence[Command], shown: PostureFeatures) -> bool:
 
 
 def evaluate_sentences(
-    generate: Generate, plain: Generate, sentences: Sequence[Sentence], seeds: Sequence[int],
+    generate: Generate,
+    plain: Generate,
+    sentences: Sequence[Sentence],
+    seeds: Sequence[int],
     progress: Callable[[int], None] = lambda _n: None,
 ) -> dict[str, Any]:
     """Shares of expectations met over all sentences and seeds, of whole sentences by kind, and the sentences missed most.

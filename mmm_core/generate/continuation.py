@@ -11,14 +11,17 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import GenerationError
+from mmm_core.generate.at_once import composed
 from mmm_core.generate.editing import TOKEN_S
 from mmm_core.generate.engine import Engine
+from mmm_core.generate.interpretation import interpret
 from mmm_core.generate.motion_model import check_seed
 from mmm_core.generate.result import GenerationResult, StageTimer, no_motion, understood_as
-from mmm_core.generate.sequence import COMMAND_STRIDE, Command, commands_of, joined
+from mmm_core.generate.sequence import COMMAND_STRIDE, TOGETHER_STRIDE, Step, joined, steps_of, stretches_of
 from mmm_core.model.sampling import empty_row, fill
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, frames_for_seconds
 from mmm_core.motion.motion import FPS, Motion
+from mmm_core.motion.performing import performed
 
 LONGEST_PREFIX_TOKENS = 8
 """Tokens of the longest prefix, 1.6 s: our choice; from four tokens on the motion follows its text less (docs/daemon.md)."""
@@ -50,29 +53,42 @@ def continue_motion(
         longest_s = LONGEST_PREFIX_TOKENS * TOKEN_S
         raise GenerationError(asked, f"{TOKEN_S:g} to {longest_s:g} s, and no more than there is")
     timer = StageTimer()
-    states, verdict = engine.understand(text)
+    with torch.inference_mode():
+        read = interpret(engine, text, fresh=False)
+    verdict = read.verdict
     timer.lap("text")
     if verdict.status == "rejected":
-        return GenerationResult(no_motion(text, seed, verdict), understood_as(verdict), verdict.reason, timer.laps_ms)
+        nothing = no_motion(text, seed, verdict)
+        return GenerationResult(nothing, understood_as(verdict), verdict.reason, timer.laps_ms, read=read.reading)
     with torch.inference_mode():
-        commands = commands_of(engine, verdict.kept or text, states, n_frames)
-        prefix = ids_before[len(ids_before) - min(n_prefix, MAX_TOKENS - commands[0].n_tokens) :]
+        steps = steps_of(engine, read, n_frames)
+        prefix = ids_before[len(ids_before) - min(n_prefix, MAX_TOKENS - steps[0].n_tokens) :]
         rows = [
-            _row(engine, ids_before[:0] if i else prefix, c, (seed + i * COMMAND_STRIDE) % 2**31)
-            for i, c in enumerate(commands)
+            _row(engine, ids_before[:0] if i else prefix, step, (seed + i * COMMAND_STRIDE) % 2**31)
+            for i, step in enumerate(steps)
         ]
-        ids = joined(engine, commands, rows, seed)
+        ids = joined(engine, steps, rows, seed)
         timer.lap("decode")
         whole = engine.model.tokenizer.decode(torch.cat([ids_before, ids])[None])[0]
-        features = whole[len(ids_before) * FRAMES_PER_TOKEN :][:n_frames].numpy()
-        motion = engine.motion_of_features(features, ids, text, seed, verdict)
+        features = whole[len(ids_before) * FRAMES_PER_TOKEN :]
+        stretches = stretches_of(steps, [len(row) for row in rows])
+        if any(not s.plain for s in stretches):
+            features = performed(features.numpy(), stretches)[0]
+            motion = engine.motion_of(features, text, seed, verdict, n_frames)
+        else:
+            motion = engine.motion_of_features(features[:n_frames].numpy(), ids, text, seed, verdict)
         timer.lap("motion")
-    several = ", then ".join(c.understood for c in commands) if len(commands) > 1 else understood_as(verdict)
-    return GenerationResult(motion, several, verdict.reason, timer.laps_ms)
+    one = len(steps) == 1 and len(steps[0].commands) == 1
+    several = understood_as(verdict) if one else ", then ".join(s.understood for s in steps)
+    return GenerationResult(motion, several, verdict.reason, timer.laps_ms, read=read.reading)
 
 
-def _row(engine: Engine, prefix: Tensor, command: Command, seed: int) -> Tensor:
-    """(n_tokens, C) ids of a command, generated after the ids of the prefix."""
+def _row(engine: Engine, prefix: Tensor, step: Step, seed: int) -> Tensor:
+    """(n_tokens, C) ids of a step, generated after the ids of the prefix."""
     transformer = engine.model.transformer
-    row = torch.cat([prefix, empty_row(transformer, command.n_tokens)])
-    return fill(transformer, command.states, [row], [seed], engine.settings)[0][len(prefix) :]
+    row = torch.cat([prefix, empty_row(transformer, step.n_tokens)])
+    rows = [
+        fill(transformer, c.states, [row], [(seed + k * TOGETHER_STRIDE) % 2**31], engine.settings)[0][len(prefix) :]
+        for k, c in enumerate(step.commands)
+    ]
+    return rows[0] if len(rows) == 1 else composed(engine, step.commands, rows)

@@ -15,15 +15,27 @@ from functools import cached_property
 import torch
 from torch import Tensor
 
+from mmm_core.generate.at_once import composed, mirrored_ids
+from mmm_core.generate.interpretation import ReadCommand, interpret
 from mmm_core.generate.motion_model import MotionModel
 from mmm_core.generate.repetition_editing import ids_of_count
 from mmm_core.generate.result import GenerationResult, StageTimer, no_motion, understood_as
-from mmm_core.generate.sequence import COMMAND_STRIDE, TRANSITION_TOKENS, Command, commands_of, joined
+from mmm_core.generate.sequence import (
+    COMMAND_STRIDE,
+    TOGETHER_STRIDE,
+    TRANSITION_TOKENS,
+    Step,
+    joined,
+    steps_of,
+    stretches_of,
+)
 from mmm_core.language.count_words import count_asked
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill, pseudo_log_likelihood
+from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from mmm_core.motion.motion import FPS
+from mmm_core.motion.performing import Stretch, performed
 from mmm_core.recognition.seen import Scene
 
 OPENING_TOKENS = 2
@@ -47,19 +59,17 @@ class MotionGeneration:
         """Read the text; arguments as in `Engine.generate`, checked."""
         self._engine, self._text, self._seed, self._asked_frames = engine, text, seed, n_frames
         self._timer = StageTimer()
-        states, self._verdict, self._mirrored = engine.understand_fresh(text)
-        self._candidates, self._count = candidates or 1, None
-        self._commands: list[Command] = []
-        if self._verdict.status != "rejected":
-            done = self._verdict.kept or text
-            with torch.inference_mode():
-                read = mirror_words(done) if self._mirrored else done
-                self._commands = commands_of(engine, read, states, n_frames)
-            if candidates != 1 and len(self._commands) == 1 and n_frames is None and engine.model.is_ours:
-                self._count = count_asked(done)
-                self._candidates = candidates or (1 if self._count is None else CANDIDATES_TO_COUNT)
-        n_tokens = sum(c.n_tokens for c in self._commands) + TRANSITION_TOKENS * max(0, len(self._commands) - 1)
+        with torch.inference_mode():
+            self._read = interpret(engine, text)
+            self._steps = steps_of(engine, self._read, n_frames) if self._read.steps else []
+        self._verdict, self._mirrored = self._read.verdict, self._read.is_mirrored
+        self._candidates, self._counts = candidates or 1, [None] * len(self._steps)
+        if candidates != 1 and n_frames is None and engine.model.is_ours:
+            self._counts = [count_asked(s.commands[0].text) if len(s.commands) == 1 else None for s in self._steps]
+        n_tokens = sum(s.n_tokens for s in self._steps) + TRANSITION_TOKENS * max(0, len(self._steps) - 1)
         self.n_frames = n_tokens * FRAMES_PER_TOKEN if n_frames is None else n_frames
+        if len(self._steps) == 1 and n_frames is None:
+            self.n_frames = round(self.n_frames / self._steps[0].manner.tempo)
         self._timer.lap("text")
 
     @property
@@ -72,73 +82,102 @@ class MotionGeneration:
     def preview(self) -> GenerationResult | None:
         """The first command's motion after a single decoding step; None where there is no motion or no opening.
 
-        Its first 0.4 s are those of the motion, but for the last frames, which later tokens still change.
+        Its first 0.4 s are those of the motion, but for the last frames, which later tokens still change. Commands at once,
+        and words of size or hold, leave no opening: they depend on the whole motion.
         """
-        if not self.settings.opening or not self._commands:
+        if not self.settings.opening or not self._steps or not self._opens:
             return None
         with torch.inference_mode():
             ids = self._preview_ids
             self._timer.lap("draft")
-            n_frames = self._asked_frames if len(self._commands) == 1 else None
-            return self._result_of(ids, n_frames, "draft motion")
+            n_frames = self._asked_frames if len(self._steps) == 1 else None
+            return self._result_of(ids, stretches_of(self._steps, [len(ids)]), n_frames, "draft motion")
 
     def result(self) -> GenerationResult:
         """The motion, or an empty one and the reason where the text is rejected."""
-        if not self._commands:
+        if not self._steps:
             nothing = no_motion(self._text, self._seed, self._verdict)
-            return GenerationResult(nothing, understood_as(self._verdict), self._verdict.reason, self._timer.laps_ms)
+            understood = understood_as(self._verdict)
+            return GenerationResult(
+                nothing, understood, self._verdict.reason, self._timer.laps_ms, read=self._read.reading
+            )
         with torch.inference_mode():
-            rows = [self._row(i, command) for i, command in enumerate(self._commands)]
-            ids = joined(self._engine, self._commands, rows, self._seed)
+            rows = [self._row(i, step) for i, step in enumerate(self._steps)]
+            ids = joined(self._engine, self._steps, rows, self._seed)
             self._timer.lap("decode")
-            return self._result_of(ids, self._asked_frames, "motion")
+            return self._result_of(
+                ids, stretches_of(self._steps, [len(row) for row in rows]), self._asked_frames, "motion"
+            )
+
+    @property
+    def _opens(self) -> bool:
+        """Whether the first step's preview begins as its motion does."""
+        first = self._steps[0]
+        manner = first.manner
+        return (
+            len(first.commands) == 1 and not first.commands[0].is_mirrored and manner.size == 1.0 and not manner.hold_s
+        )
 
     @cached_property
     def _preview_ids(self) -> Tensor:
         """(n_tokens, C) ids of the first command after one step."""
-        command, one_step = self._commands[0], replace(self.settings, steps=1)
-        row = empty_row(self._engine.model.transformer, command.n_tokens)
-        return self._fill(command, [row], [self._seed], one_step)[0]
+        step, one_step = self._steps[0], replace(self.settings, steps=1)
+        row = empty_row(self._engine.model.transformer, step.n_tokens)
+        return self._fill(step.states, [row], [self._seed], one_step)[0]
 
-    def _row(self, i: int, command: Command) -> Tensor:
-        """(L, C) ids of a command: the candidate nearest to the count that the text names, else the likeliest one."""
-        n, settings = self._candidates, self.settings
-        seeds = [(self._seed + i * COMMAND_STRIDE) % 2**31 + k * CANDIDATE_STRIDE for k in range(n)]
-        row = empty_row(self._engine.model.transformer, command.n_tokens)
-        if n > 1 and i == 0 and settings.opening:  # all candidates begin as the preview does
+    def _row(self, i: int, step: Step) -> Tensor:
+        """(L, C) ids of a step."""
+        rows = [self._command_row(i, k, command, step.n_tokens) for k, command in enumerate(step.commands)]
+        return rows[0] if len(rows) == 1 else composed(self._engine, step.commands, rows)
+
+    def _command_row(self, i: int, k: int, command: ReadCommand, n_tokens: int) -> Tensor:
+        """(L, C) ids of a command: the candidate nearest to the count that its words name, else the likeliest one."""
+        count, settings = self._counts[i], self.settings
+        n = CANDIDATES_TO_COUNT if self._candidates == 1 and count is not None else self._candidates
+        seeds = [
+            (self._seed + i * COMMAND_STRIDE + k * TOGETHER_STRIDE) % 2**31 + c * CANDIDATE_STRIDE for c in range(n)
+        ]
+        row = empty_row(self._engine.model.transformer, n_tokens)
+        if n > 1 and i == 0 and settings.opening and self._opens:  # all candidates begin as the preview does
             row[: settings.opening] = self._preview_ids[: settings.opening]
-        candidates = self._fill(command, [row] * n, seeds, settings)
-        if self._count is not None:
-            return ids_of_count(self._engine, command, candidates, self._count, self._seed)
-        return candidates[0] if n == 1 else self._likeliest(command, candidates)
+        candidates = self._fill(command.states, [row] * n, seeds, settings)
+        if count is not None:
+            ids = ids_of_count(self._engine, command.states, candidates, count, self._seed)
+        else:
+            ids = candidates[0] if n == 1 else self._likeliest(command.states, candidates)
+        return mirrored_ids(self._engine, ids) if command.is_mirrored else ids
 
-    def _likeliest(self, command: Command, candidates: Sequence[Tensor]) -> Tensor:
-        states = command.states.repeated(len(candidates))
-        likely = pseudo_log_likelihood(self._engine.model.transformer, states, candidates)
+    def _likeliest(self, states: TextStates, candidates: Sequence[Tensor]) -> Tensor:
+        likely = pseudo_log_likelihood(self._engine.model.transformer, states.repeated(len(candidates)), candidates)
         return candidates[int(likely.argmax())]
 
     def _fill(
-        self, command: Command, rows: Sequence[Tensor], seeds: Sequence[int], settings: SamplingSettings
+        self, states: TextStates, rows: Sequence[Tensor], seeds: Sequence[int], settings: SamplingSettings
     ) -> list[Tensor]:
-        states = command.states if len(rows) == 1 else command.states.repeated(len(rows))
+        states = states if len(rows) == 1 else states.repeated(len(rows))
         return fill(self._engine.model.transformer, states, rows, seeds, settings)
 
-    def _result_of(self, ids: Tensor, n_frames: int | None, lap: str) -> GenerationResult:
+    def _result_of(self, ids: Tensor, stretches: list[Stretch], n_frames: int | None, lap: str) -> GenerationResult:
         verdict, mirrored = self._verdict, self._mirrored
-        motion = self._engine.motion(ids, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
+        ends = [stretch.end for stretch in stretches]
+        if any(not s.plain for s in stretches):
+            features, ends = performed(self._engine.model.tokenizer.decode(ids[None])[0].numpy(), stretches)
+            motion = self._engine.motion_of(features, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
+        else:
+            motion = self._engine.motion(ids, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
         self._timer.lap(lap)
         understood = understood_as(verdict)
-        if len(self._commands) > 1:
-            several = ", then ".join(c.understood for c in self._commands)
+        if len(self._steps) > 1 or len(self._steps[0].commands) > 1:
+            several = ", then ".join(step.understood for step in self._steps)
             understood = mirror_words(several) if mirrored else several
-        return GenerationResult(motion, understood, verdict.reason, dict(self._timer.laps_ms), self._scenes())
+        timings = dict(self._timer.laps_ms)
+        return GenerationResult(motion, understood, verdict.reason, timings, self._scenes(ends), self._read.reading)
 
-    def _scenes(self) -> tuple[Scene, ...]:
-        """Where each command ends, were it made in full; a transition belongs to the command that it leads to."""
-        found: list[Scene] = []
-        n_tokens = 0
-        for command in self._commands:
-            n_tokens += command.n_tokens + (TRANSITION_TOKENS if found else 0)
-            words = f"{command.text}\n{command.understood or self._verdict.nearest}"
-            found.append(Scene(n_tokens * FRAMES_PER_TOKEN / FPS, words))
-        return tuple(found)
+    def _scenes(self, ends: Sequence[int]) -> tuple[Scene, ...]:
+        """Where each step ends; a transition belongs to the step that it leads to."""
+        if len(ends) < len(self._steps):  # a preview has the first step alone
+            ends = [*ends, *(ends[-1] + s.n_tokens * FRAMES_PER_TOKEN for s in self._steps[len(ends) :])]
+        return tuple(
+            Scene(end / FPS, f"{step.words}\n{step.understood or self._verdict.nearest}")
+            for end, step in zip(ends, self._steps, strict=True)
+        )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -11,8 +10,8 @@ from torch import Tensor
 
 from mmm_core.errors import GenerationError
 from mmm_core.inference.checkpoint import Model
-from mmm_core.language.mirroring import canonical, mirror_words
-from mmm_core.language.scope import ScopeVerdict, clauses_of, with_clauses
+from mmm_core.language.reading import PlainCommand, Reading, read
+from mmm_core.language.scope import ScopeVerdict, clauses_of, unreadable, with_clauses
 from mmm_core.model.clip import ClipText
 from mmm_core.model.sampling import SamplingSettings
 from mmm_core.model.text import TextEncoder, TextStates, strip_emoji
@@ -41,32 +40,32 @@ class MotionModel:
         self.settings = settings
 
     def understand(self, text: str) -> tuple[TextStates, ScopeVerdict]:
-        """States of a text and its scope verdict."""
-        return self.understand_all([text])[0]
+        """States of a text in plain words (`mmm_core.language.reading`) and its scope verdict."""
+        reading = self.reading_of(text)
+        if not reading.steps:
+            return self.read([text]), nothing_to_do(reading)
+        return self.understand_all([reading.words])[0]
 
-    def understand_fresh(self, text: str) -> tuple[TextStates, ScopeVerdict, bool]:
-        """States and scope verdict of a text for a motion that continues no other, and whether to mirror that motion.
+    def verdict(self, text: str, sentence: Tensor) -> ScopeVerdict:
+        """The scope verdict on a text and its unit sentence vector (D,)."""
+        return _without_scope(text) if self.model.scope is None else self.model.scope.judge(text, sentence)
 
-        The model reads only one of a text and its mirror image (`mmm_core.language.mirroring.canonical`), so that the
-        mirrored text gives the mirrored motion. Where a motion continues another, the other decides on left and right.
-        """
-        read, is_mirrored = canonical(text) if self.model.is_ours else (text, False)
-        states, verdict = self.understand(read)
-        if is_mirrored:
-            words = {key: mirror_words(getattr(verdict, key)) for key in ("nearest", "reason", "kept")}
-            verdict = replace(verdict, **words)
-        return states, verdict, is_mirrored
+    def reading_of(self, text: str) -> Reading:
+        """What is read in a text; an imported model is given every text as it is."""
+        if not self.model.is_ours or self.model.scope is None or unreadable(text):
+            return Reading(text, ((PlainCommand(text),),), plain=True)
+        return read(text)
 
     def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
         """States and scope verdicts of several texts, encoded in one batch.
 
-        A text of which only a part can be done (`ScopeVerdict.kept`) has the states of that part.
+        Texts are taken as they stand. A text of which only a part can be done (`ScopeVerdict.kept`) has the states of that part.
         """
         states = self.read(texts)
         scope = self.model.scope
         if scope is None:
             return [(states.row(i), _without_scope(text)) for i, text in enumerate(texts)]
-        verdicts = [scope.judge(text, sentence) for text, sentence in zip(texts, states.sentence, strict=True)]
+        verdicts = [self.verdict(text, sentence) for text, sentence in zip(texts, states.sentence, strict=True)]
         clauses = [clauses_of(text) if scope.classifier is not None else [] for text in texts]
         read = [clause for several in clauses for clause in several]
         if read:
@@ -120,6 +119,24 @@ class MotionModel:
             features = whole[:n_frames].numpy()
         return self.motion_of_features(features, ids, text, seed, verdict)
 
+    def motion_of(
+        self,
+        features: np.ndarray,
+        text: str,
+        seed: int,
+        verdict: ScopeVerdict,
+        n_frames: int | None = None,
+        *,
+        is_mirrored: bool = False,
+    ) -> Motion:
+        """The motion of features (T, 263) that no ids were decoded to; it carries the ids that they encode to."""
+        features = (mirror(features) if is_mirrored else features)[:n_frames]
+        over = -len(features) % FRAMES_PER_TOKEN
+        padded = np.concatenate([features, np.repeat(features[-1:], over, 0)]).astype(np.float32)
+        with torch.inference_mode():
+            ids = self.model.tokenizer.encode(torch.from_numpy(padded)[None])[0]
+        return self.motion_of_features(features, ids, text, seed, verdict)
+
     def motion_of_features(
         self, features: np.ndarray, ids: Tensor, text: str, seed: int, verdict: ScopeVerdict, start: Root | None = None
     ) -> Motion:
@@ -155,6 +172,12 @@ class MotionModel:
             raise GenerationError("a motion without features or tokens was given", "one written by `mmmd generate`")
         with torch.inference_mode():
             return tokenizer.encode(torch.from_numpy(motion.features[None, :n_frames]))[0]
+
+
+def nothing_to_do(reading: Reading) -> ScopeVerdict:
+    """The verdict on a text that only says what not to do."""
+    denied = "', '".join(reading.denied)
+    return ScopeVerdict("rejected", 0.0, "", f"nothing is to be done: it only says not to do '{denied}'")
 
 
 def check_seed(seed: int) -> None:

@@ -16,9 +16,9 @@ import torch
 from torch import Tensor
 
 from mmm_core.generate.motion_model import MotionModel
-from mmm_core.generate.sequence import Command
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.model.sampling import fill
+from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.motion.repetitions import Strokes, strokes_of
 
@@ -34,17 +34,15 @@ _UNCLEAR, _NONE, _PER_MISFIT = 0.5, 3.0, 0.8
 _TAKEN = ScopeVerdict("accepted", 1.0, "", "")
 
 
-def ids_of_count(engine: MotionModel, command: Command, made: Sequence[Tensor], count: int, seed: int) -> Tensor:
-    """(L, C) ids of a command that names `count` strokes: the best of the candidates (n_tokens, C), edited towards that count."""
+def ids_of_count(engine: MotionModel, states: TextStates, made: Sequence[Tensor], count: int, seed: int) -> Tensor:
+    """(L, C) ids of a command of these states that names `count` strokes: the best of the candidates (n_tokens, C), edited towards that count."""
     transformer = engine.model.transformer
     features = engine.model.tokenizer.decode(torch.stack(list(made))).numpy()
-    motions = [
-        engine.motion_of_features(f, ids, command.text, seed, _TAKEN) for f, ids in zip(features, made, strict=True)
-    ]
+    motions = [engine.motion_of_features(f, ids, "", seed, _TAKEN) for f, ids in zip(features, made, strict=True)]
     ids, strokes = min(zip(made, map(strokes_of, motions), strict=True), key=lambda pair: _far_from(count, pair[1]))
     row = None if strokes is None else with_count(ids, strokes, count, transformer.ids.mask)
     at_once = replace(engine.settings, steps=1)
-    return ids if row is None else fill(transformer, command.states, [row], [seed], at_once)[0]
+    return ids if row is None else fill(transformer, states, [row], [seed], at_once)[0]
 
 
 def with_count(ids: Tensor, strokes: Strokes, count: int, mask_id: int) -> Tensor | None:

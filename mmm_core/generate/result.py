@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mmm_core.language.reading import Reading
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.motion.motion import FPS, N_FEATURES, N_JOINTS, Motion
 from mmm_core.recognition.seen import Scene
@@ -22,6 +23,7 @@ class GenerationResult:
         reason: why the text was degraded or rejected, else empty.
         timings_ms: milliseconds spent in each stage.
         scenes: the motion's parts and the words that each was made for; empty where it is one.
+        read: the commands that were read in the text; None where nothing was read.
     """
 
     motion: Motion
@@ -29,6 +31,7 @@ class GenerationResult:
     reason: str
     timings_ms: dict[str, float]
     scenes: tuple[Scene, ...] = ()
+    read: Reading | None = None
 
     @property
     def status(self) -> str:

@@ -1,6 +1,6 @@
-"""Commands done one after another in one motion: a row of ids for each, and generated transitions between them.
+"""Steps done one after another in one motion: a row of ids for each, and generated transitions between them.
 
-A text of several commands (`mmm_core.language.clauses`) and a story (`mmm_core.generate.story`) both use it. Transitions:
+A text of several commands (`mmm_core.language.reading`) and a story (`mmm_core.generate.story`) both use it. Transitions:
 MMM (arXiv 2312.03596) sec. 3.3, a few masked tokens filled with the end of one motion and the beginning of the next as
 context.
 """
@@ -14,63 +14,104 @@ from itertools import pairwise
 import torch
 from torch import Tensor
 
+from mmm_core.generate.interpretation import Interpreted, ReadCommand
 from mmm_core.generate.motion_model import MotionModel
-from mmm_core.generate.result import understood_as
-from mmm_core.language.clauses import commands_in_turn
+from mmm_core.language.manner import Manner
 from mmm_core.model.sampling import fill
 from mmm_core.model.text import TextStates
-from mmm_core.model.tokens import MAX_TOKENS, tokens_for_frames
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, tokens_for_frames
+from mmm_core.motion.performing import Stretch
 
 TRANSITION_TOKENS = 2
 """Tokens generated between two commands: 0.4 s, as in the released model."""
 FEWEST_TOKENS = 4
 """Tokens that a command among several keeps at least, however short the whole motion is to be."""
 COMMAND_STRIDE = 15_485_863
-"""Distance between the seeds of a text's commands."""
+"""Distance between the seeds of a text's steps."""
+TOGETHER_STRIDE = 1_299_709
+"""Distance between the seeds of commands that are done at the same time."""
 
 
 @dataclass(frozen=True)
-class Command:
-    """One of the commands of a text.
+class Step:
+    """Commands of a text that are done at the same time.
 
     Attributes:
-        text: the command's words.
-        states: the text encoder's states of these words.
-        n_tokens: length of the command's motion.
-        understood: the nearest known command and its score; empty for a text of one command.
+        commands: one or more.
+        n_tokens: length of their motion.
     """
 
-    text: str
-    states: TextStates
+    commands: tuple[ReadCommand, ...]
     n_tokens: int
-    understood: str = ""
+
+    @property
+    def manner(self) -> Manner:
+        """The manner of the step: the strongest that one of its commands names."""
+        manners = [c.manner for c in self.commands]
+        return Manner(
+            max((m.tempo for m in manners), key=lambda f: abs(f - 1)),
+            max((m.size for m in manners), key=lambda f: abs(f - 1)),
+            max(m.hold_s for m in manners),
+        )
+
+    @property
+    def words(self) -> str:
+        """The words of its commands."""
+        return " and ".join(c.text for c in self.commands)
+
+    @property
+    def understood(self) -> str:
+        """The nearest known commands and their scores; empty for a text of one command."""
+        return " and ".join(c.understood for c in self.commands if c.understood)
+
+    @property
+    def states(self) -> TextStates:
+        """States of its first command."""
+        return self.commands[0].states
 
 
-def commands_of(engine: MotionModel, text: str, states: TextStates, n_frames: int | None) -> list[Command]:
-    """Commands of a text, in order. A text stays one command where a part of it, read alone, would be rejected.
+def steps_of(engine: MotionModel, read: Interpreted, n_frames: int | None) -> list[Step]:
+    """The steps of a text with their lengths.
 
     Args:
-        engine: reads the parts and predicts their lengths.
-        text: the part of a user's text that is carried out, as the model reads it.
-        states: states of the whole `text`.
-        n_frames: length of the whole motion, shared in proportion to the commands' own lengths; None lets the model
-            choose.
+        engine: predicts the lengths.
+        read: the text.
+        n_frames: length of the whole motion, shared in proportion to the steps' own lengths; None lets the model choose.
 
     Raises:
         GenerationError: `n_frames` is None and the model has no length predictor.
     """
-    parts = commands_in_turn(text) if engine.model.scope is not None else []
-    if len(parts) > 1:
-        read = engine.understand_all(parts)
-        between = TRANSITION_TOKENS * (len(parts) - 1)
-        room = (MAX_TOKENS if n_frames is None else tokens_for_frames(n_frames)) - between
-        if room >= FEWEST_TOKENS * len(parts) and all(v.status != "rejected" for _, v in read):
-            own = [tokens_for_frames(engine.predicted_frames(s)) for s, _ in read]
-            if n_frames is not None or sum(own) > room:
-                own = shared_out(room, own)
-            return [Command(t, s, n, understood_as(v)) for t, (s, v), n in zip(parts, read, own, strict=True)]
-    n_frames = engine.predicted_frames(states) if n_frames is None else n_frames
-    return [Command(text, states, tokens_for_frames(n_frames))]
+    steps = read.steps
+    if len(steps) == 1 and len(steps[0]) == 1:
+        command = steps[0][0]
+        own = engine.predicted_frames(command.states) if n_frames is None else _before_tempo(n_frames, command.manner)
+        return [Step(steps[0], tokens_for_frames(own))]
+    lengths = [max(tokens_for_frames(engine.predicted_frames(c.states)) for c in step) for step in steps]
+    room = (MAX_TOKENS if n_frames is None else tokens_for_frames(n_frames)) - TRANSITION_TOKENS * (len(steps) - 1)
+    if room < FEWEST_TOKENS * len(steps):
+        kept = max(1, (room + TRANSITION_TOKENS) // (FEWEST_TOKENS + TRANSITION_TOKENS))
+        steps, lengths = steps[:kept], lengths[:kept]
+        room = max(FEWEST_TOKENS * kept, room)
+    if n_frames is not None or sum(lengths) > room:
+        lengths = shared_out(room, lengths)
+    return [Step(step, n) for step, n in zip(steps, lengths, strict=True)]
+
+
+def stretches_of(steps: Sequence[Step], n_tokens: Sequence[int]) -> list[Stretch]:
+    """Frames of a motion in the manner of each step, given the lengths of the first rows; a transition goes with the step that it
+    leads to.
+    """
+    found: list[Stretch] = []
+    for i, (n, step) in enumerate(zip(n_tokens, steps, strict=False)):
+        start = found[-1].end if found else 0
+        end = start + (n + (TRANSITION_TOKENS if i else 0)) * FRAMES_PER_TOKEN
+        found.append(Stretch(start, end, step.manner.tempo, step.manner.size, step.manner.hold_s))
+    return found
+
+
+def _before_tempo(n_frames: int, manner: Manner) -> int:
+    """Frames that a motion has before its tempo brings it to `n_frames`."""
+    return max(FRAMES_PER_TOKEN, min(MAX_TOKENS * FRAMES_PER_TOKEN, round(n_frames * manner.tempo)))
 
 
 def shared_out(room: int, wanted: Sequence[int]) -> list[int]:
@@ -80,9 +121,9 @@ def shared_out(room: int, wanted: Sequence[int]) -> list[int]:
     return [FEWEST_TOKENS + end - start for start, end in pairwise([0, *ends])]
 
 
-def joined(engine: MotionModel, commands: Sequence[Command], rows: Sequence[Tensor], seed: int) -> Tensor:
-    """(L, C) ids of the commands' rows and the transitions between them."""
-    between = transitions(engine, rows, [c.states for c in commands], seed)
+def joined(engine: MotionModel, steps: Sequence[Step], rows: Sequence[Tensor], seed: int) -> Tensor:
+    """(L, C) ids of the steps' rows and the transitions between them."""
+    between = transitions(engine, rows, [s.states for s in steps], seed)
     ids = rows[0]
     for hole, row in zip(between, rows[1:], strict=True):
         ids = torch.cat([ids, hole, row])

@@ -15,17 +15,28 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import GenerationError
+from mmm_core.generate.at_once import composed
 from mmm_core.generate.engine import Engine
+from mmm_core.generate.interpretation import ReadCommand, interpret_all
 from mmm_core.generate.motion_model import check_seed
 from mmm_core.generate.result import no_motion
-from mmm_core.generate.sequence import COMMAND_STRIDE, Command, commands_of, joined, transitions
+from mmm_core.generate.sequence import (
+    COMMAND_STRIDE,
+    TOGETHER_STRIDE,
+    Step,
+    joined,
+    steps_of,
+    stretches_of,
+    transitions,
+)
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.model.sampling import empty_row, fill
 from mmm_core.model.streaming_decoder import StreamingDecoder
 from mmm_core.model.text import TextStates
-from mmm_core.model.tokens import frames_for_seconds
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, frames_for_seconds
 from mmm_core.motion.features import Root, root_after
 from mmm_core.motion.motion import FPS, Motion
+from mmm_core.motion.performing import performed
 
 READ_AHEAD = 8
 """Scenes generated in one batch, once the first scene has been given."""
@@ -45,7 +56,7 @@ class Scene:
 class _Segment:
     scene: Scene
     verdict: ScopeVerdict
-    commands: list[Command]  # none when rejected
+    steps: list[Step]  # none when rejected
     ids: Tensor  # (L, C)
 
 
@@ -132,9 +143,9 @@ def continue_story(
         made = _segments(engine, [(state.n_scenes, scene)], seed)[0]
         verdict = made.verdict
         if len(made.ids):
-            text, command, segment, new = scene.text, made.commands[-1].text, made.ids, made.ids
+            text, command, segment, new = scene.text, made.steps[-1].commands[0].text, made.ids, made.ids
             if len(before):
-                said = Command(state.command, engine.understand(state.command)[0], len(before))
+                said = Step((ReadCommand(state.command, engine.read([state.command])),), len(before))
                 left = _Segment(Scene(state.text), verdict, [said], before)
                 new = torch.cat([*_between(engine, [left, made], seed), made.ids])
     features = torch.cat([decoder.push(new), *([decoder.finish()] if last else [])]).numpy()
@@ -163,7 +174,7 @@ def _ids_of(rows: list[list[int]], n_codebooks: int, n_codes: int) -> Tensor:
 
 def _between(engine: Engine, segments: list[_Segment], seed: int) -> list[Tensor]:
     """(2, C) ids between neighbouring segments."""
-    return transitions(engine, [s.ids for s in segments], [s.commands[-1].states for s in segments], seed)
+    return transitions(engine, [s.ids for s in segments], [s.steps[-1].states for s in segments], seed)
 
 
 def _batches(scenes: Iterable[Scene]) -> Iterator[list[tuple[int, Scene]]]:
@@ -177,29 +188,42 @@ def _batches(scenes: Iterable[Scene]) -> Iterator[list[tuple[int, Scene]]]:
 
 def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> list[_Segment]:
     """A segment for each scene; the commands of all scenes are generated in one batch."""
-    understood = engine.understand_all([scene.text for _, scene in scenes])
-    asked: list[list[Command]] = []
+    with torch.inference_mode():
+        read = interpret_all(engine, [scene.text for _, scene in scenes], fresh=False)
+    asked: list[list[Step]] = []
     seeds: list[int] = []
-    for (number, scene), (states, verdict) in zip(scenes, understood, strict=True):
-        if verdict.status == "rejected":
-            asked.append([])
-            continue
+    for (number, scene), one in zip(scenes, read, strict=True):
         n_frames = None if scene.seconds is None else frames_for_seconds(scene.seconds, FPS)
-        asked.append(commands_of(engine, verdict.kept or scene.text, states, n_frames))
-        seeds += [(seed + SCENE_STRIDE * number + COMMAND_STRIDE * i) % 2**31 for i in range(len(asked[-1]))]
-    rows = [empty_row(engine.model.transformer, c.n_tokens) for commands in asked for c in commands]
-    texts = [c.states for commands in asked for c in commands]
+        asked.append(steps_of(engine, one, n_frames) if one.steps else [])
+        begin = seed + SCENE_STRIDE * number
+        seeds += [
+            (begin + COMMAND_STRIDE * i + TOGETHER_STRIDE * k) % 2**31
+            for i, step in enumerate(asked[-1])
+            for k, _ in enumerate(step.commands)
+        ]
+    flat = [(c, step) for steps in asked for step in steps for c in step.commands]
+    rows = [empty_row(engine.model.transformer, step.n_tokens) for _, step in flat]
+    texts = [c.states for c, _ in flat]
     made = iter(fill(engine.model.transformer, TextStates.stacked(texts), rows, seeds, engine.settings) if rows else [])
     nothing = torch.zeros(0, engine.model.tokenizer.n_codebooks, dtype=torch.int64)
     return [
-        _Segment(
-            scene,
-            verdict,
-            commands,
-            joined(engine, commands, [next(made) for _ in commands], seed) if commands else nothing,
-        )
-        for (_, scene), (_, verdict), commands in zip(scenes, understood, asked, strict=True)
+        _Segment(scene, one.verdict, steps, _ids(engine, steps, made, seed) if steps else nothing)
+        for (_, scene), one, steps in zip(scenes, read, asked, strict=True)
     ]
+
+
+def _ids(engine: Engine, steps: list[Step], made: Iterator[Tensor], seed: int) -> Tensor:
+    """(L, C) ids of a scene's steps in their manner, given the rows of all commands in order."""
+    rows = [[next(made) for _ in step.commands] for step in steps]
+    whole = [r[0] if len(r) == 1 else composed(engine, s.commands, r) for s, r in zip(steps, rows, strict=True)]
+    ids = joined(engine, steps, whole, seed)
+    stretches = stretches_of(steps, [len(row) for row in whole])
+    if all(s.plain for s in stretches):
+        return ids
+    with torch.inference_mode():
+        features, _ = performed(engine.model.tokenizer.decode(ids[None])[0].numpy(), stretches)
+        n_frames = len(features) // FRAMES_PER_TOKEN * FRAMES_PER_TOKEN
+        return engine.model.tokenizer.encode(torch.from_numpy(features[None, :n_frames]))[0]
 
 
 def check_scenes(scenes: list[Scene]) -> None:

@@ -12,7 +12,9 @@ HEAD, TRUNK = frozenset({"head"}), frozenset({"trunk"})
 SOME_ARM = frozenset({"some_arm"})
 """One arm, whichever is free."""
 _LIMB = r"(?:hands?|arms?|fists?|palms?|fingers?|elbows?|forearms?|biceps|thumbs?)"
-_ARM_SIDE = re.compile(rf"\b(left|right)[- ](?:handed\b|{_LIMB}\b|index finger)|\b(?:with|using|use|in) (?:your |the )?(left|right)\b(?! side)|^(?:your |the )?(left|right) (?:up|out|down|forward|on|to|behind|over)\b")
+_ARM_SIDE = re.compile(
+    rf"\b(left|right)[- ](?:handed\b|{_LIMB}\b|index finger)|\b(?:with|using|use|in) (?:your |the )?(left|right)\b(?! side)|^(?:your |the )?(left|right) (?:up|out|down|forward|on|to|behind|over)\b"
+)
 _BOTH = re.compile(
     r"\bboth\b|\b(?:hands|arms|fists|palms|elbows|forearms|ears|eyes)\b|\b(?:clap|applaud|applause|shrug|hug|embrace|pray|cheer|flap|drum|juggle|zombie|cross your arms|guitar|piano|violin|flute|binoculars|hands on|T pose)"
 )
@@ -29,7 +31,9 @@ _HEAD = re.compile(
 _TRUNK = re.compile(
     r"\b(?:bow|bows|bowing|lean|leans|leaning|bend|bends|bending|sway|sways|swaying|twist|twists|twisting|slump|slouch|curts)\w*\b|\b(?:torso|trunk|upper body|waist twist|body)\b"
 )
-_TRUNK_NOT = re.compile(r"\b(?:bow and arrow|sway (?:your|both) arms|bend (?:your|the|one) (?:left |right )?(?:arm|elbow)|around your body)\b")
+_TRUNK_NOT = re.compile(
+    r"\b(?:bow and arrow|sway (?:your|both) arms|bend (?:your|the|one) (?:left |right )?(?:arm|elbow)|around your body)\b"
+)
 _POSE = re.compile(
     rf"^(?:(?:and|also|with|please) )*(?:rais|lift|hold|keep|put|stretch|cross|fold|cover|shad|rest|plac|lean|look|tilt|turn|twist|point|spread|extend|reach|leav|clasp|lay|have|"
     rf"(?:your |the |both |one )?(?:left |right )?{_LIMB}\b|(?:your |the )?head|gaz|glanc|flex|touch)\w*"
@@ -37,18 +41,30 @@ _POSE = re.compile(
 _ENDS = re.compile(r"\\b(?:bow|bows|curtsy|salute|slump|celebrate)\\b")
 """Verbs of gestures that are done by themselves: "clap and bow" is in turn."""
 _VERB_FIRST = re.compile(r"^(?:also )?(?!(?:left|right|both|your|the|one|hands?|arms?|head|eyes|a|an)\b)\w+")
-_WHILE = re.compile(r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as)\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*")
+_WHILE = re.compile(
+    r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as)\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*"
+)
 _AS_YOU = re.compile(r"\s*,?\s*\bas you(?: are)?\s+")
-_SAME_TIME = re.compile(r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same time|simultaneously|at once|together|in one go|all at once|concurrently)\b[,:]?\s*(?:and )?")
-_LEADING = re.compile(r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$")
+_SAME_TIME = re.compile(
+    r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same time|simultaneously|at once|together|in one go|all at once|concurrently)\b[,:]?\s*(?:and )?"
+)
+_LEADING = re.compile(
+    r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$"
+)
 _WITH_POSE = re.compile(
     rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{_LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to|at|in front|out|up|in|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
 )
 _AND = re.compile(r"\s*,\s*(?:and\s+|but\s+)?(?:also\s+)?|\s+(?:and|plus|but)\s+(?:also\s+)?")
-_FILLER = re.compile(r"^(?:and|also|then|with|keep|keeping|while|please|still)\s+(?=\w+ing\b|your|the|both|left|right)|\s+(?:too|as well|also)$|^(?:also|and)\s+")
-_FRONTED = re.compile(r"^(?:(?:and|with|using) )+(?:your |the )?(left|right)(?: hand| arm)?,? (?!(?:hand|arm|on|up|to|out|over|behind|down|forward|raised|stretched)\b)(\w.+)$")
+_FILLER = re.compile(
+    r"^(?:and|also|then|with|keep|keeping|while|please|still)\s+(?=\w+ing\b|your|the|both|left|right)|\s+(?:too|as well|also)$|^(?:also|and)\s+"
+)
+_FRONTED = re.compile(
+    r"^(?:(?:and|with|using) )+(?:your |the )?(left|right)(?: hand| arm)?,? (?!(?:hand|arm|on|up|to|out|over|behind|down|forward|raised|stretched)\b)(\w.+)$"
+)
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
-_IS = re.compile(r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|stays?|remains?|goes|keeps?|rests?)(?: being| held)? (?P<rest>.+)$")
+_IS = re.compile(
+    r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|stays?|remains?|goes|keeps?|rests?)(?: being| held)? (?P<rest>.+)$"
+)
 
 
 def limbs_of(clause: str) -> frozenset[str]:
@@ -59,7 +75,11 @@ def limbs_of(clause: str) -> frozenset[str]:
     """
     if _HEAD.search(clause) and not re.search(rf"\b{_LIMB}\b", clause):
         return HEAD
-    if _TRUNK.search(clause) and not _TRUNK_NOT.search(clause) and not re.search(rf"\b(?:left|right|your|both|the) {_LIMB}\b", clause):
+    if (
+        _TRUNK.search(clause)
+        and not _TRUNK_NOT.search(clause)
+        and not re.search(rf"\b(?:left|right|your|both|the) {_LIMB}\b", clause)
+    ):
         return TRUNK
     if sided := _ARM_SIDE.search(clause):
         sides = {s for m in _ARM_SIDE.finditer(clause) for s in m.groups() if s}
@@ -74,7 +94,9 @@ def are_at_once(a: str, b: str) -> bool:
     moved = limbs_of(a), limbs_of(b)
     if not _apart(*moved):
         return False
-    if set(moved) == {frozenset({"left_arm"}), frozenset({"right_arm"})} or not (_VERB_FIRST.match(a) and _VERB_FIRST.match(b)):
+    if set(moved) == {frozenset({"left_arm"}), frozenset({"right_arm"})} or not (
+        _VERB_FIRST.match(a) and _VERB_FIRST.match(b)
+    ):
         return True
     return bool(_POSE.match(a)) or not any(_ENDS.search(part) for part in (a, b))
 

@@ -19,7 +19,9 @@ _NOT = (
     r"anything (?:but|except(?: for)?|other than) |do (?:anything|everything|whatever you (?:like|want)) (?:but|except(?: for)?|other than) |"
     r"(?:just |only )?not |in no case |under no circumstances |on no account |by no means |hold off on |no,? not )"
 )
-_DENIES = re.compile(rf"^\W*(?:and |but |so |or |just |please |now |only |ok,? |robot,? |hey,? |well,? |no,? )*{_NOT}(?P<what>.+)$")
+_DENIES = re.compile(
+    rf"^\W*(?:and |but |so |or |just |please |now |only |ok,? |robot,? |hey,? |well,? |no,? )*{_NOT}(?P<what>.+)$"
+)
 _BETWEEN = re.compile(
     r"\s*(?:,\s*(?:and |but )?instead\b,?|[,;:.!]+(?=\s|$)|\s-+\s|\bbut(?= )(?! (?:not|no)\b)(?<!anything but)(?<!everything but)(?<!\bnothing but)(?<!\ball but)"
     r"|\binstead,? (?!of\b)|\binstead$)\s*"
@@ -28,8 +30,12 @@ _INLINE = re.compile(
     r"\s*,?\s*\b(?P<not>instead of|rather than|as opposed to|and not|but not|but without|and never|but never|without(?: using| moving)?|(?:and|but) do not|(?<!do )(?<!is )(?<!am )(?<!are )(?<!will )(?<!can )(?<!did )(?<!does )(?<!would )(?<!it )not(?! only)|and no|but no|(?:just|only) not|except(?: for)?(?: with)?)\s+"
     r"(?P<what>[^,;:.!]+)"
 )
-_GERUND_FIRST = re.compile(r"^\W*(?:instead of|rather than|without) (?P<what>(?:\w+ing)(?: (?:your|the|at|to|with) \w+(?: \w+)?)?|(?:a|an) \w+),? (?=\w)")
-_NOT_A_BUT_B = re.compile(r"^\W*not (?!only\b)(?P<what>(?:an?|the|your|with|to)? ?[^,;]+?),? but (?:rather |instead )?(?P<rest>.+)$")
+_GERUND_FIRST = re.compile(
+    r"^\W*(?:instead of|rather than|without) (?P<what>(?:\w+ing)(?: (?:your|the|at|to|with) \w+(?: \w+)?)?|(?:a|an) \w+),? (?=\w)"
+)
+_NOT_A_BUT_B = re.compile(
+    r"^\W*not (?!only\b)(?P<what>(?:an?|the|your|with|to)? ?[^,;]+?),? but (?:rather |instead )?(?P<rest>.+)$"
+)
 _SIDE_ONLY = re.compile(
     r"^(?:(?:with|use|using|move|moving|raise|lift|touch|from|involve|involving|take|on|wave|the use of)\s+)?(?:your |the |that |my )?(?P<side>left|right)"
     r"(?: (?:hand|arm|one|side|fist|palm))?(?: (?:this time|at all|alone|though|please|either|now))?$"
@@ -42,7 +48,9 @@ _KEEP_STILL = re.compile(
     r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?(?:head|body|trunk|torso|upper body|shoulders|rest of (?:you|your body)|legs|feet|everything else)\s+"
     r"(?:still|straight|alone|out of it|quiet|upright|where it is|where they are),?\s*(?:and\s+)?"
 )
-_DIRECTION_ONLY = re.compile(r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$")
+_DIRECTION_ONLY = re.compile(
+    r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$"
+)
 _WAVED_ASIDE = re.compile(
     r"^(?:that (?:one|arm|hand|side|way)|this (?:one|arm|hand|side|way)|the other(?: one| way| hand| arm)?|it|that|the opposite|so|like that|"
     r"be (?:shy|afraid|silly|scared|rude|lazy|so \w+)|worry|mind|wait|hesitate)$"
@@ -51,7 +59,9 @@ _NO_DENIAL = re.compile(
     r"^\W*(?:do not (?:stop|forget to|hesitate to|be (?:shy|afraid))|never (?:stop|give up)|not only\b|no (?:idea|clue|problem|thanks|way|matter|doubt|one)\b|"
     r"stop (?:sign|gesture|me\b|us\b|the traffic|traffic|them\b|him\b|her\b|here|there|signal|with)|no[, ]+no\b|not (?:bad|sure|yet|until|before))"
 )
-_KEEP_DOING = re.compile(r"^\W*(?:please )?(?:do not|never) stop (?P<rest>\w.+)$|^\W*(?:please )?do not (?:forget|hesitate) to (?P<other>.+)$")
+_KEEP_DOING = re.compile(
+    r"^\W*(?:please )?(?:do not|never) stop (?P<rest>\w.+)$|^\W*(?:please )?do not (?:forget|hesitate) to (?P<other>.+)$"
+)
 _ACTS_ALSO = re.compile(
     r"\b(?:clap|bow|nod|wave|salut|point|rais|lift|shrug|shak|lean|cross|lower|mov|lookin?g?|danc|cheer|hand|arm|head|fist|finger|beckon|applau|punch|kneel|turn|tilt|touch|cover|hug|stretch|greet|twist|sway|rub|pat|fold|gestur)\w*"
 )
@@ -120,7 +130,9 @@ def without_denial(text: str) -> Denial:
                 side = only["side"] if only else side
                 denied.append(what)
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
-        if not re.fullmatch(r"(?:the|use the|with the|use) other(?: one| hand| arm| way)?|instead|(?:and |but )?that is it", clause):
+        if not re.fullmatch(
+            r"(?:the|use the|with the|use) other(?: one| hand| arm| way)?|instead|(?:and |but )?that is it", clause
+        ):
             rest.append(clause)
     if not denied:
         return Denial(text if not rest or leaves or len(rest) == 0 else _as_it_was(text, rest))

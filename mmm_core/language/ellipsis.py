@@ -11,7 +11,9 @@ OTHER = {"left": "right", "right": "left", "up": "down", "down": "up", "forward"
          "forwards": "backwards", "backwards": "forwards"}  # fmt: skip
 _LIMB = r"(?:hands?|arms?|fists?|ones?|palms?|sides?|shoulders?|ears?|elbows?)"
 _WAYS = r"(?:up|down|forwards?|back(?:wards?)?|ahead|straight ahead|upwards?|downwards?|sideways|behind you|in front(?: of you)?|above (?:you|your head)|(?:out )?to the sides?|outwards?)"
-_AFTER_VERB = r"(?:go |come |move |switch |change |over |out |straight |now |finally |also |back |all the way |around )*"
+_AFTER_VERB = (
+    r"(?:go |come |move |switch |change |over |out |straight |now |finally |also |back |all the way |around )*"
+)
 _WAY_PHRASE = re.compile(
     rf"\b(?:(?:up|down|over) (?:to|at) (?:the|your) (?!left|right)\w+|(?:over |out |straight |up |down )*(?:to|towards?|at|on) (?:the |your )?(?:left|right)(?: side)?|(?:to )?(?:the )?(?:left|right)(?! {_LIMB}\b)(?! side)|{_WAYS})(?!\w)"
 )
@@ -25,7 +27,9 @@ _ONLY_SIDE = re.compile(
 _OTHER_ONE = re.compile(
     rf"^(?:also |and |now )?(?:(?:do )?(?:the same|it|that|so|likewise)(?: thing)?(?: again)? )?(?:(?:with|using|on|to|in|for|by|use|your|at) )*(?:the |your )?(?:other|opposite)(?: (?:way|direction|{_LIMB}))?(?: (?:too|as well|round|around))?$|^vice versa$|^switch(?: sides| hands| arms)?$"
 )
-_AGAIN = re.compile(r"^(?:(?:do )?(?:it|that|the same)(?: thing)? )?(?:again|once more|one more time)$|^repeat(?: it| that)?$|^(?:do )?the same(?: again)?$")
+_AGAIN = re.compile(
+    r"^(?:(?:do )?(?:it|that|the same)(?: thing)? )?(?:again|once more|one more time)$|^repeat(?: it| that)?$|^(?:do )?the same(?: again)?$"
+)
 _PLACE = re.compile(
     r"^(?:(?:on|to|over|above|behind|in front of|under|at|towards) (?:your |the )?(?:heart|hips?|waist|head|chest|belly|stomach|mouth|eyes|ears?|back|forehead|shoulders?|chin|neck|sides?|knees|face)"
     r"|(?:straight |wide |high |out )*(?:up|down|out|wide|forward|ahead|apart|crossed|folded|open)(?: (?:in the air|to the sides?|in front|wide|high))?)$"
@@ -36,8 +40,12 @@ _AT_PLACE = re.compile(
 )
 _TARGET = re.compile(r"^(?:at )?(?:me|yourself|you|us|the \w+)$")
 _AT_TARGET = re.compile(r"\bat (?:me|yourself|you|us|the \w+)$")
-_NAMED_LIMB = re.compile(r"\b(?:(?:your|the|both|one|a) )?(?:both )?(?:(?:left|right) )?(?:hands?|arms?|fists?|palms?|fingers?|head|shoulders)\b")
-_LIMB_SUBJECT = re.compile(r"^(?P<limb>(?:your |the )?(?:both |left |right )?(?:arms?|hands?|head|eyes|gaze|chin|shoulders)) ")
+_NAMED_LIMB = re.compile(
+    r"\b(?:(?:your|the|both|one|a) )?(?:both )?(?:(?:left|right) )?(?:hands?|arms?|fists?|palms?|fingers?|head|shoulders)\b"
+)
+_LIMB_SUBJECT = re.compile(
+    r"^(?P<limb>(?:your |the )?(?:both |left |right )?(?:arms?|hands?|head|eyes|gaze|chin|shoulders)) "
+)
 _VERB = re.compile(r"^(?:\w+) ")
 _ONE_OTHER = re.compile(
     r"\bone (?P<what>way|side|direction|arm|hand|fist|one)\b(?P<between>.*?)\b(?:the |your )other(?: (?:way|side|direction|arm|hand|fist|one))?\b"
@@ -45,7 +53,7 @@ _ONE_OTHER = re.compile(
 
 
 def with_sides(text: str) -> str:
-    """"one arm ..., then the other" with sides in place of "one" and "other".
+    """ "one arm ..., then the other" with sides in place of "one" and "other".
 
     >>> with_sides("one arm up, then the other"), with_sides("tilt your head one way, then the other")
     ('right arm up, then left arm', 'tilt your head to the left, then to the right')
@@ -74,7 +82,9 @@ def completed(clause: str, before: str) -> str | None:
     >>> completed("right", "turn your head left"), completed("with the other hand", "wave with your right hand")
     ('turn your head right', 'wave with your left hand')
     """
-    clause = re.sub(r"^(?:and |then |now |next |finally |again )+|(?: again| too| as well| instead)+$", "", clause.strip(" ,.!")).strip()
+    clause = re.sub(
+        r"^(?:and |then |now |next |finally |again )+|(?: again| too| as well| instead)+$", "", clause.strip(" ,.!")
+    ).strip()
     if not clause:
         return None
     if _AGAIN.match(clause):
@@ -129,10 +139,14 @@ def _to_way(before: str, way: str) -> str | None:
 def _with_pronoun(clause: str, before: str) -> str | None:
     """ "wave it" after "raise your right arm" -> "wave your right arm"; None without a pronoun that has a limb."""
     limbs = _NAMED_LIMB.findall(before)
-    if not limbs or not re.search(r"\b(?:it|them|that (?:hand|arm|one)|the same (?:hand|arm|one)|this (?:hand|arm))\b", clause):
+    if not limbs or not re.search(
+        r"\b(?:it|them|that (?:hand|arm|one)|the same (?:hand|arm|one)|this (?:hand|arm))\b", clause
+    ):
         return None
     limb = limbs[-1] if limbs[-1].startswith(("your", "both")) else "your " + re.sub(r"^(?:the|one|a) ", "", limbs[-1])
-    return re.sub(r"\b(?:it|them|that (?:hand|arm|one)|the same (?:hand|arm|one)|this (?:hand|arm))\b", limb, clause, count=1)
+    return re.sub(
+        r"\b(?:it|them|that (?:hand|arm|one)|the same (?:hand|arm|one)|this (?:hand|arm))\b", limb, clause, count=1
+    )
 
 
 def _with_limb(clause: str, before: str) -> str | None:
@@ -140,7 +154,9 @@ def _with_limb(clause: str, before: str) -> str | None:
     found = re.match(r"^(?:the |your )?other(?: (?P<limb>hand|arm|one|fist|palm))? (?P<rest>.+)$", clause)
     side = re.search(r"\b(left|right) (hand|arm|fist|palm)\b", before)
     if found is None:
-        inside = re.search(r"\b(?:the |your )?other (?P<limb>hand|arm|one|fist|palm)\b|\b(?:with|using) the other\b", clause)
+        inside = re.search(
+            r"\b(?:the |your )?other (?P<limb>hand|arm|one|fist|palm)\b|\b(?:with|using) the other\b", clause
+        )
         if inside is None or side is None:
             return None
         limb = inside["limb"] if inside["limb"] not in (None, "one") else side[2]

@@ -24,14 +24,18 @@ _GESTURES = (
 _VERY = r"(?:(?:very|really|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|way) )*"
 _STRONG = re.compile(r"\b(?:very|really|super|extremely|incredibly|ultra|extra|terribly|awfully|much|way|oh so)\b")
 _SECONDS = {**NUMBERS, "a": 1, "a couple of": 2, "a few": 3, "several": 4, "half a": 0.5}
-_NUMBER = r"(a couple of|a few|several|half a|a|\d+(?:\.\d+)?|" + "|".join(word for word in NUMBERS if word.isalpha()) + ")"
+_NUMBER = (
+    r"(a couple of|a few|several|half a|a|\d+(?:\.\d+)?|" + "|".join(word for word in NUMBERS if word.isalpha()) + ")"
+)
 _HOLD = re.compile(
     r",?\s*(?:(?:and |then )?(?:hold|holding|keep|keeping|stay|staying|remain|freeze|wait|rest|leave|pause)"
     r"(?: (?:it|them|that|this|there|still|so|like (?:that|this)|the (?:pose|position)|your (?:pose|position)|that (?:pose|position)|up|down|in place|"
     r"(?:your|the) (?:left |right )?(?:hand|arm|head)s?))*\s+)?"
     rf"(?:(?:for|about|exactly|at least|around|all of|a full|another) )*{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
 )
-_ONLY_SECONDS = re.compile(rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?")
+_ONLY_SECONDS = re.compile(
+    rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
+)
 _KEEPS = re.compile(r"^(?:hold|keep|leave) (?=(?:your|the|both) )")
 
 
@@ -81,7 +85,9 @@ def _factor(clause: str, table: str, most: float) -> tuple[str, float]:
         strength = worth ** (STRONGER if _STRONG.search(found[0]) else 1.0)
         if abs(strength - 1) > abs(factor - 1) or factor == 1.0:
             factor = strength
-        if not re.match(r"\s*waves?\b", clause[found.end() :]) or factor < 1 or table == "tempo":  # "a big wave" is a gesture of its own
+        if (
+            not re.match(r"\s*waves?\b", clause[found.end() :]) or factor < 1 or table == "tempo"
+        ):  # "a big wave" is a gesture of its own
             clause = clause[: found.start()] + " " + clause[found.end() :]
     return clause, min(most, max(1 / most, factor))
 
@@ -91,9 +97,27 @@ def _is_manner(clause: str, found: re.Match[str]) -> bool:
     word = found[0].strip()
     if clause.strip(" .,!") == word:
         return False
-    if word.split()[-1] in ("fast", "quick", "slow", "gentle", "rapid", "brisk", "swift", "faster", "slower", "quicker"):
+    if word.split()[-1] in (
+        "fast",
+        "quick",
+        "slow",
+        "gentle",
+        "rapid",
+        "brisk",
+        "swift",
+        "faster",
+        "slower",
+        "quicker",
+    ):
         following = re.match(r"\s+(\w+)", clause[found.end() :])
-        return not following or bool(re.fullmatch(_GESTURES + "|and|with|to|at|for|then|now|please|on|in|twice|once|thrice|your|three|two|four|five|the|times|" + "left|right|up|down|back|forward|from", following[1]))
+        return not following or bool(
+            re.fullmatch(
+                _GESTURES
+                + "|and|with|to|at|for|then|now|please|on|in|twice|once|thrice|your|three|two|four|five|the|times|"
+                + "left|right|up|down|back|forward|from",
+                following[1],
+            )
+        )
     return True
 
 
@@ -101,7 +125,8 @@ def _is_manner(clause: str, found: re.Match[str]) -> bool:
 def _patterns(table: str) -> tuple[tuple[float, re.Pattern[str]], ...]:
     split = [line.partition(" ") for line in lines(table)]
     return tuple(
-        (float(worth), re.compile(rf"\b{_VERY}(?:{pattern.replace('@NOUN', _GESTURES)})(?![\w-])")) for worth, _, pattern in split
+        (float(worth), re.compile(rf"\b{_VERY}(?:{pattern.replace('@NOUN', _GESTURES)})(?![\w-])"))
+        for worth, _, pattern in split
     )
 
 

@@ -103,7 +103,9 @@ def _known(text: str, command: str) -> Reading:
 
 def _for_all(said: str) -> tuple[str, str]:
     """A sentence without a hand that its end names for all of it: "..., both with the right hand"; and that hand."""
-    found = re.search(r",? (?:both|all)(?: of (?:it|them|that))? (?:with|using) (?:your |the )?(left|right) hand$", said)
+    found = re.search(
+        r",? (?:both|all)(?: of (?:it|them|that))? (?:with|using) (?:your |the )?(left|right) hand$", said
+    )
     return (said[: found.start()], f" with your {found[1]} hand") if found else (said, "")
 
 

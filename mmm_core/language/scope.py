@@ -105,8 +105,8 @@ class ScopeIndex:
 
     def judge(self, text: str, sentence: Tensor) -> ScopeVerdict:
         """Verdict for a text as a whole and its unit sentence vector (D,)."""
-        if unreadable := _unreadable(text):
-            return ScopeVerdict("rejected", 0.0, "", unreadable)
+        if why := unreadable(text):
+            return ScopeVerdict("rejected", 0.0, "", why)
         cosine = self.vectors @ sentence
         known, outside = cosine[: self.n_known], cosine[self.n_known :]
         nearest = self._meanings.nearest(text, known)
@@ -149,10 +149,7 @@ def with_clauses(whole: ScopeVerdict, clauses: list[str], verdicts: list[ScopeVe
     Clauses lean on each other ("hold it there"), so a clause is left out only if it lies far outside; and a text that is
     rejected as a whole is saved only by clauses well inside.
     """
-    if whole.status == "rejected":
-        taken = [i for i, v in enumerate(verdicts) if v.score >= CLAUSE_KEPT_FROM]
-    else:
-        taken = [i for i, v in enumerate(verdicts) if v.score >= CLAUSE_BELOW]
+    taken = taken_clauses(whole, verdicts)
     if not taken or len(taken) == len(clauses):
         return whole
     kept = ", then ".join(clauses[i] for i in taken)
@@ -160,6 +157,12 @@ def with_clauses(whole: ScopeVerdict, clauses: list[str], verdicts: list[ScopeVe
     reason = f"kept '{kept}'; left out '{left_out}', which this upper-body model cannot do"
     best = max((verdicts[i] for i in taken), key=lambda v: v.score)
     return replace(whole, status="degraded", nearest=best.nearest, reason=reason, kept=kept)
+
+
+def taken_clauses(whole: ScopeVerdict, verdicts: list[ScopeVerdict]) -> list[int]:
+    """The clauses that are carried out, by their numbers, given the verdicts on a text and on them."""
+    least = CLAUSE_KEPT_FROM if whole.status == "rejected" else CLAUSE_BELOW
+    return [i for i, verdict in enumerate(verdicts) if verdict.score >= least]
 
 
 def _by_cosine(nearest: str, score: float, impossible: str, other: float) -> ScopeVerdict:
@@ -175,7 +178,7 @@ def _by_cosine(nearest: str, score: float, impossible: str, other: float) -> Sco
     return ScopeVerdict("accepted", score, nearest, "")
 
 
-def _unreadable(text: str) -> str:
+def unreadable(text: str) -> str:
     """The reason why a text holds no readable sentence; empty where it holds one."""
     if not any(c.isprintable() and not c.isspace() for c in text):
         return "the text is empty"

@@ -23,9 +23,13 @@ NEAR_ENOUGH = 1.7
 """Greatest weighted distance of a slip to its word."""
 _WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
 _FILLER = r"(?:u+h+m*|u+m+|e+r+m*|h+m+|ah+|eh+)"
-_RESTART = re.compile(rf"\b(\w+(?: \w+){{0,2}}),? (?:{_FILLER}|i mean|sorry|no wait)(?:,|\.{{2,}})? (?=\1\b)", re.IGNORECASE)
+_RESTART = re.compile(
+    rf"\b(\w+(?: \w+){{0,2}}),? (?:{_FILLER}|i mean|sorry|no wait)(?:,|\.{{2,}})? (?=\1\b)", re.IGNORECASE
+)
 _STUTTER = re.compile(r"\b(the|your|to|with|a|and|then|left|right|hand|arm|raise|turn|look|wave|lift|put|clap|nod|bow|shrug|point)(?:,|\.{2,}|-)? (?=\1\b)(?!\1 (?:and|then) \1)", re.IGNORECASE)  # fmt: skip
-_FILLERS = re.compile(rf"(?:^|(?<=[\s,.]))(?:{_FILLER}|you know|i mean|kinda|sorta)(?:\s*,|\s*\.{{2,}})?(?:\s+|$)", re.IGNORECASE)
+_FILLERS = re.compile(
+    rf"(?:^|(?<=[\s,.]))(?:{_FILLER}|you know|i mean|kinda|sorta)(?:\s*,|\s*\.{{2,}})?(?:\s+|$)", re.IGNORECASE
+)
 _DRAWN_OUT = re.compile(r"([a-z])\1{2,}", re.IGNORECASE)
 _MARKS = str.maketrans({"’": "'", "‘": "'", "“": '"', "”": '"', "–": "-", "—": ", ", "…": "... ", "´": "'", "`": "'"})  # noqa: RUF001
 _FIRST_LETTER, _EXCHANGED, _OTHER_KEY = 0.35, 0.25, 0.35
@@ -90,7 +94,7 @@ def _chat(said: str) -> str:
 
 
 def _chat_word(token: str, words: dict[str, str]) -> str:
-    bare = token.strip(",.!?;:\"()")
+    bare = token.strip(',.!?;:"()')
     if bare not in words or not bare:
         return token
     start = token.index(bare)
@@ -114,7 +118,11 @@ def _is_right(word: str) -> bool:
         return True
     ending = _ENDINGS.search(word)
     stem = word[: ending.start()] if ending else ""
-    return len(stem) > 2 and (stem in _right() or f"{stem}e" in _right() or (ending is not None and ending[0] in ("ing", "ed", "er") and stem[-1] == stem[-2] and stem[:-1] in _right()))
+    return len(stem) > 2 and (
+        stem in _right()
+        or f"{stem}e" in _right()
+        or (ending is not None and ending[0] in ("ing", "ed", "er") and stem[-1] == stem[-2] and stem[:-1] in _right())
+    )
 
 
 @cache

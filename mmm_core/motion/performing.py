@@ -1,0 +1,180 @@
+"""Tempo, size and hold of a motion, exactly: its features resampled in time, its rotations led nearer to or farther from rest.
+
+Only root and rotation channels are read; the others are computed from the joints they give. Arms that repeat a stroke swing
+larger or smaller about the path that the strokes have in common, so that a small wave is still made with a raised hand;
+everything else is scaled from where it was in the first frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
+from scipy.spatial.transform import Rotation
+
+from mmm_core.motion.features import HUMANML3D, features_from_rotations, recover, root_path
+from mmm_core.motion.motion import FPS, Motion
+from mmm_core.motion.repetitions import Strokes, body_path, strokes_of
+from mmm_core.motion.skeleton import Array, forward_kinematics, from_six_d, rotation_y, six_d
+
+_TRUNK_HEAD = (3, 6, 9, 12, 15)
+_ARMS = (13, 14, 16, 17, 18, 19, 20, 21)
+MOST_ARM_RAD = 2.9
+"""Greatest rotation of an arm joint from the first frame that a larger size leads to; 2.4 of the elbows."""
+_MOST = {18: 2.4, 19: 2.4, 13: 0.6, 14: 0.6}
+CYCLE_MISFIT = 0.35
+"""Largest misfit of a cycle whose strokes are scaled about their middle."""
+RAMP_FRAMES = 5
+"""Frames over which size changes between two commands of a motion."""
+STILL_M_S = 0.2
+"""Speed of a limb that is held, angles taken as in `body_path`."""
+_FAR = 0.6
+"""Share of the greatest distance from the first frame at which a pose is held."""
+_LIMBS = (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12))
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Frames of a motion that are performed in one manner.
+
+    Attributes:
+        start, end: first frame, and the one after the last.
+        tempo: times as fast.
+        size: times as large.
+        hold_s: seconds that the pose is held; 0 leaves it as it is.
+    """
+
+    start: int
+    end: int
+    tempo: float = 1.0
+    size: float = 1.0
+    hold_s: float = 0.0
+
+    @property
+    def plain(self) -> bool:
+        """Whether the frames stay as they are."""
+        return (self.tempo, self.size, self.hold_s) == (1.0, 1.0, 0.0)
+
+
+def performed(features: NDArray[np.float32], stretches: Sequence[Stretch]) -> tuple[NDArray[np.float32], list[int]]:
+    """Features (T, 263) performed in the manners of their stretches, and the frame at which each stretch then ends.
+
+    Args:
+        features: of our definition (`rest_pose` "mmmd").
+        stretches: in order, without gaps, from 0 to T.
+    """
+    yaw, root = root_path(np.asarray(features, np.float64))
+    local = np.empty((len(features), 22, 3, 3))
+    local[:, 0] = rotation_y(yaw)
+    local[:, 1:] = from_six_d(np.asarray(features[:, 67:193], np.float64).reshape(-1, 21, 6))
+    places: list[NDArray[np.float64]] = []
+    for stretch in stretches:
+        motion = _motion(features[stretch.start : stretch.end])
+        if stretch.size != 1.0:
+            weights = _weights(stretch, len(features))
+            part = slice(stretch.start, stretch.end)
+            local[part] = _scaled(local[part], local[0], weights, strokes_of(motion))
+        places.append(stretch.start + _times(motion, stretch))
+    where = np.clip(np.concatenate(places), 0, len(features) - 1)
+    ends = np.cumsum([len(p) for p in places]).tolist()
+    return _features(yaw, root, local, where), [int(e) for e in ends]
+
+
+def is_cyclic(strokes: Strokes | None) -> bool:
+    """Whether a motion repeats a stroke clearly enough for the stroke to be scaled by itself."""
+    return strokes is not None and len(strokes.frames) > 1 and strokes.misfit <= CYCLE_MISFIT
+
+
+def motion_of(features: NDArray[np.float32]) -> Motion:
+    """The motion of features (T, 263), without text and ids."""
+    return _motion(features)
+
+
+def _motion(features: NDArray[np.float32]) -> Motion:
+    seen = recover(features)
+    return Motion(
+        seen.joints_m.astype(np.float32), FPS, seen.head_quat_wxyz.astype(np.float32), seen.forearm_twist_rad.astype(np.float32),
+        np.asarray(features, np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0,
+    )  # fmt: skip
+
+
+def _features(yaw: Array, root: Array, local: Array, where: Array) -> NDArray[np.float32]:
+    """Features of rotations and root at (n,) places between the frames."""
+    before = np.floor(where).astype(np.intp)
+    after = np.minimum(before + 1, len(yaw) - 1)
+    w = where - before
+    mixed_yaw = yaw[before] + w * (yaw[after] - yaw[before])
+    mixed_root = root[before] + w[:, None] * (root[after] - root[before])
+    six = six_d(local[:, 1:])
+    rotations = from_six_d(six[before] + w[:, None, None] * (six[after] - six[before]))
+    whole = np.concatenate([rotation_y(mixed_yaw)[:, None], rotations], 1)
+    joints, _ = forward_kinematics(whole, mixed_root)
+    return features_from_rotations(joints, mixed_yaw, rotations, HUMANML3D)
+
+
+def _scaled(local: Array, rest: Array, weights: Array, strokes: Strokes | None) -> Array:
+    """Rotations (T, 22, 3, 3) led away from their reference by (T,) weights."""
+    out = local.copy()
+    cyclic = is_cyclic(strokes)
+    period = int(np.median(np.diff(strokes.frames))) if strokes is not None and cyclic else 0
+    for joint in (*_TRUNK_HEAD, *_ARMS):
+        reference = np.broadcast_to(rest[joint], local[:, joint].shape)
+        if cyclic and joint in _ARMS:
+            smooth = uniform_filter1d(six_d(local[:, joint]), max(3, period), axis=0, mode="nearest")
+            reference = from_six_d(smooth)
+        away = Rotation.from_matrix(np.swapaxes(reference, -1, -2) @ local[:, joint]).as_rotvec()
+        angle = np.linalg.norm(away, axis=-1)
+        most = np.maximum(angle, _MOST.get(joint, MOST_ARM_RAD))
+        factor = np.minimum(weights, most / np.maximum(angle, 1e-6))
+        out[:, joint] = reference @ Rotation.from_rotvec(away * factor[:, None]).as_matrix()
+    return out
+
+
+def _weights(stretch: Stretch, n_frames: int) -> Array:
+    """(T,) factors of size, which change gradually where another stretch follows or goes before."""
+    n = stretch.end - stretch.start
+    ramp = np.minimum(np.arange(1, n + 1) / RAMP_FRAMES, 1.0)
+    weights = np.ones(n)
+    if stretch.start > 0:
+        weights = np.minimum(weights, ramp)
+    if stretch.end < n_frames:
+        weights = np.minimum(weights, ramp[::-1])
+    return 1.0 + (stretch.size - 1.0) * weights
+
+
+def _times(motion: Motion, stretch: Stretch) -> Array:
+    """(n,) places in a stretch, in frames from its start, at which the performed frames are taken."""
+    T = len(motion.joints_m)
+    n = max(4, round(T / stretch.tempo))
+    places = (np.arange(n) + 0.5) * T / n - 0.5
+    still = held_frames(motion) if stretch.hold_s else None
+    if still is None:
+        return places
+    first, last = still
+    held = np.linspace(first, last, max(2, round(stretch.hold_s * FPS)))
+    return np.concatenate([places[places < first], held, places[places > last]])
+
+
+def held_frames(motion: Motion) -> tuple[int, int] | None:
+    """First and last frame of the longest time in which the limb that goes farthest stays where it has gone; None where none does."""
+    path = body_path(motion)
+    limb = max(_LIMBS, key=lambda columns: float(np.linalg.norm(path[:, columns] - path[0, columns], axis=-1).max()))
+    limb_path = path[:, limb]
+    far = np.linalg.norm(limb_path - limb_path[0], axis=-1)
+    if len(far) < 3 or far.max() < 0.05:
+        return None
+    speed = np.linalg.norm(np.gradient(limb_path, axis=0), axis=-1) * FPS
+    best: tuple[int, int] | None = None
+    start = -1
+    for frame, ok in enumerate([*((speed < STILL_M_S) & (far > _FAR * far.max())).tolist(), False]):
+        if ok and start < 0:
+            start = frame
+        elif not ok and start >= 0:
+            if best is None or frame - 1 - start > best[1] - best[0]:
+                best = (start, frame - 1)
+            start = -1
+    peak = int(far.argmax())
+    return best or (max(0, peak - 1), min(len(far) - 1, peak + 1))
