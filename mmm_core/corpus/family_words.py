@@ -1,5 +1,6 @@
-"""The words by which phrases name each gesture family, for `mmm_core/recognition/family_words.txt`, and all words of the corpus,
-for `mmm_core/language/words/corpus_words.txt`.
+"""The words by which phrases name each gesture family, and all words of the corpus: two tables.
+
+They are `mmm_core/recognition/family_words.txt` and `mmm_core/language/words/corpus_words.txt`.
 
 Run `python -m mmm_core.corpus.family_words` after phrases have changed; a test says when that is needed.
 """

@@ -1,11 +1,11 @@
-"""Sentences as people say them: each is generated with several seeds and judged by what the motion shows, never by how it was read."""
+"""Sentences as people say them: each is generated with several seeds and judged by what its motion shows, not by its reading."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations, permutations
+from itertools import combinations, pairwise, permutations
 from typing import Any
 
 import numpy as np
@@ -36,10 +36,11 @@ def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool
         return {"denial": checks.limb(shown) == ""}
     if len(sentence.commands) > 1:
         verdict["order"] = _in_turn(sentence.commands, shown)
-    elif sentence.commands and len(sentence.commands[0]) > 1:
-        verdict["at_once"] = seen_at_once(sentence.commands[0], shown)
-    elif sentence.commands:
-        verdict = judge(_probe(sentence.commands[0][0]), shown, with_pose=True)
+    for step in sentence.commands if len(sentence.commands) == 1 else ():
+        if len(step) > 1:
+            verdict["at_once"] = seen_at_once(step, shown)
+        else:
+            verdict = judge(_probe(step[0]), shown, with_pose=True)
     if sentence.denied or sentence.kind == "denial":
         kept = not any(shows(shown, family) for family in sentence.denied)
         verdict["denial"] = kept and all(ok for key, ok in verdict.items() if key != "count_exact")
@@ -183,7 +184,7 @@ def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool
 
     def parted(order: Sequence[int], cuts: Sequence[int]) -> bool:
         edges = [0, *cuts, T]
-        if any(b - a < MIN_PART for a, b in zip(edges, edges[1:], strict=False)):
+        if any(b - a < MIN_PART for a, b in pairwise(edges)):
             return False
         return all(is_seen(i, edges[k], edges[k + 1]) for k, i in enumerate(order))
 
@@ -195,15 +196,18 @@ def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool
 
 
 def _step_seen(steps: Sequence[Sequence[Command]], i: int, shown: PostureFeatures) -> bool:
-    """Whether a part shows a step: its limb, side and direction, and its sign where a neighbour has the same ones."""
+    """Whether a part shows a step: its limb, side and direction, and its sign where these do not tell it from a neighbour."""
     step = steps[i]
     if len(step) > 1:
         return seen_at_once(step, shown)
     c = step[0]
     neighbours = [s[0] for k, s in enumerate(steps) if abs(k - i) == 1]
-    alike = any((n.limb, n.side, n.direction) == (c.limb, c.side, c.direction) for n in neighbours)
-    if alike and all(n == c for n in neighbours):
-        alike = False
+    alike = any(
+        (n.limb, n.side) == (c.limb, c.side)
+        and (n.direction == c.direction or not (n.direction and c.direction))
+        and n != c
+        for n in neighbours
+    )
     if checks.limb(shown) != c.limb:
         return False
     if c.side and shown.arms != c.side:

@@ -116,8 +116,8 @@ def _interpreted(engine: MotionModel, draft: _Draft, states: TextStates, rows: l
         only = next(c for step in reading.steps for c in step)
         text = whole.kept or draft.words[0]
         command = ReadCommand(text, own, False, only.manner, limbs_of(text))
-        steps = () if whole.status == "rejected" else ((command,),)
-        return Interpreted(reading, _said(whole, draft.is_mirrored), steps, draft.is_mirrored)
+        done = () if whole.status == "rejected" else ((command,),)
+        return Interpreted(reading, _said(whole, draft.is_mirrored), done, draft.is_mirrored)
     taken = taken_clauses(whole, parts)
     whole = with_clauses(whole, list(draft.commands), parts)
     if whole.status == "rejected":
@@ -126,7 +126,13 @@ def _interpreted(engine: MotionModel, draft: _Draft, states: TextStates, rows: l
         command = ReadCommand(draft.words[0], states.row(rows[0]))
         return Interpreted(reading, _said(whole, draft.is_mirrored), ((command,),), draft.is_mirrored)
     commands = [
-        ReadCommand(text, states.row(row), image, understood=_seen_in_mirror(understood_as(verdict), image), limbs=limbs_of(text))
+        ReadCommand(
+            text,
+            states.row(row),
+            image,
+            understood=_seen_in_mirror(understood_as(verdict), image),
+            limbs=limbs_of(text),
+        )
         for text, row, image, verdict in zip(draft.commands, rows[1:], draft.mirrored, parts, strict=True)
     ]
     steps: list[tuple[ReadCommand, ...]] = []

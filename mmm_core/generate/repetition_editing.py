@@ -35,7 +35,7 @@ _TAKEN = ScopeVerdict("accepted", 1.0, "", "")
 
 
 def ids_of_count(engine: MotionModel, states: TextStates, made: Sequence[Tensor], count: int, seed: int) -> Tensor:
-    """(L, C) ids of a command of these states that names `count` strokes: the best of the candidates (n_tokens, C), edited towards that count."""
+    """(L, C) ids of a command that names `count` strokes: the best of the candidates (n_tokens, C), edited towards that count."""
     transformer = engine.model.transformer
     features = engine.model.tokenizer.decode(torch.stack(list(made))).numpy()
     motions = [engine.motion_of_features(f, ids, "", seed, _TAKEN) for f, ids in zip(features, made, strict=True)]

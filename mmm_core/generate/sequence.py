@@ -98,8 +98,9 @@ def steps_of(engine: MotionModel, read: Interpreted, n_frames: int | None) -> li
 
 
 def stretches_of(steps: Sequence[Step], n_tokens: Sequence[int]) -> list[Stretch]:
-    """Frames of a motion in the manner of each step, given the lengths of the first rows; a transition goes with the step that it
-    leads to.
+    """Frames of a motion in the manner of each step, given the lengths of its rows.
+
+    A transition goes with the step that it leads to.
     """
     found: list[Stretch] = []
     for i, (n, step) in enumerate(zip(n_tokens, steps, strict=False)):

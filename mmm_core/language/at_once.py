@@ -38,7 +38,7 @@ _POSE = re.compile(
     rf"^(?:(?:and|also|with|please) )*(?:rais|lift|hold|keep|put|stretch|cross|fold|cover|shad|rest|plac|lean|look|tilt|turn|twist|point|spread|extend|reach|leav|clasp|lay|have|"
     rf"(?:your |the |both |one )?(?:left |right )?{_LIMB}\b|(?:your |the )?head|gaz|glanc|flex|touch)\w*"
 )
-_ENDS = re.compile(r"\\b(?:bow|bows|curtsy|salute|slump|celebrate)\\b")
+_ENDS = re.compile(r"\b(?:bow|bows|curtsy|salute|slump|celebrate)\b")
 """Verbs of gestures that are done by themselves: "clap and bow" is in turn."""
 _VERB_FIRST = re.compile(r"^(?:also )?(?!(?:left|right|both|your|the|one|hands?|arms?|head|eyes|a|an)\b)\w+")
 _WHILE = re.compile(
@@ -89,8 +89,11 @@ def limbs_of(clause: str) -> frozenset[str]:
     return SOME_ARM if _ARM.search(clause) else frozenset()
 
 
-def are_at_once(a: str, b: str) -> bool:
-    """Whether "a and b" or "a, b" means both at the same time: on other limbs, and one of them a pose or without a verb."""
+def are_at_once(a: str, b: str, *, joined: bool = True) -> bool:
+    """Whether "a and b", or not `joined` "a, b", means both at the same time: on other limbs, with a pose or without a verb.
+
+    "nod and clap" is at once as well, "nod, clap" and "clap and bow" are in turn.
+    """
     moved = limbs_of(a), limbs_of(b)
     if not _apart(*moved):
         return False
@@ -98,7 +101,7 @@ def are_at_once(a: str, b: str) -> bool:
         _VERB_FIRST.match(a) and _VERB_FIRST.match(b)
     ):
         return True
-    return bool(_POSE.match(a)) or not any(_ENDS.search(part) for part in (a, b))
+    return joined and (bool(_POSE.match(a)) or not any(_ENDS.search(part) for part in (a, b)))
 
 
 def _apart(a: frozenset[str], b: frozenset[str]) -> bool:
@@ -120,7 +123,7 @@ def divided(clause: str) -> list[str]:
             return [_sided(first, "right"), _sided(second, "left")] if "hand" in clause else [first, second]
         if not _apart(a, b):
             continue
-        if not asked and not are_at_once(first, second):
+        if not asked and not are_at_once(first, second, joined="," not in clause[len(pair[0]) : len(pair[0]) + 2]):
             continue
         return [*divided(_freed(first, b)), *divided(_there(_freed(second, a), first))]
     return [clause]
@@ -193,7 +196,7 @@ def _freed(clause: str, other: frozenset[str]) -> str:
 
 
 def _there(clause: str, first: str) -> str:
-    """ "look there" beside "point to the left" -> "look to the left"."""
+    """A clause with the way of the first in place of "there": "look there" beside "point to the left" -> "look to the left"."""
     way = re.search(r"\b(?:to (?:the |your )?(?:left|right)|up|down|left|right)\b(?! (?:hand|arm))", first)
     if way is None or not re.match(r"look(?:ing)?(?: (?:there|that way|over there|in that direction))?$", clause):
         return clause

@@ -82,7 +82,7 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
     """'wave, nod and bow' where every part begins with a verb of its own, or after a comma leaves it out; else the whole."""
     spans = _spans(text, whole, words.AND)
     parts = [_bare(s.of(text)) for s in spans]
-    if len(parts) == 2 and are_at_once(*parts):
+    if len(parts) == 2 and are_at_once(*parts, joined="and" in text[spans[0].end : spans[1].start]):
         return [whole]
     verbs = [
         words.BEGINS_WITH_A_VERB.match(part)

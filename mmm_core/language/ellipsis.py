@@ -53,7 +53,7 @@ _ONE_OTHER = re.compile(
 
 
 def with_sides(text: str) -> str:
-    """ "one arm ..., then the other" with sides in place of "one" and "other".
+    """A text with sides in place of "one" and "other": "one arm ..., then the other".
 
     >>> with_sides("one arm up, then the other"), with_sides("tilt your head one way, then the other")
     ('right arm up, then left arm', 'tilt your head to the left, then to the right')
@@ -82,13 +82,13 @@ def completed(clause: str, before: str) -> str | None:
     >>> completed("right", "turn your head left"), completed("with the other hand", "wave with your right hand")
     ('turn your head right', 'wave with your left hand')
     """
+    if _AGAIN.match(clause.strip(" ,.!")):
+        return before
     clause = re.sub(
         r"^(?:and |then |now |next |finally |again )+|(?: again| too| as well| instead)+$", "", clause.strip(" ,.!")
     ).strip()
     if not clause:
         return None
-    if _AGAIN.match(clause):
-        return before
     if _OTHER_ONE.match(clause):
         return _other_way(before)
     if found := _ONLY_SIDE.match(clause):
@@ -137,8 +137,14 @@ def _to_way(before: str, way: str) -> str | None:
 
 
 def _with_pronoun(clause: str, before: str) -> str | None:
-    """ "wave it" after "raise your right arm" -> "wave your right arm"; None without a pronoun that has a limb."""
+    """A clause with its pronoun resolved: "wave it" after "raise your right arm" -> "wave your right arm"; None without one."""
     limbs = _NAMED_LIMB.findall(before)
+    if re.match(r"(?:hold|keep|do|does|repeat|stop|continue|stay|leave)\b", clause):
+        return None
+    several = [limb for limb in limbs if limb.endswith("s") and not limb.endswith("fists")]
+    if re.search(r"\bthem\b", clause):
+        limbs = several
+    limbs = [limb for limb in limbs if not limb.endswith("head")] or limbs
     if not limbs or not re.search(
         r"\b(?:it|them|that (?:hand|arm|one)|the same (?:hand|arm|one)|this (?:hand|arm))\b", clause
     ):
@@ -150,7 +156,7 @@ def _with_pronoun(clause: str, before: str) -> str | None:
 
 
 def _with_limb(clause: str, before: str) -> str | None:
-    """ "left palm forward" stays; "the other up" after "right hand on your heart" -> "left hand up"."""
+    """A clause with the other limb named: "the other up" after "right hand on your heart" -> "left hand up"; None without one."""
     found = re.match(r"^(?:the |your )?other(?: (?P<limb>hand|arm|one|fist|palm))? (?P<rest>.+)$", clause)
     side = re.search(r"\b(left|right) (hand|arm|fist|palm)\b", before)
     if found is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from functools import cache
 
+from mmm_core.language.at_once import base_of
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.word_tables import lines, substitutions
 
@@ -48,9 +49,7 @@ def _kept(before: str, after: str) -> str:
 
 
 def _gerund_request(rest: str) -> str:
-    """ "shaking your head" -> "shake your head" at the front of a request."""
-    from mmm_core.language.at_once import base_of
-
+    """A request whose verb is a gerund as a command: "shaking your head" -> "shake your head"."""
     found = re.match(r"^(?:you )?(\w+ing)\b(?= (?:your|the|to|at|with|me|down|up|and|goodbye|a|an)\b|$)", rest)
     if found is None or not SPEAKS_OF_AN_ACT.match(found[1]):
         return rest

@@ -70,7 +70,7 @@ def performed(features: NDArray[np.float32], stretches: Sequence[Stretch]) -> tu
     local = np.empty((len(features), 22, 3, 3))
     local[:, 0] = rotation_y(yaw)
     local[:, 1:] = from_six_d(np.asarray(features[:, 67:193], np.float64).reshape(-1, 21, 6))
-    places: list[NDArray[np.float64]] = []
+    places: list[Array] = []
     for stretch in stretches:
         motion = _motion(features[stretch.start : stretch.end])
         if stretch.size != 1.0:
@@ -159,7 +159,7 @@ def _times(motion: Motion, stretch: Stretch) -> Array:
 
 
 def held_frames(motion: Motion) -> tuple[int, int] | None:
-    """First and last frame of the longest time in which the limb that goes farthest stays where it has gone; None where none does."""
+    """First and last frame of the longest rest of the limb that goes farthest, away from its start; None where nothing moves."""
     path = body_path(motion)
     limb = max(_LIMBS, key=lambda columns: float(np.linalg.norm(path[:, columns] - path[0, columns], axis=-1).max()))
     limb_path = path[:, limb]
