@@ -13,6 +13,7 @@ import numpy as np
 from mmm_core.corpus.grammar import plain_phrases, times
 from mmm_core.corpus.heldout import Command, Probe, Sentence
 from mmm_core.evaluation.probes import MIN_PART, judge
+from mmm_core.evaluation.robot_capability import showable as robot_showable
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
 from mmm_core.motion.repetitions import body_path
@@ -92,6 +93,7 @@ def evaluate_sentences(
     sentences: Sequence[Sentence],
     seeds: Sequence[int],
     progress: Callable[[int], None] = lambda _n: None,
+    showable: Mapping[str, frozenset[str]] | None = None,
 ) -> dict[str, Any]:
     """Shares of expectations met over all sentences and seeds, of whole sentences by kind, and the sentences missed most.
 
@@ -101,9 +103,12 @@ def evaluate_sentences(
         sentences: those that are judged.
         seeds: seeds of each.
         progress: called with the number of motions done.
+        showable: expectations that the checks see when the corpus itself performs a sentence, by its text, as
+            `showable_expectations`; the shares of these alone are given as "of_showable".
     """
     met: dict[str, list[bool]] = defaultdict(list)
     whole: dict[str, list[bool]] = defaultdict(list)
+    could: dict[str, list[bool]] = defaultdict(list)
     clean: list[bool] = []
     misses: dict[str, int] = defaultdict(int)
     for i, sentence in enumerate(sentences):
@@ -120,18 +125,39 @@ def evaluate_sentences(
                 clean.append(_all(_verdict(sentence, plain(sentence.clean, seed))))
             for key, ok in verdict.items():
                 met[key].append(ok)
+                if showable is not None and key in showable.get(sentence.text, (key,)):
+                    could[key].append(ok)
             whole[sentence.kind].append(_all(verdict))
             misses[sentence.text] += not _all(verdict)
         progress((i + 1) * len(seeds))
+    of_showable = {"of_showable": {**_shares(could), "n_each": _sizes(could)}} if showable is not None else {}
     slips = {"slips": round(sum(whole["slips"]) / max(1, sum(clean)), 4)} if clean else {}
     return {
-        **{key: round(float(np.mean(values)), 4) for key, values in sorted(met.items())},
+        **_shares(met),
         **slips,
-        "kinds": {kind: round(float(np.mean(values)), 4) for kind, values in sorted(whole.items())},
+        "kinds": _shares(whole),
+        **of_showable,
         "n": len(sentences) * len(seeds),
-        "n_each": {key: len(values) for key, values in sorted(met.items())},
+        "n_each": _sizes(met),
         "most_missed": sorted(((n, text) for text, n in misses.items() if n), reverse=True),
     }
+
+
+def showable_expectations(
+    sentences: Sequence[Sentence], on_robot: Callable[[Motion], Motion] = lambda motion: motion
+) -> dict[str, frozenset[str]]:
+    """Expectations of sentences of one command that are seen when the corpus performs it, on a person or on a robot."""
+    single = [(s.text, s.commands[0][0]) for s in sentences if len(s.commands) == 1 and len(s.commands[0]) == 1]
+    found = robot_showable(on_robot, probes=[replace(_probe(c), text=text) for text, c in single])
+    return {text: keys | {"denial", "tempo", "size"} for text, keys in found.items()}
+
+
+def _shares(met: Mapping[str, Sequence[bool]]) -> dict[str, float]:
+    return {key: round(float(np.mean(values)), 4) for key, values in sorted(met.items())}
+
+
+def _sizes(met: Mapping[str, Sequence[bool]]) -> dict[str, int]:
+    return {key: len(values) for key, values in sorted(met.items())}
 
 
 def _verdict(sentence: Sentence, motion: Motion) -> dict[str, bool]:

@@ -118,7 +118,8 @@ LEANS = _pattern(
         "(?: (?:it|them|that|this|there|on|still|for|the pose|the position|your (?:position|balance)|until)|$)",
         "(?:with|using|to the|the other|other|same)", rf"(?:the )?(?:left|right|same)(?: {_LIMB})?$",
         "(?:not|no|don't|do not|never|without|instead|but)", rf"(?:{_NUMBER}|{'|'.join(ADVERBS)})(?: more| times?| seconds?)?",
-        "a (?:bit|little) (?:more|further|higher|lower|faster|slower)", "(?:faster|slower|harder|higher|louder|quicker)", "(?:for|until|at|in|on|as)",
+        "a (?:bit|little) (?:more|further|higher|lower|faster|slower)",
+        "(?:faster|slower|harder|higher|louder|quicker)", "(?:for|until|at|in|on|as)",
         r"(?:\S+ ){0,3}(?:it|them|again|likewise|the same|as well|too|nothing)",
     )
     + r"\b)|\b(?:stays?\s+still|rests)\b"

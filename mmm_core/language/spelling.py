@@ -19,6 +19,8 @@ from mmm_core.language.word_tables import lines, pairs, substitutions
 
 MOST_SLIPS = {3: 1, 4: 1, 5: 2}
 """Letters of a word: greatest distance to the word that was meant; longer words 2."""
+SURE_ENOUGH = 1.2
+"""Greatest weighted distance where no word at all is spelt right, as in texts of other languages."""
 NEAR_ENOUGH = 1.7
 """Greatest weighted distance of a slip to its word."""
 _WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
@@ -84,6 +86,8 @@ def _slips(said: str) -> str:
     words = _WORD.findall(said)
     unknown = [word for word in words if not _is_right(word)]
     foreign = 2 * len(unknown) >= len(words) and any(mended_word(word) == word for word in unknown)
+    if len(unknown) == len(words) > 1:
+        foreign |= any(_cost_of(word) > SURE_ENOUGH for word in unknown)
     return said if foreign else _WORD.sub(lambda found: mended_word(found[0]), said)
 
 
@@ -147,14 +151,24 @@ def mended_word(word: str) -> str:
     >>> mended_word("shurg"), mended_word("hnads"), mended_word("Grandma"), mended_word("tango")
     ('shrug', 'hands', 'Grandma', 'tango')
     """
-    lower = word.lower()
-    if _is_right(lower):
+    if _is_right(word.lower()):
         return word
-    most = MOST_SLIPS.get(len(lower), 2)
-    near = [w for n in range(len(lower) - most, len(lower) + most + 1) for w in _by_length().get(n, ())]
-    found = process.extract(lower, near, scorer=OSA.distance, score_cutoff=most, limit=None)
-    ranked = sorted((_cost(lower, str(meant), int(distance)), str(meant)) for meant, distance, _ in found)
-    return ranked[0][1] if ranked and ranked[0][0] <= NEAR_ENOUGH else word
+    cost, meant = _nearest(word.lower())
+    return meant if cost <= NEAR_ENOUGH else word
+
+
+def _cost_of(word: str) -> float:
+    """Weighted distance of a slip to the word that it is mended to."""
+    return _nearest(word)[0]
+
+
+@cache
+def _nearest(word: str) -> tuple[float, str]:
+    """The corpus word nearest to a slip, with its weighted distance; infinity where none is near."""
+    most = MOST_SLIPS.get(len(word), 2)
+    near = [w for n in range(len(word) - most, len(word) + most + 1) for w in _by_length().get(n, ())]
+    found = process.extract(word, near, scorer=OSA.distance, score_cutoff=most, limit=None)
+    return min(((_cost(word, str(meant), int(d)), str(meant)) for meant, d, _ in found), default=(math.inf, word))
 
 
 def _cost(word: str, meant: str, distance: int) -> float:

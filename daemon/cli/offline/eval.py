@@ -6,7 +6,7 @@ import json as json_module
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -17,7 +17,7 @@ from daemon.errors import CommandError
 if TYPE_CHECKING:
     from mmm_core.motion.motion import Motion
 
-EvalName = Literal["probes", "fidelity", "edits", "scope", "tokenizer", "real", "paper"]
+EvalName = Literal["probes", "fidelity", "edits", "words", "scope", "tokenizer", "real", "paper"]
 MIRRORED_SEEDS = 2
 """Seeds with which each probe that names a side is compared with its mirror image."""
 MOST_REPEATS = 1000
@@ -32,6 +32,7 @@ def eval(
     seeds: int = 5,
     robots: tuple[str, ...] = ("reference", "op3"),
     probes: Literal["development", "test"] = "development",
+    words: Literal["dev", "test"] = "dev",
     executed: int = 1,
     families: tuple[str, ...] = (),
     steps: int | None = None,
@@ -59,6 +60,10 @@ def eval(
     held-out seeds: sign, arms, way, pose, number, pace and size of strokes, round paths, arms in step, hands that meet. A check
     counts for a family when the corpus itself passes it in 9 of 10; share is the model's part of what the corpus passes.
 
+    words: sentences as people type, speak and transcribe them (docs/language.md), judged by the motion that comes of them: the
+    verb said once, two limbs at once, slips, denial, manner, parts in turn, everyday words, long requests; as generated and on
+    --robots.
+
     edits: whether 100 edits show what their text asks and keep the rest: body parts, stretches, new beginnings, new ends,
     in-betweening; half of them are a development set (docs/evaluation.md).
 
@@ -84,6 +89,8 @@ def eval(
 
     Example: mmmd eval fidelity --families row flap march_arms --steps 8
 
+    Example: mmmd eval words --words dev --seeds 2 --robots reference --json
+
     Example: mmmd eval edits --json
 
     Example: mmmd eval scope --json
@@ -99,6 +106,7 @@ def eval(
         seeds: motions for each probe, or each family (fidelity).
         robots: names or robot files, each of which shows the probes' motions as well.
         probes: which set of probes: models are chosen by one, and reported on the other.
+        words: which set of sentences: rules are written by one, and reported on the other.
         executed: seeds of each probe that the simulated robots execute too; 0: none.
         families: families of the corpus (fidelity); all when none is given.
         steps: decoding steps of every motion (fidelity); the model's own when it is not given.
@@ -120,6 +128,8 @@ def eval(
         figures, shown = _probes(model[0] if model else None, seeds, robots, _seeds_executed(executed, seeds), probes)
     elif name == "fidelity":
         figures, shown = _fidelity(model[0] if model else None, seeds, families, steps)
+    elif name == "words":
+        figures, shown = _words(model[0] if model else None, seeds, robots, words)
     elif name == "edits":
         figures = shown = _edits(model[0] if model else None)
     elif name == "tokenizer":
@@ -256,6 +266,59 @@ def _fidelity(
     )
     figures |= {"steps": steps, "checkpoint": engine.checkpoint_hash, **context(0, method)}
     return figures, {key: figures[key] for key in ("share", "least", "worst", "n")}
+
+
+def _words(model: Path | None, seeds: int, robots: Sequence[str], which: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Every sentence generated once for each seed; the same motions checked on each robot."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from daemon.bench.report import context
+    from mmm_core.corpus.heldout import read_sentences
+    from mmm_core.evaluation.sentences import evaluate_sentences, showable_expectations
+    from mmm_core.generate.engine import Engine
+    from retarget.pipeline import Retargeter
+    from retarget.robot.loading import load_robot
+    from retarget.robot_to_human import shown_on_a_person
+
+    sentences = read_sentences(f"words_{which}")
+    retargeters = {name: Retargeter(load_robot(name)) for name in robots}
+    engine = Engine.load(model)
+
+    @cache
+    def generated(text: str, seed: int) -> Motion:
+        return engine.generate(text, seed=seed).motion
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("generated", total=len(sentences) * seeds)
+        seen = showable_expectations(sentences)
+        found = evaluate_sentences(
+            generated, generated, sentences, range(seeds), lambda n: bar.update(task, completed=n), seen
+        )
+        for name, retargeter in retargeters.items():
+
+            @cache
+            def on_robot(text: str, seed: int, retargeter: Retargeter = retargeter) -> Motion:
+                motion = generated(text, seed)
+                return shown_on_a_person(retargeter, motion) if len(motion.joints_m) else motion
+
+            bar.reset(task, description=name, total=len(sentences) * seeds)
+            can = showable_expectations(sentences, partial(shown_on_a_person, retargeter))
+            found.setdefault("retargeted", {})[name] = evaluate_sentences(
+                on_robot, on_robot, sentences, range(seeds), lambda n: bar.update(task, completed=n), can
+            )
+    method = (
+        f"sentences of mmm_core/corpus/prompts/words_{which}.jsonl, judged by kinematic checks of the motion "
+        "(mmm_core/evaluation/sentences.py), generated and as a robot's path shows it; tempo and size against the corpus's plain "
+        "sentence"
+    )
+    figures = {
+        {"dev": "development"}.get(which, which): found,
+        "n": found["n"],
+        "checkpoint": engine.checkpoint_hash,
+        **context(0, method),
+    }
+    return figures, {"generated": found, **found.get("retargeted", {})}
 
 
 def _edits(model: Path | None) -> dict[str, Any]:

@@ -62,7 +62,8 @@ class TestSlips:
             ("wave um wave your left hand", "wave your left hand"), ("rays your right arm", "raise your right arm"),
             ("salute with your write hand", "salute with your right hand"), ("take a bough", "take a bow"),
             ("wave wiht yuor right hadn", "wave with your right hand"), ("clap 3 tmes", "clap 3 times"),
-            ("WAVE  PLZ", "wave please"), ("nod — sloooowly", "nod , slowly"), ("turn you head to the right", "turn your head to the right"),
+            ("WAVE  PLZ", "wave please"), ("nod — sloooowly", "nod , slowly"),
+            ("turn you head to the right", "turn your head to the right"),
         ],
     )  # fmt: skip
     def test_mended(self, text: str, plain: str) -> None:
@@ -70,8 +71,8 @@ class TestSlips:
 
     @pytest.mark.parametrize(
         "text",
-        ["write a letter in the air", "the bough of a tree", "wave to beyonce", "do the macarena", "kneel", "twerk", "a selfie pose",
-         "pet the cat", "solve it", "lien holder", "dabbing", "salute captain picard", "left rather than right", "verbeuge dich"],
+        ["write a letter in the air", "the bough of a tree", "wave to beyonce", "do the macarena", "kneel", "twerk",
+         "a selfie pose",          "pet the cat", "solve it", "lien holder", "dabbing", "salute captain picard", "left rather than right", "verbeuge dich"],
     )  # fmt: skip
     def test_what_is_right_or_foreign_stays(self, text: str) -> None:
         assert mended(text) == text
@@ -85,8 +86,10 @@ class TestDenial:
     @pytest.mark.parametrize(
         ("text", "rest", "denied"),
         [
-            ("do not wave, nod", "nod", ("wave",)), ("instead of waving, salute", "salute", ("waving",)),
-            ("not a bow but a nod", "a nod", ("a bow",)), ("look left, not right", "look left", ("right",)),
+            ("do not wave, nod", "nod", ("wave",)),
+            ("instead of waving, salute", "salute", ("waving",)),
+            ("not a bow but a nod", "a nod", ("a bow",)),
+            ("look left, not right", "look left", ("right",)),
             ("wave but leave your right arm alone", "wave with your left hand", ("the right arm",)),
         ],
     )
@@ -123,14 +126,18 @@ class TestManner:
         assert words == rest
         assert ((manner.tempo > 1) - (manner.tempo < 1), (manner.size > 1) - (manner.size < 1)) == (tempo, size)
 
-    @pytest.mark.parametrize("clause", ["point at the little bird", "fast food", "a big heart over your head", "eat a tiny cake", "slow"])
+    @pytest.mark.parametrize(
+        "clause", ["point at the little bird", "fast food", "a big heart over your head", "eat a tiny cake", "slow"]
+    )
     def test_words_of_things_are_no_manner(self, clause: str) -> None:
         assert manner_of(clause) == (clause, Manner())
 
     def test_very_is_stronger(self) -> None:
         assert manner_of("nod very slowly")[1].tempo < manner_of("nod slowly")[1].tempo
 
-    @pytest.mark.parametrize(("clause", "seconds"), [("salute and hold it for four seconds", 4), ("look up for 2 seconds", 2), ("nod", 0)])
+    @pytest.mark.parametrize(
+        ("clause", "seconds"), [("salute and hold it for four seconds", 4), ("look up for 2 seconds", 2), ("nod", 0)]
+    )
     def test_holds(self, clause: str, seconds: float) -> None:
         assert manner_of(clause)[1].hold_s == seconds
 
@@ -159,7 +166,9 @@ class TestAtOnce:
 
 
 class TestEllipsis:
-    @pytest.mark.parametrize("clause", ["nod", "clap your hands", "point to the door", "lean back", "salute with your left hand"])
+    @pytest.mark.parametrize(
+        "clause", ["nod", "clap your hands", "point to the door", "lean back", "salute with your left hand"]
+    )
     def test_whole_clauses_take_nothing(self, clause: str) -> None:
         assert completed(clause, "wave with your right hand") is None
 
@@ -171,9 +180,15 @@ def test_any_text_is_read(text: str) -> None:
 
 
 def test_reading_takes_less_than_two_milliseconds() -> None:
-    texts = ["turn your head left, then right", "left hand on your heart and salute with the right", "bwo deeply and shurg"] * 20
+    texts = [
+        "turn your head left, then right",
+        "left hand on your heart and salute with the right",
+        "bwo deeply and shurg",
+    ] * 20
     read(texts[0])
     worked = time.process_time()
     for i, text in enumerate(texts):
         read(f"{text} {i} times")
-    assert (time.process_time() - worked) / len(texts) < 0.02  # a bound against blow-ups; docs/language.md has the figure
+    assert (time.process_time() - worked) / len(
+        texts
+    ) < 0.02  # a bound against blow-ups; docs/language.md has the figure
