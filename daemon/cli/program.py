@@ -71,9 +71,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "sim": CommandEntry("daemon.cli.hardware.sim:sim", "simulated servos behind a real tty"),
     "robot": CommandEntry("daemon.cli.hardware.robot:robot", "list, check and show robots"),
     "generate": CommandEntry("daemon.cli.offline.generate:generate", "text to human motion: .npz and .bvh"),
-    "understand": CommandEntry(
-        "daemon.cli.offline.understand:understand", "what is read in a sentence; nothing moves"
-    ),
+    "understand": CommandEntry("daemon.cli.offline.understand:understand", "what is read in a sentence; nothing moves"),
     "edit": CommandEntry("daemon.cli.offline.edit:edit", "a part of a motion made again: file or robot"),
     "import-official": CommandEntry(
         "daemon.cli.offline.import_official:import_official", "the MMM authors' checkpoints as one file of ours"

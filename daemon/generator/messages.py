@@ -177,6 +177,8 @@ class GeneratedMessage(MotionArrays, tag="generated", kw_only=True):
     told: bytes = b""
     draft_of: int = 0
     scenes: list[tuple[float, str]] = []
+    commands: list[str] = []
+    denied: list[str] = []
 
 
 ToGenerator = GenerateMessage | SceneMessage | EditMessage | BetweenMessage | PingMessage
@@ -199,6 +201,8 @@ class Generated:
         told: where a story then stands; else empty.
         draft_of: frames that the motion will have, about, of which this is a draft; 0 when it is the motion.
         scenes: parts of the motion and the words that each was made for; empty where it is one.
+        commands: what was read in the text, step by step; empty where none was read.
+        denied: what the text says not to do.
     """
 
     motion: Motion
@@ -209,6 +213,8 @@ class Generated:
     told: bytes = b""
     draft_of: int = 0
     scenes: tuple[Scene, ...] = ()
+    commands: tuple[str, ...] = ()
+    denied: tuple[str, ...] = ()
 
 
 def encode(message: ToGenerator | FromGenerator) -> bytes:
@@ -253,6 +259,8 @@ def generated_message(request_id: int, generated: Generated) -> GeneratedMessage
         told=generated.told,
         draft_of=generated.draft_of,
         scenes=[(scene.end_s, scene.words) for scene in generated.scenes],
+        commands=list(generated.commands),
+        denied=list(generated.denied),
     )
 
 
@@ -293,7 +301,9 @@ def generated_from(message: GeneratedMessage, min_frames: int = MIN_FRAMES, *, m
         raise bad_motion(message.text, f"{message.n_frames} frames")
     how = (message.understood, message.reason, message.timings_ms, message.checkpoint_hash)
     scenes = tuple(Scene(end_s, words) for end_s, words in message.scenes)
-    return Generated(motion, *how, message.told, message.draft_of, scenes)
+    return Generated(
+        motion, *how, message.told, message.draft_of, scenes, tuple(message.commands), tuple(message.denied)
+    )
 
 
 def bad_motion(text: str, found: str) -> GeneratorError:

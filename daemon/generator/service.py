@@ -117,7 +117,8 @@ class EngineService:
 
     def _of(self, made: GenerationResult, draft_of: int = 0) -> Generated:
         how = (made.understood, made.reason, made.timings_ms, self.checkpoint_hash)
-        return Generated(made.motion, *how, draft_of=draft_of, scenes=made.scenes)
+        commands, denied = (made.read.sentences, made.read.denied) if made.read else ((), ())
+        return Generated(made.motion, *how, draft_of=draft_of, scenes=made.scenes, commands=commands, denied=denied)
 
     def _unless_rejected(self, text: str, seed: int, make: Callable[[], Motion], code: str) -> Generated:
         """What `make` makes, unless the text is out of scope; no text at all is in scope."""

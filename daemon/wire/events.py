@@ -18,6 +18,9 @@ class Accepted(Event, tag="accepted"):
         understood: what the motion shows that was made for the text, in one sentence; of a lease, what it takes.
         nearest: the known command that lies nearest to the text, and its score; empty where no text was read.
         lacks: what this robot lacks to show the motion; empty for nothing.
+        commands: what was read in the text, one entry for each command in turn; commands at once are joined by " + ", tempo, size
+            and hold stand in brackets. Empty where no text was read.
+        denied: what the text says not to do.
         reason: why it is degraded, else empty.
         scope_score: how near the text lies to what the model can do.
         duration_s: length of the generated motion, of one whose strokes are counted (`say` with a number) as first drafted; 0
@@ -37,6 +40,8 @@ class Accepted(Event, tag="accepted"):
     silence_s: float | None = None
     nearest: str = ""
     lacks: str = ""
+    commands: tuple[str, ...] = ()
+    denied: tuple[str, ...] = ()
 
 
 class Progress(Event, tag="progress"):

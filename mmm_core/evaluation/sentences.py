@@ -40,8 +40,8 @@ def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool
     for step in sentence.commands if len(sentence.commands) == 1 else ():
         if len(step) > 1:
             verdict["at_once"] = seen_at_once(step, shown)
-        else:
-            verdict = judge(_probe(step[0]), shown, with_pose=True)
+        for command in step if len(step) == 1 else ():
+            verdict = judge(_probe(command), shown, with_pose=True)
     if sentence.denied or sentence.kind == "denial":
         kept = not any(shows(shown, family) for family in sentence.denied)
         verdict["denial"] = kept and all(ok for key, ok in verdict.items() if key != "count_exact")

@@ -40,6 +40,15 @@ class PlainCommand:
     manner: Manner = Manner()  # noqa: RUF009
     limbs: frozenset[str] = frozenset()
 
+    @property
+    def sentence(self) -> str:
+        """Its words and its manner: "bow (0.55 times as fast, held for 2 s)"."""
+        manner = self.manner
+        said = [f"{manner.tempo:.2g} times as fast"] if manner.tempo != 1.0 else []
+        said += [f"{manner.size:.2g} times as large"] if manner.size != 1.0 else []
+        said += [f"held for {manner.hold_s:g} s"] if manner.hold_s else []
+        return f"{self.text} ({', '.join(said)})" if said else self.text
+
 
 @dataclass(frozen=True)
 class Reading:
@@ -58,6 +67,11 @@ class Reading:
     denied: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     plain: bool = False
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """The steps in order, commands at once joined by " + "."""
+        return tuple(" + ".join(c.sentence for c in step) for step in self.steps)
 
     @property
     def words(self) -> str:

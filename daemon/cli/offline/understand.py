@@ -55,14 +55,6 @@ def _command(command: PlainCommand) -> dict[str, Any]:
 
 
 def _lines(reading: Reading) -> list[str]:
-    lines = [f"{i}. {' + '.join(map(_sentence, step))}" for i, step in enumerate(reading.steps, 1)]
+    lines = [f"{i}. {sentence}" for i, sentence in enumerate(reading.sentences, 1)]
     lines += [f"not: {denied}" for denied in reading.denied] + list(reading.notes)
     return lines if reading.steps else ["nothing is to be done", *lines]
-
-
-def _sentence(command: PlainCommand) -> str:
-    manner = command.manner
-    said = [f"{manner.tempo:.2g} times as fast"] if manner.tempo != 1.0 else []
-    said += [f"{manner.size:.2g} times as large"] if manner.size != 1.0 else []
-    said += [f"held for {manner.hold_s:g} s"] if manner.hold_s else []
-    return f"{command.text} ({', '.join(said)})" if said else command.text

@@ -78,6 +78,8 @@ class PreparedSource:
     silence_s: float | None = None
     nearest: str = ""
     lacks: str = ""
+    commands: tuple[str, ...] = ()
+    denied: tuple[str, ...] = ()
 
     def accepted(self, entry: Entry, plan_id: int) -> Accepted:
         """The event."""
@@ -93,6 +95,8 @@ class PreparedSource:
             silence_s=self.silence_s,
             nearest=self.nearest,
             lacks=self.lacks,
+            commands=self.commands,
+            denied=self.denied,
         )
 
 
@@ -320,7 +324,15 @@ def _prepared(generated: Generated, score: MotionSource, duration_s: float, show
     """With what the generator tells of a motion, and what the motion shows."""
     motion, made_ms = generated.motion, sum(generated.timings_ms.values())
     how = (motion.status, shows.sentence, generated.reason, motion.scope_score, made_ms)
-    return PreparedSource(score, duration_s, *how, nearest=generated.understood, lacks=shows.lacks)
+    return PreparedSource(
+        score,
+        duration_s,
+        *how,
+        nearest=generated.understood,
+        lacks=shows.lacks,
+        commands=generated.commands,
+        denied=generated.denied,
+    )
 
 
 def _scenes(scenes: Sequence[Scene], motion: Motion, words: str) -> Sequence[Scene]:

@@ -72,7 +72,8 @@ class TestSlips:
     @pytest.mark.parametrize(
         "text",
         ["write a letter in the air", "the bough of a tree", "wave to beyonce", "do the macarena", "kneel", "twerk",
-         "a selfie pose",          "pet the cat", "solve it", "lien holder", "dabbing", "salute captain picard", "left rather than right", "verbeuge dich"],
+         "a selfie pose",          "pet the cat", "solve it", "lien holder", "dabbing",
+         "salute captain picard", "left rather than right", "verbeuge dich"],
     )  # fmt: skip
     def test_what_is_right_or_foreign_stays(self, text: str) -> None:
         assert mended(text) == text
