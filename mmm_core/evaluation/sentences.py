@@ -26,6 +26,8 @@ LEAST_CHANGE = 1.15
 """Factor by which tempo or size must differ from the plain sentence's, the right way."""
 _MOVING = 0.2
 """Share of the greatest speed above which a frame counts as moving."""
+_REST = 0.35
+"""Share of the greatest distance from the first frame below which the body is at rest."""
 _PART_STEP = 4
 """Frames between two moments at which a motion is divided."""
 
@@ -195,7 +197,7 @@ def _shows(c: Command, shown: PostureFeatures) -> bool:
 
 
 def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool:
-    """Whether some moments part the motion into the steps in their order; of two steps, none into the other order."""
+    """Whether moments part the motion into the steps in order; of two steps, no moment of rest into the other order."""
     T = len(shown.head_yaw_deg)
     moments = range(MIN_PART, T - MIN_PART, _PART_STEP if len(steps) > 2 else 2)
     parts: dict[tuple[int, int], PostureFeatures] = {}
@@ -217,8 +219,24 @@ def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool
     forward = list(range(len(steps)))
     found = any(parted(forward, cuts) for cuts in combinations(moments, len(steps) - 1))
     if len(steps) == 2 and found and steps[0] != steps[1]:
-        return not any(parted([1, 0], cuts) for cuts in combinations(moments, 1))
+        rests = _at_rest(shown)
+        return not any(rests[t] and parted([1, 0], (t,)) for t in moments)
     return found
+
+
+def _at_rest(shown: PostureFeatures) -> np.ndarray:
+    """(T,) frames in which the body is nearer to the first frame than to the farthest: the way back of a lean is no lean."""
+    angles = [
+        shown.head_yaw_deg,
+        shown.head_pitch_deg,
+        shown.head_roll_deg,
+        shown.trunk_yaw_deg,
+        shown.trunk_pitch_deg,
+        shown.trunk_roll_deg,
+    ]
+    path = np.concatenate([shown.wrists_m["left"], shown.wrists_m["right"], np.stack(angles, -1) / 80], -1)
+    away = np.linalg.norm(path - path[0], axis=-1)
+    return away < _REST * away.max()
 
 
 def _step_seen(steps: Sequence[Sequence[Command]], i: int, shown: PostureFeatures) -> bool:

@@ -35,9 +35,11 @@ def composed(engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequenc
     Args:
         engine: the model.
         commands: done at once; each with its limbs.
-        rows: their ids (L, C), of one length.
+        rows: their ids (L, C); a shorter one stays at its end.
     """
     names = engine.model.tokenizer.part_names
+    longest = max(len(row) for row in rows)
+    rows = [torch.cat([row, row[-1:].repeat(longest - len(row), 1)]) for row in rows]
     ids = rows[0].clone()
     taken = _arms_of(engine, commands, rows)
     for row, arms in zip(rows, taken, strict=True):

@@ -86,9 +86,9 @@ def continue_motion(
 def _row(engine: Engine, prefix: Tensor, step: Step, seed: int) -> Tensor:
     """(n_tokens, C) ids of a step, generated after the ids of the prefix."""
     transformer = engine.model.transformer
-    row = torch.cat([prefix, empty_row(transformer, step.n_tokens)])
-    rows = [
-        fill(transformer, c.states, [row], [(seed + k * TOGETHER_STRIDE) % 2**31], engine.settings)[0][len(prefix) :]
-        for k, c in enumerate(step.commands)
-    ]
+    rows: list[Tensor] = []
+    for k, command in enumerate(step.commands):
+        row = torch.cat([prefix, empty_row(transformer, step.tokens_of(k))])
+        one = fill(transformer, command.states, [row], [(seed + k * TOGETHER_STRIDE) % 2**31], engine.settings)[0]
+        rows.append(one[len(prefix) :])
     return rows[0] if len(rows) == 1 else composed(engine, step.commands, rows)

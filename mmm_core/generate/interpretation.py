@@ -13,7 +13,7 @@ from itertools import islice
 
 from mmm_core.generate.motion_model import MotionModel, nothing_to_do
 from mmm_core.generate.result import understood_as
-from mmm_core.language.at_once import limbs_of
+from mmm_core.language.at_once import is_pose, limbs_of
 from mmm_core.language.manner import Manner
 from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.language.reading import Reading
@@ -31,6 +31,7 @@ class ReadCommand:
         is_mirrored: whether the states are those of the mirror image, so that the ids have to be mirrored.
         manner: tempo, size and hold.
         limbs: as `mmm_core.language.at_once.limbs_of`.
+        is_pose: whether it lasts as long as what is done beside it.
         understood: the nearest known command and its score; empty in a text of one command.
     """
 
@@ -39,6 +40,7 @@ class ReadCommand:
     is_mirrored: bool = False
     manner: Manner = Manner()  # noqa: RUF009
     limbs: frozenset[str] = frozenset()
+    is_pose: bool = False
     understood: str = ""
 
 
@@ -132,6 +134,7 @@ def _interpreted(engine: MotionModel, draft: _Draft, states: TextStates, rows: l
             image,
             understood=_seen_in_mirror(understood_as(verdict), image),
             limbs=limbs_of(text),
+            is_pose=is_pose(text),
         )
         for text, row, image, verdict in zip(draft.commands, rows[1:], draft.mirrored, parts, strict=True)
     ]

@@ -127,7 +127,7 @@ class MotionGeneration:
 
     def _row(self, i: int, step: Step) -> Tensor:
         """(L, C) ids of a step."""
-        rows = [self._command_row(i, k, command, step.n_tokens) for k, command in enumerate(step.commands)]
+        rows = [self._command_row(i, k, command, step.tokens_of(k)) for k, command in enumerate(step.commands)]
         return rows[0] if len(rows) == 1 else composed(self._engine, step.commands, rows)
 
     def _command_row(self, i: int, k: int, command: ReadCommand, n_tokens: int) -> Tensor:

@@ -39,10 +39,17 @@ class Step:
     Attributes:
         commands: one or more.
         n_tokens: length of their motion.
+        own_tokens: length of each command's own motion; empty where they are all `n_tokens`.
     """
 
     commands: tuple[ReadCommand, ...]
     n_tokens: int
+    own_tokens: tuple[int, ...] = ()
+
+    def tokens_of(self, k: int) -> int:
+        """Length of the k-th command's own motion: a pose lasts as long as the step, a stroke no longer than it would alone."""
+        is_whole = len(self.commands) == 1 or not self.own_tokens or self.commands[k].is_pose
+        return self.n_tokens if is_whole else min(self.n_tokens, self.own_tokens[k])
 
     @property
     def manner(self) -> Manner:
@@ -86,15 +93,16 @@ def steps_of(engine: MotionModel, read: Interpreted, n_frames: int | None) -> li
         command = steps[0][0]
         own = engine.predicted_frames(command.states) if n_frames is None else _before_tempo(n_frames, command.manner)
         return [Step(steps[0], tokens_for_frames(own))]
-    lengths = [max(tokens_for_frames(engine.predicted_frames(c.states)) for c in step) for step in steps]
-    room = (MAX_TOKENS if n_frames is None else tokens_for_frames(n_frames)) - TRANSITION_TOKENS * (len(steps) - 1)
-    if room < FEWEST_TOKENS * len(steps):
-        kept = max(1, (room + TRANSITION_TOKENS) // (FEWEST_TOKENS + TRANSITION_TOKENS))
-        steps, lengths = steps[:kept], lengths[:kept]
-        room = max(FEWEST_TOKENS * kept, room)
-    if n_frames is not None or sum(lengths) > room:
+    whole = MAX_TOKENS if n_frames is None else tokens_for_frames(n_frames)
+    steps = steps[: max(1, (whole + TRANSITION_TOKENS) // (FEWEST_TOKENS + TRANSITION_TOKENS))]
+    own = [tuple(tokens_for_frames(engine.predicted_frames(c.states)) for c in step) for step in steps]
+    lengths = [max(several) for several in own]
+    room = whole - TRANSITION_TOKENS * (len(steps) - 1)
+    if len(steps) == 1 and n_frames is not None:
+        lengths = [room]
+    elif n_frames is not None or sum(lengths) > room:
         lengths = shared_out(room, lengths)
-    return [Step(step, n) for step, n in zip(steps, lengths, strict=True)]
+    return [Step(step, n, several) for step, n, several in zip(steps, lengths, own, strict=True)]
 
 
 def stretches_of(steps: Sequence[Step], n_tokens: Sequence[int]) -> list[Stretch]:

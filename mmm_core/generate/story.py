@@ -201,8 +201,8 @@ def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> lis
             for i, step in enumerate(asked[-1])
             for k, _ in enumerate(step.commands)
         ]
-    flat = [(c, step) for steps in asked for step in steps for c in step.commands]
-    rows = [empty_row(engine.model.transformer, step.n_tokens) for _, step in flat]
+    flat = [(c, step.tokens_of(k)) for steps in asked for step in steps for k, c in enumerate(step.commands)]
+    rows = [empty_row(engine.model.transformer, n) for _, n in flat]
     texts = [c.states for c, _ in flat]
     made = iter(fill(engine.model.transformer, TextStates.stacked(texts), rows, seeds, engine.settings) if rows else [])
     nothing = torch.zeros(0, engine.model.tokenizer.n_codebooks, dtype=torch.int64)

@@ -104,6 +104,13 @@ def are_at_once(a: str, b: str, *, joined: bool = True) -> bool:
     return joined and (bool(_POSE.match(a)) or not any(_ENDS.search(part) for part in (a, b)))
 
 
+def is_pose(clause: str) -> bool:
+    """Whether a command is a pose, which lasts as long as what is done beside it."""
+    return bool(_POSE.match(clause)) and not re.match(
+        r"(?:shake|roll|wobble|turn your palm|tilt your head from)\b", clause
+    )
+
+
 def _apart(a: frozenset[str], b: frozenset[str]) -> bool:
     if not a or not b or a & b - SOME_ARM:
         return False

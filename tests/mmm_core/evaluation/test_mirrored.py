@@ -8,6 +8,7 @@ import pytest
 from mmm_core.evaluation.mirrored import limb_angles_deg, mirrored_figures
 from mmm_core.generate.editing import Edit, edit
 from mmm_core.generate.engine import Engine
+from mmm_core.generate.interpretation import interpret
 from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.model.sampling import OFFICIAL_SAMPLING
 from mmm_core.motion.features import mirror
@@ -89,7 +90,7 @@ def test_an_imported_model_is_asked_as_it_stands(engine: Engine) -> None:
     plain = Engine(engine.model, engine.encoder, "", OFFICIAL_SAMPLING)
     plain.model.rest_pose = "humanml3d"
     try:
-        assert not plain.understand_fresh("wave with your left hand")[2]
+        assert not interpret(plain, "wave with your left hand").is_mirrored
     finally:
         plain.model.rest_pose = "mmmd"
 
