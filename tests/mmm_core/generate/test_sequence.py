@@ -42,7 +42,10 @@ class TestReading:
             ("raise your left arm and hold it there, then nod", ["raise your left arm and hold it there", "nod"]),
             ("1. nod 2. bow", ["nod", "bow"]),
             ("nod.  Then\nbow!", ["nod", "bow"]),
-            ("wave with the left hand and then with the right", ["wave with the left hand", "wave with the right hand"]),
+            (
+                "wave with the left hand and then with the right",
+                ["wave with the left hand", "wave with the right hand"],
+            ),
             ("clap, then do it again", ["clap", "clap"]),
             ("lift the left arm, then lower it", ["lift the left arm", "lower your left arm"]),
             ("look right, left, then right again", ["look right", "look left", "look right"]),
