@@ -30,8 +30,15 @@ _WEIGHTS = {
     "t_pose": 1.3, "cross_arms": 1.3, "hands_on_hips": 1.3, "salute": 1.3, "shrug": 1.2, "arm_circle": 1.6, "stand": 1.2, "think": 1.2, "heart": 1.2,
 }  # fmt: skip
 """How often a family is drawn, the others 0.8: what people ask for most, and what can be counted, more often."""
+
+
+def usual_weight(family: str) -> float:
+    """How often a family is drawn unless told otherwise, beside the others."""
+    return _WEIGHTS.get(family, 0.8)
+
+
 _NAMES = list(FAMILIES)
-_P = np.array([_WEIGHTS.get(name, 0.8) for name in _NAMES])
+_P = np.array([usual_weight(name) for name in _NAMES])
 _P /= _P.sum()
 _UNSIZED = ("tilt_head", "look", "look_back", "look_around", "high_five", "handshake", "fist_pump", "cheer", "catch", "throw", "throw_low", "tennis", "golf", "basketball", "archery", "kiss", "type", "drum", "piano", "pick", "climb", "turn_key", "flip_palm", "robot", "arm_wave", "yawn", "hook", "uppercut", "punch", "stand", "shift")  # fmt: skip
 """Families whose way of performing knows no size."""

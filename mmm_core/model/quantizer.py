@@ -56,6 +56,14 @@ class Quantizer(nn.Module):
         return latents + (quantised - latents).detach(), commitment
 
     @torch.no_grad()
+    def take_uses(self, latents: Tensor, n_each: int) -> None:
+        """Set the moving averages as batches of `n_each` latents, distributed like `latents` (N, D), would have them."""
+        uses = torch.bincount(self.encode(latents), minlength=len(self.codebook)).float()
+        self.uses.copy_(uses * n_each / len(latents))
+        self.sums.copy_(self.uses[:, None] * self.codebook)
+        self.n_updates.fill_(1)
+
+    @torch.no_grad()
     def _update(self, flat: Tensor) -> None:
         """One EMA step; the first call takes codes from the batch; dead codes are reset, each time they die."""
         n_codes = len(self.codebook)

@@ -139,7 +139,8 @@ class Tokenizer(nn.Module):
         """Features in their own units -> what the encoders see."""
         return (features - self.mean) / self.std
 
-    def _latents(self, normalised: Tensor) -> list[Tensor]:
+    def latents(self, normalised: Tensor) -> list[Tensor]:
+        """(B, T, 263) normalised features -> (B, T/4, D) latents of each part, before they become codes."""
         return [
             encoder(normalised[..., list(part.channels)])
             for encoder, part in zip(self.encoders, self.config.parts, strict=True)
@@ -147,7 +148,7 @@ class Tokenizer(nn.Module):
 
     def encode(self, features: Tensor) -> Tensor:
         """(B, T, 263) features, T a multiple of four -> (B, T/4, C) ids."""
-        latents = self._latents(self.normalise(features))
+        latents = self.latents(self.normalise(features))
         return torch.stack([q.encode(z) for q, z in zip(self.books, latents, strict=True)], -1)
 
     def decode(self, ids: Tensor) -> Tensor:
@@ -164,11 +165,11 @@ class Tokenizer(nn.Module):
         Without `quantise` the latents go to the decoder as they are, and the second figure is their mean square.
         """
         if not quantise:
-            latents = torch.cat(self._latents(normalised), -1)
+            latents = torch.cat(self.latents(normalised), -1)
             return self.decoder(latents), latents.float().square().mean()
         quantised: list[Tensor] = []
         commitment = normalised.new_zeros(())
-        for quantizer, z in zip(self.books, self._latents(normalised), strict=True):
+        for quantizer, z in zip(self.books, self.latents(normalised), strict=True):
             straight_through, loss = quantizer(z)
             quantised.append(straight_through)
             commitment = commitment + loss

@@ -32,7 +32,7 @@ from mmm_core.model.clip import ClipText
 from mmm_core.model.length import LengthPredictor
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill
 from mmm_core.model.text import MiniLm, MiniLmConfig, TextEncoder, TextStates
-from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from mmm_core.model.transformer import MotionTransformer
 from mmm_core.model.vqvae import VqVae
@@ -48,8 +48,9 @@ from mmm_core.training.batches import (
     save_clips,
 )
 from mmm_core.training.evaluator_training import train_evaluator
-from mmm_core.training.fresh import FreshClips
+from mmm_core.training.fresh import WEIGHTS_FILE, FreshClips, make_round, read_weights
 from mmm_core.training.recipe import Recipe
+from mmm_core.training.refining import refined
 from mmm_core.training.run import Run
 from mmm_core.training.samples import draw_rows
 from mmm_core.training.scope_training import build_scope
@@ -129,7 +130,24 @@ class Stages:
 
     @cached_property
     def start(self) -> Model | None:
-        """The checkpoint that the recipe goes on from, if there is one.
+        """The model that the recipe goes on from, if there is one; with refined codebooks where the recipe has more codes."""
+        model, how = self._read_start, self.recipe.tokenizer
+        if model is None or model.tokenizer.config.n_codes == how.n_codes:
+            return model
+        path = self.run.folder / "start_refined.safetensors"
+        if not path.is_file():
+            fresh, made = self.recipe.data.fresh, list[Clip]()
+            if fresh.clips:
+                made = make_round(fresh, self.recipe.seed, 0, read_weights(self._fresh_folder / WEIGHTS_FILE))
+            grown = refined(model, [*self.clips, *made], how.n_codes, how.schedule, self.run, how.real_share)
+            if distributed.rank() == 0:
+                save_model(path, grown)
+            distributed.wait()
+        return load_model(path)
+
+    @cached_property
+    def _read_start(self) -> Model | None:
+        """The checkpoint that the recipe names, checked.
 
         Raises:
             CheckpointError: it cannot be read, or has other sizes, another text encoder or another body than are asked for.
@@ -147,6 +165,9 @@ class Stages:
             has = "minilm" if model.text is None else "clip"
             raise CheckpointError(path, "text", f"a model that reads {has}", f"{how.text.encoder}, as the recipe says")
         sizes = how.tokenizer.config(len(model.tokenizer.mean))
+        held = model.tokenizer.config
+        if isinstance(sizes, TokenizerConfig) and isinstance(held, TokenizerConfig) and sizes.n_codes > held.n_codes:
+            sizes = replace(sizes, n_codes=held.n_codes)  # its codebooks are refined (`start`)
         if sizes != model.tokenizer.config:
             raise CheckpointError(path, "tokenizer", f"{model.tokenizer.config}", f"{sizes}, as the recipe says")
         wanted = how.transformer.config(sizes, books, found.text_dim, how.text.tuned_layers)
@@ -248,7 +269,11 @@ class Stages:
         if self.recipe.text.tuned_layers:
             found = f"{self.recipe.text.tuned_layers}, with data.fresh"
             raise TrainingDataError(self.run.folder, "text.tuned_layers", found, "0 where clips are made anew")
-        return FreshClips(how, self.run.folder / "fresh", self.tokenizer, self.text, self.recipe.seed, self.corpus)
+        return FreshClips(how, self._fresh_folder, self.tokenizer, self.text, self.recipe.seed, self.corpus)
+
+    @property
+    def _fresh_folder(self) -> Path:
+        return self.run.folder / "fresh"
 
     @cached_property
     def transformer(self) -> MotionTransformer:

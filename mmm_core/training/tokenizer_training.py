@@ -107,6 +107,23 @@ def train_tokenizer(
     return tokenizer
 
 
+def go_on_with_tokenizer(
+    tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run: Run, name: str, real_share: float = 0.12
+) -> None:
+    """Train a tokenizer that has codes further, in place; `name` is the stage's in the run's folder."""
+    device = run.torch_device
+    weights, draw = channel_weights().to(device), _window_draw(clips, real_share, BATCH, WINDOW_FRAMES)
+
+    def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
+        x = tokenizer.normalise(draw(generator)[distributed.share(BATCH)].to(device))
+        reconstruction, commitment = tokenizer(x)
+        frames, differences = _errors(reconstruction.float(), x, weights)
+        loss = frames + DECODER_DIFFERENCE_WEIGHT * differences + COMMITMENT * commitment
+        return {"loss": loss, "frames": frames, "differences": differences, "commitment": commitment}
+
+    train(tokenizer, loss_fn, schedule, run, name)
+
+
 def tune_decoder(
     tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run: Run, real_share: float = 0.12
 ) -> None:

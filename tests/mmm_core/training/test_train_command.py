@@ -143,6 +143,21 @@ def test_a_recipe_makes_clips_while_it_trains(tmp_path: Path, capsys: pytest.Cap
     assert "text.tuned_layers" in capsys.readouterr().err
 
 
+def test_a_recipe_with_more_codes_refines_those_of_its_start(tmp_path: Path) -> None:
+    """The refined model is made once; a run that is started again goes on from it as it is."""
+    first = small(tmp_path / "first.toml")
+    assert main(["train", "--config", str(first), "--run", str(tmp_path / "first"), "--sample-every", "0"]) == 0
+    more, run = small(tmp_path / "more.toml"), tmp_path / "more"
+    start = f'start = "{tmp_path / "first" / "model.safetensors"}"\n'
+    more.write_text(start + more.read_text().replace("n_codes = 16", "n_codes = 24"))
+    for _ in range(2):
+        assert main(["train", "--config", str(more), "--run", str(run), "--sample-every", "0"]) == 0
+        grown, made = (load_model(run / name) for name in ("start_refined.safetensors", "model.safetensors"))
+        for name, tensor in grown.tokenizer.state_dict().items():
+            assert torch.equal(made.tokenizer.state_dict()[name], tensor), name
+        assert made.tokenizer.config.n_codes == made.transformer.config.n_codes == 24
+
+
 def test_a_recipe_goes_on_from_a_finished_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The tokenizer, decoder and all, is as it was; the transformer has its weights and goes on from there."""
     first = small(tmp_path / "first.toml")
@@ -164,7 +179,7 @@ def test_a_recipe_goes_on_from_a_finished_model(tmp_path: Path, capsys: pytest.C
     folder = make_folder(tmp_path / "data", "humanml3d")
     for change, instead, options, named in (
         ("width = 32", "width = 64", [], "transformer"),
-        ("n_codes = 16", "n_codes = 32", [], "tokenizer"),
+        ("n_codes = 16", "n_codes = 8", [], "tokenizer"),
         ("[data]", "[text]\nencoder = 'clip'\n[data]", [], "text"),
         ("", "", ["--data", str(folder)], "rest_pose"),
     ):

@@ -143,7 +143,7 @@ def test_before_there_are_codes_latents_go_to_the_decoder_as_they_are(tmp_path: 
     assert [int(q.n_updates) for q in plain.books] == [0, 0, 0]
     both = trained(6, 3, "both")
     assert [int(q.n_updates) for q in both.books] == [3, 3, 3]
-    latents = both._latents(both.normalise(torch.from_numpy(clips[0].features)[None]))
+    latents = both.latents(both.normalise(torch.from_numpy(clips[0].features)[None]))
     for quantizer, z in zip(both.books, latents, strict=True):
         apart = torch.cdist(z[0], quantizer.codebook).min(1).values.mean()
         assert apart < z[0].norm(dim=-1).mean() + 1e-3, "codes lie among the latents"
