@@ -174,15 +174,24 @@ def synthesise(
 
 def synthesise_spec(spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.0) -> SynthClip | None:
     """A clip that shows `spec`; None when it would be longer than 9.8 s. With a beat it is clean: see `beat.py`."""
-    score = _on_beat(spec, rng, beat_s) if beat_s else _freely(spec, rng)
+    score = score_of(spec, rng, beat_s)
     n_tokens = int(np.ceil(score.time_s * FPS / FRAMES_PER_TOKEN - 1e-6))
     if n_tokens > MAX_TOKENS:
         return None
     style = STYLES.get(spec.gestures[0].style)
     posture = (style.trunk_pitch_rad, style.head_pitch_rad) if style else (0.0, 0.0)
     body = perform(score, n_tokens * FRAMES_PER_TOKEN, style.stiffness if style else 0.0, posture)
-    captions = [caption(list(spec.gestures), spec.parallel, rng) for _ in range(N_CAPTIONS)]
-    return SynthClip(body.features(), captions, spec, body)
+    return SynthClip(body.features(), words_for(spec, rng), spec, body)
+
+
+def score_of(spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.0) -> Score:
+    """What the body does to show `spec`: as a person does it, or on a beat."""
+    return _on_beat(spec, rng, beat_s) if beat_s else _freely(spec, rng)
+
+
+def words_for(spec: ClipSpec, rng: np.random.Generator) -> list[str]:
+    """Sentences that ask for `spec`."""
+    return [caption(list(spec.gestures), spec.parallel, rng) for _ in range(N_CAPTIONS)]
 
 
 def _freely(spec: ClipSpec, rng: np.random.Generator) -> Score:

@@ -23,11 +23,19 @@ ENCODE_BATCH = 64
 
 @dataclass(frozen=True)
 class Clip:
-    """One training motion: (T, F) features, its sentences, and whether a person made it."""
+    """One training motion.
+
+    Attributes:
+        features: (T, F).
+        captions: sentences for what follows its seen tokens.
+        is_real: whether a person made it.
+        n_seen: tokens at its beginning that show another motion, which it goes on from: given, not learnt.
+    """
 
     features: NDArray[np.float32]
     captions: list[str]
     is_real: bool
+    n_seen: int = 0
 
 
 def cut_to_tokens(clip: Clip, generator: np.random.Generator) -> Clip:
@@ -94,12 +102,18 @@ class TokenCorpus:
         caption_rows: for each clip the rows of its captions in `captions`.
         captions: the encoded captions.
         is_real: for each clip.
+        n_seen: for each clip, as of `Clip`; None where it is 0 for all.
     """
 
     ids: list[Tensor]
     caption_rows: list[list[int]]
     captions: CaptionStates
     is_real: NDArray[np.bool_]
+    n_seen: NDArray[np.int64] | None = None
+
+    def seen(self, rows: Sequence[int] | NDArray[np.int64]) -> NDArray[np.int64]:
+        """Seen tokens of the clips at `rows`."""
+        return np.zeros(len(rows), np.int64) if self.n_seen is None else self.n_seen[np.asarray(rows)]
 
 
 def encode_clips(clips: Sequence[Clip], tokenizer: Tokenizer | VqVae) -> list[Tensor]:

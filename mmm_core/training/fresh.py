@@ -21,6 +21,7 @@ from mmm_core import distributed
 from mmm_core.corpus.beat import BEAT_S
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.synthesis import SINGLE_SHARE, synthesise, usual_weight
+from mmm_core.corpus.takeover import synthesise_takeover
 from mmm_core.errors import TrainingDataError
 from mmm_core.language.mirroring import canonical
 from mmm_core.model.text import TextEncoder
@@ -51,6 +52,7 @@ class FreshRecipe:
         free_share: share of clips that keep no beat: performed as by a person, with sway, breath and uneven strokes.
         canonical_share: share of clips whose sentence is the one of it and its mirror image that the engine reads.
         single_share: share of clips that show one gesture; the others show two at once, or two or three in turn.
+        takeover_share: share of clips that begin in the middle of another gesture, whose tokens are given and not learnt.
     """
 
     clips: int = 0
@@ -61,6 +63,7 @@ class FreshRecipe:
     free_share: float = 0.12
     canonical_share: float = 0.8
     single_share: float = SINGLE_SHARE
+    takeover_share: float = 0.0
 
 
 def usual_weights() -> dict[str, float]:
@@ -107,25 +110,29 @@ def make_round(how: FreshRecipe, seed: int, k: int, weights: Mapping[str, float]
 
 
 def _make(how: FreshRecipe, rng: np.random.Generator, weights: Mapping[str, float]) -> Clip:
-    free = rng.random() < how.free_share
-    made = synthesise(rng, 0.0 if free else BEAT_S, weights, how.single_share)
+    beat_s = 0.0 if rng.random() < how.free_share else BEAT_S
+    if how.takeover_share and rng.random() < how.takeover_share:
+        made, n_seen = synthesise_takeover(rng, beat_s, weights, how.single_share)
+    else:
+        made, n_seen = synthesise(rng, beat_s, weights, how.single_share), 0
     n = how.captions
     if rng.random() >= how.canonical_share:
-        return Clip(made.features, made.captions[:n], False)
+        return Clip(made.features, made.captions[:n], False, n_seen)
     read = [canonical(c) for c in made.captions]
     turned = read[0][1]  # the others only where they are read from the same side
     captions = [text for text, is_image in read if is_image == turned][:n]
-    return Clip(mirror(made.features) if turned else made.features, captions, False)
+    return Clip(mirror(made.features) if turned else made.features, captions, False, n_seen)
 
 
 @dataclass(frozen=True)
 class Round:
-    """What a round's clips are trained by: ids of each, rows of its captions, the captions."""
+    """What a round's clips are trained by: ids of each, rows of its captions, the captions, and its seen tokens."""
 
     ids: list[Tensor]
     caption_rows: list[list[int]]
     captions: list[str]
     states: CaptionStates
+    n_seen: list[int]
 
 
 class FreshClips:
@@ -164,11 +171,12 @@ class FreshClips:
             with written_whole(path) as partial:
                 torch.save({"ids": made.ids, "caption_rows": made.caption_rows, "captions": made.captions,
                             "words": made.states.words, "n_words": torch.from_numpy(made.states.n_words),
-                            "sentences": made.states.sentences}, partial)  # fmt: skip
+                            "sentences": made.states.sentences, "n_seen": made.n_seen}, partial)  # fmt: skip
         distributed.wait()
         kept = torch.load(path, weights_only=True)
         states = CaptionStates(kept["words"], kept["n_words"].numpy(), kept["sentences"])
-        return Round(kept["ids"], kept["caption_rows"], kept["captions"], states)
+        n_seen = kept.get("n_seen") or [0] * len(kept["ids"])  # rounds of runs before there were takeovers
+        return Round(kept["ids"], kept["caption_rows"], kept["captions"], states, n_seen)
 
     def _made(self, k: int) -> Round:
         clips = self._clips(k)
@@ -176,9 +184,8 @@ class FreshClips:
         row = {caption: i for i, caption in enumerate(captions)}
         rows = [[row[c] for c in clip.captions] for clip in clips]
         log.info("round %d: %d clips, %d captions", k, len(clips), len(captions))
-        return Round(
-            encode_clips(clips, self._tokenizer), rows, captions, CaptionStates.encode(captions, self._encoder)
-        )
+        states = CaptionStates.encode(captions, self._encoder)
+        return Round(encode_clips(clips, self._tokenizer), rows, captions, states, [clip.n_seen for clip in clips])
 
     def clips(self, step: int) -> list[Clip]:
         """The motions of the newest round at `step`, made again: a round keeps their ids alone."""
@@ -190,8 +197,10 @@ class FreshClips:
     def _together(self, rounds: Sequence[Round]) -> TokenCorpus:
         """One corpus of the rounds and of people's clips."""
         parts = [(r.ids, r.caption_rows, r.states) for r in rounds]
+        n_seen = [n for r in rounds for n in r.n_seen]
         if self._people is not None:
             parts.append((self._people.ids, self._people.caption_rows, self._people.captions))
+            n_seen += self._people.seen(range(len(self._people.ids))).tolist()
         ids, rows, first = [], [], 0
         for part_ids, part_rows, states in parts:
             ids += part_ids
@@ -202,4 +211,5 @@ class FreshClips:
             torch.cat([s.sentences for *_, s in parts]),
         )  # fmt: skip
         n_people = 0 if self._people is None else len(self._people.ids)
-        return TokenCorpus(ids, rows, states, np.arange(len(ids)) >= len(ids) - n_people)
+        is_real = np.arange(len(ids)) >= len(ids) - n_people
+        return TokenCorpus(ids, rows, states, is_real, np.array(n_seen, np.int64))

@@ -253,7 +253,8 @@ class Stages:
         corpus = self.corpus
         if self.fresh is not None:
             corpus = self.fresh.corpus(self.recipe.transformer.schedule.steps - 1)
-        seconds = [len(ids) * FRAMES_PER_TOKEN / fps for ids in corpus.ids]
+        seen = corpus.seen(range(len(corpus.ids)))
+        seconds = [(len(ids) - n) * FRAMES_PER_TOKEN / fps for ids, n in zip(corpus.ids, seen.tolist(), strict=True)]
         return train_length(corpus, seconds, self.recipe.length, self.run, start)
 
     @cached_property

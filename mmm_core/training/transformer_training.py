@@ -61,14 +61,18 @@ def corrupt(
     how: Corruption,
     generator: torch.Generator,
     n_predicted: int | None = None,
+    n_seen: Tensor | None = None,
 ) -> Tensor:
     """Replace some visible ids by random ones, then mask positions; (B, L, C) -> (B, L, C), [END] and [PAD] untouched.
 
-    Codebooks from `n_predicted` on are never masked, only lightly replaced (MMM eq. 3).
+    Codebooks from `n_predicted` on are never masked, only lightly replaced (MMM eq. 3). The first `n_seen` (B,) positions of
+    a motion stay as they are.
     """
     B, L, C = ids.shape
     P = C if n_predicted is None else n_predicted
-    motion = torch.arange(L)[None] < n_tokens[:, None]  # (B, L)
+    motion = learnt(L, n_tokens, n_seen)
+    if n_seen is not None:
+        n_tokens = n_tokens - n_seen
     keep = how.kept_share + (1 - how.kept_share) * torch.rand(B, 1, generator=generator)
     replaced = motion & (torch.rand(B, L, generator=generator) > keep)
     random_ids = torch.randint(n_codes, ids.shape, generator=generator)
@@ -97,6 +101,13 @@ def corrupt(
     return torch.where(masked, torch.full_like(ids, n_codes + 2), ids)
 
 
+def learnt(length: int, n_tokens: Tensor, n_seen: Tensor | None = None) -> Tensor:
+    """(B, L) bool: positions of the motions, of `n_tokens` (B,) tokens, after their first `n_seen` (B,)."""
+    position = torch.arange(length, device=n_tokens.device)[None]
+    motion = position < n_tokens[:, None]
+    return motion if n_seen is None else motion & (position >= n_seen[:, None])
+
+
 class Batches:
     """Draws the rows of a step from a corpus: clips of like length together, people's as often as asked."""
 
@@ -106,8 +117,8 @@ class Batches:
         weight = np.array([_drawing_weight(rows, corpus.is_real, real_share) for rows in self._buckets.values()])
         self._lengths, self._p = list(self._buckets), weight / weight.sum()
 
-    def draw(self, generator: torch.Generator, config: TransformerConfig) -> tuple[Tensor, Tensor, TextStates]:
-        """Ids (B, L, C) with [END] and [PAD], lengths (B,) and a caption of each."""
+    def draw(self, generator: torch.Generator, config: TransformerConfig) -> tuple[Tensor, Tensor, Tensor, TextStates]:
+        """Ids (B, L, C) with [END] and [PAD], lengths (B,), seen tokens at the beginning (B,), and a caption of each."""
         corpus, K = self._corpus, config.n_codes
         rng = np.random.default_rng(int(torch.randint(2**62, (1,), generator=generator)))
         length = self._lengths[rng.choice(len(self._lengths), p=self._p)]
@@ -121,7 +132,7 @@ class Batches:
             ids[row, :n] = corpus.ids[i]
             ids[row, n] = K
         captions = [int(rng.choice(corpus.caption_rows[i])) for i in picked]
-        return ids, n_tokens, corpus.captions.gather(captions)
+        return ids, n_tokens, torch.from_numpy(corpus.seen(picked)), corpus.captions.gather(captions)
 
 
 def train_transformer(
@@ -159,18 +170,18 @@ def train_transformer(
 
     def loss_fn(step: int, generator: torch.Generator) -> dict[str, Tensor]:
         now = corpus if isinstance(corpus, TokenCorpus) else corpus.corpus(step)
-        ids, n_tokens, text = batches(now).draw(generator, config)
+        ids, n_tokens, n_seen, text = batches(now).draw(generator, config)
         dropped = torch.rand(len(ids), generator=generator) < how.no_text_share
-        seen = corrupt(ids, n_tokens, K, how, generator, P)
+        seen = corrupt(ids, n_tokens, K, how, generator, P, n_seen)
         mine = distributed.share(len(ids))
-        ids, seen, n_tokens, dropped = (t[mine].to(device) for t in (ids, seen, n_tokens, dropped))
+        ids, seen, n_tokens, n_seen, dropped = (t[mine].to(device) for t in (ids, seen, n_tokens, n_seen, dropped))
         context = model.read_text(_drop(text.part(mine).to(device), dropped, model))
         B, L = ids.shape[:2]
         logits = model(seen, context).float()
-        motion = torch.arange(L, device=device)[None] < n_tokens[:, None]
+        motion = learnt(L, n_tokens, n_seen)
         target = ids[motion][:, :P]  # (N, P)
         entropy = F.cross_entropy(logits[motion].reshape(-1, K), target.reshape(-1), reduction="none")
-        share = (1.0 / n_tokens)[:, None].expand(B, L)[motion]
+        share = (1.0 / (n_tokens - n_seen))[:, None].expand(B, L)[motion]
         loss = (entropy.reshape(target.shape).mean(1) * share).sum() / B
         right = (logits[motion].argmax(-1) == target).float().mean()
         return {"loss": loss, "right": right}

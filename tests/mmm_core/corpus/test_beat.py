@@ -102,8 +102,11 @@ def test_rounds_are_made_when_their_step_comes_and_read_again(tmp_path: Path) ->
     assert len(clips.corpus(4).ids) == 6  # the two newest rounds
     again = fresh().corpus(4)
     assert all(torch.equal(a, b) for a, b in zip(again.ids, clips.corpus(4).ids, strict=True))
-    ids, n_tokens, text = Batches(again, 60, 0.0).draw(torch.Generator().manual_seed(1), model.transformer.config)
-    assert len(ids) == len(n_tokens) == len(text.sentence)
+    ids, n_tokens, n_seen, text = Batches(again, 60, 0.0).draw(
+        torch.Generator().manual_seed(1), model.transformer.config
+    )
+    assert len(ids) == len(n_tokens) == len(text.sentence) == len(n_seen)
+    assert not n_seen.any()
 
 
 def test_a_transformer_learns_from_fresh_clips_in_bf16_and_goes_on(tmp_path: Path) -> None:
