@@ -60,8 +60,10 @@ def test_seen_tokens_are_neither_hidden_nor_learnt() -> None:
 def test_rounds_keep_how_much_of_a_clip_is_seen(tmp_path: Path) -> None:
     model, encoder = load_model(), load_text_encoder()
     how = FreshRecipe(clips=3, first=6, every=2, rounds=1, captions=1, takeover_share=1.0)
-    for _ in range(2):  # made, and read again
-        corpus = FreshClips(how, tmp_path, model.tokenizer, encoder, 3).corpus(0)
-        assert (corpus.seen(range(6)) >= SEEN_TOKENS[0]).all()
+    made, corpus = (
+        FreshClips(how, tmp_path, model.tokenizer, encoder, 3).corpus(0) for _ in range(2)
+    )  # and read again
+    assert (corpus.seen(range(6)) >= SEEN_TOKENS[0]).all()
+    assert corpus.seen(range(6)).tolist() == made.seen(range(6)).tolist()
     *_, n_seen, text = Batches(corpus, 60, 0.0).draw(torch.Generator().manual_seed(1), model.transformer.config)
     assert (n_seen >= SEEN_TOKENS[0]).all() and len(text.sentence) == len(n_seen)
