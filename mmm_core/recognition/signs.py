@@ -21,6 +21,8 @@ from mmm_core.recognition.sign_tables import DIRECTED, HEAD_TRUNK, ONE_LEADS, SI
 Array = NDArray[np.floating]
 LEAST_FRAMES = 3
 """How long a palm has to be in a place to have been there: 0.15 s."""
+TOUCHING_M = 0.16
+"""Distance of palms, metres, up to which they count as together."""
 SLOW_M_S = 0.3
 HELD_FRAMES = 6
 TRANSITION_FRAMES = 7
@@ -63,6 +65,11 @@ def shows(s: PostureFeatures, family: str, side: str = "", direction: str = "") 
     if side in ("both", "alternating") and family not in ONE_LEADS:
         return _has(s, sign, "left") and _has(s, sign, "right")
     return _has(s, sign, "left") or _has(s, sign, "right")
+
+
+def palms_meet(family: str) -> bool:
+    """Whether the palms of a family's gesture come together: a clap, praying, clasped hands."""
+    return family in SIGNS and SIGNS[family].apart_m[1] <= TOUCHING_M
 
 
 def _has(s: PostureFeatures, sign: Sign, side: str) -> bool:

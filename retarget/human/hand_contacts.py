@@ -116,6 +116,11 @@ class Hands:
                 q = np.minimum(np.maximum(q + step, self._low), self._high)
         return q
 
+    def apart_m(self, q_rad: Array) -> float:
+        """Least distance between the two hands in poses (T, J); infinite for a robot without two hands that can touch."""
+        pairs = self._pairs.get(("left", "other hand"))
+        return float("inf") if pairs is None else float(self._contact.nearest(q_rad, pairs)[0].min())
+
     def kept(self, q_rad: Array, human: HumanContacts) -> dict[str, dict[str, int]]:
         """For each contact of the person, in how many frames it is whole, and in how many of those on the robot."""
         counts: dict[str, dict[str, int]] = {}

@@ -11,14 +11,21 @@ from numpy.typing import NDArray
 
 from daemon.playback.sources.lacking import instead, lacking
 from daemon.poses.pose_sequence import PoseSequence
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.posture_features import posture_features
+from mmm_core.recognition.checks import PALM_M
 from mmm_core.recognition.named import families_named
 from mmm_core.recognition.seen import HARDLY, NOTHING_MOVES, Scene, lost, scenes_seen, sentence
+from mmm_core.recognition.signs import TOUCHING_M, palms_meet
+from retarget.human.hand_contacts import Hands
 from retarget.pipeline import Retargeter
 from retarget.robot.robot import RobotModel
 from retarget.robot_to_human import as_motion
 
 Array = NDArray[np.float64]
 SHOWN, IN_PART, NOT_SHOWN = "shown", "in part", "not shown"
+_TOUCHING_M, _LOOKED_AT = 0.03, 200
+"""Metres between a robot's hands up to which they touch, and how many poses are looked at."""
 LONGEST_S = 15.0
 """Seconds of a motion that are judged; what comes later is not looked at."""
 
@@ -56,6 +63,7 @@ class Showing:
 
     def __init__(self, robot: RobotModel) -> None:
         self._retargeter, self._lock = Retargeter(robot), threading.Lock()
+        self._hands = Hands(self._retargeter.kinematics, self._retargeter.contact, self._retargeter.limits)
         families_named("wave")  # its tables are read now and not with the first text
 
     def of(self, posture: PoseSequence, scenes: Sequence[Scene], *, draft: bool = False) -> Shows:
@@ -93,11 +101,26 @@ class Showing:
             return Verdict(SHOWN, said) if meant else Verdict(NOT_SHOWN, said, "nothing moves")
         robots = as_motion(self._retargeter.kinematics, q_rad[: round(motion.duration_s * fps) + 1], fps, motion)
         missing = [(act, what, instead(act, robots)) for act, what in lost(robots, scenes, acts)]
+        missing += [(act, self._apart(q_rad, robots), "") for act in every if palms_meet(act.family)]
+        missing = [row for row in missing if row[1]]
         if not missing:
             return Verdict(SHOWN, said)
         seen_at_all = any(other or not what.endswith(HARDLY) for _, what, other in missing) or len(missing) < len(every)
         words = "; ".join(dict.fromkeys(what + other for _, what, other in missing))
         return Verdict(IN_PART if seen_at_all else NOT_SHOWN, said, words)
+
+    def _apart(self, q_rad: Array, robots: Motion) -> str:
+        """How far the hands of poses (T, J) stay apart; "" where they come together, by the robot's shapes or its forearms.
+
+        `robots` are the same poses on a person: a robot whose hands have no shapes is judged by where its forearms lead.
+        """
+        with self._lock:
+            apart_m = self._hands.apart_m(q_rad[:: max(1, len(q_rad) // _LOOKED_AT)])
+        seen = posture_features(robots.joints_m, robots.head_quat_wxyz)
+        palms = [seen.wrists_m[side] + PALM_M * seen.fore[side] for side in ("left", "right")]
+        on_a_person_m = float(np.linalg.norm(palms[0] - palms[1], axis=-1).min())
+        together = apart_m < _TOUCHING_M or (np.isinf(apart_m) and on_a_person_m < _TOUCHING_M + TOUCHING_M)
+        return "" if together else f"the hands stay {100 * min(apart_m, on_a_person_m):.0f} cm apart"
 
 
 def at_tempo(scenes: Sequence[Scene], tempo: float) -> list[Scene]:

@@ -56,6 +56,14 @@ def test_what_a_robot_lacks_is_told_before_it_moves(robot: str, name: str, lacks
     assert showing(robot).of(clip(name), scenes(clip(name), name.replace("_", " "))).lacks == lacks
 
 
+@pytest.mark.parametrize(("robot", "meets"), [("reference", True), ("poppy_torso", True), ("op2", False)])
+def test_a_clap_whose_hands_stay_apart_is_not_called_shown(robot: str, meets: bool):
+    """OP2's hands stay ten centimetres apart, though its forearms point as a clapping person's do."""
+    told = verdict(robot, clip("clap"), "clap")
+    assert ("cm apart" in told.missing) == (not meets), told
+    assert (told.shown == "shown") == meets, told
+
+
 def test_arms_of_three_joints_say_how_far_they_are_off():
     lacks = showing("op3").of(clip("clap"), scenes(clip("clap"), "clap")).lacks
     assert "its left arm of 3 joints is about" in lacks and "its right arm of 3 joints is about" in lacks
