@@ -58,7 +58,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "arm": CommandEntry("daemon.cli.client.control:arm", "torque on, slow move to the rest pose"),
     "park": CommandEntry("daemon.cli.client.control:park", "slow move to the park pose, torque off"),
     "torque": CommandEntry("daemon.cli.client.control:torque", "off: brake, then limp where it stands; on: as arm"),
-    "mcp": CommandEntry("daemon.cli.mcp:mcp", "tools for a language model: say, gesture, look, stop"),
+    "mcp": CommandEntry("daemon.cli.mcp:mcp", "tools for a language model: say, story, gesture, look, stop"),
     "keys": CommandEntry("daemon.cli.keys:keys", "who may talk to whom over the network"),
     "scan": CommandEntry("daemon.cli.hardware.scan:scan", "which servos are on a port: every baud, both protocols"),
     "doctor": CommandEntry(

@@ -34,7 +34,15 @@ from daemon.client.json_rpc import (
 )
 from daemon.errors import DaemonError
 from daemon.wire.codec import MOST_NAMED
-from daemon.wire.requests import LEAST_AMPLITUDE, LEAST_TEMPO, LONGEST_S, MOST_AMPLITUDE, MOST_TEMPO, SHORTEST_S
+from daemon.wire.requests import (
+    LEAST_AMPLITUDE,
+    LEAST_TEMPO,
+    LONGEST_S,
+    MOST_AMPLITUDE,
+    MOST_SCENES,
+    MOST_TEMPO,
+    SHORTEST_S,
+)
 from daemon.wire.showing import in_words, shortened, shown
 from mmm_core.language.stop_words import means_stop
 
@@ -45,12 +53,21 @@ MOST_WAITING = 64
 """Motions that wait for their turn; one more is refused."""
 END_S = 2.0
 """Seconds that the last answers have to be read."""
+INSTRUCTIONS = (
+    "A humanoid upper body: head, arms and torso. Say short English commands, one motion each, or several with `story`. "
+    "It cannot walk, squat or move its legs, has no fingers to grasp, point with or count on, holds no objects, shows no face, "
+    "does not speak, sees nothing, and knows no other language. Where it refuses a text it says why: tell that to the person or "
+    "choose a gesture of `gestures`. Results say what was understood and what was seen on the robot: repeat these, not what was "
+    "asked for. "
+    "After an e-stop or a fault a person has to arm the robot; no tool does."
+)
 _OPTIONS: dict[str, Any] = {
     "tempo": {"type": "number", "minimum": LEAST_TEMPO, "maximum": MOST_TEMPO},
     "amplitude": {"type": "number", "minimum": LEAST_AMPLITUDE, "maximum": MOST_AMPLITUDE},
     "repeat": {"type": "integer", "minimum": 1, "maximum": 20},
     "wait": {"type": "boolean", "description": "answer when the motion has ended (default), else once it is accepted"},
 }
+_STORY_OPTIONS = {key: _OPTIONS[key] for key in ("tempo", "amplitude", "wait")}
 _SECONDS = {"type": "number", "minimum": SHORTEST_S, "maximum": LONGEST_S}
 _ANGLE = {"type": "number", "minimum": -120, "maximum": 120}
 TOOLS: list[dict[str, Any]] = [
@@ -65,6 +82,10 @@ TOOLS: list[dict[str, Any]] = [
         ("say", "Move the robot's head, arms and torso as a short English text says, e.g. 'wave with your right hand'.",
          {"text": {"type": "string"}, "seconds": _SECONDS, **_OPTIONS}, ["text"]),
         ("gesture", "Play a named gesture; `gestures` lists them.", {"name": {"type": "string"}, **_OPTIONS}, ["name"]),
+        ("story", "Several things one after the other in one motion, e.g. ['wave', 'clap twice', 'bow']; for a long performance.",
+         {"texts": {"type": "array", "items": {"type": "string"}, "minItems": 1, "maxItems": MOST_SCENES}, **_STORY_OPTIONS},
+         ["texts"]),
+        ("cancel", "End what is being played, and all that waits; the robot brakes and holds, and takes the next command.", {}, []),
         ("gestures", "List the named gestures.", {}, []),
         ("look", "Turn the head: degrees to the left and down. Without angles the head is free again.",
          {"yaw_deg": _ANGLE, "pitch_deg": _ANGLE}, []),
@@ -86,6 +107,8 @@ class McpServer:
         self._tools: dict[str, Callable[[dict[str, Any]], Awaitable[str]]] = {
             "say": self._say,
             "gesture": self._gesture,
+            "story": self._story,
+            "cancel": self._cancel,
             "gestures": self._gestures,
             "look": self._look,
             "stop": self._stop,
@@ -149,7 +172,7 @@ class McpServer:
             "protocolVersion": asked if asked in PROTOCOL_REVISIONS else PROTOCOL_REVISIONS[0],
             "capabilities": {"tools": {}},
             "serverInfo": {"name": "mmmd", "version": importlib.metadata.version("mmmd")},
-            "instructions": "A humanoid upper body. Short commands, one motion each; a new one takes over from the old.",
+            "instructions": INSTRUCTIONS,
         }
 
     async def _call(self, parameters: dict[str, Any]) -> dict[str, Any]:
@@ -180,6 +203,20 @@ class McpServer:
     async def _gesture(self, arguments: dict[str, Any]) -> str:
         name, wait = _string(arguments.pop("name")), bool(arguments.pop("wait", True))
         return await self._play(lambda: self._client.gesture(name, wait=wait, **arguments))
+
+    async def _story(self, arguments: dict[str, Any]) -> str:
+        texts, wait = arguments.pop("texts"), bool(arguments.pop("wait", True))
+        if not isinstance(texts, list):
+            raise TypeError(f"found {shown(texts)}; allowed: a list of strings")
+        scenes = [_string(text) for text in cast("list[object]", texts)]
+        if any(map(means_stop, scenes)):
+            return await self._stop({})
+        return await self._play(lambda: self._client.story(scenes, wait=wait, **arguments))
+
+    async def _cancel(self, _: dict[str, Any]) -> str:
+        self._halts, self._halted_by = self._halts + 1, "cancel"
+        note = (await self._client.cancel()).note
+        return "ended; the robot brakes and holds" + (f": {note}" if note else "")
 
     async def _play(self, ask: Callable[[], Awaitable[Said]]) -> str:
         """Ask for a motion when those before are done with; one that a stop finds waiting is not asked for any more."""

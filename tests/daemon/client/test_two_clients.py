@@ -163,6 +163,10 @@ def test_a_language_model_can_say_look_and_stop(running):
             assert "done" in (await call("say", text="wave", seconds=1.0))["content"][0]["text"]
             assert "nod" in (await call("gestures"))["content"][0]["text"]
             assert not (await call("gesture", name="nod", tempo=2.0))["isError"]
+            assert "done" in (await call("story", texts=["wave", "nod"]))["content"][0]["text"]
+            assert (await call("story", texts="wave"))["isError"]
+            assert not (await call("say", text="wave", seconds=9.0, wait=False))["isError"]
+            assert not (await call("cancel"))["isError"] and (await client.status()).command is None
             assert not (await call("look", yaw_deg=10))["isError"] and not (await call("look"))["isError"]
             assert not (await call("stop"))["isError"] and "reference" in (await call("status"))["content"][0]["text"]
             refused = await call("say", text="do a somersault")
