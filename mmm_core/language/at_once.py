@@ -51,6 +51,9 @@ _SAME_TIME = re.compile(
 _LEADING = re.compile(
     r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$"
 )
+_WITH_LEADING = re.compile(
+    rf"^with (?P<first>(?:your |both |the )*(?:left |right )?{_LIMB} (?:crossed|folded|raised|stretched|spread|up|out|on|behind|over|wide|high)\b[^,]*),\s*(?P<second>\w.+)$"
+)
 _WITH_POSE = re.compile(
     rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{_LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to|at|in front|out|up|in|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
 )
@@ -149,7 +152,7 @@ def same_limbs(clause: str) -> list[str]:
 def _pairs(clause: str) -> list[tuple[tuple[str, str], bool]]:
     """Ways to part a clause in two, each with whether its words say that both are done at once."""
     found: list[tuple[tuple[str, str], bool]] = []
-    if lead := _LEADING.match(clause):
+    if (lead := _LEADING.match(clause)) or (lead := _WITH_LEADING.match(clause)):
         found.append(((lead["first"], lead["second"]), True))
     for pattern in (_WHILE, _AS_YOU):
         if (m := pattern.search(clause)) and m.start() > 0:

@@ -35,13 +35,14 @@ DONE = (
 """'Once that is done'."""
 NEXT = _any(
     "then(?! some)", "(?:after|following) (?:all )?(?:that|this|which)", "afterwards?", "thereafter", "thereupon", "whereupon",
-    "subsequently", r"(?<!\bthe )next", "later(?: on)?", "finally", "lastly", "at last", "last of all", "in the end", "to finish",
+    "subsequently", r"(?<!\bthe )next(?!\s+to\b)",
+    "later(?: on)?", "finally", "lastly", "at last", "last of all", "in the end", "to finish",
     "(?:secondly|thirdly|fourthly)", r"(?<!one )(?<!1 )(?<!\ba )(?:second|third|fourth)(?! \w+)", "now(?! and then)",
     "(?:then )?straight into", DONE,
 )  # fmt: skip
 DIVIDES = _pattern(
     "|".join((
-        rf"\s*[,;:.!]*\s*(?<!\w)(?<!\bnow )(?<!now and )(?:and\s+|but\s+)?{NEXT}(?!\w|\s+time|\s+to\b)[,:]?\s*",
+        rf"\s*[,;:.!]*\s*(?<!\w)(?<!\bnow )(?<!now and )(?:and\s+|but\s+)?{NEXT}(?!\w|\s+time)[,:]?\s*",
         r"\s*,?\s*(?:and\s+)?(?:(?:is|are|being)\s+)?(?:immediately\s+)?\bfollowed\s+(?:up\s+)?(?:by|with)\b[,:]?\s*",
         r"\s*,?\s*(?:and\s+)?\b(?:end|finish|move|wrap)(?:\s+(?:off|up|on))?\s+(?:with|by|to|on)\b\s*",
         r"\s*,?\s*(?:and\s+)?\bend\s+up\s+(?=\w+ing\b)",

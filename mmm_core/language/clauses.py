@@ -60,6 +60,8 @@ def _divided(text: str) -> list[str]:
     for i, span in enumerate(spans):
         clause = span.of(text)
         whole = completed(_bare(clause), _bare(parts[-1])) if parts else None
+        if whole is None and len(parts) > 1 and _leans(clause):  # "it" may be a limb that was named before
+            whole = completed(_bare(clause), ", ".join(map(_bare, parts)))
         if whole is not None:
             parts.append(whole)
         elif parts and _leans(clause):

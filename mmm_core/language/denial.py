@@ -16,7 +16,7 @@ _NOT = (
     r"(?:please )?(?:never ?mind (?:about )?|do not (?:you )?(?:dare (?:to )?|ever |even |think of |try to )?|never(?: ever)? |no more |no |not |you (?:must|should|may|can|shall|need|do) not (?:have to |need to )?|"
     r"i (?:do not|would not) (?:want|like|need)(?: (?:you|to see you|to see))?(?: to)? |without |forget (?:about |the idea of )?|stop |quit |"
     r"avoid |refrain from |skip |leave out |abstain from |there is no need (?:to|for you to) |no need to |instead of |rather than |"
-    r"anything (?:but|except(?: for)?|other than) |do (?:anything|everything|whatever you (?:like|want)) (?:but|except(?: for)?|other than) |"
+    r"(?:any|every)thing (?:but|except(?: for)?|other than) |do (?:anything|everything|whatever you (?:like|want)) (?:but|except(?: for)?|other than) |"
     r"(?:just |only )?not |in no case |under no circumstances |on no account |by no means |hold off on |no,? not )"
 )
 _DENIES = re.compile(
@@ -45,8 +45,8 @@ _LEAVE = re.compile(
     r"(?:alone|out of it|out|still|down|hanging|at rest|where it is|at your side|rest|hang|by your side|in your pocket)\b,?\s*(?:and\s+)?"
 )
 _KEEP_STILL = re.compile(
-    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?(?:head|body|trunk|torso|upper body|shoulders|rest of (?:you|your body)|legs|feet|everything else)\s+"
-    r"(?:still|straight|alone|out of it|quiet|upright|where it is|where they are),?\s*(?:and\s+)?"
+    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?(?:head|arms|both arms|hands|both hands|body|trunk|torso|upper body|shoulders|rest of (?:you|your body)|legs|feet|everything else)\s+"
+    r"(?:still|down|at your sides?|by your sides?|straight|alone|out of it|quiet|upright|where it is|where they are),?\s*(?:and\s+)?"
 )
 _DIRECTION_ONLY = re.compile(
     r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$"
@@ -64,6 +64,12 @@ _KEEP_DOING = re.compile(
 )
 _ACTS_ALSO = re.compile(
     r"\b(?:clap|bow|nod|wave|salut|point|rais|lift|shrug|shak|lean|cross|lower|mov|lookin?g?|danc|cheer|hand|arm|head|fist|finger|beckon|applau|punch|kneel|turn|tilt|touch|cover|hug|stretch|greet|twist|sway|rub|pat|fold|gestur)\w*"
+)
+_NOT_USING = re.compile(
+    r"^\W*(?:please )?(?:do not|never) (?:use|take) (?:your |the )?(?P<side>left|right) (?:hand|arm|one) (?:to|for|when|and) (?P<rest>\w.+)$"
+)
+_GO_ON = re.compile(
+    r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
 )
 _OTHER = {"left": "right", "right": "left"}
 _HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
@@ -93,8 +99,11 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
     kept = _KEEP_DOING.match(text)
     if kept:
         return Denial(kept["rest"] or kept["other"])
+    if other := _NOT_USING.match(text):
+        return Denial(_with_side(other["rest"], _OTHER[other["side"]]), (f"use the {other['side']} hand",))
     denied: list[str] = []
     side = ""
+    text = _GO_ON.sub(r"\1, ", text)
     text, leaves = _LEAVE.subn(lambda m: _note(denied, f"the {m['side']} arm") + ", ", text)
     if leaves:
         side = "left" if "left" in denied[-1] else "right"
@@ -104,6 +113,8 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         if found and _is_act(found["what"]):
             denied.append(found["what"].strip())
             text = found["rest"] if "rest" in pattern.groupindex else text[found.end() :]
+            if limb := re.search(r"\b(hand|arm|fist|leg)\b", found["what"]):
+                text = re.sub(r"\b(left|right) one\b", rf"\1 {limb[0]}", text)
     rest: list[str] = []
     anything = False
     for part in _BETWEEN.split(text):

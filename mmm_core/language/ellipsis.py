@@ -10,7 +10,7 @@ import re
 OTHER = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "back", "back": "forward",
          "forwards": "backwards", "backwards": "forwards"}  # fmt: skip
 _LIMB = r"(?:hands?|arms?|fists?|ones?|palms?|sides?|shoulders?|ears?|elbows?)"
-_WAYS = r"(?:up|down|forwards?|back(?:wards?)?|ahead|straight ahead|upwards?|downwards?|sideways|behind you|in front(?: of you)?|above (?:you|your head)|(?:out )?to the sides?|outwards?)"
+_WAYS = r"(?:up|down|forwards?|back(?:wards?)?|ahead|straight ahead|upwards?|downwards?|sideways|behind you|in front(?: of you)?|(?:up |high )?above (?:you|your head)|up high|high up|up in the air|overhead|(?:out )?to the sides?|outwards?)"
 _AFTER_VERB = (
     r"(?:go |come |move |switch |change |over |out |straight |now |finally |also |back |all the way |around )*"
 )
@@ -25,7 +25,7 @@ _ONLY_SIDE = re.compile(
     rf"^(?:also |and |now )?(?:(?:do )?(?:the same|it|that|so|likewise)(?: thing)?(?: again)? )?(?:with|using|on|for|by|use)? ?(?:the |your )?(?P<side>left|right)(?: (?P<limb>{_LIMB}))?(?: (?:too|as well|again|instead))?$"
 )
 _OTHER_ONE = re.compile(
-    rf"^(?:also |and |now )?(?:(?:do )?(?:the same|it|that|so|likewise)(?: thing)?(?: again)? )?(?:(?:with|using|on|to|in|for|by|use|your|at) )*(?:the |your )?(?:other|opposite)(?: (?:way|direction|{_LIMB}))?(?: (?:too|as well|round|around))?$|^vice versa$|^switch(?: sides| hands| arms)?$"
+    rf"^(?:also |and |now )?(?:(?:do )?(?:the same|it|that|so|likewise)(?: thing)?(?: again)? )?(?:(?:with|using|on|to|in|for|by|use|your|at) )*(?:the |your )?(?:other|opposite)(?: (?:way|direction|{_LIMB}))?(?: (?:too|as well|round|around))?$|^vice versa$|^(?:switch|swap|change)(?: sides| hands| arms| over)?$"
 )
 _AGAIN = re.compile(
     r"^(?:(?:do )?(?:it|that|the same)(?: thing)? )?(?:again|once more|one more time)$|^repeat(?: it| that)?$|^(?:do )?the same(?: again)?$"
@@ -72,7 +72,7 @@ def with_sides(text: str) -> str:
     return text[: found.start()] + put + text[found.end() :]
 
 
-def completed(clause: str, before: str) -> str | None:
+def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one branch for each form of ellipsis
     """A clause with what it leaves out of the one before; None where it stands by itself.
 
     Args:
@@ -97,6 +97,8 @@ def completed(clause: str, before: str) -> str | None:
     if found := _DIRECTION.match(clause):
         if moved := _to_way(before, found["way"]):
             return moved
+    if _DIRECTION.match(clause) and (limb := _LIMB_SUBJECT.match(before)):
+        return f"{limb['limb']} {clause}"
     if found := _ONLY_SIDE.match(clause):
         return f"{before} with your {found['side']} hand"
     if _PLACE.match(clause) and _AT_PLACE.search(before):
@@ -105,6 +107,8 @@ def completed(clause: str, before: str) -> str | None:
         return f"{limb['limb']} {clause}"
     if _TARGET.match(clause) and _AT_TARGET.search(before):
         return _AT_TARGET.sub(clause if clause.startswith("at ") else f"at {clause}", before)
+    if moved := _other_object(clause, before):
+        return moved
     pronoun = _with_pronoun(clause, before)
     return _with_limb(pronoun or clause, before) or pronoun
 
@@ -134,6 +138,13 @@ def _to_way(before: str, way: str) -> str | None:
     last = found[-1]
     way = re.sub(r"^(?:the|your) (left|right)", r"to the \1", re.sub(r" (?:again|one)$", "", way))
     return before[: last.start()] + way + before[last.end() :]
+
+
+def _other_object(clause: str, before: str) -> str | None:
+    """The command before with another object of its preposition: "to the window" after "point to the door"; None without one."""
+    found = re.match(r"(?:back )?(to|at|towards|over|behind|under) (?:(?:the|your|a|my) )?\w+", clause)
+    place = found and re.search(rf"\b{found[1]} ", before)
+    return f"{before[: place.start()]}{clause.removeprefix('back ')}".replace(" first ", " ") if place else None
 
 
 def _with_pronoun(clause: str, before: str) -> str | None:

@@ -67,6 +67,8 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     """
     rest, tempo = _factor(clause, "tempo", FASTEST)
     rest, size = _factor(rest, "size", LARGEST)
+    if tempo == 1.0:  # "a slow deep bow": the noun stands beside "slow" now
+        rest, tempo = _factor(rest, "tempo", FASTEST)
     rest, hold_s = _hold(rest)
     rest = re.sub(r"\s+([,.])", r"\1", " ".join(rest.split()))
     rest = re.sub(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+", "", rest)
@@ -88,7 +90,7 @@ def _factor(clause: str, table: str, most: float) -> tuple[str, float]:
         if (
             not re.match(r"\s*waves?\b", clause[found.end() :]) or factor < 1 or table == "tempo"
         ):  # "a big wave" is a gesture of its own
-            clause = clause[: found.start()] + " " + clause[found.end() :]
+            clause = " ".join(f"{clause[: found.start()]} {clause[found.end() :]}".split())
     return clause, min(most, max(1 / most, factor))
 
 
