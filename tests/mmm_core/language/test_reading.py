@@ -8,12 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mmm_core.corpus.family_words import corpus_words
 from mmm_core.language.at_once import divided, limbs_of
 from mmm_core.language.denial import without_denial
 from mmm_core.language.ellipsis import completed
 from mmm_core.language.manner import Manner, manner_of
 from mmm_core.language.reading import read
 from mmm_core.language.spelling import mended, mended_word
+from mmm_core.language.word_tables import CORPUS_WORDS_FILE
 
 
 def said(text: str) -> list[list[str]]:
@@ -201,3 +203,8 @@ def test_reading_takes_less_than_two_milliseconds() -> None:
     assert (time.process_time() - worked) / len(
         texts
     ) < 0.02  # a bound against blow-ups; docs/language.md has the figure
+
+
+def test_the_words_of_the_corpus_are_those_of_its_phrases() -> None:
+    """When this fails after phrases or everyday words were changed: `python -m mmm_core.corpus.family_words`."""
+    assert CORPUS_WORDS_FILE.read_text(encoding="utf-8") == corpus_words()
