@@ -229,6 +229,8 @@ in which the hands move most). In half profile: the person's left side is red, t
 |---|---|---|
 {lines}
 
+The families of gestures that come out worst, beside the corpus: [worst.md](worst.md).
+
 ## Contact sheets
 
 {sheets}

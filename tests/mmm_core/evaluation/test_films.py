@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from PIL.GifImagePlugin import GifImageFile
 from mmm_core.errors import TrainingDataError
 from mmm_core.evaluation import films
 from mmm_core.evaluation.films import FILMS, PANEL, Film, PostureFeatures, contact_sheet, film, liveliest, make, person
+from mmm_core.evaluation.worst_films import make_worst, read_ranking
 from mmm_core.generate.engine import Engine
 from mmm_core.motion.skeleton import Array
 
@@ -91,3 +93,20 @@ def test_all_together(engine: Engine, tmp_path: Path, monkeypatch: pytest.Monkey
 def test_a_folder_without_the_recordings_is_refused(tmp_path: Path) -> None:
     with pytest.raises(TrainingDataError):
         films.recordings(tmp_path, ["a person throws punches"])
+
+
+def test_the_worst_families_stand_beside_the_corpus(engine: Engine, tmp_path: Path) -> None:
+    told = tmp_path / "fidelity.json"
+    told.write_text(
+        json.dumps({"worst": [["row", 0.0], ["clap", 0.25]], "families": {"row": {}, "clap": {}, "bow": {}}, "n": 12})
+    )
+    written = make_worst(engine, read_ranking(told), tmp_path)
+    assert [p.name for p in written] == ["worst_row.gif", "worst_clap.gif", "worst.md"]
+    with GifImageFile(written[0]) as gif:
+        assert gif.size == (2 * PANEL[0], PANEL[1]) and gif.n_frames > 10
+    page = written[-1].read_text()
+    assert "worst of 3 families" in page and "by 12 motions," in page
+    assert "| clap | 0.25 |" in page and "worst_row.gif" in page and engine.checkpoint_hash[:12] in page
+    told.write_text("{}")
+    with pytest.raises(TrainingDataError, match="worst"):
+        read_ranking(told)
