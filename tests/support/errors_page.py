@@ -239,7 +239,7 @@ ANSWERED = (
     ),
 )  # fmt: skip
 INSIDE = (
-    "bus_dropped", "checkpoint", "internal", "interrupted", "not_an_event", "retarget", "too_fast",
+    "bus_dropped", "checkpoint", "internal", "interrupted", "no_daemon", "not_an_event", "retarget", "too_fast",
 )  # fmt: skip
 """Codes that no test of a daemon brings about from outside: faults of the program, or of another version of it."""
 _DECODE = {"cmd": decode_cmd, "ctl": decode_ctl, "stream": decode_target}
