@@ -15,6 +15,8 @@ UNSEEN = 0.5
 """A joint seen less than this is filled in from the frames around."""
 _OUT_OF_QUESTION_RAD = 0.5
 """A way that costs more in every frame is not looked at where another costs nothing."""
+_HIDDEN_SHARE = 0.3
+"""What going over to another way costs of its angles' change where it is not seen: none at all, and ways alternate there."""
 
 
 def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tuple[Array, Array]:
@@ -34,15 +36,23 @@ def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tu
         way = free.argmax(1)[:, None, None, None]
         return np.take_along_axis(ways, way, 2)[:, :, 0], np.take_along_axis(seen, way, 2)[:, :, 0]
     known = np.concatenate([np.broadcast_to(previous_rad[:, None, None], (G, 1, C, n)), ways], 1)
-    hidden = seen < UNSEEN
+    unhidden, hidden = known, seen < UNSEEN
     if hidden.any():
+        known = known.copy()
         frames = np.arange(1, T + 1, dtype=np.int64)[:, None, None]
         last_seen = np.maximum.accumulate(np.where(hidden, 0, frames), 1)
         known[:, 1:] = np.take_along_axis(known, last_seen, 1)
-    move = np.abs(known[:, 1:, :, None] - known[:, :-1, None]).sum(-1)  # (G, T, C to, C from)
+    move = _moved(known)
+    if hidden.any():
+        move += _HIDDEN_SHARE * _moved(unhidden)
     way = np.array([_cheapest(move[g].tolist(), own_cost[g].tolist()) for g in range(G)])
     at = way[:, :, None, None]
     return np.take_along_axis(ways, at, 2)[:, :, 0], np.take_along_axis(seen, at, 2)[:, :, 0]
+
+
+def _moved(angles: Array) -> Array:
+    """(G, T, C to, C from) how far the joints go from each way of (G, T + 1, C, n) to each of the next frame."""
+    return np.abs(angles[:, 1:, :, None] - angles[:, :-1, None]).sum(-1)
 
 
 def fill_unseen(q_rad: Array, seen: Array, previous_rad: float) -> None:

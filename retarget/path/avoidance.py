@@ -20,6 +20,8 @@ _PUSHED_ON_M = 0.004
 """A path that touches is pushed so much further than the margin."""
 _PUSHES = 6
 _MOST_PUSHED_RAD = 0.15
+_COME_STEPS = 5
+"""Steps of that size by which a pose without a way out is looked for from clear ones."""
 _DAMPING = 1e-5
 _AROUND = (1.0, 0.85, 0.5, 0.2)
 """How much of a push reaches the frames 0, 1, 2, 3 away."""
@@ -52,9 +54,8 @@ class Avoidance:
         if len(some):
             clear[some], free = self._pushed_out(clear[some], _AIM_M)
             lost = some[~free]
-            if len(lost):  # too deep to see the way out: go from the pose before to the pose after
-                clear[lost] = _between(clear, lost, before_rad)
-                clear[lost] = self._pushed_out(clear[lost], _AIM_M)[0]
+            if len(lost):  # too deep to see the way out: come from between the clear poses before and after
+                clear[lost] = self._come_near(wanted_rad[lost], _between(clear, lost, before_rad))
         return clear, stretches(touching)
 
     def push(self, eased_rad: Array, path_rad: Array, hit: NDArray[np.bool_], strength: float) -> Array:
@@ -82,6 +83,17 @@ class Avoidance:
         changed = eased_rad + spread
         changed = changed + strength * near * (self._rest_rad - changed)
         return np.clip(changed, self._low, self._high)
+
+    def _come_near(self, wanted_rad: Array, from_rad: Array) -> Array:
+        """Poses (n, J) as near the wanted ones as steps from others lead, pushed out of contact after each step."""
+        q, free = self._pushed_out(from_rad, _AIM_M)
+        for _ in range(_COME_STEPS):
+            step = np.minimum(np.maximum(wanted_rad - q, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
+            ahead, clear = self._pushed_out(q + step, _AIM_M)
+            nearer = clear | ~free
+            q[nearer] = ahead[nearer]
+            free |= clear
+        return q
 
     def _pushed_out(self, q_rad: Array, aim_m: float) -> tuple[Array, NDArray[np.bool_]]:
         """Poses (T, J) moved little until they keep the margin and `aim_m` more, and which of them keep the margin.

@@ -1,7 +1,7 @@
 """Paths near a wish that keep every limit, with all that is known of the future in view.
 
 What already keeps the limits is left alone, bit for bit. For the rest `lookahead` finds the best path inside them, with
-what matters linearised at the wish, then once more where that led (Gauss-Newton); where a start breaks a limit, so that
+what matters linearised at the wish, then where that led until it settles (Gauss-Newton); where a start breaks a limit, so that
 there is none, exact causal steps (`limits.limit_step`) lead back first.
 """
 
@@ -24,8 +24,10 @@ _WINDOW_FRAMES, _AHEAD_FRAMES = 36, 10
 _TAIL_WEIGHT = 1e-3
 """Weight of the frames after the last known one, in which the joints come to rest."""
 _PULL = 1e-3
-_LINEARISED = 2
-"""Times that what matters is linearised; the second brings a twentieth of the direction error, more bring little."""
+_LINEARISED = 4
+"""Times that what matters is linearised at most: where the wish jumps, the second time is not the last that gains."""
+_SETTLED_RAD = 0.1
+"""It is linearised again as long as a control point moved further."""
 
 
 @dataclass(frozen=True)
@@ -116,6 +118,7 @@ def _solve(
     """Make a path (n, J), whose frames begin with frame `first`, the best for all groups of which a joint is not `kept`."""
     inside = kept.copy()
     for linearised in range(_LINEARISED):
+        led = path.copy()
         at = None if not linearised else frames_between(path[None], position[None])[0]
         for group in matters.around(first, at):
             some = np.flatnonzero(~kept[group.joints].all(1))
@@ -138,6 +141,8 @@ def _solve(
             if nearer_path(wish, points, target, position[joints], step, bounds, inside[joints]):
                 path[:, joints.ravel()] = points[:, : len(path)].transpose(1, 0, 2).reshape(len(path), -1)
                 inside[joints] = True
+        if np.abs(path - led).max() < _SETTLED_RAD:
+            break
 
 
 def _held(x: Array, n: int) -> Array:
