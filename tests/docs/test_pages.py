@@ -132,6 +132,9 @@ def test_examples_of_help_do_what_they_say(tmp_path: Path) -> None:
                     ("mmmd say", "mmmd story", "mmmd gesture", "mmmd edit gesture", "mmmd inbetween")
                 ):
                     typed.leave_safe_states()
+                if example == "mmmd cancel":
+                    typed.leave_safe_states()
+                    typed.type('mmmd say "clap your hands" --loop --no-wait')
                 typed.type(example)
                 done.append(example)
     assert len(done) > 35
