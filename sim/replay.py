@@ -99,7 +99,7 @@ def _played(stretch: Stretch, robot: RobotModel, body: str) -> tuple[Array, int]
     start_rad = JointServoMap(robot).tick_to_rad(stretch.present_tick[0])
     bus = SimBus(robot, world=world_of(robot, None, body, start_rad=start_rad.tolist()))
     clock = VirtualClock()
-    driver = ServoBus(SimPort(bus, clock), robot.servos, clock)
+    driver = ServoBus.on_port(SimPort(bus, clock), robot.servos, clock)
     driver.verify()
     driver.exchange(stretch.present_tick[0].astype(np.int32))
     for servo in bus.servos.values():

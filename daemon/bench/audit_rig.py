@@ -52,7 +52,7 @@ class AuditRig:
         self._bus = SimBus(robot, world=world_of(robot, FaultSchedule(faults, seed), body))
         self._port = SimPort(self._bus, self._clock)
         self._link = BusLink.create(robot.n_joints, robot.n_servos)
-        servo_bus = ServoBus(self._port, robot.servos, self._clock)
+        servo_bus = ServoBus.on_port(self._port, robot.servos, self._clock)
         self._streamer = ControlLoop(robot, servo_bus, self._link, self._clock, watch_front=False)
         self._period_s, self._due_s = robot.bus.period_s, 0.0
         self._last: Array = robot.rest_rad

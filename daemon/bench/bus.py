@@ -36,8 +36,8 @@ _NO_BAUD = 100_000_000
 _WARM_CYCLES, _BLOCK = 50, 10
 _METHOD = (
     "20 servos on a pty whose other end, a process of its own, holds every byte back for its time on the wire; a cycle"
-    " writes 20 goals and reads current, velocity and position of all, one cycle ahead (the next request goes out before"
-    " the last answers are parsed). share: wire time / median cycle (means of ten); cpu_us: processor time of one. loss at"
+    " writes 20 goals and reads current, velocity and position of all, as the daemon's does."
+    " share: wire time / median cycle (means of ten); cpu_us: processor time of one. loss at"
     " 1 Mbit/s by sync and by fast sync read (of each servo's part; a fast answer ends there), dead servo by sync read, rates"
     " by mean. codec_us: build goals, parse 20 answers, store the values;"
     " median of five medians, taken between the others"
@@ -132,7 +132,7 @@ def _bus(device: str, baud: int, *, verify: bool = True) -> Generator[ServoBus]:
     servos = [ServoSpec.direct(i, f"joint_{i}", model) for i in IDS]
     port = SerialPort(device, baud)
     try:
-        bus = ServoBus(port, servos, RealClock())
+        bus = ServoBus.on_port(port, servos, RealClock())
         if verify:
             bus.verify()
         yield bus
@@ -164,7 +164,7 @@ def _run(bus: ServoBus, seconds: float) -> tuple[np.ndarray[Any, Any], float, fl
     goals, valid = np.full(N_SERVOS, POSITION_TICK, np.int32), [0, 0]
 
     def cycle() -> None:
-        reading = bus.exchange_ahead(goals)
+        reading = bus.exchange(goals)
         valid[0] += int(reading.valid.sum())
         valid[1] += N_SERVOS
 
@@ -208,7 +208,7 @@ def _losses(seconds: float) -> dict[str, Any]:
     with _emulator(BAUDS[0], fast=False, dead=7) as device, _bus(device, BAUDS[0], verify=False) as bus:
         goals = np.full(N_SERVOS, POSITION_TICK, np.int32)
         start_s = time.perf_counter()
-        while bus.health.asked.all():
+        while bus.chains[0].link.health.asked.all():
             bus.exchange(goals)
         before_hz = int(bus.timeouts[6]) / (time.perf_counter() - start_s)
         took, _, _ = _run(bus, 2 * seconds)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from daemon.control.derating import ServoLimits, read_limits
 from daemon.control.pinning import pin_where_they_stand, reading_at_rest, refuse_hardware_errors
 from daemon.control.turns import TurnWatch
-from daemon.dynamixel.multi import RobotBus
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.dynamixel.setup.checks import check_servos, require_needed
 from daemon.errors import LinkTimeoutError
 from daemon.host.clock import Clock
@@ -42,7 +42,7 @@ class Armed:
 
 
 def arm_in_steps(
-    robot: RobotModel, bus: RobotBus, clock: Clock, effort: float, turns: TurnWatch
+    robot: RobotModel, bus: ServoBus, clock: Clock, effort: float, turns: TurnWatch
 ) -> Generator[None, None, Armed]:
     """Arm a limp robot. Whoever breaks off, or catches an error, has to cut torque.
 

@@ -24,8 +24,8 @@ from daemon.control.safety_limiter import SafetyLimiter
 from daemon.control.time_scaling import ScaledSetpoints, TimeScaling
 from daemon.control.torque_ramp import EFFORT_START, TorqueRamp
 from daemon.control.turns import TurnWatch
-from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.reading import BusReading
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import DaemonError, LinkError, LinkLostError, ServoFaultError
 from daemon.host.clock import Clock
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
@@ -65,7 +65,7 @@ class ControlLoop:
     """State and loop of the bus process."""
 
     def __init__(
-        self, robot: RobotModel, bus: RobotBus, link: BusLink, clock: Clock, *, watch_front: bool = True
+        self, robot: RobotModel, bus: ServoBus, link: BusLink, clock: Clock, *, watch_front: bool = True
     ) -> None:
         self.robot, self._bus, self._link, self._clock = robot, bus, link, clock
         self._ticks = JointServoMap(robot)

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from daemon.control.arming import WATCHDOG_UNITS
 from daemon.control.pinning import refuse_hardware_errors
-from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.reading import BusReading
 from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
+from daemon.dynamixel.servo_bus import ServoBus
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
@@ -30,7 +30,7 @@ MAY_HAVE_TRIPPED_S = 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S
 class FaultDetector:
     """Judges each reading of a robot with torque; names what is a fault."""
 
-    def __init__(self, robot: RobotModel, bus: RobotBus) -> None:
+    def __init__(self, robot: RobotModel, bus: ServoBus) -> None:
         self._robot, self._bus = robot, bus
         self._period_s = robot.bus.period_s
         self._missing_cycles = self._cycle = 0

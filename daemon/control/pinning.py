@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.dynamixel.codec.packet import ALERT_BIT
-from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.reading import BusReading
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import ServoFaultError
 from daemon.host.clock import Clock
 
@@ -26,7 +26,7 @@ _TICKS_PER_TURN = 4096
 """What those two are for; finer servos (Y, P) may go as many degrees, coarser ones as many ticks."""
 
 
-def reading_at_rest(bus: RobotBus, clock: Clock) -> Generator[None, None, BusReading]:
+def reading_at_rest(bus: ServoBus, clock: Clock) -> Generator[None, None, BusReading]:
     """A whole reading of joints that stand still: limp they swing on, and a goal pinned meanwhile would jerk.
 
     After a second with a servo silent it is the last one, as it is.
@@ -51,7 +51,7 @@ def reading_at_rest(bus: RobotBus, clock: Clock) -> Generator[None, None, BusRea
     raise ServoFaultError(bus.ids[row], f"to stand still for {SWING_OUT_S:g} s", f"moves by {moved[row]} ticks")
 
 
-def refuse_hardware_errors(bus: RobotBus, reading: BusReading) -> None:
+def refuse_hardware_errors(bus: ServoBus, reading: BusReading) -> None:
     """Raises ServoFaultError for a servo that tells of a hardware error."""
     for row in np.flatnonzero(reading.error & ALERT_BIT):
         servo_id = bus.ids[int(row)]
@@ -60,7 +60,7 @@ def refuse_hardware_errors(bus: RobotBus, reading: BusReading) -> None:
 
 
 def pin_where_they_stand(
-    bus: RobotBus, clock: Clock, reading: BusReading, effort: float
+    bus: ServoBus, clock: Clock, reading: BusReading, effort: float
 ) -> Generator[None, None, NDArray[np.int32]]:
     """(S,) goals pinned to where the joints stand, still so when all are: on a bad wire it takes long enough to move an arm.
 
@@ -92,12 +92,12 @@ def pin_where_they_stand(
     raise ServoFaultError(bus.ids[row], "to stand still while its goal is pinned", "it moved, or was silent")
 
 
-def _ticks(bus: RobotBus, ticks: int) -> NDArray[np.float64]:
+def _ticks(bus: ServoBus, ticks: int) -> NDArray[np.float64]:
     """(S,) so many of 4096 ticks in those of each servo; never fewer."""
     return np.array([ticks * max(1.0, s.model.ticks_per_turn / _TICKS_PER_TURN) for s in bus.servos])
 
 
-def _pin(bus: RobotBus, servo_id: int, tick: int) -> None:
+def _pin(bus: ServoBus, servo_id: int, tick: int) -> None:
     """Set the goal of a limp servo to where it stands.
 
     Raises:

@@ -12,7 +12,8 @@ from pathlib import Path
 
 from daemon.control.control_loop import ControlLoop
 from daemon.control.starting import start
-from daemon.dynamixel.multi import RobotBus, open_bus
+from daemon.dynamixel.bus_opening import open_bus
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.host.clock import RealClock
 from daemon.host.cores import keep_to
 from daemon.host.parent import Parent
@@ -47,7 +48,7 @@ def main() -> int:
     link.hold()
     clock = RealClock()
 
-    def opened() -> RobotBus:
+    def opened() -> ServoBus:
         return open_bus(arguments.bus, robot, clock, slow_every=SLOW_EVERY)
 
     locked = lock_memory()  # bringing all pages in takes long: not between the start and the first cycle

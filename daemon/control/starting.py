@@ -6,8 +6,8 @@ import logging
 from collections.abc import Callable
 
 from daemon.control.control_loop import ControlLoop
-from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.ports.adapter import latency_advice
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.dynamixel.setup.checks import ADVISED, NEEDED, check_servos, require_needed
 from daemon.errors import CommandError, ConfigError, DaemonError
 from daemon.host.clock import Clock
@@ -18,7 +18,7 @@ from retarget.robot.robot import RobotModel
 log = logging.getLogger(__name__)
 
 _LEVELS = {NEEDED: logging.ERROR, ADVISED: logging.DEBUG}
-Opener = Callable[[], RobotBus]
+Opener = Callable[[], ServoBus]
 
 
 AFTER_LOSS = "the bus process was lost and is back; servos may still hold: `mmmd reset` makes them limp"
@@ -81,7 +81,7 @@ def start(
     return streamer
 
 
-def _cut_what_is_owed(bus: RobotBus, link: BusLink) -> None:
+def _cut_what_is_owed(bus: ServoBus, link: BusLink) -> None:
     """Torque off where somebody asks for it while the bus starts; the first cycle serves the request itself, and repeats it."""
     if link.owes(*ESTOPS, BusRequest.TORQUE_OFF):
         bus.send_torque_off()

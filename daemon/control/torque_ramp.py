@@ -8,7 +8,7 @@ servos get no goals (they hold those they were pinned to), and at its end each h
 from __future__ import annotations
 
 from daemon.dynamixel.codec.packet import ALERT_BIT
-from daemon.dynamixel.multi import RobotBus
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import ServoFaultError
 
 EFFORT_START = 250 / 885
@@ -27,7 +27,7 @@ class TorqueRamp:
         period_s: seconds between two calls.
     """
 
-    def __init__(self, bus: RobotBus, period_s: float) -> None:
+    def __init__(self, bus: ServoBus, period_s: float) -> None:
         self._bus = bus
         self._rise = (1.0 - EFFORT_START) * STEP_CYCLES * period_s / RAMP_S
         self._by_torque_limit = [i for i, m in zip(bus.ids, bus.models, strict=True) if m.protocol == 1.0]

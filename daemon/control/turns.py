@@ -13,8 +13,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.reading import BusReading
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import ServoFaultError
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap
@@ -40,7 +40,7 @@ class TurnWatch:
         bus: to name servos by.
     """
 
-    def __init__(self, robot: RobotModel, ticks: JointServoMap, bus: RobotBus) -> None:
+    def __init__(self, robot: RobotModel, ticks: JointServoMap, bus: ServoBus) -> None:
         self._robot, self._ticks, self._bus = robot, ticks, bus
         self._turn_tick = np.array([s.model.ticks_per_turn for s in robot.servos], np.float64)
         self._servo_groups, self._joint_groups = _groups(robot)

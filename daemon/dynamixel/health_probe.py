@@ -7,28 +7,32 @@ from collections.abc import Sequence
 import numpy as np
 
 from daemon.dynamixel.events import BusEventKind
-from daemon.dynamixel.ports.port import Port
-from daemon.dynamixel.register_access import Items
+from daemon.dynamixel.register_access import RegisterAccess
 from daemon.dynamixel.registers.models import BusModel
-from daemon.dynamixel.servo_link import TRIES
+from daemon.dynamixel.servo_link import TRIES, ServoLink
 from daemon.dynamixel.slow_registers import SlowReader, Span
-from daemon.dynamixel.timing import MARGIN_S
 from daemon.errors import LinkTimeoutError, ServoFaultError, two_of
-from daemon.host.clock import Clock
-from retarget.robot.robot import ServoSpec
 
 
-class Probing(Items):
-    """Single questions of a cycle; see `ServoBus`."""
+class HealthProbe:
+    """Requests to single servos within a cycle.
 
-    def __init__(
-        self, port: Port, servos: Sequence[ServoSpec], clock: Clock, *, margin_s: float = MARGIN_S, slow_every: int = 0
-    ) -> None:
-        super().__init__(port, servos, clock, margin_s=margin_s)
-        self._slow = SlowReader(self.models)
-        self._slow_every, self._cycle = slow_every, 0
-        self._garbled_probes = np.zeros(len(self.ids), np.int32)
-        self._own = [_own_values(m) for m in self.models]
+    Args:
+        link: to the servos.
+        registers: the same servos' items.
+        slow_every: read torque, hardware error, voltage and temperature of one servo, in turn, every so many cycles; 0 never.
+
+    Attributes:
+        slow: reads the slow registers.
+        slow_every: see above.
+    """
+
+    def __init__(self, link: ServoLink, registers: RegisterAccess, slow_every: int = 0) -> None:
+        self._link, self._registers = link, registers
+        self.slow, self.slow_every = SlowReader(link.models), slow_every
+        self._cycle = 0
+        self._garbled_probes = np.zeros(len(link.ids), np.int32)
+        self._own = [_own_values(m) for m in link.models]
 
     def look_for_collisions(self, servo_ids: Sequence[int]) -> list[int]:
         """Those of these ids whose answers come garbled each time they are asked: two servos have them, or there is noise.
@@ -37,78 +41,78 @@ class Probing(Items):
         measure differs.
         """
         for servo_id in servo_ids:
-            row = self._row_of(servo_id)
+            row = self._link.row_of(servo_id)
             own = self._own[row]
             try:
-                self._ask(self._of(row).read(servo_id, own.address, own.length), row, own.length)
+                self._link.ask(self._link.dialect(row).read(servo_id, own.address, own.length), row, own.length)
             except (LinkTimeoutError, ServoFaultError):
                 continue
-        return [i for i in self.ids if self._garbled_rows[self._row[i]]]
+        return [i for i in self._link.ids if self._link.garbled_rows[self._link.row_by_id[i]]]
 
-    def _ask_beside(self) -> bool:
+    def ask_beside(self) -> bool:
         """The single question of this cycle, if any; True when a servo takes part again."""
         self._cycle += 1
-        now_s = self.clock.now_s()
-        row = self.health.probe_due(now_s)
+        now_s = self._link.clock.now_s()
+        row = self._link.health.probe_due(now_s)
         if row is not None:
             return self._probe(row)
-        if self._slow_every and self._cycle % self._slow_every == 0:
+        if self.slow_every and self._cycle % self.slow_every == 0:
             self._read_slow()
         return False
 
     def _probe(self, row: int) -> bool:
         """Ask a quarantined servo whether it is back, and whether it is what it was; True when it takes part again."""
-        servo_id, own = self.ids[row], self._own[row]
-        name = f"servo {servo_id} ({self.servos[row].joint_name})"
+        servo_id, own = self._link.ids[row], self._own[row]
+        name = f"servo {servo_id} ({self._link.servos[row].joint_name})"
         try:
-            request = self._of(row).read(servo_id, own.address, own.length)
-            back = self._ask_once(request, row, own.length, self.timing.margin_s) is not None
+            request = self._link.dialect(row).read(servo_id, own.address, own.length)
+            back = self._link.ask_once(request, row, own.length, self._link.timing.margin_s) is not None
             self._note_garbled(row, name)
-            if back and self._torque_expected and self.poll_item(servo_id, "torque_enable") != 1:
+            if back and self._link.torque_expected and self._registers.poll_item(servo_id, "torque_enable") != 1:
                 self._note_reboot(row)
         except ServoFaultError:
             back = True
-        self.health.probed(row, answered=back, now_s=self.clock.now_s())
+        self._link.health.probed(row, answered=back, now_s=self._link.clock.now_s())
         if back:
-            self.events.add(BusEventKind.RETURNED, self.clock.now_s(), f"{name} answers again", servo_id)
+            self._link.events.add(BusEventKind.RETURNED, self._link.clock.now_s(), f"{name} answers again", servo_id)
         return back
 
     def _note_garbled(self, row: int, name: str) -> None:
         """Bytes, again and again, and no answer, where one servo should speak and the others are understood."""
-        alone = self._garbled and (len(self.ids) == 1 or bool(self.reading.valid.any()))
+        alone = self._link.garbled and (len(self._link.ids) == 1 or bool(self._link.reading.valid.any()))
         self._garbled_probes[row] = self._garbled_probes[row] + 1 if alone else 0
         if self._garbled_probes[row] >= TRIES:
-            text = f"{name}: its answers collide: {two_of(self.ids[row])}"
-            self.events.add(BusEventKind.DUPLICATE_ID, self.clock.now_s(), text, self.ids[row])
+            text = f"{name}: its answers collide: {two_of(self._link.ids[row])}"
+            self._link.events.add(BusEventKind.DUPLICATE_ID, self._link.clock.now_s(), text, self._link.ids[row])
 
     def _note_reboot(self, row: int) -> None:
-        self.health.faulted[row] = True
-        name = f"servo {self.ids[row]} ({self.servos[row].joint_name})"
-        now_s, n_lost = self.clock.now_s(), int(self.health.faulted.sum())
+        self._link.health.faulted[row] = True
+        name = f"servo {self._link.ids[row]} ({self._link.servos[row].joint_name})"
+        now_s, n_lost = self._link.clock.now_s(), int(self._link.health.faulted.sum())
         text = f"{name} has lost torque and settings; to be armed anew"
-        self.events.add(BusEventKind.REBOOTED, now_s, text, self.ids[row])
-        if 2 * n_lost >= len(self.ids) > 2:
-            text = f"{n_lost} of {len(self.ids)} servos have lost their torque: the supply voltage broke down"
-            self.events.add(BusEventKind.BROWN_OUT, now_s, text)
+        self._link.events.add(BusEventKind.REBOOTED, now_s, text, self._link.ids[row])
+        if 2 * n_lost >= len(self._link.ids) > 2:
+            text = f"{n_lost} of {len(self._link.ids)} servos have lost their torque: the supply voltage broke down"
+            self._link.events.add(BusEventKind.BROWN_OUT, now_s, text)
 
     def _read_slow(self) -> None:
         """Slow registers of the next servo in turn; what they reveal is an event."""
-        row = self._slow.next_row(self.health.asked)
+        row = self.slow.next_row(self._link.health.asked)
         if row is None:
             return
-        request, length = self._slow.request(row, self.ids[row])
-        asked_s = self.clock.now_s()
+        request, length = self.slow.request(row, self._link.ids[row])
+        asked_s = self._link.clock.now_s()
         try:
-            answer = self._ask_once(request, row, length, self.timing.margin_s)
+            answer = self._link.ask_once(request, row, length, self._link.timing.margin_s)
         except ServoFaultError:
             answer = None
         if answer is None:
             return
-        if not self._slow.store(row, answer, self.reading):
+        if not self.slow.store(row, answer, self._link.reading):
             self._note_reboot(row)
             return
-        self.reading.slow_read_s[row] = asked_s
-        if self._torque_expected and self.reading.torque[row] == 0 and not self.health.faulted[row]:
+        self._link.reading.slow_read_s[row] = asked_s
+        if self._link.torque_expected and self._link.reading.torque[row] == 0 and not self._link.health.faulted[row]:
             self._note_reboot(row)
 
 

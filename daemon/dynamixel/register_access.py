@@ -1,4 +1,4 @@
-"""Items of the control tables by name, of one servo or of all, and what goes with torque."""
+"""Items of the control tables by name, of one servo or of all on a link, and what goes with torque."""
 
 from __future__ import annotations
 
@@ -10,14 +10,10 @@ from numpy.typing import NDArray
 from daemon.dynamixel.codec import packet_protocol1 as packet1
 from daemon.dynamixel.codec.group import GroupWrite, GroupWrite1
 from daemon.dynamixel.events import BusEventKind
-from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.registers.models import BusModel
 from daemon.dynamixel.registers.registers import POSITION_MODE, WATCHDOG_TRIPPED, Item
-from daemon.dynamixel.servo_link import Asking
-from daemon.dynamixel.timing import MARGIN_S
+from daemon.dynamixel.servo_link import ServoLink
 from daemon.errors import CommandError, ServoFaultError
-from daemon.host.clock import Clock
-from retarget.robot.robot import ServoSpec
 
 _GAP_BYTES = 12
 """Items no farther apart are read in one question."""
@@ -25,45 +21,45 @@ _EFFORT_LIMITS = {"goal_pwm": "pwm_limit", "torque_limit": "max_torque"}
 """What sets the effort of a servo in RAM, and the item kept without power that it may not pass."""
 
 
-class Items(Asking):
+class RegisterAccess:
     """Reads and writes items of servos of either protocol.
 
     Attributes:
         effort_limit: (S,) pwm_limit of each servo, max_torque on protocol 1.0; from the factory until it was read.
     """
 
-    def __init__(self, port: Port, servos: Sequence[ServoSpec], clock: Clock, *, margin_s: float = MARGIN_S) -> None:
-        super().__init__(port, servos, clock, margin_s=margin_s)
-        limits = [m.table[_EFFORT_LIMITS[_effort_item(m)]].initial or 0 for m in self.models]
+    def __init__(self, link: ServoLink) -> None:
+        self._link = link
+        limits = [m.table[_EFFORT_LIMITS[_effort_item(m)]].initial or 0 for m in link.models]
         self.effort_limit = np.array(limits, np.int32)
 
     def read_item(self, servo_id: int, name: str) -> int:
         """Value of one item of one servo."""
-        row = self._row_of(servo_id)
+        row = self._link.row_of(servo_id)
         item = self._item(row, name)
-        answer = self._ask(self._of(row).read(servo_id, item.address, item.size), row, item.size)
+        answer = self._link.ask(self._link.dialect(row).read(servo_id, item.address, item.size), row, item.size)
         return item.decode(answer.parameters)
 
     def read_items(self, servo_id: int, names: Sequence[str]) -> dict[str, int]:
         """Values of those of the named items that a servo has, neighbours in one question."""
-        row = self._row_of(servo_id)
-        table, values = self.models[row].table, dict[str, int]()
+        row = self._link.row_of(servo_id)
+        table, values = self._link.models[row].table, dict[str, int]()
         items = sorted((table[name] for name in names if name in table), key=lambda item: item.address)
         while items:
             span = [items.pop(0)]
             while items and items[0].address - span[-1].end <= _GAP_BYTES:
                 span.append(items.pop(0))
             start, length = span[0].address, span[-1].end - span[0].address
-            data = self._ask(self._of(row).read(servo_id, start, length), row, length).parameters
+            data = self._link.ask(self._link.dialect(row).read(servo_id, start, length), row, length).parameters
             values |= {i.name: i.decode(data[i.address - start : i.end - start]) for i in span}
         return values
 
     def poll_item(self, servo_id: int, name: str) -> int | None:
         """Value of one item, asked once and within the cycle; None when the servo did not answer in time."""
-        row = self._row_of(servo_id)
+        row = self._link.row_of(servo_id)
         item = self._item(row, name)
-        request = self._of(row).read(servo_id, item.address, item.size)
-        answer = self._ask_once(request, row, item.size, self.timing.margin_s)
+        request = self._link.dialect(row).read(servo_id, item.address, item.size)
+        answer = self._link.ask_once(request, row, item.size, self._link.timing.margin_s)
         return None if answer is None else item.decode(answer.parameters)
 
     def write_item(self, servo_id: int, name: str, value: int) -> None:
@@ -74,7 +70,7 @@ class Items(Asking):
             ServoFaultError: the servo refused.
             LinkTimeoutError: it did not answer.
         """
-        row = self._row_of(servo_id)
+        row = self._link.row_of(servo_id)
         item = self._item(row, name)
         if not item.writable:
             raise CommandError(f"servo {servo_id}: '{name}' is read only")
@@ -82,7 +78,7 @@ class Items(Asking):
             data = item.encode(value)
         except OverflowError:
             raise CommandError(f"servo {servo_id}: '{name}' = {value} does not fit {item.size} bytes") from None
-        self._ask(self._of(row).write(servo_id, item.address, data), row, 0)
+        self._link.ask(self._link.dialect(row).write(servo_id, item.address, data), row, 0)
 
     def write_unless_alarmed(self, servo_id: int, name: str, value: int) -> None:
         """`write_item` of effort or torque: a servo of protocol 1.0 forgets its alarm with it, so it is asked for one before.
@@ -90,36 +86,36 @@ class Items(Asking):
         Raises:
             ServoFaultError: it has an alarm, or refused.
         """
-        row = self._row_of(servo_id)
-        item, dialect = self._item(row, name), self._of(row)
+        row = self._link.row_of(servo_id)
+        item, dialect = self._item(row, name), self._link.dialect(row)
         if dialect.version == 1.0:
-            answer = self._ask(dialect.read(servo_id, item.address, item.size), row, item.size)
+            answer = self._link.ask(dialect.read(servo_id, item.address, item.size), row, item.size)
             if dialect.alert(answer.error):
-                found = f"{self.models[row].error_text(answer.error & packet1.ALERT_BITS)}; reboot the servo"
+                found = f"{self._link.models[row].error_text(answer.error & packet1.ALERT_BITS)}; reboot the servo"
                 raise ServoFaultError(servo_id, f"no '{name}' while it has an alarm", found)
         self.write_item(servo_id, name, value)
 
     def write_all(self, name: str, value: int) -> None:
         """Set one item of every servo, each confirmed; the first refusal is raised."""
         write = self.write_unless_alarmed if name == "torque_enable" and value else self.write_item
-        for servo_id in self.ids:
+        for servo_id in self._link.ids:
             write(servo_id, name, value)
         if name == "torque_enable":
-            self._expect_torque(on=bool(value))
+            self._link.expect_torque(on=bool(value))
 
     def send_all(self, name: str, value: int) -> None:
         """Set one item of every servo that has it, with packets that nobody answers."""
-        self._send(self._group_writes(name, np.full(len(self.ids), value, np.int32)))
+        self._link.send(self._group_writes(name, np.full(len(self._link.ids), value, np.int32)))
 
     def send_torque_off(self) -> None:
         """Cut the torque of every servo with packets that nobody has to answer."""
-        self._expect_torque(on=False)
+        self._link.expect_torque(on=False)
         self.send_all("torque_enable", 0)
 
     def read_effort_limit(self, servo_id: int) -> None:
         """Ask a servo how much its own memory lets it exert; `set_effort` gives shares of that."""
-        row = self._row_of(servo_id)
-        self.effort_limit[row] = self.read_item(servo_id, _EFFORT_LIMITS[_effort_item(self.models[row])])
+        row = self._link.row_of(servo_id)
+        self.effort_limit[row] = self.read_item(servo_id, _EFFORT_LIMITS[_effort_item(self._link.models[row])])
 
     def set_effort(self, share: float, *, confirmed: bool = False) -> None:
         """Limit what every servo may exert, as a share of its own limit: goal PWM, or torque limit on protocol 1.0.
@@ -129,11 +125,11 @@ class Items(Asking):
             confirmed: each servo is told by itself and has to answer; else all at once, unanswered.
         """
         values = np.rint(self.effort_limit * min(1.0, max(0.0, share))).astype(np.int32)
-        items = [_effort_item(m) for m in self.models]
+        items = [_effort_item(m) for m in self._link.models]
         if not confirmed:
-            self._send(b"".join(self._group_writes(name, values) for name in dict.fromkeys(items)))
+            self._link.send(b"".join(self._group_writes(name, values) for name in dict.fromkeys(items)))
             return
-        for servo_id, name, value in zip(self.ids, items, values.tolist(), strict=True):
+        for servo_id, name, value in zip(self._link.ids, items, values.tolist(), strict=True):
             self.write_unless_alarmed(servo_id, name, value)
 
     def arm_watchdog(self, units: int) -> tuple[int, ...]:
@@ -143,7 +139,7 @@ class Items(Asking):
         move the joint the watchdog stays off.
         """
         without: list[int] = []
-        for servo_id, model, firmware in zip(self.ids, self.models, self.firmware, strict=True):
+        for servo_id, model, firmware in zip(self._link.ids, self._link.models, self._link.firmware, strict=True):
             able = model.has_watchdog(firmware or 255) and not self._trip_moves(servo_id)
             if able:
                 self.write_item(servo_id, "bus_watchdog", units)
@@ -162,63 +158,65 @@ class Items(Asking):
         Cleared under torque it would go on to the goal it was stopped on the way to.
         """
         for servo_id in self.tripped_watchdogs():
-            self.events.add(BusEventKind.WATCHDOG_TRIPPED, self.clock.now_s(), f"servo {servo_id}", servo_id)
+            self._link.events.add(
+                BusEventKind.WATCHDOG_TRIPPED, self._link.clock.now_s(), f"servo {servo_id}", servo_id
+            )
             self.write_item(servo_id, "torque_enable", 0)
-        for servo_id, model in zip(self.ids, self.models, strict=True):
+        for servo_id, model in zip(self._link.ids, self._link.models, strict=True):
             if "bus_watchdog" in model.table:
                 self.write_item(servo_id, "bus_watchdog", 0)
 
     def tripped_watchdogs(self) -> list[int]:
         """Ids of the servos that have stopped by their bus watchdog."""
-        able = [i for i, m in zip(self.ids, self.models, strict=True) if "bus_watchdog" in m.table]
+        able = [i for i, m in zip(self._link.ids, self._link.models, strict=True) if "bus_watchdog" in m.table]
         return [i for i in able if self.read_item(i, "bus_watchdog") == WATCHDOG_TRIPPED]
 
     def withhold(self, servo_ids: Sequence[int]) -> None:
         """No goals for these servos until `verify`."""
         for servo_id in servo_ids:
-            self.health.withhold_from(self._row_of(servo_id))
+            self._link.health.withhold_from(self._link.row_of(servo_id))
 
     def hardware_error_text(self, servo_id: int) -> str:
         """What a servo with the alert bit set complains of."""
-        row = self._row_of(servo_id)
-        model = self.models[row]
+        row = self._link.row_of(servo_id)
+        model = self._link.models[row]
         if model.error_item:
-            self.reading.hardware_error[row] = self.read_item(servo_id, model.error_item)
-        return model.error_text(int(self.reading.hardware_error[row]))
+            self._link.reading.hardware_error[row] = self.read_item(servo_id, model.error_item)
+        return model.error_text(int(self._link.reading.hardware_error[row]))
 
     def reboot(self, servo_id: int) -> None:
         """Restart a servo: a latched error goes, and with it its torque and settings."""
-        row = self._row_of(servo_id)
-        self._ask(self._of(row).reboot(servo_id), row, 0)
-        self.health.faulted[row] = True
+        row = self._link.row_of(servo_id)
+        self._link.ask(self._link.dialect(row).reboot(servo_id), row, 0)
+        self._link.health.faulted[row] = True
 
     def _group_writes(self, name: str, values: NDArray[np.int32]) -> bytes:
         """Packets that set one item of every servo that has it to its own value of (S,)."""
-        return b"".join(write.frame(values[rows]) for rows, write in self._writers(name))
+        return b"".join(write.frame(values[rows]) for rows, write in self.writers(name))
 
-    def _writers(
+    def writers(
         self, name: str, of: NDArray[np.bool_] | None = None
     ) -> list[tuple[NDArray[np.intp], GroupWrite | GroupWrite1]]:
         """One group write for each place at which the item stands, of the servos that have it; of some (S,) or of all."""
         places: dict[tuple[float, int, int], list[int]] = {}
-        for row, model in enumerate(self.models):
+        for row, model in enumerate(self._link.models):
             item = model.table.get(name)
             if item is not None and (of is None or of[row]):
                 places.setdefault((model.protocol, item.address, item.size), []).append(row)
         if not places and of is None:
-            raise CommandError(f"no servo on {self.port.name} has an item '{name}'")
+            raise CommandError(f"no servo on {self._link.port.name} has an item '{name}'")
         return [
             (
                 np.array(rows, np.intp),
-                (GroupWrite if protocol == 2.0 else GroupWrite1)([self.ids[r] for r in rows], address, size),
+                (GroupWrite if protocol == 2.0 else GroupWrite1)([self._link.ids[r] for r in rows], address, size),
             )
             for (protocol, address, size), rows in places.items()
         ]
 
     def _item(self, row: int, name: str) -> Item:
-        table = self.models[row].table
+        table = self._link.models[row].table
         if name not in table:
-            raise CommandError(f"servo {self.ids[row]} has no item '{name}'; it has: {', '.join(table)}")
+            raise CommandError(f"servo {self._link.ids[row]} has no item '{name}'; it has: {', '.join(table)}")
         return table[name]
 
 

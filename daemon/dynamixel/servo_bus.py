@@ -1,205 +1,243 @@
-"""The servos of a robot on one port: who is there and what they can, and the cycle that moves them."""
+"""The servos of a robot, on one port or on several whose wires are busy at the same time."""
 
 from __future__ import annotations
 
-import contextlib
-import logging
+import dataclasses
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
-from daemon.dynamixel.events import BusEventKind
-from daemon.dynamixel.feedback import FastSyncStep
-from daemon.dynamixel.feedback_cycle import Cycle
-from daemon.dynamixel.identity import MUTE_TEXT, PINGS_ONLY, Identity, identity_text, mismatch_hint, silence_text
-from daemon.dynamixel.rate_plan import RatePlan, plan_of
-from daemon.dynamixel.registers.registers import RETURN_DELAY_UNIT_S
-from daemon.dynamixel.scan import Found, answering
-from daemon.dynamixel.servo_link import TRIES
-from daemon.dynamixel.timing import SETUP_MARGIN_S
-from daemon.errors import BusMismatchError, LinkTimeoutError, MismatchRow, ServoFaultError, two_of
+import numpy as np
+from numpy.typing import NDArray
 
-log = logging.getLogger(__name__)
+from daemon.dynamixel.events import BusEvent
+from daemon.dynamixel.identity import Identity
+from daemon.dynamixel.ports.port import Port
+from daemon.dynamixel.rate_plan import RatePlan
+from daemon.dynamixel.reading import BusReading
+from daemon.dynamixel.register_access import RegisterAccess
+from daemon.dynamixel.scan import Found
+from daemon.dynamixel.servo_chain import ServoChain
+from daemon.dynamixel.timing import MARGIN_S
+from daemon.errors import BusMismatchError, CommandError, DaemonError
+from daemon.host.clock import Clock
+from retarget.robot.robot import ServoSpec
 
-_SILENT_ENOUGH = 4
-"""When the first so many servos are silent, the others are not asked."""
-_SLOW_BYTES = 14 + 11 + 7
-"""Question and answer of the slow registers of one servo."""
+S = TypeVar("S", bound=np.generic)
+_FIELDS = tuple(field.name for field in dataclasses.fields(BusReading))
 
 
-class ServoBus(Cycle):
-    """Drives the servos of a robot over any port. Works in raw register units and knows no joints.
+class ServoBus:
+    """Drives the servos of a robot. Works in raw register units and knows no joints.
 
     Args:
-        port: where they are.
-        servos: who should be there.
-        clock: of the waiting.
-        margin_s: how long an answer may be late.
-        slow_every: read torque, hardware error, voltage and temperature of one servo, in turn, every so many
-            exchanges; 0 never.
+        chains: one for each port.
+        servos: of the robot, in the order of all arrays; each in exactly one of the chains.
+
+    Attributes:
+        chains: see above.
+        servos, ids, models: the servos of all chains.
+        reading: their last values.
     """
 
-    def ping_all(self, *, patient: bool = False) -> dict[int, Identity]:
-        """Model number and firmware of each servo that answers; all are asked when `patient`, however silent it is.
+    def __init__(self, chains: Sequence[ServoChain], servos: Sequence[ServoSpec]) -> None:
+        self.chains, self.servos = tuple(chains), tuple(servos)
+        self.ids = tuple(s.servo_id for s in servos)
+        self._chain = {servo_id: chain for chain in chains for servo_id in chain.link.ids}
+        self.models = tuple(chain.link.models[chain.link.row_by_id[i]] for i, chain in self._each())
+        self._alone = len(self.chains) == 1 and self.chains[0].link.ids == self.ids
+        row = {servo_id: i for i, servo_id in enumerate(self.ids)}
+        rows = [np.array([row[i] for i in chain.link.ids], np.intp) for chain in self.chains]
+        self._rows: Sequence[NDArray[np.intp] | slice] = [slice(None)] if self._alone else rows
+        self.reading = self.chains[0].link.reading if self._alone else BusReading.of(len(self.ids))
 
-        Few silent ones among others are asked once more: a machine or a wire may be held up for longer than one is waited for.
-        """
-        found: dict[int, Identity] = {}
-        for row in range(len(self.ids)):
-            self._take_identity(row, found)
-            if not patient and row == _SILENT_ENOUGH - 1 and not found:
-                return found  # wrong baud or no power: do not wait for the rest
-        silent = [row for row, servo_id in enumerate(self.ids) if servo_id not in found]
-        if found and len(silent) < _SILENT_ENOUGH:
-            for row in silent:
-                self._take_identity(row, found)
-        return found
+    @classmethod
+    def on_port(
+        cls, port: Port, servos: Sequence[ServoSpec], clock: Clock, *, margin_s: float = MARGIN_S, slow_every: int = 0
+    ) -> ServoBus:
+        """The bus of servos that are all on one port; see `ServoChain`."""
+        return cls([ServoChain(port, servos, clock, margin_s=margin_s, slow_every=slow_every)], servos)
 
-    def _take_identity(self, row: int, found: dict[int, Identity]) -> None:
-        with contextlib.suppress(LinkTimeoutError):
-            found[self.ids[row]] = self._identify(row)
+    @property
+    def ports(self) -> tuple[Port, ...]:
+        """One for each chain."""
+        return tuple(chain.link.port for chain in self.chains)
 
-    def _identify(self, row: int) -> Identity:
-        dialect, servo_id = self._of(row), self.ids[row]
-        if dialect.version == 2.0:
-            answer = self._ask(dialect.ping(servo_id), row, 3)
-            return int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2]
-        try:
-            answer = self._ask(dialect.read(servo_id, 0, 3), row, 3)  # a ping of protocol 1.0 names no model
-        except LinkTimeoutError:
-            if self._answers_ping(row):
-                return PINGS_ONLY
-            raise
-        return int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2]
+    @property
+    def firmware(self) -> list[int]:
+        """Version of each servo, 0 before `verify`."""
+        return [chain.link.firmware[chain.link.row_by_id[i]] for i, chain in self._each()]
 
-    def _answers_ping(self, row: int) -> bool:
-        """Whether a servo that does not answer questions is there."""
-        return self._ask_once(self._of(row).ping(self.ids[row]), row, None, SETUP_MARGIN_S) is not None
+    @property
+    def timeouts(self) -> NDArray[np.int64]:
+        """(S,) cycles in which each servo did not answer."""
+        return self._gathered(np.int64, lambda chain: chain.link.health.counters.timeouts)
 
-    def verify(self) -> None:
-        """Compare the bus with the robot file, and find out what this firmware can.
+    @property
+    def withheld(self) -> NDArray[np.bool_]:
+        """(S,) servos that get no goals until `verify`: silent for long, and a goal would switch their torque on."""
+        return self._gathered(np.bool_, lambda chain: chain.link.health.withheld)
+
+    def show_health(self, table: NDArray[np.void]) -> None:
+        """Copy state and counters of each servo into (S,) `daemon.dynamixel.health.HEALTH`."""
+        for chain, rows in zip(self.chains, self._rows, strict=True):
+            chain.link.health.show(table, rows)
+
+    def exchange(self, goal_ticks: NDArray[np.int32] | None) -> BusReading:
+        """Write goals (S,), none when None, and read effort, velocity and position of every servo.
+
+        A port gets goals and request in one `write()`, and all ports theirs before any answer is waited for. A servo that
+        does not answer keeps its old values, marked not valid.
 
         Raises:
-            BusMismatchError: with a table of what was expected and what was found.
+            LinkLostError: one of the devices is gone; the others have been served.
         """
-        found = self.ping_all()
-        garbled = self.look_for_collisions(list(found))
-        rows = [
-            self._mismatch(row, found.get(s.servo_id), nothing=not found, garbled=s.servo_id in garbled)
-            for row, s in enumerate(self.servos)
-            if s.servo_id not in found or found[s.servo_id][0] != s.model.model_number or s.servo_id in garbled
-        ]
-        if garbled:
-            raise BusMismatchError(rows, two_of(garbled[0]))
-        rows = rows or self._read_effort_limits()
-        if rows:
-            hint = mismatch_hint(self.port, [r.found for r in rows], any_answers=bool(found))
-            raise BusMismatchError(rows, hint)
-        known, self.firmware = self.firmware, [found[i][1] for i in self.ids]
-        if known != self.firmware:  # found out once
-            self._measure_turnaround()
-            self._find_fast_sync()
-        if self._slow_every:
-            self._map_windows()
-        self.health.cleared()
-        self._chained.resume()
-        self._build_steps()
-
-    def _mismatch(self, row: int, identity: Identity | None, *, nothing: bool, garbled: bool) -> MismatchRow:
-        """A servo that is not as expected; one that is silent is asked in the other protocol, the first few if all are."""
-        s = self.servos[row]
-        if garbled:
-            text = "answers collide"
-        elif identity is not None:
-            text = identity_text(identity)
-        elif nothing and row >= _SILENT_ENOUGH:
-            text = "no answer"
-        else:
-            text = silence_text(self.port, self.clock, s.servo_id, self._of(row).version)
-        return MismatchRow(s.servo_id, s.joint_name, s.model.name, text)
-
-    def _read_effort_limits(self) -> list[MismatchRow]:
-        """How much each servo may exert; those that answered a ping and do not answer this."""
-        mute: list[MismatchRow] = []
-        for row, s in enumerate(self.servos):
+        lost: list[DaemonError] = []
+        begun: list[ServoChain] = []
+        for chain, rows in zip(self.chains, self._rows, strict=True):
             try:
-                self.read_effort_limit(s.servo_id)
-            except LinkTimeoutError:
-                if not self._answers_ping(row):
-                    raise
-                mute.append(MismatchRow(s.servo_id, s.joint_name, s.model.name, MUTE_TEXT))
-        return mute
+                chain.cycle.begin(None if goal_ticks is None else goal_ticks[rows])
+                begun.append(chain)
+            except DaemonError as error:
+                lost.append(error)
+        for chain in begun:
+            try:
+                chain.cycle.finish()
+            except DaemonError as error:
+                lost.append(error)
+        if not self._alone:
+            for chain, rows in zip(self.chains, self._rows, strict=True):
+                for name in _FIELDS:
+                    getattr(self.reading, name)[rows] = getattr(chain.link.reading, name)
+        if lost:
+            raise lost[0]
+        return self.reading
+
+    def ping_all(self, *, patient: bool = False) -> dict[int, Identity]:
+        """Model number and firmware of each servo that answers; see `ServoChain.ping_all`."""
+        return {i: who for chain in self.chains for i, who in chain.ping_all(patient=patient).items()}
+
+    def verify(self) -> None:
+        """Compare every port with the robot file.
+
+        Raises:
+            BusMismatchError: with a table of what was expected and what was found on all ports.
+        """
+        found: list[BusMismatchError] = []
+        for chain in self.chains:
+            try:
+                chain.verify()
+            except BusMismatchError as error:
+                found.append(error)
+        if len(found) == 1:
+            raise found[0]
+        if found:
+            raise BusMismatchError([row for error in found for row in error.rows], str(found[-1]).splitlines()[-1])
 
     def let_answer(self) -> None:
-        """Set status return level 2 on servos that answer pings only. Nothing else can be asked of them before."""
-        for row, servo_id in enumerate(self.ids):
-            try:
-                self.read_item(servo_id, "status_return_level")
-            except LinkTimeoutError:
-                if self._answers_ping(row):
-                    with contextlib.suppress(LinkTimeoutError):  # `verify` says who still does not answer
-                        self.write_item(servo_id, "status_return_level", 2)
+        """Set status return level 2 on servos that answer pings only; nothing else can be asked of them before."""
+        for chain in self.chains:
+            chain.let_answer()
 
     def strangers(self) -> list[Found]:
-        """Servos of Protocol 2.0 that answer a ping to all, and are none of this bus; takes about 0.2 s."""
-        self._settle()
-        return [f for f in answering(self.port, self.clock) if f.servo_id not in self.ids]
-
-    def _measure_turnaround(self) -> None:
-        """Read each servo's return delay; what the quickest question took beyond it and its bytes is the turnaround."""
-        delays: list[int] = []
-        took: list[float] = []
-        for row, servo_id in enumerate(self.ids):
-            start_s = self.clock.now_s()
-            delays.append(self.read_item(servo_id, "return_delay_time"))
-            dialect = self._of(row)
-            n_bytes = len(dialect.read(servo_id, 0, 1)) + dialect.status_bytes + 1
-            took.append(self.clock.now_s() - start_s - self.timing.wire_s(n_bytes) - delays[-1] * RETURN_DELAY_UNIT_S)
-        self.timing.return_delay_s = max(delays) * RETURN_DELAY_UNIT_S
-        self.timing.turnaround_s = max(0.0, min(took))
+        """Servos of Protocol 2.0 on any port that are none of this robot's; takes about 0.2 s a port."""
+        return [f for chain in self.chains for f in chain.strangers() if f.servo_id not in self.ids]
 
     def plan(self) -> RatePlan:
-        """The budget of a cycle on this bus as it was found."""
-        goal_bytes = sum(write.n_bytes for _, write in self._goal_writes)
-        extra = _SLOW_BYTES if self._slow_every else 0
-        return plan_of(
-            self._steps, goal_bytes, len(self.ids), self.port.baud, return_delay_s=self.timing.return_delay_s,
-            turnaround_s=self.timing.turnaround_s, extra_bytes=extra,
-        )  # fmt: skip
+        """The budget of the slowest port."""
+        return max((chain.plan() for chain in self.chains), key=lambda plan: plan.cycle_s)
 
-    def _map_windows(self) -> None:
-        """Indirect addresses for the slow registers of servos that have lost them, where a servo takes them."""
-        for row, (servo_id, firmware) in enumerate(zip(self.ids, self.firmware, strict=True)):
-            dialect = self._of(row)
+    def take_events(self) -> list[BusEvent]:
+        """Events of all ports since the last call."""
+        return sorted((e for chain in self.chains for e in chain.link.events.take()), key=lambda e: e.t_s)
 
-            def write(address: int, data: bytes, row: int = row, servo_id: int = servo_id) -> None:
-                self._ask(self._of(row).write(servo_id, address, data), row, 0)
+    def look_again(self) -> None:
+        """Somebody says that lost ports are back: the next write looks for them, however lately it did."""
+        for chain in self.chains:
+            chain.link.look_again()
 
-            def read(address: int, length: int, row: int = row, servo_id: int = servo_id) -> bytes:
-                return self._ask(self._of(row).read(servo_id, address, length), row, length).parameters
+    def close(self) -> None:
+        """Release the ports."""
+        for chain in self.chains:
+            chain.link.close()
 
-            if dialect.version == 2.0 and self._slow.wants_window(row):
-                try:
-                    self._slow.map_window(row, firmware, write, read)
-                except ServoFaultError as error:
-                    self._slow.no_window(row)
-                    log.debug("%s; its slow registers are read directly", error)
-        log.info("slow registers by indirect address: %d of %d servos", self._slow.n_windows, len(self.ids))
+    def read_item(self, servo_id: int, name: str) -> int:
+        """Value of one item of one servo."""
+        return self.registers(servo_id).read_item(servo_id, name)
 
-    def _find_fast_sync(self) -> None:
-        """Try fast sync reads where the manual says that model and firmware know them; for good, both ways."""
-        able = [m.has_fast_sync(f) for m, f in zip(self.models, self.firmware, strict=True)]
-        rows = [i for i, can in enumerate(able) if can]
-        others = len(rows) < sum(m.protocol == 2.0 for m in self.models)
-        # Seven bytes a servo are won, and a second request is needed when others cannot.
-        won_s = self.timing.wire_s(7 * len(rows) - (30 if others else 8)) - (self.timing.turnaround_s if others else 0)
-        self._fast = [False] * len(self.ids)
-        if not rows or won_s <= 0:
-            return
-        step = FastSyncStep(rows, [self.ids[i] for i in rows])
-        for _ in range(TRIES):
-            sent_s = self._send(step.request)
-            self._collect(step, sent_s, len(step.request))
-            if step.take(self._raw, self.reading).all():
-                self._fast = able
-                log.info("fast sync read: %d of %d servos", len(rows), len(self.ids))
-                return
-        text = f"no whole answer of servos {', '.join(str(self.ids[i]) for i in rows)}; plain sync reads from now on"
-        self.events.add(BusEventKind.FAST_SYNC_OFF, self.clock.now_s(), text)
+    def read_items(self, servo_id: int, names: Sequence[str]) -> dict[str, int]:
+        """Values of those of the named items that a servo has."""
+        return self.registers(servo_id).read_items(servo_id, names)
+
+    def poll_item(self, servo_id: int, name: str) -> int | None:
+        """Value of one item, asked once and within the cycle; None when the servo did not answer in time."""
+        return self.registers(servo_id).poll_item(servo_id, name)
+
+    def hardware_error_text(self, servo_id: int) -> str:
+        """The hardware error of a servo with the alert bit set, in words."""
+        return self.registers(servo_id).hardware_error_text(servo_id)
+
+    def write_item(self, servo_id: int, name: str, value: int) -> None:
+        """Set one item of one servo and wait for its answer; see `RegisterAccess.write_item`."""
+        self.registers(servo_id).write_item(servo_id, name, value)
+
+    def write_all(self, name: str, value: int) -> None:
+        """Set one item of every servo, each confirmed; the first refusal is raised."""
+        for chain in self.chains:
+            chain.registers.write_all(name, value)
+
+    def send_torque_off(self) -> None:
+        """Cut the torque of every servo with packets that nobody answers; a port that is lost keeps no other from it.
+
+        Raises:
+            LinkLostError: a port is lost; the others have been told.
+        """
+        lost: list[DaemonError] = []
+        for chain in self.chains:
+            try:
+                chain.registers.send_torque_off()
+            except DaemonError as error:
+                lost.append(error)
+        if lost:
+            raise lost[0]
+
+    def set_effort(self, share: float, *, confirmed: bool = False) -> None:
+        """Limit what every servo may exert, as a share of its own limit; see `RegisterAccess.set_effort`."""
+        for chain in self.chains:
+            chain.registers.set_effort(share, confirmed=confirmed)
+
+    def arm_watchdog(self, units: int) -> tuple[int, ...]:
+        """Arm the bus watchdogs (20 ms units); the ids of servos without, or of no use."""
+        return tuple(i for chain in self.chains for i in chain.registers.arm_watchdog(units))
+
+    def clear_watchdog(self) -> None:
+        """Clear every bus watchdog; a servo that has tripped loses its torque first."""
+        for chain in self.chains:
+            chain.registers.clear_watchdog()
+
+    def tripped_watchdogs(self) -> list[int]:
+        """Ids of the servos that have stopped by their bus watchdog."""
+        return [i for chain in self.chains for i in chain.registers.tripped_watchdogs()]
+
+    def withhold(self, servo_ids: Sequence[int]) -> None:
+        """No goals for these servos until `verify`."""
+        for servo_id in servo_ids:
+            self.registers(servo_id).withhold([servo_id])
+
+    def registers(self, servo_id: int) -> RegisterAccess:
+        """Access to the items of a servo.
+
+        Raises:
+            CommandError: the robot has no such servo.
+        """
+        if servo_id not in self._chain:
+            raise CommandError(f"no servo {servo_id} on this bus; there are {', '.join(map(str, self.ids))}")
+        return self._chain[servo_id].registers
+
+    def _each(self) -> list[tuple[int, ServoChain]]:
+        return [(servo_id, self._chain[servo_id]) for servo_id in self.ids]
+
+    def _gathered(self, dtype: type[S], of: Callable[[ServoChain], NDArray[S]]) -> NDArray[S]:
+        out = np.zeros(len(self.ids), dtype)
+        for chain, rows in zip(self.chains, self._rows, strict=True):
+            out[rows] = of(chain)
+        return out

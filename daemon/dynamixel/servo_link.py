@@ -1,4 +1,4 @@
-"""Asking single servos over a port: questions and answers, echo, late answers, and the loss of the port."""
+"""The link to the servos on a port: requests and answers, echo, late answers, and the loss of the port."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 from daemon.dynamixel.codec.dialect import DIALECTS, Decoder, Dialect
 from daemon.dynamixel.codec.packet import Packet
-from daemon.dynamixel.events import BusEvent, BusEventKind, EventLog
-from daemon.dynamixel.feedback import is_status
+from daemon.dynamixel.events import BusEventKind, EventLog
+from daemon.dynamixel.feedback import Step, is_status
 from daemon.dynamixel.health import HealthTracker
 from daemon.dynamixel.ports.port import Port, Reopenable
 from daemon.dynamixel.reading import UNKNOWN, BusReading
@@ -21,21 +21,28 @@ from retarget.robot.robot import ServoSpec
 
 TRIES = 3
 _REOPEN_EVERY_S = 0.5
+_SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
+"""Through a long answer we sleep, and wake so long before its computed end: one wake-up, not one for every chunk."""
 _ECHO_BYTES = 8
 """So many bytes of a request come back only by echo: no answer begins like one."""
 
 
-class Asking:
-    """The servos of a port, one question at a time.
+class ServoLink:
+    """Sends to the servos on a port, one request at a time, and receives their answers.
 
     Attributes:
-        port: where they are.
-        servos, ids, models: who they are; rows of everything else follow them.
-        firmware: of each, known once verified; 0 before.
+        port: the port.
+        servos, ids, models: the servos that it leads to; the rows of every array follow them.
+        firmware: version of each servo, 0 before it was verified.
         timing: how long an exchange may take.
-        reading: what they said last.
-        health: what can be said of each.
-        events: what happened.
+        reading: the servos' last values.
+        health: state and counters of each servo.
+        events: what happened on the port beside the exchange.
+        row_by_id: servo id -> row.
+        decoders: protocol -> its byte parser.
+        torque_expected: whether the servos were last told to have torque.
+        garbled: whether the last request brought bytes and no packet.
+        garbled_rows: (S,) whether every try of a servo's last request did.
     """
 
     def __init__(self, port: Port, servos: Sequence[ServoSpec], clock: Clock, *, margin_s: float = MARGIN_S) -> None:
@@ -47,17 +54,17 @@ class Asking:
         self.events = EventLog()
         self.reading = BusReading.of(len(self.ids))
         self.health = HealthTracker(len(self.ids), np.array([m.protocol == 1.0 for m in self.models], bool))
-        self._row = {servo_id: i for i, servo_id in enumerate(self.ids)}
-        self._decoders: dict[float, Decoder] = {m.protocol: DIALECTS[m.protocol].decoder() for m in self.models}
-        self._torque_expected = False
+        self.row_by_id = {servo_id: i for i, servo_id in enumerate(self.ids)}
+        self.decoders: dict[float, Decoder] = {m.protocol: DIALECTS[m.protocol].decoder() for m in self.models}
+        self.torque_expected = False
         self._echo = 0
         self._sent = b""
-        self._garbled = False
-        self._garbled_rows = np.zeros(len(self.ids), bool)
+        self.garbled = False
+        self.garbled_rows = np.zeros(len(self.ids), bool)
         self._lost_since_s: float | None = None
         self._reopen_due_s = 0.0
 
-    def _ask(self, request: bytes, row: int, answer_bytes: int) -> Packet:
+    def ask(self, request: bytes, row: int, answer_bytes: int) -> Packet:
         """Send one instruction and return the servo's answer; asked again when it stays silent.
 
         Only instructions that may be repeated are sent this way.
@@ -66,35 +73,34 @@ class Asking:
             LinkTimeoutError: it stayed silent.
             LinkGarbledError: bytes came each time, and no answer.
         """
-        n_garbled, self._garbled_rows[row] = 0, False
+        n_garbled, self.garbled_rows[row] = 0, False
         for i in range(TRIES):
             self.health.counters.retries[row] += i > 0
-            answer = self._ask_once(request, row, answer_bytes, SETUP_MARGIN_S)
+            answer = self.ask_once(request, row, answer_bytes, SETUP_MARGIN_S)
             if answer is not None:
                 return answer
-            n_garbled += self._garbled
-        self._garbled_rows[row] = n_garbled == TRIES
-        if self._garbled_rows[row]:
+            n_garbled += self.garbled
+        self.garbled_rows[row] = n_garbled == TRIES
+        if self.garbled_rows[row]:
             raise LinkGarbledError(self.ids[row], self.port.name, TRIES)
         text = f"servo {self.ids[row]} did not answer {TRIES} times on {self.port.name}; check its cable and power"
         raise LinkTimeoutError(text)
 
-    def _ask_once(self, request: bytes, row: int, answer_bytes: int | None, margin_s: float) -> Packet | None:
+    def ask_once(self, request: bytes, row: int, answer_bytes: int | None, margin_s: float) -> Packet | None:
         """One question; None when no answer came. `answer_bytes` None takes an answer of any length.
 
-        `_garbled` is set when bytes came that made no packet at all.
+        `garbled` is set when bytes came that made no packet at all.
         """
-        self._settle()
-        dialect, servo_id = self._of(row), self.ids[row]
-        decoder = self._decoders[dialect.version]
-        sent_s = self._send(request)
+        dialect, servo_id = self.dialect(row), self.ids[row]
+        decoder = self.decoders[dialect.version]
+        sent_s = self.send(request)
         n_bytes = len(request) + dialect.status_bytes + (3 if answer_bytes is None else answer_bytes)
         deadline_s = sent_s + self.timing.longest_s(n_bytes, 1) - self.timing.margin_s + margin_s
         skip = self._echo * len(request)
         heard = understood = False
-        self._garbled = False
+        self.garbled = False
         while (left_s := deadline_s - self.clock.now_s()) > 0:
-            data = self._read(256, left_s)
+            data = self.read(256, left_s)
             if not data:
                 break
             if not self._echo and self._is_echo(data):
@@ -110,32 +116,23 @@ class Asking:
                     raise ServoFaultError(servo_id, f"instruction {request.hex(' ')}", refused)
                 if answer_bytes in (None, len(p.parameters)):  # an answer to something else has another length
                     return p
-        self._garbled = heard and not understood
+        self.garbled = heard and not understood
         return None
-
-    @property
-    def ports(self) -> tuple[Port, ...]:
-        """Where its servos are: one port here, several in `MultiBus`."""
-        return (self.port,)
-
-    def take_events(self) -> list[BusEvent]:
-        """Events since the last call."""
-        return self.events.take()
 
     def close(self) -> None:
         """Release the port."""
         self.port.close()
 
-    def _settle(self) -> None:
-        """Let what is on the wire come home before anything else is sent; nothing here."""
+    def send(self, data: bytes) -> float:
+        """Write bytes after late answers were thrown away; the clock time of the write.
 
-    def _send(self, data: bytes, *, drain: bool = True) -> float:
-        """Write; the time it was written."""
+        Raises:
+            LinkLostError: the device is gone, and not back.
+        """
         try:
             if self._lost_since_s is not None:
                 self._reopen()
-            if drain:
-                self._drop_late_answers()
+            self._drop_late_answers()
             self._sent = data
             self.port.write(data)
         except LinkLostError as error:
@@ -143,22 +140,64 @@ class Asking:
             raise
         return self.clock.now_s()
 
-    def _read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Bytes that have come; a loss is noted."""
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Bytes that have arrived; a loss is noted.
+
+        Raises:
+            LinkLostError: the device is gone.
+        """
         try:
             return self.port.read(max_bytes, timeout_s)
         except LinkLostError as error:
             self._note_loss(error)
             raise
 
+    def collect(self, step: Step, sent_s: float, sent_bytes: int, raw: bytearray) -> None:
+        """Gather the answers of a step in `raw`: until all are there, the last servo has answered, or time is up.
+
+        Args:
+            step: whose request was sent last.
+            sent_s: when.
+            sent_bytes: bytes that were sent with it, goals included.
+            raw: cleared, then filled; an adapter's echo is left out.
+
+        Raises:
+            LinkLostError: the device is gone.
+        """
+        skip = self._echo * sent_bytes
+        raw.clear()
+        need = step.reply_bytes + skip
+        expected_s = sent_s + self.timing.expected_s(sent_bytes + step.reply_bytes, 0)
+        deadline_s = sent_s + self.timing.longest_s(sent_bytes + step.reply_bytes, step.answers)
+        now_s = sent_s
+        if expected_s - now_s > _SLEEP_FROM_S:
+            self.clock.sleep_until(expected_s - _WAKE_BEFORE_S)
+            now_s = self.clock.now_s()
+        while len(raw) < need:  # after the deadline what has come meanwhile is still taken
+            data = self.read(need - len(raw), max(0.0, deadline_s - now_s))
+            raw += data
+            now_s = self.clock.now_s()
+            if not data or (len(raw) < need and step.ends(raw)):
+                break
+        del raw[:skip]
+        if not self._echo and self._is_echo(raw):
+            del raw[: len(self._sent)]
+        if len(raw) == step.reply_bytes:
+            self.timing.measured(sent_bytes + step.reply_bytes, step.answers, now_s - sent_s)
+
+    @property
+    def echoes(self) -> bool:
+        """Whether the adapter sends back what is written."""
+        return bool(self._echo)
+
     def _drop_late_answers(self) -> None:
         """Throw away what arrived after its deadline, or this cycle would read the last one's answers for ever."""
         while late := self.port.read(4096, 0.0):
-            for decoder in self._decoders.values():
+            for decoder in self.decoders.values():
                 for p in decoder.feed(late):
-                    if p.servo_id in self._row:
-                        self.health.came_late(self._row[p.servo_id])
-        for decoder in self._decoders.values():
+                    if p.servo_id in self.row_by_id:
+                        self.health.came_late(self.row_by_id[p.servo_id])
+        for decoder in self.decoders.values():
             decoder.clear()
 
     def _is_echo(self, data: bytes | bytearray) -> bool:
@@ -197,23 +236,23 @@ class Asking:
             self.port.reopen()
             text = f"{self.port.name} is back after {now_s - (self._lost_since_s or now_s):.1f} s; nothing moves until armed anew"
             self.events.add(BusEventKind.REPLUGGED, now_s, text)
-            self._expect_torque(on=False)
+            self.expect_torque(on=False)
         elif isinstance(self.port, Reopenable):
             raise LinkLostError(f"{self.port.name}: lost; looked for again every {_REOPEN_EVERY_S} s")
         self._lost_since_s = None
 
-    def _expect_torque(self, *, on: bool) -> None:
+    def expect_torque(self, *, on: bool) -> None:
         """From now on torque should be so; what was read before says nothing about it."""
-        self._torque_expected = on
+        self.torque_expected = on
         self.reading.torque[:] = UNKNOWN
 
-    def _of(self, row: int) -> Dialect:
+    def dialect(self, row: int) -> Dialect:
         return DIALECTS[self.models[row].protocol]
 
-    def _row_of(self, servo_id: int) -> int:
-        if servo_id not in self._row:
+    def row_of(self, servo_id: int) -> int:
+        if servo_id not in self.row_by_id:
             raise CommandError(f"no servo {servo_id} on this bus; there are {', '.join(map(str, self.ids))}")
-        return self._row[servo_id]
+        return self.row_by_id[servo_id]
 
 
 def _model(servo: ServoSpec) -> BusModel:

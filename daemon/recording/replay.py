@@ -146,7 +146,8 @@ class _Player:
     def __init__(self, robot: RobotModel, bus: ServoBus, link: BusLink, clock: Clock) -> None:
         self._robot, self._link, self._clock = robot, link, clock
         goals = [m.table["goal_position"] for m in bus.models]
-        self._tap = bus.port = Wiretap(bus.port, robot.servo_ids, {(g.address, g.size) for g in goals})
+        driver = bus.chains[0].link
+        self._tap = driver.port = Wiretap(driver.port, robot.servo_ids, {(g.address, g.size) for g in goals})
         self._streamer = ControlLoop(robot, bus, link, clock, watch_front=False)
         self._index = link.n_cycles
         self._due_s = clock.now_s()

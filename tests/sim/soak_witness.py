@@ -179,9 +179,9 @@ class Witness(logging.Handler):
         return self._r.sim.faults.struck[fault.kind] if fault.kind in PACKET_KINDS else 0
 
     def _counted(self) -> int:
-        c = self._r.bus.health.counters
+        c = self._r.bus.chains[0].link.health.counters
         servos = sum(int(n.sum()) for n in (c.timeouts, c.crc, c.late, c.retries, c.alerts))
-        return servos + sum(self._r.bus.events.counts.values())
+        return servos + sum(self._r.bus.chains[0].link.events.counts.values())
 
     def _look_for_stopped(self, now_s: float) -> None:
         """Servos that stand limp, or stopped by their own watchdog, in a robot that holds or plays."""

@@ -29,4 +29,4 @@ def bus_rig(*faults: Fault, name: str = "reference", baud: int | None = None, se
     robot, clock = load_robot(name), VirtualClock()
     servos = SimBus(robot, FaultSchedule(faults, seed))
     port = SimPort(servos, clock, baud)
-    return BusRig(robot, clock, servos, port, ServoBus(port, robot.servos, clock))
+    return BusRig(robot, clock, servos, port, ServoBus.on_port(port, robot.servos, clock))

@@ -35,7 +35,7 @@ class Rig:
         start = None if start_rad is None else start_rad.tolist()
         self.sim = SimBus(robot, FaultSchedule(tuple(faults)), start)
         self.port = SimPort(self.sim, self.clock)
-        self.bus = ServoBus(self.port, robot.servos, self.clock, slow_every=slow_every)
+        self.bus = ServoBus.on_port(self.port, robot.servos, self.clock, slow_every=slow_every)
         self.streamer = ControlLoop(robot, self.bus, link, self.clock, watch_front=watch_front)
         self.records: list[np.void] = []
         self._due_s = 0.0

@@ -45,7 +45,7 @@ def calibrate(
     from rich.console import Console
     from rich.live import Live
 
-    from daemon.dynamixel.multi import open_bus
+    from daemon.dynamixel.bus_opening import open_bus
     from daemon.dynamixel.setup.calibration import MARGIN_S, write_robot_file
     from daemon.dynamixel.setup.calibration import calibrate as find
     from daemon.errors import CommandError

@@ -25,7 +25,7 @@ def doctor(robot: str = "reference", bus: str = "dxl:///dev/ttyUSB0", fix: bool 
     from rich.console import Console
 
     from daemon.cli.tables import table_of
-    from daemon.dynamixel.multi import open_ports
+    from daemon.dynamixel.bus_opening import open_ports
     from daemon.dynamixel.ports.opening import PortContext
     from daemon.dynamixel.setup.doctor import ADVICE, BAD, GOOD, diagnose
     from daemon.host.clock import RealClock

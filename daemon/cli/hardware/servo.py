@@ -68,7 +68,7 @@ def servo(
         if verb == "get":
             names = arguments or tuple(one.model.table)
             items = [one.item(name) for name in names]  # named before anything is asked
-            values = one.bus.read_items(servo_id, names)
+            values = one.chain.registers.read_items(servo_id, names)
             if json:
                 console.out(json_module.dumps(said | {"items": values}))
                 return 0

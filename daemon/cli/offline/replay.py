@@ -57,7 +57,7 @@ def replay(
     try:
         with Progress(console=notes, disable=json, transient=True) as bar:
             task = bar.add_task("replay", total=sum(c.torque for c in found.cycles))
-            servo_bus = ServoBus(port, model.servos, clock)
+            servo_bus = ServoBus.on_port(port, model.servos, clock)
             result = play(found, model, servo_bus, link, clock, lambda n: bar.update(task, completed=n))
     finally:
         port.close()

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.reading import BusReading
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import CommandError
 from retarget.errors import RobotFileError
 from retarget.robot.loading import load_robot
@@ -90,7 +90,7 @@ class Calibrated:
 
 
 def calibrate(
-    bus: RobotBus,
+    bus: ServoBus,
     robot: RobotModel,
     *,
     wait_zero: Callable[[Callable[[], Ranges]], None],
@@ -126,7 +126,7 @@ def calibrate(
     return [_of_servo(robot, i, int(zero[i]), ranges, margin_deg) for i in range(len(robot.servos))]
 
 
-def _whole(bus: RobotBus) -> BusReading:
+def _whole(bus: ServoBus) -> BusReading:
     """A reading with every servo in it; asked for again, because on a busy machine an answer may come too late for one.
 
     Raises:

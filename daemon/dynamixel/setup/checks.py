@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from daemon.dynamixel.identity import identity_text
-from daemon.dynamixel.multi import RobotBus
 from daemon.dynamixel.registers.rules import ADVISED, NEEDED, Finding, findings_of, items_of
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import BusMismatchError, CommandError, MismatchRow
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap
 
 
-def check_servos(bus: RobotBus, robot: RobotModel) -> list[Finding]:
+def check_servos(bus: ServoBus, robot: RobotModel) -> list[Finding]:
     """What is not as it should be, servo by servo; reads only."""
     findings: list[Finding] = []
     ticks = JointServoMap(robot)
@@ -26,7 +26,7 @@ def check_servos(bus: RobotBus, robot: RobotModel) -> list[Finding]:
     return findings
 
 
-def check_strangers(bus: RobotBus) -> list[Finding]:
+def check_strangers(bus: ServoBus) -> list[Finding]:
     """Servos that answer and are not in the robot file: nobody minds them, and they may hold torque. Takes about 0.2 s."""
     expected, remedy = "no servo of an id that the robot file does not name", "take it off the bus, or name it there"
     return [
@@ -49,7 +49,7 @@ def require_needed(findings: Sequence[Finding]) -> None:
         raise BusMismatchError(rows, f"correct them with torque off: {'; '.join(fixed + by_hand)}")
 
 
-def fix(bus: RobotBus, findings: Sequence[Finding]) -> list[Finding]:
+def fix(bus: ServoBus, findings: Sequence[Finding]) -> list[Finding]:
     """Correct what can be, each confirmed by reading it back; what is left.
 
     Status return levels come first: below 2 a servo confirms no other write.

@@ -8,11 +8,12 @@ import resource
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from daemon.dynamixel.bus_opening import bus_on
 from daemon.dynamixel.identity import MUTE_TEXT
-from daemon.dynamixel.multi import RobotBus, bus_on
 from daemon.dynamixel.ports.adapter import GOOD_LATENCY_MS, adapter_at, latency_remedy, latency_timer_ms
 from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.registers.rules import ADVISED, NEEDED, Finding
+from daemon.dynamixel.servo_bus import ServoBus
 from daemon.dynamixel.setup.checks import check_servos, check_strangers, fix
 from daemon.errors import BusMismatchError, ConfigError, DaemonError, PortError
 from daemon.host.clock import Clock
@@ -127,7 +128,7 @@ def _adapter(port: Port) -> list[Check]:
     return checks
 
 
-def _verify(bus: RobotBus, *, correct: bool) -> None:
+def _verify(bus: ServoBus, *, correct: bool) -> None:
     """Verify; with `correct` servos that answer pings only are first told to answer everything."""
     try:
         bus.verify()
@@ -138,7 +139,7 @@ def _verify(bus: RobotBus, *, correct: bool) -> None:
         bus.verify()
 
 
-def _settings(bus: RobotBus, robot: RobotModel, *, correct: bool) -> list[Check]:
+def _settings(bus: ServoBus, robot: RobotModel, *, correct: bool) -> list[Check]:
     findings = check_servos(bus, robot) + check_strangers(bus)
     fixed: list[Finding] = []
     if correct:
@@ -173,11 +174,11 @@ def _of_item(findings: list[Finding], *, correct: bool) -> list[Check]:
     return [Check(what, ", ".join(dict.fromkeys(f.found for f in findings)), verdict, remedy)]
 
 
-def _events(bus: RobotBus) -> list[Check]:
+def _events(bus: ServoBus) -> list[Check]:
     return [Check(e.kind.value, e.text, ADVICE, "") for e in bus.take_events()]
 
 
-def _rate(bus: RobotBus, robot: RobotModel) -> list[Check]:
+def _rate(bus: ServoBus, robot: RobotModel) -> list[Check]:
     plan, rate_hz = bus.plan(), robot.bus.rate_hz
     try:
         fits = plan.require(rate_hz)

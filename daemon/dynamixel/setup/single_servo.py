@@ -9,7 +9,7 @@ from daemon.dynamixel.identity import MUTE_TEXT, PINGS_ONLY
 from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.registers.models import MODELS, BusModel
 from daemon.dynamixel.registers.registers import Item
-from daemon.dynamixel.servo_bus import ServoBus
+from daemon.dynamixel.servo_chain import ServoChain
 from daemon.errors import CommandError, LinkTimeoutError
 from daemon.host.clock import Clock
 from retarget.robot.robot import ServoSpec
@@ -28,16 +28,16 @@ _BOOT_S, _ASK_EVERY_S = 2.0, 0.1
 
 @dataclass(frozen=True)
 class SingleServo:
-    """A servo that answered, and a bus with nobody else on it."""
+    """A servo that answered, and a chain with nobody else in it."""
 
-    bus: ServoBus
+    chain: ServoChain
     model: BusModel
     servo_id: int
     firmware: int
 
     def get(self, name: str) -> int:
         """Value of an item."""
-        return self.bus.read_item(self.servo_id, name)
+        return self.chain.registers.read_item(self.servo_id, name)
 
     def item(self, name: str) -> Item:
         """An item of its table.
@@ -70,7 +70,7 @@ class SingleServo:
             raise CommandError(
                 f"servo {self.servo_id} holds torque: '{name}' = {value} lets its joint fall; --drop to do it"
             )
-        self.bus.write_item(self.servo_id, name, value)
+        self.chain.registers.write_item(self.servo_id, name, value)
         found = self.get(name)
         if found != value:
             raise CommandError(f"'{name}': wrote {value}, the servo has {found}")
@@ -85,14 +85,14 @@ class SingleServo:
             raise CommandError(f"id {new_id}: allowed are 0 to 252")
         self._require_free(self.item("id"))
         try:
-            find(self.bus.port, self.bus.clock, new_id, self.model.protocol)
+            find(self.chain.link.port, self.chain.link.clock, new_id, self.model.protocol)
         except LinkTimeoutError:
             pass
         else:
             raise CommandError(f"id {new_id} is taken by another servo on this bus")
         with contextlib.suppress(LinkTimeoutError):  # some answer as their new self: who has the new id tells
-            self.bus.write_item(self.servo_id, "id", new_id)
-        find(self.bus.port, self.bus.clock, new_id, self.model.protocol)
+            self.chain.registers.write_item(self.servo_id, "id", new_id)
+        find(self.chain.link.port, self.chain.link.clock, new_id, self.model.protocol)
 
     def set_baud(self, baud: int) -> None:
         """Give it another baud; from then on it is heard only there: look for it with `find` on a port of that baud.
@@ -106,7 +106,7 @@ class SingleServo:
             raise CommandError(f"{self.model.name} has no {baud} baud; allowed: {known}, at most {self.model.max_baud}")
         self._require_free(self.item("baud_rate"))
         with contextlib.suppress(LinkTimeoutError):  # some answer at the new baud: who is heard there tells
-            self.bus.write_item(self.servo_id, "baud_rate", code)
+            self.chain.registers.write_item(self.servo_id, "baud_rate", code)
 
     def reboot(self, *, drop: bool) -> None:
         """Restart it, and wait until it is back.
@@ -122,12 +122,12 @@ class SingleServo:
             )
         if self.get("torque_enable") and not drop:
             raise CommandError(f"servo {self.servo_id} holds torque: a reboot lets its joint fall; --drop to do it")
-        self.bus.reboot(self.servo_id)
-        clock = self.bus.clock
+        self.chain.registers.reboot(self.servo_id)
+        clock = self.chain.link.clock
         until_s = clock.now_s() + _BOOT_S
-        while not self.bus.ping_all() and clock.now_s() < until_s:
+        while not self.chain.ping_all() and clock.now_s() < until_s:
             clock.sleep_until(clock.now_s() + _ASK_EVERY_S)
-        find(self.bus.port, clock, self.servo_id, self.model.protocol)
+        find(self.chain.link.port, clock, self.servo_id, self.model.protocol)
 
     def _require_free(self, item: Item) -> None:
         if item.eeprom and self.get("torque_enable"):
@@ -142,8 +142,8 @@ def find(port: Port, clock: Clock, servo_id: int, protocol: float | None = None)
     """
     for version in (2.0, 1.0) if protocol is None else (protocol,):
         guess = next(m for m in MODELS.values() if m.protocol == version)
-        bus = _bus(port, clock, servo_id, guess)
-        found = bus.ping_all().get(servo_id)
+        chain = _chain(port, clock, servo_id, guess)
+        found = chain.ping_all().get(servo_id)
         if found is not None:
             if found == PINGS_ONLY:
                 raise CommandError(
@@ -152,13 +152,13 @@ def find(port: Port, clock: Clock, servo_id: int, protocol: float | None = None)
             number, firmware = found
             if number not in MODELS:
                 raise CommandError(f"servo {servo_id} is of model {number}, which is not known here")
-            return SingleServo(_bus(port, clock, servo_id, MODELS[number]), MODELS[number], servo_id, firmware)
+            return SingleServo(_chain(port, clock, servo_id, MODELS[number]), MODELS[number], servo_id, firmware)
     raise LinkTimeoutError(
         f"servo {servo_id} does not answer at {port.baud} baud on {port.name}; mmmd scan finds who does"
     )
 
 
-def _bus(port: Port, clock: Clock, servo_id: int, model: BusModel) -> ServoBus:
+def _chain(port: Port, clock: Clock, servo_id: int, model: BusModel) -> ServoChain:
     facts = servo_models()[model.name]
     ends = facts.min_tick, facts.max_tick
-    return ServoBus(port, [ServoSpec(servo_id, "servo", facts, 1, 1.0, facts.zero_tick, ((0, 1.0),), *ends)], clock)
+    return ServoChain(port, [ServoSpec(servo_id, "servo", facts, 1, 1.0, facts.zero_tick, ((0, 1.0),), *ends)], clock)

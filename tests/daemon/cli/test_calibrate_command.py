@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from daemon.bench.tty_servos import served
+from daemon.dynamixel.bus_opening import bus_on
 from daemon.dynamixel.events import BusEventKind
-from daemon.dynamixel.multi import bus_on
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.dynamixel.setup.calibration import MARGIN_S, Calibrated, calibrate, copy_of
 from daemon.dynamixel.timing import MARGIN_S as RUN_MARGIN_S
@@ -92,7 +92,7 @@ def test_a_machine_that_is_held_up_is_no_brown_out():
                 follow()
 
         calibrate(bus, OP3, wait_zero=look, wait_range=look)
-        return bus.events.counts
+        return bus.chains[0].link.events.counts
 
     assert BusEventKind.BROWN_OUT in events(RUN_MARGIN_S)  # as a run has to judge it
     assert BusEventKind.BROWN_OUT not in events(MARGIN_S)

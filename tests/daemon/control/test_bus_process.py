@@ -111,7 +111,7 @@ def test_killed_while_armed_the_servos_stop_by_their_watchdog(started, servos, t
     time.sleep(WATCHDOG_UNITS * WATCHDOG_UNIT_S + 0.1)  # the watchdog's time is real here
     port = SerialPort(str(servos.link), ROBOT.bus.baud)
     try:
-        after = ServoBus(port, ROBOT.servos, RealClock())
+        after = ServoBus.on_port(port, ROBOT.servos, RealClock())
         for servo_id in after.ids:
             assert after.read_item(servo_id, "bus_watchdog") == WATCHDOG_TRIPPED
         first = after.exchange(None).position_tick.copy()

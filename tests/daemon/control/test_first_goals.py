@@ -46,7 +46,7 @@ def parts(name: str) -> tuple[RobotModel, JointServoMap, TurnWatch, SafetyLimite
     robot = load_robot(name)
     ticks = JointServoMap(robot)
     clock = RealClock()
-    bus = ServoBus(SimPort(SimBus(robot), clock), robot.servos, clock)
+    bus = ServoBus.on_port(SimPort(SimBus(robot), clock), robot.servos, clock)
     return robot, ticks, TurnWatch(robot, ticks, bus), SafetyLimiter(robot)
 
 

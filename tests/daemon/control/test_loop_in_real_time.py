@@ -27,13 +27,13 @@ def test_start_says_why_there_is_no_robot():
         assert start(robot, missing, link, clock) is None
         assert link.readiness is Readiness.FAILED and "ttyUSB9" in link.text
         deaf = SimPort(SimBus(robot), clock, baud=57_600)
-        assert start(robot, lambda: ServoBus(deaf, robot.servos, clock), link, clock) is None
+        assert start(robot, lambda: ServoBus.on_port(deaf, robot.servos, clock), link, clock) is None
         assert "baud" in link.text
         other = SimPort(SimBus(load_robot("op3")), clock)
-        assert start(robot, lambda: ServoBus(other, robot.servos, clock), link, clock) is None
+        assert start(robot, lambda: ServoBus.on_port(other, robot.servos, clock), link, clock) is None
         assert "expected" in link.text and "head_yaw" in link.text
         good = SimPort(SimBus(robot), clock)
-        assert start(robot, lambda: ServoBus(good, robot.servos, clock), link, clock) is not None
+        assert start(robot, lambda: ServoBus.on_port(good, robot.servos, clock), link, clock) is not None
         assert link.readiness is Readiness.READY
     finally:
         link.close()
@@ -47,7 +47,7 @@ def test_the_start_says_how_to_set_a_slow_adapters_timer(monkeypatch, caplog):
     port.device = "/dev/ttyUSB7"
     try:
         with caplog.at_level("WARNING", "daemon.control.starting"):
-            assert start(robot, lambda: ServoBus(port, robot.servos, clock), link, clock) is not None
+            assert start(robot, lambda: ServoBus.on_port(port, robot.servos, clock), link, clock) is not None
         assert "run: set /dev/ttyUSB7" in caplog.text and link.readiness is Readiness.READY
     finally:
         link.close()
@@ -59,7 +59,9 @@ class Running:
     def __init__(self, robot: RobotModel, link: BusLink, clock: VirtualClock, n_cycles: int) -> None:
         self.sim, self.begun_s = SimBus(robot), list[float]()
         bus_clock = VirtualClock()
-        streamer = start(robot, lambda: ServoBus(SimPort(self.sim, bus_clock), robot.servos, bus_clock), link, clock)
+        streamer = start(
+            robot, lambda: ServoBus.on_port(SimPort(self.sim, bus_clock), robot.servos, bus_clock), link, clock
+        )
         assert streamer is not None
         inner = streamer.cycle
 

@@ -22,7 +22,7 @@ GOALS = np.full(N, 2048, np.int32)
 
 def group(name: str = "XM430-W350") -> tuple[ServoBus, FakePort, VirtualClock]:
     far, servos, clock = fake(*(name,) * N)
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     bus.verify()
     return bus, far, clock
 
@@ -79,7 +79,10 @@ def test_spoilt_parts_are_counted_by_servo_and_leave_the_others_alone() -> None:
     far.spoil = lambda raw, _servo_id: raw[:at] + bytes([raw[at] ^ 1]) + raw[at + 1 :] if raw[4] == 0xFE else raw
     for _ in range(5):
         assert np.flatnonzero(~bus.exchange(GOALS).valid).tolist() == [4]
-    assert np.flatnonzero(bus.health.counters.crc).tolist() == [4] and bus.health.counters.crc[4] == 5
+    assert (
+        np.flatnonzero(bus.chains[0].link.health.counters.crc).tolist() == [4]
+        and bus.chains[0].link.health.counters.crc[4] == 5
+    )
     assert all(w[-30:].count(Instruction.FAST_SYNC_READ) for w in far.writes[-5:])
 
 
@@ -89,7 +92,7 @@ def test_where_fast_answers_always_break_off_they_are_tried_more_and_more_rarely
     far.spoil = lambda raw, _servo_id: raw[: -PART_BYTES * 10] if raw[4] == 0xFE else raw
     _, early = rate_and_valid(bus, clock, 1000)
     _, later = rate_and_valid(bus, clock, 5000)
-    assert bus.health.asked.all(), "nobody is given up for it"
+    assert bus.chains[0].link.health.asked.all(), "nobody is given up for it"
     assert early > 0.98 and later > 0.999
     far.spoil = lambda raw, _servo_id: raw
     rate_and_valid(bus, clock, 3300)

@@ -36,7 +36,7 @@ def with_a_twin(
     for name, value in settings.items():
         world.all[-1]._set(name, value)
     servos = SimBus(ROBOT, world=world)
-    return ServoBus(SimPort(servos, clock), ROBOT.servos, clock), servos, clock
+    return ServoBus.on_port(SimPort(servos, clock), ROBOT.servos, clock), servos, clock
 
 
 @pytest.mark.parametrize("settings", [{}, {"return_delay_time": 10}, {"firmware_version": 43}])
@@ -67,7 +67,7 @@ def test_a_twin_that_comes_while_the_robot_runs_is_named_and_its_loss_too(firmwa
         assert not bus.exchange(None).valid[ROW]
         clock.sleep_until(clock.now_s() + 0.01)
     told = {e.kind: e for e in bus.take_events()}
-    assert bus.health.state[ROW] == Health.QUARANTINED
+    assert bus.chains[0].link.health.state[ROW] == Health.QUARANTINED
     assert told[BusEventKind.DUPLICATE_ID].servo_id == TWIN
     assert "two servos with id 7, or noise" in told[BusEventKind.DUPLICATE_ID].text
     assert BusEventKind.RETURNED not in told, "a ping would have been answered"

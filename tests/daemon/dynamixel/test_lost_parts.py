@@ -28,7 +28,7 @@ def test_while_the_port_is_gone_nothing_is_valid_and_everything_ages() -> None:
         assert not rig.bus.reading.valid.any()
         assert rig.bus.reading.age_cycles.tolist() == [lost] * 16
         rig.clock.sleep_until(1.0 + 0.01 * lost)
-    assert (rig.bus.health.state == Health.MISSING).all()
+    assert (rig.bus.chains[0].link.health.state == Health.MISSING).all()
     assert rig.bus.timeouts.tolist() == [0] * 16, "no servo is to blame"
 
 
@@ -43,16 +43,16 @@ def test_a_port_that_goes_while_a_single_servo_is_asked_leaves_nothing_valid() -
         assert not rig.bus.reading.valid.any()
 
 
-def test_sent_ahead_or_not_a_lost_port_leaves_nothing_valid() -> None:
+def test_a_port_lost_in_the_exchange_leaves_nothing_valid() -> None:
     far, servos, clock = fake(*("XM430-W350",) * 6)
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     bus.verify()
     for _ in range(3):
-        bus.exchange_ahead(None)
+        bus.exchange(None)
     assert bus.reading.valid.all()
     far.unplugged = True
     with pytest.raises(LinkLostError):
-        bus.exchange_ahead(None)
+        bus.exchange(None)
     assert not bus.reading.valid.any() and (bus.reading.age_cycles > 0).all()
 
 
@@ -82,27 +82,27 @@ def rate_hz(bus: ServoBus, clock: VirtualClock, cycles: int) -> float:
 def test_one_dead_servo_of_two_is_quarantined_as_the_other_answers(names: tuple[str, ...], dead: int) -> None:
     """One of two is half of them, and was taken for a brown-out for good: the rate fell from 1316 to 208 Hz."""
     far, servos, clock = fake(*names)
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     bus.verify()
     before_hz = rate_hz(bus, clock, 50)
     far.servos[dead].silent = True
     rate_hz(bus, clock, 40)
-    assert bus.health.state[dead - 1] == Health.QUARANTINED
+    assert bus.chains[0].link.health.state[dead - 1] == Health.QUARANTINED
     assert BusEventKind.BROWN_OUT not in [e.kind for e in bus.take_events()]
     assert rate_hz(bus, clock, 3000) > 0.95 * before_hz
 
 
 def test_servos_that_die_one_after_the_other_are_quarantined_down_to_the_last() -> None:
     far, servos, clock = fake(*("XM430-W350",) * 4)
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     bus.verify()
     for servo_id in (1, 2, 3, 4):
         far.servos[servo_id].silent = True
         rate_hz(bus, clock, 40)
-        assert bus.health.asked.tolist() == [i > servo_id for i in (1, 2, 3, 4)]
+        assert bus.chains[0].link.health.asked.tolist() == [i > servo_id for i in (1, 2, 3, 4)]
     for servo in far.servos.values():
         servo.silent = False
-    while not bus.health.asked.all():
+    while not bus.chains[0].link.health.asked.all():
         clock.sleep_until(clock.now_s() + 0.01)
         bus.exchange(None)
     assert bus.exchange(None).valid.all()
@@ -111,7 +111,7 @@ def test_servos_that_die_one_after_the_other_are_quarantined_down_to_the_last() 
 @pytest.mark.parametrize("n", [2, 3, 8])
 def test_many_silent_at_once_are_a_brown_out_and_nobody_is_given_up(n: int) -> None:
     far, servos, clock = fake(*("2XL430-W250",) * n)
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     bus.verify()
     for servo_id in range(1, 1 + max(2, (n + 1) // 2)):
         far.servos[servo_id].silent = True
@@ -119,4 +119,4 @@ def test_many_silent_at_once_are_a_brown_out_and_nobody_is_given_up(n: int) -> N
     assert bus.take_events() == [], "one cycle may be a spoilt answer"
     rate_hz(bus, clock, 40)
     assert [e.kind for e in bus.take_events()] == [BusEventKind.BROWN_OUT]
-    assert bus.health.asked.all()
+    assert bus.chains[0].link.health.asked.all()

@@ -25,14 +25,14 @@ def bus_of(
     *names: str, slow_every: int = 0, verify: bool = True, **port: object
 ) -> tuple[ServoBus, FakePort, VirtualClock]:
     far, servos, clock = fake(*names, **port)
-    bus = ServoBus(far, servos, clock, slow_every=slow_every)
+    bus = ServoBus.on_port(far, servos, clock, slow_every=slow_every)
     if verify:
         bus.verify()
     return bus, far, clock
 
 
 def kinds(bus: ServoBus) -> list[BusEventKind]:
-    return [event.kind for event in bus.events.take()]
+    return [event.kind for event in bus.chains[0].link.events.take()]
 
 
 def put(far: FakePort, position: int = 1000) -> None:
@@ -69,7 +69,7 @@ def test_a_group_that_knows_fast_sync_reads_is_one_write_and_one_packet(n: int) 
 def test_fast_sync_read_is_tried_once_and_left_for_good_where_it_is_not_answered() -> None:
     far, servos, clock = fake(*X20[:4])
     far.servos[3].fast = False
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     bus.verify()
     assert kinds(bus) == [BusEventKind.FAST_SYNC_OFF]
     far.writes.clear()
@@ -82,7 +82,7 @@ def test_old_firmware_is_not_even_asked_for_it(firmware: int, fast: bool) -> Non
     far, servos, clock = fake(*X20[:4])
     for s in far.servos.values():
         s.set("firmware_version", firmware)
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     bus.verify()
     assert any(Instruction.FAST_SYNC_READ == w[7] for w in far.writes) == fast
     assert bus.firmware == [firmware] * 4
@@ -108,7 +108,7 @@ def test_one_dead_servo_costs_itself_only_and_after_quarantine_nearly_nothing(na
         "the others answer, for themselves if need be"
     )
     assert not valid[:, 1].any()
-    assert bus.health.state[1] == Health.QUARANTINED and bus.timeouts[1] == 10
+    assert bus.chains[0].link.health.state[1] == Health.QUARANTINED and bus.timeouts[1] == 10
     assert BusEventKind.QUARANTINED in kinds(bus)
     for _ in range(25):
         bus.exchange(None)
@@ -118,7 +118,7 @@ def test_one_dead_servo_costs_itself_only_and_after_quarantine_nearly_nothing(na
     far.servos[2].silent = False
     while clock.now_s() < asked_s + 10 and not bus.exchange(None).valid[1]:
         pass
-    assert bus.health.state[1] == Health.OK and BusEventKind.RETURNED in kinds(bus)
+    assert bus.chains[0].link.health.state[1] == Health.OK and BusEventKind.RETURNED in kinds(bus)
 
 
 def test_all_silent_at_once_is_named_and_nobody_is_given_up() -> None:
@@ -128,7 +128,7 @@ def test_all_silent_at_once_is_named_and_nobody_is_given_up() -> None:
     for _ in range(30):
         bus.exchange(None)
     assert kinds(bus) == [BusEventKind.BROWN_OUT]
-    assert bus.health.asked.all() and (bus.health.state == Health.MISSING).all()
+    assert bus.chains[0].link.health.asked.all() and (bus.chains[0].link.health.state == Health.MISSING).all()
     for s in far.servos.values():
         s.silent = False
     assert bus.exchange(None).valid.all()
@@ -155,7 +155,7 @@ def test_indirect_windows_stand_where_model_and_firmware_have_them() -> None:
     old = far.servos[3]
     old.firmware = 45
     old.__post_init__()
-    bus = ServoBus(far, servos, clock, slow_every=1)
+    bus = ServoBus.on_port(far, servos, clock, slow_every=1)
     bus.verify()
     for i, s in far.servos.items():
         s.set("present_temperature", 40 + i)
@@ -181,11 +181,11 @@ def test_a_servo_that_rebooted_is_named_and_its_window_of_zeros_not_believed(nam
     for _ in range(6):
         bus.exchange(None)
     assert BusEventKind.REBOOTED in kinds(bus)
-    assert bus.health.state.tolist() == [Health.OK, Health.FAULTED, Health.OK]
+    assert bus.chains[0].link.health.state.tolist() == [Health.OK, Health.FAULTED, Health.OK]
     assert bus.reading.temperature_c.tolist() == [40] * 3
     bus.verify()
     bus.exchange(None)
-    assert bus.health.state.tolist() == [Health.OK] * 3, "verified anew"
+    assert bus.chains[0].link.health.state.tolist() == [Health.OK] * 3, "verified anew"
 
 
 def test_many_servos_without_torque_are_a_brown_out() -> None:
@@ -230,7 +230,7 @@ def test_a_foreign_packet_is_named_and_costs_nobody_his_answer(stranger: bytes, 
     far.before = stranger
     reading = bus.exchange(None)
     assert reading.valid.all() and reading.position_tick.tolist() == [1001, 1002, 1003, 1004]
-    events = [e for e in bus.events.take() if e.kind is BusEventKind.FOREIGN_PACKET]
+    events = [e for e in bus.chains[0].link.events.take() if e.kind is BusEventKind.FOREIGN_PACKET]
     assert len(events) == 1 and said in events[0].text
 
 
@@ -238,7 +238,7 @@ def test_two_servos_with_one_id_are_named() -> None:
     bus, far, _ = bus_of(*("2XL430-W250",) * 4)
     far.servos[2].doubled = True
     bus.exchange(None)
-    (event,) = [e for e in bus.events.take() if e.kind is BusEventKind.DUPLICATE_ID]
+    (event,) = [e for e in bus.chains[0].link.events.take() if e.kind is BusEventKind.DUPLICATE_ID]
     assert event.servo_id == 2 and "mmmd servo" in event.text
 
 
@@ -252,7 +252,7 @@ def test_an_answer_of_the_last_cycle_that_comes_during_this_one_is_late_not_a_se
     far.before = status(2, 0, bytes(10))
     reading = bus.exchange(None)
     assert reading.valid.all() and reading.position_tick[1] == 1002, "the newer one counts"
-    assert BusEventKind.DUPLICATE_ID not in kinds(bus) and bus.health.counters.late[1] == 1
+    assert BusEventKind.DUPLICATE_ID not in kinds(bus) and bus.chains[0].link.health.counters.late[1] == 1
 
 
 def test_noise_before_the_answers_costs_nothing_but_time() -> None:
@@ -281,29 +281,14 @@ def test_bad_checksums_are_counted_and_late_answers_too() -> None:
     bus, far, clock = bus_of(*("2XL430-W250",) * 3)
     far.spoil = lambda raw, servo_id: raw[:-1] + bytes([raw[-1] ^ 1]) if servo_id == 2 else raw
     bus.exchange(None)
-    assert bus.health.counters.crc.tolist() == [0, 1, 0]
+    assert bus.chains[0].link.health.counters.crc.tolist() == [0, 1, 0]
     far.spoil = lambda raw, _servo_id: raw
     far.turnaround_s = 0.02
     assert not bus.exchange(None).valid.any()
     far.turnaround_s = 0.0
     clock.sleep_until(clock.now_s() + 0.05)
     assert bus.exchange(None).valid.all()
-    assert bus.health.counters.late.tolist() == [1, 1, 1]
-
-
-def test_sending_ahead_brings_the_last_cycle_while_the_wire_is_busy() -> None:
-    bus, far, clock = bus_of(*X20)
-    goals = np.full(20, 2048, np.int32)
-    start_s = clock.now_s()
-    seen: list[int] = []
-    for i in range(50):
-        put(far, 1000 + 100 * i)
-        reading = bus.exchange_ahead(goals)
-        seen.append(int(reading.position_tick[0]))
-    assert seen[1:4] == [1001, 1101, 1201]
-    assert (clock.now_s() - start_s) / 50 < 1.05 * (114 + 34 + 288) * 10e-6
-    assert bus.read_item(1, "led") == 0, "what is in flight comes home first"
-    assert bus.exchange(goals).valid.all()
+    assert bus.chains[0].link.health.counters.late.tolist() == [1, 1, 1]
 
 
 def test_an_unplugged_port_comes_back_by_itself_and_says_so() -> None:
@@ -356,10 +341,10 @@ def test_hardware_errors_in_words_for_both_protocols() -> None:
     reading = bus.exchange(None)
     assert reading.error.tolist() == [0x80, 0x80, 0]
     assert {bus.hardware_error_text(i) for i in (1, 2)} == {"overheating, overload"}
-    assert bus.health.state.tolist() == [Health.FAULTED, Health.FAULTED, Health.OK]
-    assert bus.health.counters.alerts.tolist() == [1, 1, 0]
+    assert bus.chains[0].link.health.state.tolist() == [Health.FAULTED, Health.FAULTED, Health.OK]
+    assert bus.chains[0].link.health.counters.alerts.tolist() == [1, 1, 0]
     bus.exchange(None)
-    events = [e.servo_id for e in bus.events.take() if e.kind is BusEventKind.HARDWARE_ERROR]
+    events = [e.servo_id for e in bus.chains[0].link.events.take() if e.kind is BusEventKind.HARDWARE_ERROR]
     assert events == [1, 2], "told when it begins, not in every cycle"
 
 
@@ -367,13 +352,13 @@ def test_what_is_not_there_is_named() -> None:
     far, servos, clock = fake("XM430-W350", "AX-12A")
     far.servos[2].silent = True
     far.servos[1].set("model_number", 1060)
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     with pytest.raises(BusMismatchError, match=r"XL430-W250 \(model 1060\), firmware 52"):
         bus.verify()
     with pytest.raises(CommandError, match="no servo 9 on this bus; there are 1, 2"):
         bus.read_item(9, "led")
     with pytest.raises(CommandError, match="no servo on fake:// has an item 'elan'"):
-        bus.send_all("elan", 1)
+        bus.chains[0].registers.send_all("elan", 1)
 
 
 def test_a_servo_without_a_control_table_is_refused() -> None:
@@ -381,7 +366,7 @@ def test_a_servo_without_a_control_table_is_refused() -> None:
     strange = replace(servos[0].model, name="XQ-1", model_number=9999)
     odd = replace(servos[0], joint_name="arm", model=strange)
     with pytest.raises(ConfigError, match=r"XQ-1.*known: XH430-W350"):
-        ServoBus(far, [odd], clock)
+        ServoBus.on_port(far, [odd], clock)
 
 
 def test_an_emulator_whose_parts_carry_no_checksums_is_understood() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from daemon.control.control_loop import ControlLoop
-from daemon.dynamixel.multi import MultiBus, RobotBus, bus_on, open_bus
+from daemon.dynamixel.bus_opening import bus_on, open_bus
 from daemon.dynamixel.registers.models import MODELS
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.dynamixel.setup.checks import check_servos
@@ -30,7 +30,7 @@ def two_ports(*extra_on_b: int, missing: tuple[int, ...] = ()) -> tuple[list[Fak
     return [FakePort(clock, a, ROBOT.bus.baud), FakePort(clock, b, ROBOT.bus.baud)], clock
 
 
-def joined(ports: list[FakePort], clock: VirtualClock) -> RobotBus:
+def joined(ports: list[FakePort], clock: VirtualClock) -> ServoBus:
     bus = bus_on(ports, ROBOT, clock)
     bus.verify()
     return bus
@@ -39,7 +39,7 @@ def joined(ports: list[FakePort], clock: VirtualClock) -> RobotBus:
 def test_servos_are_found_on_their_ports_and_read_in_the_robots_order() -> None:
     ports, clock = two_ports()
     bus = joined(ports, clock)
-    assert isinstance(bus, MultiBus) and bus.ids == ROBOT.servo_ids
+    assert len(bus.chains) == 2 and bus.ids == ROBOT.servo_ids
     for port in ports:
         for i, s in port.servos.items():
             s.set("present_position", 1000 + i)
@@ -87,7 +87,7 @@ def test_torque_watchdog_and_items_reach_every_port() -> None:
     bus.write_item(5, "led", 1)
     assert (bus.read_item(5, "led"), bus.poll_item(4, "led"), bus.read_items(5, ["led"])) == (1, 0, {"led": 1})
     assert bus.hardware_error_text(5) == "none"
-    with pytest.raises(CommandError, match="no servo 99 on these ports"):
+    with pytest.raises(CommandError, match="no servo 99 on this bus"):
         bus.read_item(99, "led")
 
 

@@ -63,7 +63,7 @@ def test_what_was_measured_makes_it_tight_not_impossible() -> None:
 )
 def test_a_cycle_takes_what_its_plan_says(names: tuple[str, ...], turnaround_s: float) -> None:
     far, servos, clock = fake(*names, turnaround_s=turnaround_s)
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     bus.verify()
     goals = np.full(len(names), 100, np.int32)
     bus.exchange(goals)
@@ -73,6 +73,9 @@ def test_a_cycle_takes_what_its_plan_says(names: tuple[str, ...], turnaround_s: 
     assert (clock.now_s() - start_s) / 20 == pytest.approx(bus.plan().cycle_s, rel=0.02)
     models = [MODELS[MODEL_NUMBERS[n]] for n in names]
     ahead = plan_for(
-        models, 1_000_000, fast=names[0] == names[-1] == "XM430-W350", turnaround_s=bus.timing.turnaround_s
+        models,
+        1_000_000,
+        fast=names[0] == names[-1] == "XM430-W350",
+        turnaround_s=bus.chains[0].link.timing.turnaround_s,
     )
     assert ahead.cycle_s == pytest.approx(bus.plan().cycle_s, rel=0.1)

@@ -23,7 +23,7 @@ X_ID, Y_ID, P_ID = 61, 31, 37
 def ffw(slow_every: int = 0) -> BusRig:
     """A verified bus of its 16 servos."""
     rig = bus_rig(name="ffw_bg2")
-    rig.bus = ServoBus(rig.port, rig.robot.servos, rig.clock, slow_every=slow_every)
+    rig.bus = ServoBus.on_port(rig.port, rig.robot.servos, rig.clock, slow_every=slow_every)
     rig.bus.verify()
     return rig
 
@@ -63,7 +63,7 @@ def test_a_silent_servo_of_any_family_is_missing_alone(silent: int) -> None:
 def test_slow_registers_come_through_windows_also_of_y_and_p() -> None:
     """Y measures two temperatures, in hundredths of a volt; all that is told is in tenths."""
     rig = ffw(slow_every=1)
-    assert rig.bus._slow.n_windows == 16
+    assert rig.bus.chains[0].probe.slow.n_windows == 16
     rig.servos.world.drives.temperature_c[:] = 41.0
     rig.servos.world.drives.touch()
     reading = rig.bus.exchange(None)
@@ -78,12 +78,12 @@ def test_slow_registers_come_through_windows_also_of_y_and_p() -> None:
 def test_a_kept_window_is_not_written_again() -> None:
     """Their indirect addresses are EEPROM: each start would wear it."""
     rig = ffw(slow_every=1)
-    again = ServoBus(rig.port, rig.robot.servos, rig.clock, slow_every=1)
+    again = ServoBus.on_port(rig.port, rig.robot.servos, rig.clock, slow_every=1)
     sent, write = list[bytes](), rig.port.write
     rig.port.write = lambda data: (sent.append(data), write(data))[1]  # type: ignore[method-assign]
     again.verify()
     written = {p.servo_id for p in PacketDecoder().feed(b"".join(sent)) if p.instruction == Instruction.WRITE}
-    assert again._slow.n_windows == 16 and written == {61, 62}
+    assert again.chains[0].probe.slow.n_windows == 16 and written == {61, 62}
 
 
 @pytest.mark.parametrize(
@@ -205,7 +205,8 @@ def test_the_wiretap_sees_the_goals_of_all_families_as_one_set() -> None:
     rig = ffw()
     places = {(m.table["goal_position"].address, m.table["goal_position"].size) for m in rig.bus.models}
     assert places == {(116, 4), (532, 4), (564, 4)}
-    rig.bus.port = tap = Wiretap(rig.bus.port, rig.bus.ids, places)
+    link = rig.bus.chains[0].link
+    link.port = tap = Wiretap(link.port, rig.bus.ids, places)
     goals = rig.bus.exchange(None).position_tick.copy()
     rig.bus.exchange(goals)
     assert tap.writes == 1 and (tap.goal_tick == goals).all()

@@ -91,7 +91,7 @@ def test_whoever_answers_is_found_behind_silent_ones(n: int, silent: list[int]) 
     rig = bus_rig()
     ids = rig.bus.ids[:n]
     rig.servos.faults = FaultSchedule([Fault("silent", servo_id=ids[i]) for i in silent])
-    bus = ServoBus(rig.port, rig.robot.servos[:n], rig.clock)
+    bus = ServoBus.on_port(rig.port, rig.robot.servos[:n], rig.clock)
     with pytest.raises(BusMismatchError) as caught:
         bus.verify()
     assert [r.servo_id for r in caught.value.rows] == [ids[i] for i in silent]
@@ -103,7 +103,7 @@ def test_a_servo_that_is_held_up_for_longer_than_it_is_waited_for_is_asked_once_
     """A machine that stalled for a tenth of a second at its first servo refused to arm: "no answer"."""
     rig = bus_rig(Fault("silent", 0.0, 0.15, servo_id=servo_id))
     rig.bus.verify()
-    assert rig.clock.now_s() > 0.1 and rig.bus.health.counters.retries[rig.bus.ids.index(servo_id)] >= 2
+    assert rig.clock.now_s() > 0.1 and rig.bus.chains[0].link.health.counters.retries[rig.bus.ids.index(servo_id)] >= 2
 
 
 def test_a_silent_bus_is_given_up_after_four_servos() -> None:
@@ -117,7 +117,7 @@ def test_a_silent_bus_is_given_up_after_four_servos() -> None:
 @pytest.mark.parametrize(("there", "expected"), [("MX-28", "MX-28-2"), ("MX-64-2", "MX-64")])
 def test_a_servo_of_the_other_protocol_is_named(there: str, expected: str) -> None:
     far, _, clock = fake("XM430-W350", there)
-    bus = ServoBus(far, [spec("XM430-W350", 1), spec(expected, 2)], clock)
+    bus = ServoBus.on_port(far, [spec("XM430-W350", 1), spec(expected, 2)], clock)
     with pytest.raises(BusMismatchError) as caught:
         bus.verify()
     model = MODELS[MODEL_NUMBERS[there]]
@@ -131,7 +131,7 @@ def test_a_servo_that_answers_pings_only_is_named_as_such(name: str) -> None:
     """It was said to have no cable or no power."""
     far, servos, clock = fake("XL430-W250", name)
     far.servos[2].set("status_return_level", 0)
-    bus = ServoBus(far, servos, clock)
+    bus = ServoBus.on_port(far, servos, clock)
     with pytest.raises(BusMismatchError, match="doctor --fix") as caught:
         bus.verify()
     assert [(r.servo_id, r.found) for r in caught.value.rows] == [(2, "answers pings only: status return level 0")]

@@ -39,7 +39,7 @@ class Bench:
         port = SimPort(self.sim, self.clock)
         self.link = BusLink.create(ROBOT.n_joints)
         self.streamer = ControlLoop(
-            ROBOT, ServoBus(port, ROBOT.servos, self.clock), self.link, self.clock, watch_front=False
+            ROBOT, ServoBus.on_port(port, ROBOT.servos, self.clock), self.link, self.clock, watch_front=False
         )
         self.view = BusView(self.link, ROBOT)
         self.planner = SetpointBuffer(ROBOT, self.link, self.view, queue_s)

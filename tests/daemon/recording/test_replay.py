@@ -72,7 +72,7 @@ def play(log: Log, *faults: Fault, robot=None):
     sim.on_goal = lambda _t, servo_id, tick: received.append((servo_id, tick))
     link = BusLink.create(robot.n_joints)
     try:
-        result = replay(log, robot, ServoBus(SimPort(sim, clock), robot.servos, clock), link, clock)
+        result = replay(log, robot, ServoBus.on_port(SimPort(sim, clock), robot.servos, clock), link, clock)
     finally:
         link.close()
     return result, sim, received
@@ -162,7 +162,7 @@ def test_interrupted_it_leaves_no_torque(log_file):
             raise KeyboardInterrupt
 
     try:
-        bus = ServoBus(SimPort(sim, clock), robot.servos, clock)
+        bus = ServoBus.on_port(SimPort(sim, clock), robot.servos, clock)
         with pytest.raises(KeyboardInterrupt):
             replay(read_log(log_file), robot, bus, link, clock, interrupt)
     finally:

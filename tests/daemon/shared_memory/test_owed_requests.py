@@ -68,7 +68,7 @@ class Robot:
         link = BusLink.attach(self.front.path, self.robot.n_joints, self.robot.n_servos)
         port = MortalPort(self.sim, self.clock)
         port._start_s, port.at_step = 0.0, self._step  # time goes on from one process to the next
-        opened = lambda: ServoBus(port, self.robot.servos, self.clock)
+        opened = lambda: ServoBus.on_port(port, self.robot.servos, self.clock)
         self.streamer = None
         self.streamer = start(self.robot, opened, link, self.clock, after_loss=after_loss)
         assert self.streamer is not None, link.text

@@ -10,8 +10,8 @@ import pytest
 
 from daemon.cli.client.status import _servo
 from daemon.demo.main_job import free_endpoints
+from daemon.dynamixel.bus_opening import bus_on
 from daemon.dynamixel.health import COUNTERS, HEALTH, Health
-from daemon.dynamixel.multi import bus_on
 from daemon.front.metrics import exposition
 from daemon.shared_memory.bus_link import BusLink
 from daemon.state.bus_view import BusView
@@ -42,7 +42,7 @@ def test_what_the_bus_finds_of_a_servo_stands_in_the_shared_memory() -> None:
         assert {s.state for s in front.health()} == {"ok"}
         r.cycle(100)
         for name in COUNTERS:
-            assert r.link.health[name].tolist() == getattr(r.bus.health.counters, name).tolist()
+            assert r.link.health[name].tolist() == getattr(r.bus.chains[0].link.health.counters, name).tolist()
         assert (r.link.health["timeouts"] > 0).all()
 
 

@@ -51,7 +51,7 @@ def wired(robot: RobotModel = ROBOT) -> tuple[ServoBus, FakePort, VirtualClock]:
         s.set("present_temperature", 30)
         s.set("present_position", 2048)
     port = FakePort(clock, servos, robot.bus.baud)
-    bus = ServoBus(port, robot.servos, clock)
+    bus = ServoBus.on_port(port, robot.servos, clock)
     bus.verify()
     return bus, port, clock
 
