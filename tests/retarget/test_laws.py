@@ -76,7 +76,7 @@ def test_shifting_time_shifts_the_path_whatever_the_motion(name: str) -> None:
     rest pose, or the robot is too slow to have arrived.
     """
     r, compared = RETARGETERS[name], 0
-    for seed in range(4):
+    for seed in range(6):
         for kind in ("smooth", "teleport"):
             motion = random_motion(seed, 50, kind)
             before, after = held_before(motion, BLOCK_FRAMES), held_before(motion, 2 * BLOCK_FRAMES)
@@ -84,7 +84,7 @@ def test_shifting_time_shifts_the_path_whatever_the_motion(name: str) -> None:
             early, late = r.retarget(before).q_rad, r.retarget(after).q_rad[BLOCK_FRAMES:]
             arrived = slice(BLOCK_FRAMES - 2, BLOCK_FRAMES)
             same_start = np.abs(late[arrived] - early[arrived]).max() < 1e-9
-            if same_start and np.abs(wanted_late[BLOCK_FRAMES:] - wanted).max() < 1e-9:
+            if same_start and np.abs(wanted_late[BLOCK_FRAMES:] - wanted).max() < 1e-7:
                 path = slice(BLOCK_FRAMES, BLOCK_FRAMES + 50)
                 np.testing.assert_allclose(late[path], early[path], atol=1e-5)
                 compared += 1

@@ -85,7 +85,7 @@ def test_contacts_that_are_commanded_are_reported(monkeypatch):
     draw = np.random.default_rng(0)
     poses = draw.uniform(limits.position_min_rad, limits.position_max_rad, (2000, ROBOT.n_joints))
     inside = np.repeat(poses[body.clearance_m(poses).argmin()][None], 300, 0)
-    monkeypatch.setattr("daemon.control.control_loop.Gate", lambda robot, contact: SafetyLimiter(robot))
+    monkeypatch.setattr("daemon.control.control_loop.SafetyLimiter", lambda robot, contact: SafetyLimiter(robot))
     rig = AuditRig(ROBOT)
     rig.make_ready()
     rig.play(inside)

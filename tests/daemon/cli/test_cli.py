@@ -62,7 +62,7 @@ def printed_examples():
     for name in PRESENT:
         said = re.sub(r"\s*\\?\n(?!\n)(?= *--)", " ", inspect.getdoc(_load(name)) or "")
         lines += re.findall(r"(?:Example[^\n]*?|or): mmmd (.*)$", said, re.MULTILINE)
-    commands = [shlex.split(re.split(" && | < ", line)[0], comments=True) for line in dict.fromkeys(lines)]
+    commands = [shlex.split(re.split(" && | [<>] ", line)[0], comments=True) for line in dict.fromkeys(lines)]
     return [c for c in commands if c and c[0] in COMMANDS and not set("|[]…") & set("".join(c)) and "..." not in c]
 
 
@@ -82,7 +82,7 @@ def test_every_printed_example_is_one_that_the_command_takes(arguments):
     [
         (["dance"], "unknown command 'dance'; "),
         (["stop", "--now"], "--now"),
-        (["say"], "STR"),
+        (["say"], "Missing from mmmd say"),
         (["say", "wave", "--seed", "x", *NOWHERE], "seed"),
         (["say", "wave", "--seed", "-4", *NOWHERE], "0 to 2147483647"),
         (["say", "", *NOWHERE], "1 to 2000"),

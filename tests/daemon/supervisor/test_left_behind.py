@@ -35,8 +35,8 @@ def test_the_folder_of_a_killed_daemon_goes_with_the_next_start_and_those_of_oth
     living = RunFolder()
     (living.path / "log").touch()
     code = (
-        "import os, tempfile; from daemon.supervisor.run_folder import OwnFolder; "
-        f"tempfile.tempdir = {str(temporary)!r}; print(OwnFolder().path, flush=True); os.kill(os.getpid(), 9)"
+        "import os, tempfile; from daemon.supervisor.run_folder import RunFolder; "
+        f"tempfile.tempdir = {str(temporary)!r}; print(RunFolder().path, flush=True); os.kill(os.getpid(), 9)"
     )
     killed = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, timeout=60, check=False)
     left = Path(killed.stdout.strip())

@@ -204,7 +204,7 @@ def records(n: int) -> np.ndarray:
 def test_logs_go_on_in_the_next_file_and_the_oldest_go(tmp_path):
     path = tmp_path / "run.mcap"
     rows = records(3000)
-    with RotatingLog(path, load_robot("reference"), size_mb=0.05, total_mb=0.15) as log:
+    with RotatingLog(path, load_robot("reference"), size_mb=0.05, total_mb=0.3) as log:
         for i, row in enumerate(rows):
             log.cycle(row)
             if i % 100 == 99:

