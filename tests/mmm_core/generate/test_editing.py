@@ -228,7 +228,7 @@ class TestStory:
 def test_rows_of_different_length_in_a_batch_get_what_they_get_alone() -> None:
     """The released code gives other tokens in a batch than alone; here the seed decides, not the neighbours.
 
-    In fp32: the kernels of int8 round by the batch's shape, which now and then turns a token (1 to 27 in 100 rows on a VNNI processor).
+    In fp32: the kernels of int8 round by the batch's shape, which now and then turns a token.
     """
     engine = Engine.load(threads=None, precision="fp32")
     transformer = engine.model.transformer
