@@ -128,21 +128,12 @@ class Reader:
 
 
 class Feed:
-    """What the daemon publishes, for every reader; the last state and health for those who come later.
-
-    Attributes:
-        robot: name of the robot, once a state has named it.
-    """
+    """What the daemon publishes, for every reader; the last state and health for those who come later."""
 
     def __init__(self, relay: Relay) -> None:
         self._relay = relay
         self._last: dict[bytes, bytes] = {}
         self._readers: set[Reader] = set()
-
-    @property
-    def last_state(self) -> bytes | None:
-        """The newest state; None before the first."""
-        return self._last.get(b"v1/state")
 
     def join(self) -> Reader:
         """A new reader, with the last state and health."""

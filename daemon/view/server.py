@@ -363,7 +363,7 @@ def _is_stop(frame: bytes) -> bool:
         return True
     try:
         return msgspec.json.decode(frame, type=_Typed).type in ("stop", "estop")
-    except (msgspec.MsgspecError, UnicodeDecodeError):
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError):  # the daemon names what is wrong with it
         return False
 
 

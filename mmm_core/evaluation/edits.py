@@ -156,11 +156,11 @@ def shows_asked(s: PostureFeatures, case: EditCase) -> bool:
 def _stays(
     before: Motion, after: Motion, start: int, stop: int, at: int, limbs: Sequence[str] = _ALL, seam: int = SEAM_FRAMES
 ) -> bool:
-    """Whether frames `start` to `stop` of a motion are in another one, where they begin at frame `at` plus `start` less `start`."""
+    """Whether limbs move in frames `start` to `stop` of a motion as in another one, where these frames begin at frame `at`."""
     inner = slice(start + seam if start or at else start, stop - seam)
     if inner.stop - inner.start < 1:
         return True
-    shift = at - start if start else at
+    shift = at - start
     a = part(_features(before), inner.start, inner.stop)
     b = part(_features(after), inner.start + shift, inner.stop + shift)
     return all(_apart(a, b, limb) for limb in limbs)

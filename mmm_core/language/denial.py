@@ -11,6 +11,7 @@ import re
 from dataclasses import dataclass
 
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
+from mmm_core.language.ellipsis import OTHER
 
 _NOT = (
     r"(?:please )?(?:never ?mind (?:about )?|do not (?:you )?(?:dare (?:to )?|ever |even |think of |try to )?|never(?: ever)? |no more |no |not |you (?:must|should|may|can|shall|need|do) not (?:have to |need to )?|"
@@ -71,7 +72,6 @@ _NOT_USING = re.compile(
 _GO_ON = re.compile(
     r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
 )
-_OTHER = {"left": "right", "right": "left"}
 _HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
 
 
@@ -100,7 +100,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
     if kept:
         return Denial(kept["rest"] or kept["other"])
     if other := _NOT_USING.match(text):
-        return Denial(_with_side(other["rest"], _OTHER[other["side"]]), (f"use the {other['side']} hand",))
+        return Denial(_with_side(other["rest"], OTHER[other["side"]]), (f"use the {other['side']} hand",))
     denied: list[str] = []
     side = ""
     text = _GO_ON.sub(r"\1, ", text)
@@ -146,10 +146,10 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         ):
             rest.append(clause)
     if not denied:
-        return Denial(text if not rest or leaves or len(rest) == 0 else _as_it_was(text, rest))
+        return Denial(text if not rest or leaves else _as_it_was(text, rest))
     joined = ", ".join(rest)
     if side and joined and not _HAS_SIDE.search(joined):
-        joined = _with_side(joined, _OTHER[side])
+        joined = _with_side(joined, OTHER[side])
     return Denial(joined, tuple(denied), anything)
 
 

@@ -28,15 +28,6 @@ class JointState:
 
 
 @dataclass(frozen=True)
-class TickPath:
-    """(T, S) servo ticks at a rate."""
-
-    ticks: NDArray[np.int32]
-    servo_ids: tuple[int, ...]
-    rate_hz: float
-
-
-@dataclass(frozen=True)
 class JointPath:
     """A path of J joints.
 

@@ -77,6 +77,13 @@ def test_a_text_and_a_stop_by_one_post_each(web: Web) -> None:
     )  # a message without a time of sending that comes at once counts as one from before the stop
 
 
+def test_a_request_nested_too_deeply_is_one_error(web: Web) -> None:
+    """It ended in a status of 500, as the door itself looked for a stop in it."""
+    for kind in ("cmd", "ctl"):
+        found, event = web.ask(f"/v1/{kind}", b'{"type": ' + b'{"a": ' * 5000 + b"1" + b"}" * 5001)
+        assert found == 400 and json.loads(event)["type"] == "error"
+
+
 def test_all_events_of_a_command_one_a_line(web: Web) -> None:
     status, lines = web.ask(
         "/v1/cmd?until=end", json.dumps({"type": "gesture", "name": "nod", "tempo": 2, "id": "n"}).encode()
