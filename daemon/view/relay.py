@@ -23,8 +23,6 @@ SEND_TIMEOUT_S = 1.0
 """Seconds until a frame that the daemon does not take is given up."""
 MOST_KEPT = 256
 """Messages of `pub` kept for a peer that is slow to read, beside the newest state and health."""
-SILENT_S = 2.0
-"""Seconds without a message of `pub` after which the daemon counts as lost; it publishes its state 20 times a second."""
 _REPLACED = (b"v1/state", b"v1/health")
 """Topics of which a slow reader gets the newest message alone."""
 _QUEUE = 100
