@@ -99,6 +99,7 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
         seed: int = 0,
         seconds: float | None = None,
         prefix_s: float = 0.0,
+        context: bool = True,
         wait: bool = True,
         timeout_s: float | None = None,
         command_id: str = "",
@@ -106,7 +107,7 @@ class AsyncClient(CompositionCalls[Coroutine[Any, Any, Said]]):
     ) -> Said:
         """Move as the text says; arguments and errors as for `daemon.client.Client.say`."""
         name = command_id or uuid.uuid4().hex
-        request = Say(id=name, text=text, seed=seed, seconds=seconds, prefix_s=prefix_s, **options)
+        request = Say(id=name, text=text, seed=seed, seconds=seconds, prefix_s=prefix_s, context=context, **options)
         return await self.play(request, wait=wait, timeout_s=timeout_s)
 
     async def gesture(

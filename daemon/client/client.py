@@ -48,6 +48,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
         seed: int = 0,
         seconds: float | None = None,
         prefix_s: float = 0.0,
+        context: bool = True,
         wait: bool = True,
         timeout_s: float | None = None,
         command_id: str = "",
@@ -60,6 +61,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
             seed: the same text, seed and seconds give the same motion.
             seconds: length of the motion; None lets the model choose.
             prefix_s: so much of what is played just then (0.2 to 1.6) is what the new motion goes on from; 0 for none.
+            context: whether the text may refer to what this client said last: "again", "slower", "with the other hand".
             wait: return when the motion has ended; else once it is accepted.
             timeout_s: longest wait for the end; None takes one that fits the request.
             command_id: the same id twice is one command; empty chooses one.
@@ -71,7 +73,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
             NoAnswerError: not in time.
         """
         name = command_id or uuid.uuid4().hex
-        request = Say(id=name, text=text, seed=seed, seconds=seconds, prefix_s=prefix_s, **options)
+        request = Say(id=name, text=text, seed=seed, seconds=seconds, prefix_s=prefix_s, context=context, **options)
         return self.play(request, wait=wait, timeout_s=timeout_s)
 
     def gesture(

@@ -14,7 +14,8 @@ def describe(event: object) -> str:
         reason = f" ({event.reason})" if event.reason else ""
         length = f"; {event.duration_s:.1f} s" if event.duration_s else ""
         lacks = f"; this robot cannot show all of it: {event.lacks}" if event.lacks else ""
-        read = f"; read as: {'; '.join(event.commands)}" if len(event.commands) > 1 or event.denied else ""
+        is_told = len(event.commands) > 1 or event.denied or event.refers_to
+        read = f"; read as: {'; '.join(event.commands)}" if is_told else ""
         denied = f"; not: {', '.join(event.denied)}" if event.denied else ""
         return f"{event.status}: {event.understood}{reason}{length}{lacks}{read}{denied}"
     if isinstance(event, Progress):

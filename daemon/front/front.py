@@ -222,7 +222,7 @@ class Front:
             request = decode_cmd(frame)
             if self._record is not None:
                 self._record("cmd", without_secret(frame, request.secret if isinstance(request, Lease) else ""))
-            self._desk.take(request, route, t_received_ns)
+            self._desk.take(request, route, t_received_ns, (route.frames[0], message.peer))
         except WireError as error:
             event = error_event(error)
             self.ledger.reply(route, event)

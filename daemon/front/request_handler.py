@@ -5,7 +5,8 @@ from __future__ import annotations
 import importlib.metadata
 from collections.abc import Callable
 
-from daemon.errors import ClipError, GestureExistsError
+from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
+from daemon.front.conversations import Client, Conversations
 from daemon.front.stop_texts import asks_to_stop
 from daemon.generator.client import GeneratorClient
 from daemon.gestures.library import GestureLibrary
@@ -13,7 +14,8 @@ from daemon.playback.sources.source_factory import SourceFactory
 from daemon.poses.layers import gaze_note
 from daemon.scheduling.scheduler import Scheduler
 from daemon.settings.config import DaemonConfig
-from daemon.state.ledger import Ledger, Route
+from daemon.state.ledger import Entry, Ledger, Route
+from daemon.state.replies import NotPlayableError
 from daemon.wire.event_base import Event
 from daemon.wire.events import Ack, Rejected
 from daemon.wire.requests import (
@@ -71,14 +73,15 @@ class RequestHandler:
         self._config, self._robot = config, robot
         self._performer, self._sources = performer, sources
         self._ledger, self._generator, self._state = ledger, generator, state
+        self._conversations = Conversations(self._words_of)
 
     @property
     def library(self) -> GestureLibrary:
         """The gestures."""
         return self._sources.library
 
-    def take(self, request: Request, route: Route, t_received_ns: int) -> None:
-        """Carry out a request and answer it.
+    def take(self, request: Request, route: Route, t_received_ns: int, client: Client) -> None:
+        """Carry out a request of a client and answer it.
 
         Raises:
             WireError: its id stands for something else.
@@ -88,11 +91,25 @@ class RequestHandler:
             if entry is not None and asks_to_stop(request):
                 self._performer.stop_for(entry)
             elif entry is not None:
-                self._performer.play(entry)
+                self._play(entry, client)
             return
         event = self._answer(request)
         event.id = request.id
         self._ledger.reply(route, event)
+
+    def _play(self, entry: Entry, client: Client) -> None:
+        try:
+            self._conversations.take(entry, client)
+        except NotPlayableError as error:
+            self._ledger.emit(entry, error.event)
+            return
+        self._performer.play(entry)
+
+    def _words_of(self, gesture: str) -> str:
+        try:
+            return self.library.get(gesture).text
+        except (UnknownGestureError, ClipError):
+            return ""
 
     def _answer(self, request: Request) -> Event:
         if isinstance(request, Status):

@@ -50,11 +50,13 @@ class Entry:
 
     Attributes:
         id: id of the command.
-        request: what was asked.
+        request: what is to be done: what was asked, or what that means after an earlier command.
         routes: who hears of it.
         events: what has happened so far.
         ended: whether its last event is out.
         t_received_ns: when the text arrived, monotonic.
+        asked: what was asked.
+        refers_to: id of the earlier command that the text refers to, else empty.
     """
 
     id: str
@@ -63,6 +65,11 @@ class Entry:
     routes: list[Route]
     events: list[Event] = field(default_factory=list[Event])
     ended: bool = False
+    refers_to: str = ""
+
+    def __post_init__(self) -> None:
+        """Keep what was asked."""
+        self.asked = self.request
 
     @property
     def accepted(self) -> bool:
@@ -116,8 +123,8 @@ class Ledger:
         """
         known = self._entries.get(request.id) if request.id else None
         if known is not None:
-            if _without_stamp(known.request) != _without_stamp(request):
-                found = f"id {request.id!r}, which stands for {known.request.words!r}"
+            if _without_stamp(known.asked) != _without_stamp(request):
+                found = f"id {request.id!r}, which stands for {known.asked.words!r}"
                 asked, allowed = tag_of(request), "the same request, or a new id"
                 raise WireError("id_in_use", asked, found, allowed, "choose a new id", request.id)
             self._catch_up(known, route)

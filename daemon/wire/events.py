@@ -21,6 +21,7 @@ class Accepted(Event, tag="accepted"):
         commands: what was read in the text, one entry for each command in turn; commands at once are joined by " + ", tempo, size
             and hold stand in brackets. Empty where no text was read.
         denied: what the text says not to do.
+        refers_to: id of the earlier command that the text refers to ("again", "slower"); empty where it stands by itself.
         reason: why it is degraded, else empty.
         scope_score: how near the text lies to what the model can do.
         duration_s: length of the generated motion, of one whose strokes are counted (`say` with a number) as first drafted; 0
@@ -42,6 +43,7 @@ class Accepted(Event, tag="accepted"):
     lacks: str = ""
     commands: tuple[str, ...] = ()
     denied: tuple[str, ...] = ()
+    refers_to: str = ""
 
 
 class Progress(Event, tag="progress"):

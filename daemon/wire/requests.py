@@ -115,12 +115,15 @@ class Say(Play, tag="say", kw_only=True):
         seconds: length of the motion; None lets the model choose.
         prefix_s: so much of what is played just then is context of the new motion, which goes on from it: the longer, the
             less it sets out anew, and the less it shows of the text. 0 for none.
+        context: whether the text may refer to the last command of the same connection ("again", "with the other hand"); off, it
+            is read by itself.
     """
 
     text: Text
     seed: Annotated[int, Meta(ge=0, le=MAX_SEED)] = 0
     seconds: Annotated[float, Meta(ge=SHORTEST_S, le=LONGEST_S)] | None = None
     prefix_s: Annotated[float, Meta(ge=0, le=LONGEST_PREFIX_S)] = 0.0
+    context: bool = True
 
     def __post_init__(self) -> None:
         """Refuse a prefix of what is not known yet.

@@ -55,7 +55,7 @@ def continue_motion(
     timer = StageTimer()
     with torch.inference_mode():
         read = interpret(engine, text, fresh=False)
-    verdict = read.verdict
+    verdict, text = read.verdict, read.reading.text
     timer.lap("text")
     if verdict.status == "rejected":
         nothing = no_motion(text, seed, verdict)

@@ -14,9 +14,9 @@ from itertools import islice
 from mmm_core.generate.motion_model import MotionModel, nothing_to_do
 from mmm_core.generate.result import understood_as
 from mmm_core.language.at_once import is_pose, limbs_of
+from mmm_core.language.commands import Reading
 from mmm_core.language.manner import Manner
 from mmm_core.language.mirroring import canonical, mirror_words
-from mmm_core.language.reading import Reading
 from mmm_core.language.scope import ScopeVerdict, clauses_of, taken_clauses, with_clauses
 from mmm_core.model.text import TextStates
 

@@ -57,10 +57,11 @@ class MotionGeneration:
 
     def __init__(self, engine: MotionModel, text: str, seed: int, n_frames: int | None, candidates: int | None) -> None:
         """Read the text; arguments as in `Engine.generate`, checked."""
-        self._engine, self._text, self._seed, self._asked_frames = engine, text, seed, n_frames
+        self._engine, self._seed, self._asked_frames = engine, seed, n_frames
         self._timer = StageTimer()
         with torch.inference_mode():
             self._read = interpret(engine, text)
+            self._text = self._read.reading.text
             self._steps = steps_of(engine, self._read, n_frames) if self._read.steps else []
         self._verdict, self._mirrored = self._read.verdict, self._read.is_mirrored
         self._candidates, self._counts = candidates or 1, [None] * len(self._steps)

@@ -10,7 +10,8 @@ from torch import Tensor
 
 from mmm_core.errors import GenerationError
 from mmm_core.inference.checkpoint import Model
-from mmm_core.language.reading import PlainCommand, Reading, read
+from mmm_core.language.commands import PlainCommand, Reading, read_exactly
+from mmm_core.language.reading import read
 from mmm_core.language.scope import ScopeVerdict, clauses_of, unreadable, with_clauses
 from mmm_core.model.clip import ClipText
 from mmm_core.model.sampling import SamplingSettings
@@ -53,7 +54,9 @@ class MotionModel:
     def reading_of(self, text: str) -> Reading:
         """What is read in a text; an imported model is given every text as it is."""
         if not self.model.is_ours or self.model.scope is None or unreadable(text):
-            return Reading(text, ((PlainCommand(text),),), plain=True)
+            exact = read_exactly(text)
+            said = text if exact is None else exact.words
+            return Reading(said, ((PlainCommand(said),),), plain=True)
         return read(text)
 
     def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:

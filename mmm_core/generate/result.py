@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mmm_core.language.reading import Reading
+from mmm_core.language.commands import Reading
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.motion.motion import FPS, N_FEATURES, N_JOINTS, Motion
 from mmm_core.recognition.seen import Scene

@@ -172,7 +172,8 @@ def _with_limb(clause: str, before: str) -> str | None:
     side = re.search(r"\b(left|right) (hand|arm|fist|palm)\b", before)
     if found is None:
         inside = re.search(
-            r"\b(?:the |your )?other (?P<limb>hand|arm|one|fist|palm)\b|\b(?:with|using) the other\b", clause
+            r"\b(?:the |your )?other (?P<limb>hand|arm|one|fist|palm)\b|\b(?:with|using) the other\b(?! (?:hand|arm|one|fist|palm)\b)",
+            clause,
         )
         if inside is None or side is None:
             return None

@@ -8,75 +8,21 @@ apart (`denial`), commands in turn (`clauses`) with what each leaves out (`ellip
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from mmm_core.language.at_once import SOME_ARM, base_of, divided, limbs_of, same_limbs
 from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
+from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
 from mmm_core.language.denial import without_denial
 from mmm_core.language.ellipsis import with_sides
 from mmm_core.language.manner import Manner, manner_of
 from mmm_core.language.requests import everyday, rewritten, without_request
 from mmm_core.language.spelling import mended, normalised
 
-MOST_AT_ONCE = 3
-"""Most commands of one step: the model has three body parts."""
 _PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red|need|feed)\b (?:hand|arm|fist)s?\b)\w+ed\b")
 """The verb of "once you have clapped", "if you crossed"."""
 _ANYTHING = ("wave your right hand", "clap your hands")
 """What is done where anything but the denied is asked for."""
-
-
-@dataclass(frozen=True)
-class PlainCommand:
-    """One command that the model is given.
-
-    Attributes:
-        text: its words.
-        manner: tempo, size and hold.
-        limbs: left_arm, right_arm, some_arm, head, trunk, as far as its words say so.
-    """
-
-    text: str
-    manner: Manner = Manner()  # noqa: RUF009
-    limbs: frozenset[str] = frozenset()
-
-    @property
-    def sentence(self) -> str:
-        """Its words and its manner: "bow (0.55 times as fast, held for 2 s)"."""
-        manner = self.manner
-        said = [f"{manner.tempo:.2g} times as fast"] if manner.tempo != 1.0 else []
-        said += [f"{manner.size:.2g} times as large"] if manner.size != 1.0 else []
-        said += [f"held for {manner.hold_s:g} s"] if manner.hold_s else []
-        return f"{self.text} ({', '.join(said)})" if said else self.text
-
-
-@dataclass(frozen=True)
-class Reading:
-    """What was read in a sentence.
-
-    Attributes:
-        text: the sentence.
-        steps: commands in turn, each with those done at once; none where nothing is to be done.
-        denied: what is not to be done.
-        notes: what was changed that the speaker may not expect.
-        plain: whether the sentence is passed on as it is.
-    """
-
-    text: str
-    steps: tuple[tuple[PlainCommand, ...], ...]
-    denied: tuple[str, ...] = ()
-    notes: tuple[str, ...] = ()
-    plain: bool = False
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """The steps in order, commands at once joined by " + "."""
-        return tuple(" + ".join(c.sentence for c in step) for step in self.steps)
-
-    @property
-    def words(self) -> str:
-        """The commands as one sentence: "raise your left hand and nod, then bow"."""
-        return ", then ".join(" and ".join(c.text for c in step) for step in self.steps)
 
 
 def read(text: str) -> Reading:
@@ -85,6 +31,8 @@ def read(text: str) -> Reading:
     >>> [[c.text for c in step] for step in read("turn your head left, then right").steps]
     [['turn your head left'], ['turn your head right']]
     """
+    if (exact := read_exactly(text)) is not None:
+        return exact
     if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return Reading(text, ((PlainCommand(text),),), plain=True)
     said = mended(text)

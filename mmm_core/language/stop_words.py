@@ -35,7 +35,8 @@ _STOP_PHRASES = tuple(
     stay put, stay where you are, where you are, what you are doing, what you re doing, whatever you are doing, whatever
     you re doing, what you do, do not move a muscle, dont move a muscle, do not move, dont move, never move, no more
     moving, no moving, no more movement, not another move, not a move, no further, knock it off, cut it out, give it a
-    rest, do not do anything, dont do anything, do nothing
+    rest, do not do anything, dont do anything, do nothing, do not do that, dont do that, do not do it, dont do it, no more
+    of that
     """.split(",")
 )
 """Phrases that stop, or that say no more than what is to stop."""

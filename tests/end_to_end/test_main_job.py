@@ -12,7 +12,8 @@ import time
 
 import pytest
 
-from daemon.wire.events import Accepted, Cancelled, Done, Progress
+from daemon.client import RefusedError
+from daemon.wire.events import Accepted, Ack, Cancelled, Done, Progress
 from daemon.wire.requests import Say
 from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.end_to_end.test_start_and_end import child_pid
@@ -50,6 +51,23 @@ def test_three_texts_one_of_them_during_a_motion(run):
         assert second.done is not None and second.done.underruns == 0
         last = next(overtaken)
         assert isinstance(last, Cancelled) and last.by == f"say {second.id}"
+
+
+def test_talking_on_is_done_by_the_client_who_has_talked(run):
+    with run.client() as anna, run.client() as bert:
+        assert "right" in anna.say("wave with your right hand").events[0].understood
+        bert.say("nod twice")
+        other = anna.say("again, with the other hand")
+        accepted = other.events[0]
+        assert accepted.commands == ("wave with your left hand",) and accepted.refers_to
+        assert "left" in accepted.understood and "right" not in accepted.understood  # as the motion shows it
+        assert "nod" in bert.say("once more").events[0].understood
+        going_on = anna.say("keep going", wait=False)
+        assert going_on.events[0].commands == ("wave with your left hand",)
+        assert isinstance(anna.say("stop that").events[-1], Ack)
+    with run.client() as carla, pytest.raises(RefusedError) as refused:
+        carla.say("again")
+    assert refused.value.event.code == "nothing_to_refer_to"
 
 
 def test_out_of_scope_is_rejected_with_a_reason_and_a_score(run):

@@ -207,6 +207,10 @@ ANSWERED = (
         "not_running", "a command to cancel that does not run", "`mmmd status` says what runs", "daemon/scheduling/test_sequences.py",
     ),
     Answered(
+        "nothing_to_refer_to", "a text such as \"again\" or \"with the other hand\" came without a command before it on its connection, or after one that has none",
+        "say the whole command", "daemon/front/test_conversations.py",
+    ),
+    Answered(
         "not_reached", "no edited motion shows what the text asks", "edit a longer stretch or more parts, or take other words or another seed",
         "daemon/cli/test_edit_command.py",
     ),

@@ -1,4 +1,4 @@
-"""`mmmd understand`: what is read in a sentence, without moving anything."""
+"""`mmmd understand`: what is read in a sentence, or in several of one conversation, without moving anything."""
 
 from __future__ import annotations
 
@@ -8,39 +8,63 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
+from daemon.errors import CommandError
+
 if TYPE_CHECKING:
-    from mmm_core.language.reading import PlainCommand, Reading
+    from mmm_core.language.commands import PlainCommand, Reading
+    from mmm_core.language.context import InContext
 
 
-def understand(text: Annotated[str, tyro.conf.Positional], json: bool = False) -> int:
+def understand(
+    texts: Annotated[tuple[str, ...], tyro.conf.Positional, tyro.conf.arg(metavar="TEXT [TEXT ...]")],
+    json: bool = False,
+) -> int:
     """Print the commands that are read in a sentence: in turn, at once, each with its tempo, size and hold, and what is denied.
 
-    Nothing moves, no daemon is needed and no model is loaded; whether the model can do a command is said by `say`.
-    docs/language.md says what is understood.
+    Several sentences are a conversation: each may refer to the one before it. Nothing moves, no daemon is needed and no model
+    is loaded; whether the model can do a command is said by `say`. docs/language.md says what is understood.
 
     Example: mmmd understand "left hand on your heart and salute with the right, then bow very slowly"
 
-    Args:
-        text: the sentence.
-        json: print one JSON object instead of lines.
-    """
-    from mmm_core.language.reading import read
+    Example, a conversation: mmmd understand "wave" "again, slower" "now with the other hand"
 
-    reading = read(text)
-    sys.stdout.write(
-        f"{json_module.dumps(_object(reading))}\n" if json else "".join(f"{line}\n" for line in _lines(reading))
-    )
+    Args:
+        texts: one sentence, or several that follow each other.
+        json: print one JSON object instead of lines; several sentences are under `texts`.
+    """
+    from mmm_core.language.context import NothingToReferToError, conversation
+
+    if not texts:
+        raise CommandError('no sentence; e.g. mmmd understand "wave with your left hand"')
+    try:
+        meant = conversation(texts)
+    except NothingToReferToError as error:
+        raise CommandError(f"{error}; say the whole command") from None
+    if json:
+        objects = [_object(m) for m in meant]
+        sys.stdout.write(json_module.dumps(objects[0] if len(texts) == 1 else {"texts": objects}) + "\n")
+        return 0
+    for text, found in zip(texts, meant, strict=True):
+        said = [f"> {text}"] if len(texts) > 1 else []
+        sys.stdout.write("".join(f"{line}\n" for line in said + _lines(found)))
     return 0
 
 
-def _object(reading: Reading) -> dict[str, Any]:
-    return {
+def _object(meant: InContext | Reading) -> dict[str, Any]:
+    from mmm_core.language.context import InContext
+
+    reading = meant.reading if isinstance(meant, InContext) else meant
+    found = {
         "text": reading.text,
         "steps": [[_command(c) for c in step] for step in reading.steps],
         "denied": list(reading.denied),
         "notes": list(reading.notes),
         "as_it_is": reading.plain,
+        "in_context": isinstance(meant, InContext),
     }
+    if isinstance(meant, InContext):
+        found |= {"keeps_going": meant.keeps_going, "times": meant.times}
+    return found
 
 
 def _command(command: PlainCommand) -> dict[str, Any]:
@@ -54,7 +78,13 @@ def _command(command: PlainCommand) -> dict[str, Any]:
     }
 
 
-def _lines(reading: Reading) -> list[str]:
+def _lines(meant: InContext | Reading) -> list[str]:
+    from mmm_core.language.context import InContext
+
+    reading = meant.reading if isinstance(meant, InContext) else meant
     lines = [f"{i}. {sentence}" for i, sentence in enumerate(reading.sentences, 1)]
     lines += [f"not: {denied}" for denied in reading.denied] + list(reading.notes)
+    if isinstance(meant, InContext):
+        lines += ["held" if meant.is_pose else "round and round"] if meant.keeps_going else []
+        lines += [f"{meant.times} times"] if meant.times else []
     return lines if reading.steps else ["nothing is to be done", *lines]

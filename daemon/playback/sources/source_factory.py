@@ -85,7 +85,7 @@ class PreparedSource:
         """The event."""
         return Accepted(
             plan_id=plan_id,
-            text=entry.request.words,
+            text=entry.asked.words,
             status=self.status,
             understood=self.understood,
             reason=self.reason,
@@ -97,6 +97,7 @@ class PreparedSource:
             lacks=self.lacks,
             commands=self.commands,
             denied=self.denied,
+            refers_to=entry.refers_to,
         )
 
 
@@ -354,7 +355,7 @@ def _check_in_scope(entry: Entry, generated: Generated) -> None:
 def _out_of_scope(entry: Entry, reason: str, understood: str, score: float) -> NotPlayableError:
     return NotPlayableError(Rejected(
         code="out_of_scope",
-        asked=f"{tag_of(entry.request)} {entry.request.words[:200]!r}",
+        asked=f"{tag_of(entry.request)} {entry.asked.words[:200]!r}",
         found=reason or "nothing the model knows",
         allowed="upper-body motion of one person without objects",
         do=OUT_OF_SCOPE_DO,

@@ -1,0 +1,122 @@
+"""The last commands of each client, for texts that refer to them: "again", "slower", "with the other hand".
+
+A client is one connection of one peer, as the request limits count it. What one client asked for is never referred to by another.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict, deque
+from collections.abc import Callable
+
+import msgspec
+
+from daemon.state.ledger import Entry
+from daemon.state.replies import NotPlayableError
+from daemon.wire.events import Rejected
+from daemon.wire.requests import MAX_TEXT_CHARS, Gesture, Lease, Say, tag_of
+from mmm_core.language.commands import Reading, exactly
+from mmm_core.language.context import InContext, NothingToReferToError, in_context
+from mmm_core.language.reading import read
+
+KEPT = 512
+"""Clients that are remembered; the one that asked least recently is forgotten first."""
+KEPT_COMMANDS = 4
+"""Newest commands of a client: of those that were refused the one before counts."""
+FORGET_S = 120.0
+"""Seconds after its last event in which a command may be referred to; one that is not over may be at any time."""
+_HOW_OFTEN = ("repeat", "loop", "hold")
+_HOLD_ON = ("tempo", "amplitude", "mirror", "seconds", "seed", *_HOW_OFTEN)
+"""Options of the last command that hold on where the request that refers to it does not give others."""
+Client = tuple[bytes, str]
+"""A connection's address, and the name of its key or else its network address."""
+
+
+class Conversations:
+    """What was asked last on each connection.
+
+    Args:
+        words_of: the words of a named gesture; empty for an unknown one.
+        now_s: the monotonic clock.
+    """
+
+    def __init__(self, words_of: Callable[[str], str], now_s: Callable[[], float] = time.monotonic) -> None:
+        self._words_of, self._now_s = words_of, now_s
+        self._clients: OrderedDict[Client, deque[Entry]] = OrderedDict()
+        in_context("again", read("nod"))  # loads the tables of words
+
+    def take(self, entry: Entry, client: Client) -> None:
+        """Remember a new command of a client; a text that refers to the last one becomes what it means.
+
+        Raises:
+            NotPlayableError: there is nothing that it can refer to.
+        """
+        request = entry.request
+        if isinstance(request, Lease):
+            return
+        if isinstance(request, Say) and request.context:
+            self._resolve(entry, request, self._last(client))
+        known = self._clients.pop(client, None)
+        entries: deque[Entry] = deque(maxlen=KEPT_COMMANDS) if known is None else known
+        entries.append(entry)
+        self._clients[client] = entries
+        while len(self._clients) > KEPT:
+            self._clients.popitem(last=False)
+
+    def _resolve(self, entry: Entry, request: Say, last: Entry | None) -> None:
+        """What a text asks for after the last command.
+
+        Raises:
+            NotPlayableError: it refers to that, and cannot.
+        """
+        try:
+            meant = in_context(request.text, None if last is None else self._reading_of(last))
+            if meant is None or last is None:
+                return
+            text = exactly(meant.reading.steps)
+            if len(text) > MAX_TEXT_CHARS:
+                raise NothingToReferToError("the last command is too long", f"one of {MAX_TEXT_CHARS} characters")
+        except NothingToReferToError as error:
+            raise NotPlayableError(_nothing_to_refer_to(request, last, error)) from error
+        entry.request = _played(request, last, meant, text)
+        entry.refers_to = last.id
+
+    def _last(self, client: Client) -> Entry | None:
+        """The client's newest command that was not refused, if it is not forgotten."""
+        for entry in reversed(self._clients.get(client, ())):
+            if entry.ended and not entry.accepted:
+                continue
+            at_s = entry.events[-1].t_mono if entry.ended else self._now_s()
+            return entry if self._now_s() - at_s <= FORGET_S else None
+        return None
+
+    def _reading_of(self, entry: Entry) -> Reading | None:
+        """The words of a command as they are read; None of one that is no text."""
+        if isinstance(entry.request, Say):
+            return read(entry.request.text)
+        words = self._words_of(entry.request.name) if isinstance(entry.request, Gesture) else ""
+        return read(words) if words else None
+
+
+def _played(request: Say, last: Entry, meant: InContext, text: str) -> Say:
+    """The request with what it means, and the options of the last command that it does not give itself."""
+    default = Say(text=text)
+    given = {name for name in _HOLD_ON if getattr(request, name) != getattr(default, name)}
+    options = {name: getattr(last.request, name, getattr(default, name)) for name in _HOLD_ON if name not in given}
+    if given & set(_HOW_OFTEN) or meant.keeps_going or meant.is_counted:
+        options |= {name: getattr(request, name) for name in _HOW_OFTEN}
+    if meant.keeps_going and not given & set(_HOW_OFTEN):
+        options["hold" if meant.is_pose else "loop"] = True
+    elif meant.times and not request.loop:
+        options["repeat"] = meant.times
+    return msgspec.structs.replace(request, text=text, **options)
+
+
+def _nothing_to_refer_to(request: Say, last: Entry | None, error: NothingToReferToError) -> Rejected:
+    found = error.found
+    if last is not None and not isinstance(last.request, Say | Gesture):
+        found = f"the last command was a {tag_of(last.request)}, which is no text"
+    return Rejected(
+        code="nothing_to_refer_to", asked=f"say {request.text[:200]!r}", found=found, allowed=error.allowed,
+        do="say the whole command, e.g. 'wave with your right hand'",
+    )  # fmt: skip

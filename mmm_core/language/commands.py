@@ -1,0 +1,132 @@
+"""Plain commands, what was read in a sentence, and the form in which commands are written so that they are read as they stand.
+
+`exactly: wave your right hand (0.62 times as fast) + nod; bow (held for 2 s)` has two steps, the first of two commands at once.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mmm_core.language.at_once import limbs_of
+from mmm_core.language.manner import FASTEST, LARGEST, LONGEST_HOLD_S, Manner
+
+EXACTLY = "exactly:"
+"""What a text begins with that is read as it stands."""
+MOST_STEPS, MOST_AT_ONCE = 8, 3
+"""Most steps of such a text, and most commands of a step: the model has three body parts."""
+_MARKS = re.compile(r"[();+]")
+_COMMAND = re.compile(r"(?P<text>[^()]*?[a-z][^()]*?)\s*(?:\((?P<manner>[^()]*)\))?", re.IGNORECASE)
+_SAID = re.compile(r"(?:(?P<tempo>N) times as fast|(?P<size>N) times as large|held for (?P<hold>N) s)".replace(
+    "N", r"\d{1,3}(?:\.\d{1,3})?"))  # fmt: skip
+
+
+@dataclass(frozen=True)
+class PlainCommand:
+    """One command that the model is given.
+
+    Attributes:
+        text: its words.
+        manner: tempo, size and hold.
+        limbs: left_arm, right_arm, some_arm, head, trunk, as far as its words say so.
+    """
+
+    text: str
+    manner: Manner = Manner()  # noqa: RUF009
+    limbs: frozenset[str] = frozenset()
+
+    @property
+    def sentence(self) -> str:
+        """Its words and its manner: "bow (0.55 times as fast, held for 2 s)"."""
+        manner = self.manner
+        said = [f"{manner.tempo:.2g} times as fast"] if manner.tempo != 1.0 else []
+        said += [f"{manner.size:.2g} times as large"] if manner.size != 1.0 else []
+        said += [f"held for {manner.hold_s:g} s"] if manner.hold_s else []
+        return f"{self.text} ({', '.join(said)})" if said else self.text
+
+
+Steps = tuple[tuple[PlainCommand, ...], ...]
+"""Commands in turn, each with those done at once."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What was read in a sentence.
+
+    Attributes:
+        text: the sentence.
+        steps: commands in turn, each with those done at once; none where nothing is to be done.
+        denied: what is not to be done.
+        notes: what was changed that the speaker may not expect.
+        plain: whether the sentence is passed on as it is.
+    """
+
+    text: str
+    steps: Steps
+    denied: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    plain: bool = False
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """The steps in order, commands at once joined by " + "."""
+        return tuple(" + ".join(c.sentence for c in step) for step in self.steps)
+
+    @property
+    def words(self) -> str:
+        """The commands as one sentence: "raise your left hand and nod, then bow"."""
+        return ", then ".join(" and ".join(c.text for c in step) for step in self.steps)
+
+
+def exactly(steps: Sequence[Sequence[PlainCommand]]) -> str:
+    """Steps as a text that `read_exactly` reads; factors have two digits.
+
+    >>> exactly([[PlainCommand("nod", Manner(tempo=0.62)), PlainCommand("clap")], [PlainCommand("bow")]])
+    'exactly: nod (0.62 times as fast) + clap; bow'
+    """
+    bare = [[PlainCommand(" ".join(_MARKS.sub(" ", c.text).split()), c.manner).sentence for c in s] for s in steps]
+    return f"{EXACTLY} " + "; ".join(" + ".join(step) for step in bare)
+
+
+def read_exactly(text: str) -> Reading | None:
+    """The commands of a text in the form of `exactly`, within the bounds of tempo, size and hold; None for any other text."""
+    if not text.startswith(EXACTLY):
+        return None
+    steps: list[tuple[PlainCommand, ...]] = []
+    said = [step.split("+") for step in text.removeprefix(EXACTLY).split(";")]
+    if len(said) > MOST_STEPS or any(len(step) > MOST_AT_ONCE for step in said):
+        return None
+    for step in said:
+        found = [_COMMAND.fullmatch(part.strip()) for part in step]
+        manners = [_manner(m["manner"]) if m is not None else None for m in found]
+        commands = [
+            PlainCommand(m["text"], manner, limbs_of(m["text"]))
+            for m, manner in zip(found, manners, strict=True)
+            if m is not None and manner is not None
+        ]
+        if len(commands) < len(found):
+            return None
+        steps.append(tuple(commands))
+    reading = Reading(text, tuple(steps))
+    return Reading(reading.words, reading.steps)
+
+
+def _manner(said: str | None) -> Manner | None:
+    """The manner in brackets; None where it is none."""
+    manner = Manner()
+    for part in said.split(",") if said else ():
+        found = _SAID.fullmatch(part.strip())
+        if found is None:
+            return None
+        if found["tempo"]:
+            manner = Manner(_within(float(found["tempo"]), FASTEST), manner.size, manner.hold_s)
+        elif found["size"]:
+            manner = Manner(manner.tempo, _within(float(found["size"]), LARGEST), manner.hold_s)
+        else:
+            manner = Manner(manner.tempo, manner.size, min(float(found["hold"]), LONGEST_HOLD_S))
+    return manner
+
+
+def _within(factor: float, most: float) -> float:
+    return min(most, max(1 / most, factor))
