@@ -32,7 +32,7 @@ def eval(
     seeds: int = 5,
     robots: tuple[str, ...] = ("reference", "op3"),
     probes: Literal["development", "test"] = "development",
-    words: Literal["dev", "test"] = "dev",
+    words: Literal["dev", "dev2", "test"] = "dev2",
     executed: int = 1,
     families: tuple[str, ...] = (),
     steps: int | None = None,
@@ -89,7 +89,7 @@ def eval(
 
     Example: mmmd eval fidelity --families row flap march_arms --steps 8
 
-    Example: mmmd eval words --words dev --seeds 2 --robots reference --json
+    Example: mmmd eval words --words dev2 --seeds 2 --robots reference --json
 
     Example: mmmd eval edits --json
 
@@ -106,7 +106,7 @@ def eval(
         seeds: motions for each probe, or each family (fidelity).
         robots: names or robot files, each of which shows the probes' motions as well.
         probes: which set of probes: models are chosen by one, and reported on the other.
-        words: which set of sentences: rules are written by one, and reported on the other.
+        words: which set of sentences: dev2 is for writing rules by, dev was until now and is by the writer of the rules; test is spent.
         executed: seeds of each probe that the simulated robots execute too; 0: none.
         families: families of the corpus (fidelity); all when none is given.
         steps: decoding steps of every motion (fidelity); the model's own when it is not given.
@@ -313,7 +313,7 @@ def _words(model: Path | None, seeds: int, robots: Sequence[str], which: str) ->
         "sentence"
     )
     figures = {
-        {"dev": "development"}.get(which, which): found,
+        "test" if which == "test" else "development": found,
         "n": found["n"],
         "checkpoint": engine.checkpoint_hash,
         **context(0, method),

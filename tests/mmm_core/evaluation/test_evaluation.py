@@ -123,10 +123,11 @@ def test_the_test_set_shares_no_sentence_with_the_development_set() -> None:
     assert not {p.text.lower() for p in TEST_PROBES} & {p.text.lower() for p in PROBES}
 
 
-def test_sentences_as_people_say_them_name_gestures_that_exist() -> None:
-    """The test set of sentences; like the test probes it was written without sight of any phrase of the corpus."""
-    sentences = read_sentences("words_test")
-    assert len({s.text for s in sentences}) == len(sentences) == 200
+@pytest.mark.parametrize(("name", "n"), [("words_dev2", 160), ("words_test", 200)])
+def test_sentences_as_people_say_them_name_gestures_that_exist(name: str, n: int) -> None:
+    """Both were written without sight of the rules and of any phrase of the corpus."""
+    sentences = read_sentences(name)
+    assert len({s.text for s in sentences}) == len(sentences) == n
     for s in sentences:
         assert bool(s.commands) != s.nothing and bool(s.clean) == (s.kind == "slips"), s.text
         assert set(s.denied) <= set(FAMILIES), s.text
