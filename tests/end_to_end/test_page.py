@@ -71,7 +71,9 @@ def page() -> Iterator[Page]:
     try:
         with Browser() as browser:
             daemon.until_ready()
-            yield Page(daemon, browser, f"http://127.0.0.1:{port}/")
+            page = Page(daemon, browser, f"http://127.0.0.1:{port}/")
+            page.load()
+            yield page
             assert browser.errors == []
         served.terminate()
         assert served.wait(10) == 0
@@ -83,7 +85,6 @@ def page() -> Iterator[Page]:
 
 
 def test_a_text_moves_the_arm_on_the_page(page: Page) -> None:
-    page.load()
     browser = page.browser
     assert browser.text("#kind") == "SIMULATOR"
     page.until("limp")
@@ -117,7 +118,7 @@ def test_stop_brakes(page: Page, way: str) -> None:
         page.browser.js("document.querySelector('#text').focus()")
         page.browser.key("Escape", "Escape", 27)
     page.until("holding")
-    page.browser.wait(lambda: "stop carried out" in page.browser.text("#halted"), "what became of the stop", SOON_S)
+    page.browser.wait(lambda: page.browser.js("mmmd.halt.done"), "that the stop was carried out", SOON_S)
 
 
 def test_space_in_the_text_box_is_a_space(page: Page) -> None:
@@ -154,6 +155,7 @@ def test_estop_and_reset_on_a_phone(page: Page) -> None:
 
 def test_gestures_are_buttons(page: Page) -> None:
     with page.daemon.armed():
+        page.browser.js("document.querySelector('#loop').checked = true")  # so that it still plays when STOP is pressed
         page.browser.js(
             "[...document.querySelectorAll('#gestures button')].find((b) => b.textContent === 'bow').click()"
         )

@@ -65,7 +65,7 @@ class Browser:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._socket.close()
+        self._loop.run_until_complete(_closed(self._socket))
         self._loop.close()
         self._process.terminate()
         try:
@@ -156,3 +156,8 @@ class Browser:
 
 async def _connected(url: str) -> WebSocketClientConnection:
     return await websocket_connect(url, max_message_size=64 << 20)
+
+
+async def _closed(socket: WebSocketClientConnection) -> None:
+    """Close a connection within its own event loop: outside of one, Tornado looks for the thread's, which may be gone."""
+    socket.close()

@@ -1,5 +1,5 @@
 // The page: what the daemon says is shown, what a person presses is sent. Two modes: a daemon, or a recorded run.
-import { Line, get, newId } from "./wire.js";
+import { Line, get, newId, stamp } from "./wire.js";
 import { Robot } from "./kinematics.js";
 import { Scene } from "./scene.js";
 import { History, degrees, plot } from "./plots.js";
@@ -28,21 +28,23 @@ view.scene = scene;
 // ---- halts: first of all, and by two ways at once, so that one broken connection does not keep a stop
 const ctl = new Line("ctl", heardCtl);
 function halt(verb, pressedMs) {
-  const id = newId(), body = JSON.stringify({ type: verb, id });
-  view.halt = { id, verb, pressedMs, ackMs: null };
+  const id = newId(), request = { ...stamp(), type: verb, id }, body = JSON.stringify(request);
+  view.halt = { id, verb, pressedMs, ackMs: null, done: false };
   const again = () => { if (view.halt?.id === id && !view.halt.ackMs) get.post("/v1/ctl", body).then(heardCtl).catch(() => { $("halted").textContent = `${verb} NOT SENT. Use the power switch`; }); };
-  const sent = ctl.send({ type: verb, id });
+  const sent = ctl.send(request);
   $("halted").textContent = `${verb} sent`;
   if (sent) setTimeout(again, 250); else again();
   setTimeout(() => { if (view.halt?.id === id && !view.halt.ackMs) $("halted").textContent = `${verb}: NO ANSWER. Use the power switch`; }, 1000);
 }
 function heardCtl(event) {
-  if (view.halt && event.id === view.halt.id && !view.halt.ackMs) {
-    view.halt.ackMs = performance.now();
-    const how = event.type === "ack" ? (event.carried_out === false ? "asked for, not carried out yet" : "carried out") : `${event.found}; ${event.do}`;
-    $("halted").textContent = `${view.halt.verb} ${how}`;
-    setTimeout(() => { $("halted").textContent = ""; }, 4000);
-  } else if (event.found) answer(`${event.asked}: ${event.found}; ${event.do}`, "bad");
+  const last = view.halt;
+  if (!last || event.id !== last.id) { if (event.found) answer(`${event.asked}: ${event.found}; ${event.do}`, "bad"); return; }
+  const done = event.type === "carried_out" || (event.type === "ack" && event.carried_out !== false);
+  if (last.done || (last.ackMs && !done)) return; // both ways answer, and not in order
+  last.ackMs ??= performance.now();
+  last.done = done;
+  $("halted").textContent = `${last.verb} ${done ? "carried out" : event.type === "ack" ? "asked for, not carried out yet" : `${event.found}; ${event.do}`}`;
+  if (done) setTimeout(() => { if (view.halt === last) $("halted").textContent = ""; }, 4000);
 }
 for (const verb of ["stop", "estop"]) $(verb).addEventListener("pointerdown", (e) => { e.preventDefault(); halt(verb, e.timeStamp); });
 for (const verb of ["stop", "estop"]) $(verb).addEventListener("click", (e) => { if (e.detail === 0) halt(verb, e.timeStamp); }); // by keyboard or a screen reader
@@ -74,6 +76,7 @@ function heardCmd(event) {
   if (event.found) return answer(`${event.asked}: ${event.found}; ${event.do}`, "bad");
   if (event.type === "ack") return answer(`${event.verb}${event.note ? `: ${event.note}` : ""}`);
   if (event.id !== lastId) return;
+  if (event.type === "cancelled") return answer(`ended by ${event.by}`);
   if (event.type === "accepted") answer(`understood: ${event.understood}${event.reason ? ` (${event.reason})` : ""}${event.lacks ? `; this robot lacks: ${event.lacks}` : ""}`, event.status === "degraded" || event.lacks ? "warn" : "");
   if (event.type === "done" && event.shown) answer(`done: ${event.shown}: ${event.seen}${event.missing ? `; not seen: ${event.missing}` : ""}`, event.missing ? "warn" : "");
 }

@@ -25,9 +25,13 @@ export class Line {
   }
   send(request) {
     if (!this.open) return false;
-    this.socket.send(JSON.stringify(request));
+    this.socket.send(JSON.stringify({ ...stamp(), ...request }));
     return true;
   }
 }
 
 export const newId = () => Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.toString(16).padStart(2, "0")).join("");
+
+// When a request was sent, on this page's own clock, so that the daemon knows a text given after a stop from one given before it.
+const CLOCK = newId();
+export const stamp = () => ({ t_mono: performance.now() / 1000, clock: CLOCK });
