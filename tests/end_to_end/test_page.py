@@ -9,8 +9,11 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from retarget.robot.description import load_description, mujoco
+from retarget.robot.loading import load_robot
 from tests.support.browser import Browser
 from tests.support.harness import MMMD, RunningDaemon, free_ports
 
@@ -61,9 +64,9 @@ class Page:
 
 
 @pytest.fixture(scope="module")
-def page() -> Iterator[Page]:
+def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
     (port,) = free_ports(1)
-    daemon = RunningDaemon()
+    daemon = RunningDaemon("--log", str(tmp_path_factory.mktemp("log") / "run.mcap"))
     log = (daemon.folder / "view").open("wb")
     served = subprocess.Popen(
         [*MMMD, "view", "--http", f"127.0.0.1:{port}", *daemon.at], stdout=log, stderr=log, start_new_session=True
@@ -105,6 +108,19 @@ def test_a_text_moves_the_arm_on_the_page(page: Page) -> None:
     )
     browser.wait(lambda: "well" in browser.text("#well"), "the servos' health", SOON_S)
     browser.wait(lambda: browser.text("#servos").count("°C") == 16, "every servo's temperature", SOON_S)
+
+
+def test_the_page_places_bodies_as_mujoco_does(page: Page) -> None:
+    robot = load_robot("reference")
+    low, high = robot.position_min_rad, robot.position_max_rad
+    q_rad = low + np.random.default_rng(3).random(robot.n_joints) * (high - low)
+    model = load_description(robot)
+    data = mujoco.MjData(model)
+    data.qpos[[model.joint(name).qposadr[0] for name in robot.joint_names]] = q_rad
+    mujoco.mj_kinematics(model, data)
+    places = np.array(page.browser.js(f"mmmd.robot.places({q_rad.tolist()}).map((m) => [...m])")).reshape(-1, 4, 4)
+    np.testing.assert_allclose(places[:, 3, :3], data.xpos, atol=1e-5)
+    np.testing.assert_allclose(places[:, :3, :3].swapaxes(1, 2), data.xmat.reshape(-1, 3, 3), atol=1e-5)
 
 
 @pytest.mark.parametrize("way", ["button", "space", "escape while typing"])
@@ -183,3 +199,35 @@ def test_a_frozen_and_a_dead_daemon_are_told_apart_from_a_live_one(page: Page) -
     assert json.loads(browser.js("JSON.stringify(mmmd.state)"))["robot"] == "reference"
     front.kill()
     browser.wait(lambda: browser.js("!document.querySelector('#lost').hidden"), "loss", SOON_S)
+
+
+def test_a_recorded_run_is_scrubbed_through(page: Page) -> None:
+    """The run of the tests before, whose daemon was killed: a cut-off log is shown as far as it goes."""
+    (port,) = free_ports(1)
+    log, browser = browser_log(page), page.browser
+    with (page.daemon.folder / "recorded").open("wb") as out:
+        served = subprocess.Popen(
+            [*MMMD, "view", log, "--http", f"127.0.0.1:{port}"], stdout=out, stderr=out, start_new_session=True
+        )
+    try:
+        browser.wait(lambda: b"page at" in (page.daemon.folder / "recorded").read_bytes(), "the page's server", SOON_S)
+        browser.open(f"http://127.0.0.1:{port}/")
+        browser.wait(lambda: browser.js("!!globalThis.mmmd?.run && mmmd.frames > 0"), "the run", SOON_S)
+        assert browser.text("#kind") == "RECORDED"
+        assert browser.js("getComputedStyle(document.querySelector('#halts')).display") == "none"
+        poses = browser.js(
+            "[0, 0.3, 0.6].map((share) => { const at = document.querySelector('#at'); at.value = share * at.max;"
+            " at.dispatchEvent(new Event('input')); return [...mmmd.run.frame().q]; })"
+        )
+        assert np.ptp(poses, axis=0).max() > 0.1
+        browser.press("#play")
+        before = browser.text("#time")
+        browser.wait(lambda: browser.text("#time") != before, "the run goes on", SOON_S)
+    finally:
+        served.terminate()
+        served.wait(10)
+
+
+def browser_log(page: Page) -> str:
+    """The log that the daemon said it records into."""
+    return str(page.browser.js("mmmd.state.recording"))
