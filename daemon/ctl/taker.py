@@ -127,7 +127,7 @@ class Taker:
     # Requests.
 
     def _read(self) -> None:
-        """Read what waits in the socket; an e-stop goes before all that was read already, and overtakes it."""
+        """Read what waits in the socket; an e-stop goes before all that was read already, overtakes it, and is served at once."""
         while len(self._queue) < MOST_READ and (parts := self._message()) is not None:
             self._link.ctl_beats()
             route, payload = split_route(parts)
@@ -138,6 +138,7 @@ class Taker:
             for earlier in self._queue:
                 earlier.overtaken = True
             self._queue.appendleft(waiting)
+            return  # what a flood still holds is read after it
 
     def _message(self) -> list[bytes] | None:
         """The next message that is there, as far as it is kept: the rest of a longer one is discarded, its sender cut off."""

@@ -30,14 +30,21 @@ class Ctl:
         self.front_link.set_estop_holds(holds)
         self.bus_link = BusLink.attach(self.front_link.path, 2)
         self.link = BusLink.attach(self.front_link.path, 2, asker=Asker.CTL)
-        server, self.client = self._context.socket(zmq.ROUTER), self._context.socket(zmq.DEALER)
-        server.bind("inproc://ctl")
+        self.server, self.client = self._context.socket(zmq.ROUTER), self._context.socket(zmq.DEALER)
+        self.server.bind("inproc://ctl")
         self.client.connect("inproc://ctl")
         ours, theirs = pair()
         self.front, self._channel = Channel(ours), Channel(theirs)
-        self.taker = Taker(server, self.link, self._channel, ConnectionGuard({}), lambda: self.now_s)
+        self.taker = Taker(self.server, self.link, self._channel, ConnectionGuard({}), lambda: self.now_s)
         self.handed: list[Handed] = []
         self.told: list[ev.AnyEvent] = []
+        self.others: list[zmq.Socket[bytes]] = []
+
+    def another_client(self) -> zmq.Socket[bytes]:
+        """A connection of somebody else."""
+        self.others.append(self._context.socket(zmq.DEALER))
+        self.others[-1].connect("inproc://ctl")
+        return self.others[-1]
 
     def ask(self, *frames: str | bytes) -> None:
         """Send requests; a bare verb has itself as its id."""
@@ -95,6 +102,17 @@ def test_an_estop_goes_before_what_waits(ctl):
     assert ctl.bus_takes() == [BusRequest.ESTOP] and ctl.verbs_handed() == ["estop"]
     ctl.turn(3)
     assert ctl.bus_takes() == [BusRequest.STOP] and ctl.verbs_handed() == ["estop", "stop", "status", "status"]
+
+
+def test_an_estop_does_not_wait_until_a_flood_is_read(ctl):
+    """The whole flood, up to 4,096 requests, was read and decoded before the e-stop was served."""
+    flood = ctl.another_client()
+    for _ in range(900):
+        flood.send(b'{"type": "status"}')
+    ctl.ask("estop")
+    ctl.turn()
+    assert ctl.bus_takes() == [BusRequest.ESTOP] and ctl.verbs_handed() == ["estop"]
+    assert ctl.server.poll(0), "the flood was read first"
 
 
 def test_what_came_before_an_estop_does_not_undo_it(ctl):
