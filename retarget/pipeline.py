@@ -12,11 +12,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion.motion import Motion
 from retarget.errors import MotionError
 from retarget.human.arm_chain import ArmChain
 from retarget.human.hand_contacts import Hands, HumanContacts, read_contacts
-from retarget.human.human import HumanPose, read_human
+from retarget.human.human import HumanMotion, HumanPose, read_human
 from retarget.human.poser import ArmsFollow, Poser, Poses
 from retarget.path.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.path.collision import Allowed, SelfContact
@@ -79,7 +78,7 @@ class Retargeter:
 
     def retarget(
         self,
-        motion: Motion,
+        motion: HumanMotion,
         start: JointState | None = None,
         *,
         settle: bool = True,
@@ -109,7 +108,7 @@ class Retargeter:
         return path
 
     def pieces(
-        self, motion: Motion, start: JointState | None = None, *, settle: bool = True
+        self, motion: HumanMotion, start: JointState | None = None, *, settle: bool = True
     ) -> Iterator[tuple[JointPath, int]]:
         """The path of `retarget`, block after block as each is made, and how many frames of the motion each is.
 
@@ -126,7 +125,7 @@ class Retargeter:
             yield self._joint_path(block, part, HumanContacts({}), motion.fps, changes, 1.0), n
             first += n
 
-    def _wanted(self, motion: Motion, start: JointState | None) -> tuple[Poses, HumanContacts]:
+    def _wanted(self, motion: HumanMotion, start: JointState | None) -> tuple[Poses, HumanContacts]:
         """The poses that a motion wants, and what its hands touch."""
         if not 1 <= motion.fps <= _MOST_FPS:
             raise MotionError("fps", str(motion.fps), f"1 to {_MOST_FPS} frames per second")

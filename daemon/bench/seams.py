@@ -92,11 +92,11 @@ def _prompt_seams(
         k = int(rng.integers(WINDOW // 2, len(a) - WINDOW // 2))
         after = faded_in(b, a.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
         jerk.append(_peak_jerk(joined([a[:k], after]), k))
-        first = retargeter.retarget(a.motion())
+        first = retargeter.retarget(a)
         q = first.at_rate(rate_hz)
         f = min(len(q) - 2, round(k / FPS * rate_hz))
         t_s = np.array([(f + 1) / rate_hz])
-        second = retargeter.retarget(after.motion(), JointState(q[f], first.velocity_at(t_s)[0])).at_rate(rate_hz)
+        second = retargeter.retarget(after, JointState(q[f], first.velocity_at(t_s)[0])).at_rate(rate_hz)
         v = np.diff(np.concatenate([q[f - 2 : f + 1], second[:3]]), axis=0) * rate_hz  # two steps before, three after
         bend = np.abs(np.diff(v, axis=0))
         steps.append(float((np.maximum(0, bend[1] - np.maximum(bend[0], bend[2])) / limit).max()))
@@ -150,7 +150,7 @@ def _closure_deg(p: PoseSequence, loop: tuple[int, int]) -> float:
 
 def _peak_jerk(p: PoseSequence, at: int) -> float:
     """Largest jerk within half a second of frame `at`, m/s3."""
-    joints = _on_common_body(p).motion().joints_m.astype(np.float64)[:, UPPER]
+    joints = _on_common_body(p).joints_m[:, UPPER]
     around = joints[max(0, at - WINDOW // 2) : at + WINDOW // 2]
     return float(np.linalg.norm(np.diff(around, n=3, axis=0), axis=-1).max()) * FPS**3
 

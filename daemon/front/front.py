@@ -318,7 +318,7 @@ class Front:
             gaze_deg=self.performer.layers.gaze_deg,
             stream=self._targets.info(self._config.endpoints.stream),
             servos_not_ok=[s for s in self.view.health() if s.state != "ok"],
-            person_m=posture.joints_m()[0].round(3).ravel().tolist(),
+            person_m=posture.joints_m[0].round(3).ravel().tolist(),
             person_faces=posture.faces()[0].round(3).tolist(),
             effort=self.view.effort.round(1).tolist(),
         )

@@ -63,8 +63,8 @@ def save_clips(path: Path, clips: Mapping[str, Clip]) -> None:
     for name, clip in clips.items():
         p = clip.posture
         arrays[f"{name}.bones"] = np.rint(p.bones[:, _KEPT] * _UNIT).astype(np.int16)
-        arrays[f"{name}.head"] = np.rint(p.head_wxyz * _UNIT).astype(np.int16)
-        arrays[f"{name}.twist"] = np.rint(np.clip(p.twist_rad / _TWIST_RAD, -1, 1) * _UNIT).astype(np.int16)
+        arrays[f"{name}.head"] = np.rint(p.head_quat_wxyz * _UNIT).astype(np.int16)
+        arrays[f"{name}.twist"] = np.rint(np.clip(p.forearm_twist_rad / _TWIST_RAD, -1, 1) * _UNIT).astype(np.int16)
         meta["clips"][name] = {
             "text": clip.text, "mirror": clip.mirror, "source": clip.source, "loop": clip.marks.loop,
             "hold": clip.marks.hold,

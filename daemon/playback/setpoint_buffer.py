@@ -20,7 +20,7 @@ from daemon.playback.sources.stream_source import StreamSource
 from daemon.playback.stream_trajectory import StreamTrajectory
 from daemon.playback.trajectory import Chunk, Trajectory
 from daemon.playback.trajectory_statistics import TrajectoryStatistics
-from daemon.poses.pose_sequence import PoseSequence, joined, posture_of, standing
+from daemon.poses.pose_sequence import PoseSequence, joined, poses_of_joints, standing
 from daemon.shared_memory.bus_link import N_SETPOINTS, BusLink
 from daemon.state.bus_view import BusView
 from mmm_core.motion.motion import FPS
@@ -132,11 +132,11 @@ class SetpointBuffer:
         Raises:
             MotionError: the motion cannot be retargeted.
         """
-        motion, first, frames = posture.motion(), 0, BLOCK_FRAMES / posture.fps * self._rate_hz
+        first, frames = 0, BLOCK_FRAMES / posture.fps * self._rate_hz
         if abs(frames - round(frames)) < 1e-9:
-            paths = self._retargeter.pieces(motion, start, settle=complete)
+            paths = self._retargeter.pieces(posture, start, settle=complete)
         else:  # a piece would end between two frames of the bus
-            paths = iter([(self._retargeter.retarget(motion, start, settle=complete), len(posture))])
+            paths = iter([(self._retargeter.retarget(posture, start, settle=complete), len(posture))])
         for path, n in paths:
             is_last = first + n >= len(posture)
             yield Chunk(path, posture[first:], raw[first:], is_last, is_last and complete)
@@ -195,7 +195,7 @@ class SetpointBuffer:
 
     def gaze_rad(self, posture: PoseSequence) -> dict[int, float]:
         """Angles of the head's joints, by index, that show the head of a posture of one frame."""
-        q_rad = self._retargeter.solve(read_human(posture.motion()))[0]
+        q_rad = self._retargeter.solve(read_human(posture))[0]
         return {j: float(q_rad[j]) for j, joint in enumerate(self.robot.joints) if joint.role.startswith("head")}
 
     def give_up(self) -> None:
@@ -317,11 +317,7 @@ class SetpointBuffer:
     def _shown(self, q_rad: NDArray[np.float64]) -> PoseSequence:
         """One frame: a person held as the robot in a pose (J,)."""
         joints, head = joints_of_path(self._retargeter.kinematics, q_rad[None])
-        person = standing().motion()
-        return posture_of(replace(
-            person, joints_m=joints.astype(np.float32), head_quat_wxyz=head.astype(np.float32),
-            forearm_twist_rad=np.zeros((1, 2), np.float32),
-        ))  # fmt: skip
+        return poses_of_joints(joints, head, np.zeros((1, 2)), FPS)
 
     def _push(self, plan: Trajectory, count: int) -> None:
         if plan.epoch != self._link.epoch:

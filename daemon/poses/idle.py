@@ -84,7 +84,7 @@ class IdleSource:
         bones[:, _SPINE, 0] += sway[:, None]
         bones[:, _SHOULDERS, 1] += breath[:, None]
         bones[:, _ELBOWS, 0] += breath[:, None] * np.array([0.6, -0.6])
-        return replace(stand, bones=normalise(bones), head_wxyz=head_wxyz(yaw, pitch))
+        return replace(stand, bones=normalise(bones), head_quat_wxyz=head_wxyz(yaw, pitch))
 
     def _wander(self, t_s: Array, k: int) -> Array:
         """Within -1 and 1, from 0 at the start."""
@@ -103,5 +103,5 @@ def head_wxyz(yaw_rad: Array, pitch_rad: Array) -> Array:
 def looking(p: PoseSequence, yaw_rad: float, pitch_rad: float, weight: Array) -> PoseSequence:
     """`p` with the head turned to a direction, frame by frame by `weight` (T,)."""
     n = len(p)
-    aim = replace(p, head_wxyz=np.repeat(head_wxyz(np.array([yaw_rad]), np.array([pitch_rad])), n, 0))
-    return replace(p, head_wxyz=mixed(p, aim, weight).head_wxyz)
+    aim = replace(p, head_quat_wxyz=np.repeat(head_wxyz(np.array([yaw_rad]), np.array([pitch_rad])), n, 0))
+    return replace(p, head_quat_wxyz=mixed(p, aim, weight).head_quat_wxyz)

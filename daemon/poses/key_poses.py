@@ -37,5 +37,5 @@ def led_through(p: PoseSequence, keys: Sequence[KeyPose]) -> PoseSequence:
         u = np.clip(1 - np.abs(t) / np.maximum(reach, 1), 0, 1)
         w = u**3 * (10 - 15 * u + 6 * u**2)
         still = key.pose.at(np.zeros(len(p), np.intp))
-        p = mixed(p, PoseSequence(still.bones, p.lengths_m, still.head_wxyz, still.twist_rad, p.fps), w)
+        p = mixed(p, PoseSequence(still.bones, p.lengths_m, still.head_quat_wxyz, still.forearm_twist_rad, p.fps), w)
     return p

@@ -44,15 +44,15 @@ class PoseSequence:
     Attributes:
         bones: (T, 22, 3) unit direction of the bone that ends in each joint; the pelvis's row is zero.
         lengths_m: (22,) their lengths.
-        head_wxyz: (T, 4) orientation of the head against the person's facing.
-        twist_rad: (T, 2) forearm twist, left and right.
+        head_quat_wxyz: (T, 4) orientation of the head against the person's facing.
+        forearm_twist_rad: (T, 2) forearm twist, left and right.
         fps: frames per second.
     """
 
     bones: Array
     lengths_m: Array
-    head_wxyz: Array
-    twist_rad: Array
+    head_quat_wxyz: Array
+    forearm_twist_rad: Array
     fps: float = FPS
 
     def __len__(self) -> int:
@@ -60,14 +60,23 @@ class PoseSequence:
 
     def __getitem__(self, frames: slice) -> PoseSequence:
         return replace(
-            self, bones=self.bones[frames], head_wxyz=self.head_wxyz[frames], twist_rad=self.twist_rad[frames]
+            self,
+            bones=self.bones[frames],
+            head_quat_wxyz=self.head_quat_wxyz[frames],
+            forearm_twist_rad=self.forearm_twist_rad[frames],
         )
 
     def at(self, frames: NDArray[np.intp]) -> PoseSequence:
         """The frames at `frames`; before the first and after the last these go on."""
         k = np.clip(frames, 0, len(self) - 1)
-        return replace(self, bones=self.bones[k], head_wxyz=self.head_wxyz[k], twist_rad=self.twist_rad[k])
+        return replace(
+            self,
+            bones=self.bones[k],
+            head_quat_wxyz=self.head_quat_wxyz[k],
+            forearm_twist_rad=self.forearm_twist_rad[k],
+        )
 
+    @property
     def joints_m(self) -> Array:
         """(T, 22, 3) places of the joints in metres."""
         joints = np.zeros((len(self), len(PARENTS), 3))
@@ -77,15 +86,15 @@ class PoseSequence:
 
     def faces(self) -> Array:
         """(T, 3) unit vectors to where the head faces."""
-        return np.asarray(matrix_from_quat(self.head_wxyz)[..., 2], np.float64)
+        return np.asarray(matrix_from_quat(self.head_quat_wxyz)[..., 2], np.float64)
 
     def motion(self, like: Motion | None = None, text: str = "") -> Motion:
         """The motion record of these frames; text, seed and status are those of `like`."""
         return Motion(
-            joints_m=self.joints_m().astype(np.float32),
+            joints_m=self.joints_m.astype(np.float32),
             fps=self.fps,
-            head_quat_wxyz=self.head_wxyz.astype(np.float32),
-            forearm_twist_rad=self.twist_rad.astype(np.float32),
+            head_quat_wxyz=self.head_quat_wxyz.astype(np.float32),
+            forearm_twist_rad=self.forearm_twist_rad.astype(np.float32),
             features=np.zeros((len(self), N_FEATURES), np.float32),
             tokens=np.zeros(0, np.int32),
             text=like.text if like else text,
@@ -96,18 +105,21 @@ class PoseSequence:
 
 
 def posture_of(motion: Motion) -> PoseSequence:
-    """How the person of a motion is held."""
-    joints = motion.joints_m.astype(np.float64)
+    """The poses of a motion's person."""
+    joints, head_quat_wxyz = motion.joints_m.astype(np.float64), motion.head_quat_wxyz.astype(np.float64)
+    return poses_of_joints(joints, head_quat_wxyz, motion.forearm_twist_rad.astype(np.float64), motion.fps)
+
+
+def poses_of_joints(joints: Array, head_quat_wxyz: Array, forearm_twist_rad: Array, fps: float) -> PoseSequence:
+    """The poses of a person whose joints (T, 22, 3) in metres and head (T, 4) are given in the world."""
     bones = np.zeros_like(joints)
     for j, parent in enumerate(PARENTS[1:], 1):
         bones[:, j] = joints[:, j] - joints[:, parent]
     lengths = np.linalg.norm(bones, axis=-1).mean(0)
     R_facing_world = np.swapaxes(rotation_y(facing_yaw_rad(joints)), -1, -2)
     bones = np.einsum("tij,tkj->tki", R_facing_world, normalise(bones))
-    head = R_facing_world @ matrix_from_quat(motion.head_quat_wxyz.astype(np.float64))
-    return PoseSequence(
-        bones, lengths, np.asarray(quat_wxyz(head), np.float64), motion.forearm_twist_rad.astype(np.float64), motion.fps
-    )
+    head = R_facing_world @ matrix_from_quat(head_quat_wxyz)
+    return PoseSequence(bones, lengths, np.asarray(quat_wxyz(head), np.float64), forearm_twist_rad, fps)
 
 
 @cache
@@ -131,8 +143,10 @@ def mixed(a: PoseSequence, b: PoseSequence, weight: Array) -> PoseSequence:
     return replace(
         b,
         bones=_slerp(np.broadcast_to(a.bones, b.bones.shape), b.bones, w[:, None, None]),
-        head_wxyz=_slerp(*_same_half(np.broadcast_to(a.head_wxyz, b.head_wxyz.shape), b.head_wxyz), w[:, None]),
-        twist_rad=a.twist_rad + w[:, None] * (b.twist_rad - a.twist_rad),
+        head_quat_wxyz=_slerp(
+            *_same_half(np.broadcast_to(a.head_quat_wxyz, b.head_quat_wxyz.shape), b.head_quat_wxyz), w[:, None]
+        ),
+        forearm_twist_rad=a.forearm_twist_rad + w[:, None] * (b.forearm_twist_rad - a.forearm_twist_rad),
     )
 
 
@@ -141,8 +155,8 @@ def joined(parts: list[PoseSequence]) -> PoseSequence:
     return replace(
         parts[0],
         bones=np.concatenate([p.bones for p in parts]),
-        head_wxyz=np.concatenate([p.head_wxyz for p in parts]),
-        twist_rad=np.concatenate([p.twist_rad for p in parts]),
+        head_quat_wxyz=np.concatenate([p.head_quat_wxyz for p in parts]),
+        forearm_twist_rad=np.concatenate([p.forearm_twist_rad for p in parts]),
     )
 
 
@@ -152,8 +166,8 @@ def mirrored(p: PoseSequence) -> PoseSequence:
         p,
         bones=p.bones[:, _MIRROR] * _FLIP_X,
         lengths_m=p.lengths_m[_MIRROR],
-        head_wxyz=p.head_wxyz * np.array([1.0, 1.0, -1.0, -1.0]),
-        twist_rad=-p.twist_rad[:, ::-1],
+        head_quat_wxyz=p.head_quat_wxyz * np.array([1.0, 1.0, -1.0, -1.0]),
+        forearm_twist_rad=-p.forearm_twist_rad[:, ::-1],
     )
 
 
@@ -191,7 +205,7 @@ def distance_deg(a: PoseSequence, b: PoseSequence) -> Array:
     """(T,) largest angle between the two in arms, spine and head."""
     seen = [3, 6, 9, 12, 18, 19, 20, 21]
     cos = np.clip((a.bones[:, seen] * b.bones[:, seen]).sum(-1), -1, 1)
-    head = np.clip(np.abs((a.head_wxyz * b.head_wxyz).sum(-1)), -1, 1)
+    head = np.clip(np.abs((a.head_quat_wxyz * b.head_quat_wxyz).sum(-1)), -1, 1)
     return np.maximum(np.rad2deg(np.arccos(cos)).max(-1), np.rad2deg(2 * np.arccos(head)))
 
 

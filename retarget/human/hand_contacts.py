@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion.motion import Motion
-from retarget.human.human import SIDES
+from retarget.human.human import SIDES, HumanMotion
 from retarget.path.collision import SelfContact
 from retarget.path.limits import JointLimits
 from retarget.robot.kinematics import Kinematics
@@ -48,7 +47,7 @@ class HumanContacts:
         return any(s.any() for s in self.share.values())
 
 
-def read_contacts(motion: Motion) -> HumanContacts:
+def read_contacts(motion: HumanMotion) -> HumanContacts:
     """Which contacts a motion shows."""
     joints = motion.joints_m.astype(np.float64)
     palm = {s: _palm(joints, e, w) for s, (e, w) in zip(SIDES, ((18, 20), (19, 21)), strict=True)}

@@ -6,11 +6,11 @@ Human frame: x left, y up, z forward. Robot frame: x forward, y left, z up.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import JOINT_NAMES, PARENTS, across_shoulders, matrix_from_quat, standing_joints
 from retarget.errors import MotionError
 from retarget.robot.kinematics import cross
@@ -31,6 +31,30 @@ _LIMBS = ((3, 4), (6, 7), (17, 18), (19, 20))
 _MOST_UNEQUAL = 2.0
 """A left bone this many times as long as the right one is no bone of one person: joints in another order."""
 _SQUARE = 1e-6
+
+
+class HumanMotion(Protocol):
+    """T frames of one person: a `Motion`, or whatever else gives joints, head and forearms."""
+
+    @property
+    def joints_m(self) -> NDArray[np.floating[Any]]:
+        """(T, 22, 3) positions in metres, in HumanML3D's order."""
+        ...
+
+    @property
+    def head_quat_wxyz(self) -> NDArray[np.floating[Any]]:
+        """(T, 4) orientation of the head in the frame of the joints."""
+        ...
+
+    @property
+    def forearm_twist_rad(self) -> NDArray[np.floating[Any]]:
+        """(T, 2) left and right."""
+        ...
+
+    @property
+    def fps(self) -> float:
+        """Frames per second."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -54,15 +78,18 @@ class HumanPose:
     fps: float
 
 
-def read_human(motion: Motion) -> HumanPose:
+def read_human(motion: HumanMotion) -> HumanPose:
     """Directions and angles of a motion.
 
     Raises:
-        MotionError: no frames, or bones that no human has; frame and bone are named.
+        MotionError: no frames, values that are not finite, or bones that no human has; frame and bone are named.
     """
     joints = motion.joints_m.astype(np.float64)
     if len(joints) == 0:
         raise MotionError("joints", "no frames", "at least one frame; a rejected text has none")
+    for key, values in (("joints", joints), ("head", motion.head_quat_wxyz), ("twist", motion.forearm_twist_rad)):
+        if not np.isfinite(values).all():
+            raise MotionError(key, "NaN or infinite values", "finite values in every frame")
     every = joints[:, 1:] - joints[:, _ABOVE]  # (T, 21, 3)
     every_m = np.sqrt(np.einsum("tbi,tbi->tb", every, every))
     bones, length = every[:, _ARMS], every_m[:, _ARMS]

@@ -167,4 +167,4 @@ def test_idle_movements_need_no_help_to_stay_within_the_robot(name):
 def test_looking_turns_the_head_and_nothing_else():
     p = looking(WAVE, 0.5, 0.2, np.ones(len(WAVE)))
     assert np.array_equal(p.bones, WAVE.bones)
-    assert np.allclose(p.head_wxyz, p.head_wxyz[0])
+    assert np.allclose(p.head_quat_wxyz, p.head_quat_wxyz[0])

@@ -41,7 +41,7 @@ def test_a_posture_says_what_its_motion_says_wherever_the_person_stands():
 
 def test_mirroring_twice_changes_nothing_and_once_moves_the_other_arm():
     twice = mirrored(mirrored(P))
-    assert np.array_equal(twice.bones, P.bones) and np.array_equal(twice.head_wxyz, P.head_wxyz)
+    assert np.array_equal(twice.bones, P.bones) and np.array_equal(twice.head_quat_wxyz, P.head_quat_wxyz)
     other = posture_of(raised_arm("left", 1.5, 1.3, "left"))
     assert distance_deg(mirrored(P), other).max() < 0.01
 
@@ -52,11 +52,11 @@ def test_a_mirrored_head_looks_to_the_other_side():
     yaw, pitch = np.deg2rad([30.0]), np.deg2rad([10.0])
     from dataclasses import replace
 
-    p = replace(standing(), head_wxyz=head_wxyz(yaw, pitch), twist_rad=np.array([[0.2, -0.5]]))
+    p = replace(standing(), head_quat_wxyz=head_wxyz(yaw, pitch), forearm_twist_rad=np.array([[0.2, -0.5]]))
     m = mirrored(p)
-    assert np.allclose(m.head_wxyz, head_wxyz(-yaw, pitch))
-    assert np.allclose(m.twist_rad, [[0.5, -0.2]])
-    forward = matrix_from_quat(p.head_wxyz)[0] @ [0, 0, 1]
+    assert np.allclose(m.head_quat_wxyz, head_wxyz(-yaw, pitch))
+    assert np.allclose(m.forearm_twist_rad, [[0.5, -0.2]])
+    forward = matrix_from_quat(p.head_quat_wxyz)[0] @ [0, 0, 1]
     assert forward[0] > 0.4 and forward[1] < -0.1  # left and down
 
 
@@ -83,7 +83,7 @@ def test_mixing_stays_on_the_sphere_and_meets_both_ends(frame, weight):
     a, b = P[frame : frame + 1], mirrored(P)[frame : frame + 1]
     m = mixed(a, b, np.array([weight]))
     assert np.linalg.norm(m.bones[:, 1:], axis=-1) == pytest.approx(1.0)
-    assert np.linalg.norm(m.head_wxyz, axis=-1) == pytest.approx(1.0)
+    assert np.linalg.norm(m.head_quat_wxyz, axis=-1) == pytest.approx(1.0)
     assert distance_deg(mixed(a, b, np.zeros(1)), a)[0] < 1e-3 and distance_deg(mixed(a, b, np.ones(1)), b)[0] < 1e-3
 
 
