@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from daemon.bench.daemon_rig import percentile
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
-from daemon.playback.setpoint_buffer import FADE_FRAMES
+from daemon.playback.chunk_maker import FADE_FRAMES
 from daemon.playback.sources.source_factory import PREFIX_FRAMES
 from daemon.poses.cycles import closed, find_loop
 from daemon.poses.idle import IdleSource

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import functools
 import hashlib
 import os
@@ -53,3 +54,18 @@ class RealClock:
         left = t_s - time.monotonic()
         if left > 0:
             time.sleep(left)
+
+    async def sleep(self, seconds: float) -> None:
+        """Let others of the event loop run for a while."""
+        await asyncio.sleep(seconds)
+
+
+REAL_CLOCK = RealClock()
+
+
+class LoopClock(Clock, Protocol):
+    """A clock for code that runs in an event loop."""
+
+    async def sleep(self, seconds: float) -> None:
+        """Let others of the event loop run until so many seconds have passed."""
+        ...

@@ -1,34 +1,33 @@
-"""Plays one score at a time: takes over, makes the next stretch before it is due, watches what the bus made of it.
+"""Plays one source at a time: takes over, makes the next chunk before it is due, watches what the bus process made of it.
 
-Retargeting runs in a worker thread, one at a time; whoever changes the plan holds the lock.
+Retargeting runs in a worker thread, one chunk at a time; whoever changes the trajectory holds the lock.
 """
 
 from __future__ import annotations
 
 import asyncio
 import logging
-import time
 from collections.abc import Callable, Coroutine
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.host.clock import REAL_CLOCK, LoopClock
 from daemon.playback.bus_follower import BusFollower
-from daemon.playback.segments import Segments
+from daemon.playback.chunk_maker import ChunkMaker
+from daemon.playback.motion_player import MotionPlayer, PlanStart
 from daemon.playback.setpoint_buffer import SetpointBuffer
-from daemon.playback.sources.clip_source import ClipSource, MotionSource
-from daemon.playback.sources.preview_source import PreviewSource
 from daemon.playback.sources.showing import Verdict
-from daemon.playback.sources.story_source import StorySource
 from daemon.playback.sources.stream_source import StreamSource
-from daemon.playback.stream_trajectory import StreamTrajectory
-from daemon.playback.stream_watch import StreamWatch
+from daemon.playback.splicer import Splicer
+from daemon.playback.stream_player import StreamPlayer
 from daemon.playback.trajectory import Trajectory
 from daemon.playback.trajectory_statistics import SAMPLED_HZ
 from daemon.poses.idle import IdleSource
 from daemon.poses.layers import Layers
-from daemon.poses.pose_sequence import PoseSequence, standing
+from daemon.poses.motion_source import HeldPose, MotionSource
+from daemon.poses.pose_sequence import PoseSequence
 from daemon.state.ledger import Entry, Ledger
 from daemon.state.machine import RobotState
 from daemon.state.replies import NotPlayableError, as_failure, ending, failed
@@ -40,13 +39,14 @@ from retarget.errors import RetargetError
 log = logging.getLogger(__name__)
 
 FEED_AHEAD_S = 0.8
-"""A stretch is made when less than this of the one before is left."""
+"""Seconds that are left to push when the next chunk is made."""
 STALL_S = 0.5
-"""A plan whose frames are all pushed and whose bus holds so long without playing them was dropped by the bus."""
+"""Seconds for which the bus process holds without having played all frames that were pushed, after which it has dropped them."""
 IDLE_AFTER_S = 0.8
-"""Stillness before idle movements begin."""
+"""Seconds of stillness before idle movements begin."""
 GAZE_S = 0.8
 BRAKING_TIMEOUT_S = 2.0
+TICK_S = 0.005
 
 ShownCheck = Callable[[Entry, NDArray[np.float64], float], Verdict]
 """Whether goals (T, J) of so many a second have shown what a command's motion shows."""
@@ -57,167 +57,144 @@ def _not_judged(_entry: Entry, _q_rad: NDArray[np.float64], _fps: float) -> Verd
 
 
 class Playback:
-    """What is played, and its end.
+    """The command that is played, from its splice to its last event.
 
     Attributes:
         entry: the command that is played; None for none, and for idle movements.
     """
 
     def __init__(
-        self,
-        planner: SetpointBuffer,
-        follower: BusFollower,
-        ledger: Ledger,
-        layers: Layers,
-        judge: ShownCheck = _not_judged,
-    ) -> None:
-        self._planner, self._follower, self._ledger, self._layers = planner, follower, ledger, layers
-        self._judge = judge
+        self, buffer: SetpointBuffer, follower: BusFollower, ledger: Ledger, layers: Layers,
+        judge: ShownCheck = _not_judged, clock: LoopClock = REAL_CLOCK,
+    ) -> None:  # fmt: skip
+        self._buffer, self._follower, self._ledger, self._layers = buffer, follower, ledger, layers
+        self._judge, self._clock = judge, clock
+        self._splicer, self._maker = Splicer(buffer, clock), ChunkMaker(buffer.robot, layers)
         self.entry: Entry | None = None
-        self._score: MotionSource | StreamSource | None = None
-        self._stream = StreamWatch(planner, ledger)
+        self._plan_id = 0
+        self._player: MotionPlayer | StreamPlayer | None = None
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()
         self._feeding = False
-        self._stretches = Segments(planner, layers)
-        self._moving_told = False
+        self._moving_reported = False
         self._held = False
         self._held_since_s: float | None = None
-        self._still_since_s = time.monotonic()
+        self._still_since_s = clock.now_s()
 
     async def take_over(
-        self,
-        entry: Entry | None,
-        score: MotionSource | StreamSource,
-        plan_id: int,
-        epoch: int,
+        self, entry: Entry | None, source: MotionSource | StreamSource, plan_id: int, epoch: int,
         alive: Callable[[], bool],
-    ) -> bool:
-        """Play a score from the state of the joints on; false when it was ended meanwhile.
+    ) -> bool:  # fmt: skip
+        """Play a source from the state of the joints on; false when it was ended meanwhile.
 
         Raises:
-            RetargetError: its motion does not fit the robot; what was played goes on.
+            RetargetError: its motion does not fit the robot; the motion being played goes on.
         """
         async with self._lock:
-            if isinstance(score, StreamSource):
-                assert entry is not None, "a lease is a command"
-                return await self._take_over_stream(entry, score, plan_id, epoch, alive)
-            stretch: tuple[PoseSequence, bool] | None = None
-            took_s = 0.0
-            while True:
-                if self._planner.dry:
-                    await self._until_at_rest()  # it brakes: from rest on nothing can be missed
-                if not alive():
-                    return False
-                stretch = stretch or await asyncio.to_thread(score.next)
-                raw, last = stretch
-                start, began_s = self._planner.hand_over(took_s=took_s), time.monotonic()
-                pieces = self._stretches.making(raw, start, complete=last, easy=entry is None)
-                piece = await asyncio.to_thread(next, pieces)
-                if not alive():
-                    self._planner.give_up()
-                    return False
-                if not self._planner.hand_over_missed:
-                    break
-                took_s = time.monotonic() - began_s
-            before, previous = self.entry, self._planner.current
-            if isinstance(previous, StreamTrajectory):
-                self._stream.end(previous)
-            self._begin(entry, score)
-            t_received_ns = entry.t_received_ns if entry is not None else time.monotonic_ns()
-            command_id = entry.id if entry is not None else ""
-            self._planner.commit(piece, plan_id, command_id, epoch, t_received_ns)
-            self._stretches.go_on(pieces, piece, is_last=last)
-            self._tell_taken_over(before, previous, entry)
+            player = self._player_of(entry, source)
+            received_ns = entry.t_received_ns if entry is not None else round(self._clock.now_s() * 1e9)
+            start = PlanStart(plan_id, "" if entry is None else entry.id, epoch, received_ns)
+            if not await player.begin(start, alive, self._until_at_rest):
+                return False
+            before, plan_id_before = self.entry, self._plan_id
+            self._begin(entry, player, plan_id)
+            if before is not None and entry is not None:
+                by = f"{tag_of(entry.request)} {entry.id}"
+                self._ledger.emit(before, Cancelled(plan_id=plan_id_before, by=by))
+            player.begun()
             return True
 
-    async def _take_over_stream(
-        self, entry: Entry, score: StreamSource, plan_id: int, epoch: int, alive: Callable[[], bool]
-    ) -> bool:
-        """Let a lease begin in the next frame. Its first target is measured from its own arrival."""
-        if self._planner.dry:
-            await self._until_at_rest()
-        if not alive():
-            return False
-        start = self._planner.hand_over_at_once()
-        before, previous = self.entry, self._planner.current
-        gaze = self._layers.over(standing()) if self._layers.gaze_deg is not None else None
-        score.look({} if gaze is None else self._planner.gaze_rad(gaze))
-        self._begin(entry, score)
-        score.begin(start.state, time.monotonic())
-        self._planner.commit_stream(score, plan_id, entry.id, epoch, entry.t_received_ns)
-        self._tell_taken_over(before, previous, entry)
-        self._stream.begin(entry, plan_id)
-        return True
+    def _player_of(self, entry: Entry | None, source: MotionSource | StreamSource) -> MotionPlayer | StreamPlayer:
+        def report(event: Progress) -> None:
+            if entry is not None:
+                self._ledger.emit(entry, event)
 
-    def _tell_taken_over(self, before: Entry | None, previous: Trajectory | None, entry: Entry | None) -> None:
-        if before is not None and entry is not None:
-            by = f"{tag_of(entry.request)} {entry.id}"
-            self._ledger.emit(before, Cancelled(plan_id=previous.plan_id if previous else 0, by=by))
+        if isinstance(source, StreamSource):
+            return StreamPlayer(source, self._buffer, self._splicer, self._maker, report, self._clock)
+        return MotionPlayer(source, self._buffer, self._splicer, self._maker, report)
 
     def end(self, by: str, failure: Failed | None = None) -> None:
-        """End what is played."""
-        entry, plan = self.entry, self._planner.current
+        """End the command that is played."""
+        entry, plan = self.entry, self._buffer.current
         self._forget()
-        self._planner.drop()
+        self._buffer.drop()
         if entry is not None:
             self._ledger.emit(entry, ending(plan.plan_id if plan is not None else 0, by, failure))
 
     @property
     def stream(self) -> StreamSource | None:
         """The lease that is played, None when there is none."""
-        return self._score if isinstance(self._score, StreamSource) else None
+        return None if self._player is None else self._player.stream
 
     def target(self, q_rad: NDArray[np.float64]) -> bool:
-        """A checked target (J,) of the lease that is played; false when it takes none any more."""
-        plan = self._planner.current
-        return isinstance(plan, StreamTrajectory) and self._stream.take(plan, q_rad)
+        """A checked target (J,) of the lease that is played; false when it accepts none any more."""
+        return self._player is not None and self._player.accept(q_rad)
+
+    @property
+    def raw_now(self) -> PoseSequence:
+        """(1 frame) the person whose pose the robot shows, without layers."""
+        return self._buffer.raw_now
+
+    def committed(self, n: int, ahead_s: float) -> PoseSequence:
+        """`n` frames up to where a motion would take over that takes `ahead_s` to make."""
+        return self._splicer.committed(n, ahead_s)
 
     def current_command(self) -> CurrentCommand | None:
-        """What is being played."""
-        entry, plan = self.entry, self._planner.current
+        """The command that is played."""
+        entry, plan = self.entry, self._buffer.current
         if entry is None or plan is None:
             return None
         return CurrentCommand(entry.id, plan.plan_id, entry.request.words, plan.expected_frames, plan.pushed)
 
     def watch(self, *, finish_loop: bool, is_to_last: bool) -> None:
-        """Tell of the first motion, make the next stretch in time, end what is over.
+        """Report the first motion, make the next chunk in time, end a command that is over.
 
         Args:
-            finish_loop: what goes round is to end with its round.
-            is_to_last: nothing is about to take over, so that a draft's motion is worth being put in its place.
+            finish_loop: a motion that goes round is to end with its round.
+            is_to_last: no command is about to take over, so that a preview's motion is worth being put in its place.
         """
-        plan, entry = self._planner.current, self.entry
-        if self._score is None:
+        player, plan, entry = self._player, self._buffer.current, self.entry
+        if player is None:
             return
         if plan is None:
-            if not self._lock.locked():  # what was to take over from a plan that ran dry has been called off
+            if not self._lock.locked():  # the command that was to take over from one that ran dry has been called off
                 self._fail(entry, "the bus ran out of frames", 0)
             return
-        statistics = plan.statistics
-        if entry is not None and not self._moving_told and statistics.first_motion_ms is not None:
-            self._moving_told = True
-            first_ms = round(statistics.first_motion_ms, 2)
-            came_s = plan.first_target_s if isinstance(plan, StreamTrajectory) else None
-            moving = Progress(plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms, target_t_mono=came_s)
-            self._ledger.emit(entry, moving)
-        self._follow_score(self._score, plan.plan_id, finish_loop=finish_loop, is_to_last=is_to_last)
-        if isinstance(plan, StreamTrajectory) and entry is not None:
-            self._stream.look(plan, entry)
-        if not plan.complete:
-            ready = self._stretches.unfinished or self._score.ready
-            due = self._planner.ahead_s < FEED_AHEAD_S and plan.epoch == self._planner.epoch
-            if ready and due and not self._feeding:
-                self._feeding = True
-                self.start(self._feed())
+        self._report_moving(plan)
+        player.watch()
+        if finish_loop and entry is not None:
+            player.finish()
+        if player.revised and is_to_last and not self._feeding:
+            self._feeding = True
+            self.start(self._revise(player))
+        if plan.complete:
+            self._watch_end(plan)
             return
-        idle = plan.all_pushed and self._follower.holds
-        self._held_since_s = (self._held_since_s or time.monotonic()) if idle else None
-        stalled = self._held_since_s is not None and time.monotonic() - self._held_since_s > STALL_S
+        due = self._buffer.ahead_s < FEED_AHEAD_S and plan.epoch == self._buffer.epoch
+        if player.ready and due and not self._feeding:
+            self._feeding = True
+            self.start(self._feed(player))
+
+    def _report_moving(self, plan: Trajectory) -> None:
+        if self.entry is None or self._moving_reported or plan.statistics.first_motion_ms is None:
+            return
+        self._moving_reported = True
+        first_ms = round(plan.statistics.first_motion_ms, 2)
+        moving = Progress(
+            plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms, target_t_mono=plan.first_target_s
+        )
+        self._ledger.emit(self.entry, moving)
+
+    def _watch_end(self, plan: Trajectory) -> None:
+        """End the command once the bus process has played all of its frames, or dropped them."""
+        entry, player, statistics, now_s = self.entry, self._player, plan.statistics, self._clock.now_s()
+        holds = plan.all_pushed and self._follower.holds
+        self._held_since_s = (self._held_since_s or now_s) if holds else None
+        stalled = self._held_since_s is not None and now_s - self._held_since_s > STALL_S
         if plan.played or (stalled and statistics.dropped):
             self._forget()
-            if isinstance(plan, StreamTrajectory):
-                self._stream.end(plan)
+            if player is not None:
+                player.close()
             if entry is not None:
                 verdict = self._judge(entry, statistics.goals_rad, SAMPLED_HZ)
                 self._ledger.emit(entry, statistics.done(plan.n_frames, verdict.shown, verdict.seen, verdict.missing))
@@ -227,32 +204,30 @@ class Playback:
     def idle(self, *, free: bool) -> None:
         """Begin idle movements after a while of stillness, end them when they are switched off."""
         wanted = self._layers.idle_style and not self._follower.stopped and not self._held
-        if self._follower.idling and self._score is not None and not self._layers.idle_style:
-            if isinstance(self._score, IdleSource):
-                self._score.finish()
-        still = free and self._score is None and self._follower.machine.state is RobotState.IDLE
+        if self._follower.idling and self._player is not None and not self._layers.idle_style:
+            self._player.finish()
+        still = free and self._player is None and self._follower.machine.state is RobotState.IDLE
+        now_s = self._clock.now_s()
         if not (wanted and still and self._follower.can_take_over):
-            self._still_since_s = time.monotonic()
-        elif time.monotonic() - self._still_since_s > IDLE_AFTER_S and not self._lock.locked():
-            self._still_since_s = time.monotonic()
+            self._still_since_s = now_s
+        elif now_s - self._still_since_s > IDLE_AFTER_S and not self._lock.locked():
+            self._still_since_s = now_s
             self.start(self._take_idle(IdleSource(self._layers.idle_style)))
 
     async def follow_gaze(self) -> None:
-        """Let what is played, or the pose that is held, go on with the gaze that is now set."""
-        if isinstance(self._score, StreamSource):
+        """Continue the motion that is played, or the pose that is held, with the gaze that is now set."""
+        player = self._player
+        if player is not None and (player.stream is not None or self._buffer.running):
             async with self._lock:
-                gaze = self._layers.over(standing()) if self._layers.gaze_deg is not None else None
-                self._score.look({} if gaze is None else self._planner.gaze_rad(gaze))
+                if player is self._player:
+                    await player.follow_gaze()
             return
-        if self._planner.running and self._score is not None:
-            async with self._lock:
-                await self._stretches.make_again()
-            return
-        end_s = time.monotonic() + BRAKING_TIMEOUT_S
-        while self._follower.machine.state is RobotState.MOVING and time.monotonic() < end_s:
-            await asyncio.sleep(0.005)  # the last frames of a motion, or a stop
+        end_s = self._clock.now_s() + BRAKING_TIMEOUT_S
+        while self._follower.machine.state is RobotState.MOVING and self._clock.now_s() < end_s:
+            await self._clock.sleep(TICK_S)  # the last frames of a motion, or a stop
         if self._follower.machine.state in (RobotState.IDLE, RobotState.HOLDING) and self._follower.can_take_over:
-            await self._take_idle(None)
+            held = self._buffer.raw_now
+            await self._take_idle(HeldPose(held.at(np.zeros(round(GAZE_S * held.fps), np.intp))))
 
     def start(self, work: Coroutine[Any, Any, None]) -> None:
         """Run work that nobody waits for; its failure is logged."""
@@ -263,21 +238,19 @@ class Playback:
     def _finished(self, task: asyncio.Task[Any]) -> None:
         self._tasks.discard(task)
         if not task.cancelled() and (error := task.exception()) is not None:
-            log.error("a stretch could not be made", exc_info=error)
+            log.error("a chunk could not be made", exc_info=error)
 
-    def _begin(self, entry: Entry | None, score: MotionSource | StreamSource) -> None:
-        self.entry, self._score = entry, score
-        self._stretches.forget()
-        self._moving_told, self._held_since_s = False, None
+    def _begin(self, entry: Entry | None, player: MotionPlayer | StreamPlayer, plan_id: int) -> None:
+        self.entry, self._player, self._plan_id = entry, player, plan_id
+        self._moving_reported, self._held_since_s = False, None
         self._held = entry is not None and isinstance(entry.request, Play) and entry.request.hold
         if entry is not None:
             self._follower.stopped = False
         self._follower.idling = entry is None
 
     def _forget(self) -> None:
-        self.entry, self._score = None, None  # what was idling stays so until the bus process has played it out
-        self._stretches.forget()
-        self._still_since_s = time.monotonic()
+        self.entry, self._player = None, None  # idling stays so until the bus process has played it out
+        self._still_since_s = self._clock.now_s()
 
     def _fail(self, entry: Entry | None, found: str, plan_id: int) -> None:
         self._forget()
@@ -285,107 +258,57 @@ class Playback:
             failure = failed("bus_dropped", found, "all of them", "see the daemon's log")
             self._ledger.emit(entry, ending(plan_id, "", failure))
 
-    async def _take_idle(self, score: MotionSource | None) -> None:
-        """Play idle movements, or without a score just the pose that is held, with the gaze."""
-        epoch, entry, halted = self._planner.epoch, self.entry, self._follower.stopped
-        if score is None:
-            held = self._planner.raw_now
-            score = _Pose(held.at(np.zeros(round(GAZE_S * held.fps), np.intp)))
+    async def _take_idle(self, source: MotionSource) -> None:
+        """Play idle movements, or the pose that is held with the gaze."""
+        epoch, entry, halted = self._buffer.epoch, self.entry, self._follower.stopped
 
         def alive() -> bool:
-            same = self.entry is entry and epoch == self._planner.epoch and halted == self._follower.stopped
+            same = self.entry is entry and epoch == self._buffer.epoch and halted == self._follower.stopped
             return same and self._follower.machine.state in (RobotState.IDLE, RobotState.HOLDING)
 
         try:
-            await self.take_over(None, score, self._planner.new_plan_id(), epoch, alive)
+            await self.take_over(None, source, self._buffer.new_plan_id(), epoch, alive)
         except RetargetError as error:
-            self._planner.give_up()
             log.error("idle movements could not be made: %s", error)
 
-    def _follow_score(
-        self, score: MotionSource | StreamSource, plan_id: int, *, finish_loop: bool, is_to_last: bool
-    ) -> None:
-        """What is to be done of a score beside playing it."""
-        if isinstance(score, StorySource):
-            self._tell_scenes(score, plan_id)
-        if finish_loop and isinstance(score, (ClipSource, StorySource)):
-            score.finish()
-        if isinstance(score, PreviewSource) and score.may_go_over and is_to_last and not self._feeding:
-            self._feeding = True
-            self.start(self._go_over(score))
-
-    async def _go_over(self, score: PreviewSource) -> None:
-        """Let the motion take the place of its draft, from where the draft is being played."""
-        took_s = 0.0
+    async def _revise(self, player: MotionPlayer | StreamPlayer) -> None:
+        """Let a preview's motion take the place of the preview."""
         try:
             async with self._lock:
-                while self._score is score and score.tries_left and self._planner.running:
-                    score.tries_left -= 1
-                    began_s = time.monotonic()
-                    if await self._stretches.make_again(score, took_s=took_s):
-                        score.tries_left = 0
-                    took_s = time.monotonic() - began_s
-        except RetargetError as error:  # the draft goes on
-            score.tries_left = 0
-            self._planner.give_up()
-            log.error("the motion of a draft does not fit the robot: %s", error)
+                await player.revise(lambda: player is self._player)
+        except RetargetError as error:  # the preview goes on
+            log.error("the motion of a preview does not fit the robot: %s", error)
         finally:
             self._feeding = False
 
-    async def _feed(self) -> None:
-        """Make the next stretch and append it; one that cannot be made ends the command."""
-        score = self._score
+    async def _feed(self, player: MotionPlayer | StreamPlayer) -> None:
+        """Make the next chunk and append it; one that cannot be made ends the command."""
         try:
-            await self._append(score)
+            async with self._lock:
+                if player is self._player:
+                    await player.feed(lambda: player is self._player)
         except NotPlayableError as error:
-            self._give_up(score, error.event)
+            self._give_up(player, error.event)
         except RetargetError as error:
-            self._give_up(
-                score, failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
-            )
+            do = "say it in other words"
+            self._give_up(player, failed("retarget", str(error), "a motion that fits the robot", do))
         except Exception as error:
-            self._give_up(score, failed("internal", str(error), "", "see the daemon's log"))
+            self._give_up(player, failed("internal", str(error), "", "see the daemon's log"))
             raise
         finally:
             self._feeding = False
 
-    async def _append(self, score: MotionSource | StreamSource | None) -> None:
-        async with self._lock:
-            if score is not None and score is self._score and not isinstance(score, StreamSource):
-                await self._stretches.append(score, lambda: score is self._score)
-
-    def _give_up(self, score: MotionSource | StreamSource | None, event: Rejected | Failed) -> None:
-        """End the command whose next stretch failed; what is in the bus process is played, then it brakes and holds."""
-        entry, plan = self.entry, self._planner.current
-        if score is None or score is not self._score:
+    def _give_up(self, player: MotionPlayer | StreamPlayer, event: Rejected | Failed) -> None:
+        """End the command whose next chunk failed; the frames in the bus process are played, then it brakes and holds."""
+        entry, plan = self.entry, self._buffer.current
+        if player is not self._player:
             return
         self._forget()
-        self._planner.drop()
+        self._buffer.drop()
         if entry is not None:
             self._ledger.emit(entry, ending(plan.plan_id if plan is not None else 0, "", as_failure(event)))
 
-    def _tell_scenes(self, score: StorySource, plan_id: int) -> None:
-        while self.entry is not None and score.news:
-            n = score.news.popleft()
-            self._ledger.emit(self.entry, Progress(
-                plan_id=plan_id, stage="scene", scene=n.number, text=n.text, status=n.status, reason=n.reason,
-                understood=n.understood, scope_score=round(n.scope_score, 4),
-            ))  # fmt: skip
-
     async def _until_at_rest(self) -> None:
-        end_s = time.monotonic() + BRAKING_TIMEOUT_S
-        while not self._follower.at_rest and time.monotonic() < end_s:
-            await asyncio.sleep(0.005)
-
-
-class _Pose:
-    """A pose that is held."""
-
-    ready = True
-
-    def __init__(self, stretch: PoseSequence) -> None:
-        self._stretch = stretch
-
-    def next(self) -> tuple[PoseSequence, bool]:
-        """All of it."""
-        return self._stretch, True
+        end_s = self._clock.now_s() + BRAKING_TIMEOUT_S
+        while not self._follower.at_rest and self._clock.now_s() < end_s:
+            await self._clock.sleep(TICK_S)

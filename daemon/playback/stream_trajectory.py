@@ -21,47 +21,58 @@ class StreamTrajectory(Trajectory):
     """Frames of a lease. For one thread.
 
     Args:
-        score: makes the frames.
-        shown: the posture of a person who is held as the robot in a pose (J,).
+        source: makes the frames.
+        person: the poses of a person who is held as the robot in a pose (J,).
 
     Attributes:
-        score: the same.
+        source: makes the frames.
         resting: whether the last frame stands where it is until something changes; the bus process then holds.
-        first_target_s: when the first target came, monotonic; None before.
-        lost: whether the bus process ran out of frames: it brakes, and the frames go on from where it stands.
+        lost: whether the bus process ran out of frames: it brakes, and the frames continue from where it stands.
     """
+
+    resumes = True
 
     def __init__(
         self, plan_id: int, command_id: str, epoch: int, rate_hz: float, statistics: TrajectoryStatistics,
-        score: StreamSource, shown: Callable[[Array], PoseSequence],
+        source: StreamSource, person: Callable[[Array], PoseSequence],
     ) -> None:  # fmt: skip
         super().__init__(plan_id, command_id, epoch, rate_hz, statistics)
-        self.score, self._shown = score, shown
+        self.source, self._person = source, person
         self._made: deque[tuple[Array, Array]] = deque(maxlen=KEPT_FRAMES)  # position and velocity
-        self._start = score.state
+        self._start = source.state
         self.resting: bool = False
         self.lost: bool = False
-        self.first_target_s: float | None = None
         self._good_from: int = 0
 
     def extend(self, n: int) -> None:
         """Make frames up to the `n`-th, as far as there is motion."""
         while self.n_frames < n and not self.complete:
-            q_rad, rests, ends = self.score.frame(), self.score.at_rest, self.score.released
+            q_rad, rests, ends = self.source.frame(), self.source.at_rest, self.source.released
             if rests and self.resting and not ends:
                 return
-            self._made.append((q_rad, self.score.state.velocity_rad_s))
+            self._made.append((q_rad, self.source.state.velocity_rad_s))
             self.n_frames += 1
             self.resting, self.complete = rests, rests and ends
 
-    def check_lost(self) -> None:
-        """Notice that the bus process ran out of frames."""
+    def resume(self, goal_rad: Array, *, stands: bool) -> bool:
+        """Whether frames may be made now; after a loss they continue from the goals (J,) once the joints stand."""
         self.lost = self.lost or self.statistics.last_underrun_frame >= self._good_from
+        if self.lost or self.resting:
+            stands = stands and self.all_played
+            if self.lost and not stands:
+                return False
+            if self.lost or (stands and not np.array_equal(goal_rad, self.source.state.position_rad)):
+                self.source.go_on(JointState(goal_rad.copy(), np.zeros_like(goal_rad)))
+                self.lost, self._good_from = False, self.n_frames
+        return True
 
-    def go_on(self, position_rad: Array) -> None:
-        """The bus process holds here and has no frame left."""
-        self.score.go_on(JointState(position_rad.copy(), np.zeros_like(position_rad)))
-        self.lost, self._good_from = False, self.n_frames
+    def ran_dry(self, queued: int) -> bool:
+        """Whether the frames are lost; frames that are only not made yet are made in a moment."""
+        return self.lost if self.end is None and not self.resting else super().ran_dry(queued)
+
+    @property
+    def oldest_frame(self) -> int:
+        return self.n_frames - len(self._made)
 
     @property
     def ends_here(self) -> bool:
@@ -74,16 +85,14 @@ class StreamTrajectory(Trajectory):
         return self.statistics.last_frame >= self.n_frames - 1
 
     def frames(self, first: int, end: int) -> Array:
-        """(n, J) setpoints from `first` to before `end`."""
-        oldest = self.n_frames - len(self._made)
-        return np.array([self._made[k - oldest][0] for k in range(first, min(end, self.n_frames))])
+        return np.array([self._made[k - self.oldest_frame][0] for k in range(first, min(end, self.n_frames))])
 
     def state_at(self, frame: int) -> JointState:
         """Position and difference quotient at a frame; where it began when that is not known."""
-        at = frame - (self.n_frames - len(self._made))
+        at = frame - self.oldest_frame
         return JointState(*self._made[at]) if 0 <= at < len(self._made) else self._start
 
     def posture_from(self, frame: int, n: int, *, raw: bool = False) -> PoseSequence:
-        """The person who is held as the robot at a frame, `n` times: what a target leads to nobody knows."""
+        """The person who is held as the robot at a frame, `n` times: the poses that targets lead to are not known."""
         del raw
-        return self._shown(self.state_at(frame).position_rad).at(np.zeros(n, np.intp))
+        return self._person(self.state_at(frame).position_rad).at(np.zeros(n, np.intp))

@@ -1,10 +1,11 @@
-"""A plan: the frames of one command on their way to the bus, made stretch by stretch.
+"""The frames of one command on their way to the bus process, and the trajectory whose frames come from retargeted poses.
 
-What was played is forgotten, so that a loop or a story may last for ever.
+Frames that were played are forgotten, so that a loop or a story may last for ever.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -21,93 +22,68 @@ KEPT_FRAMES = 512
 """Frames kept after they were pushed: the bus process has at most 256 of them still in hand."""
 
 
-@dataclass(frozen=True)
-class Chunk:
-    """A path, as far as it is made.
-
-    Attributes:
-        path: of the joints.
-        posture: what it was made of, from its first frame to the end of what is being made, later pieces included.
-        raw: the same without layers.
-        is_last: whether nothing of that is left.
-        complete: whether the plan ends with it.
-    """
-
-    path: JointPath
-    posture: PoseSequence
-    raw: PoseSequence
-    is_last: bool
-    complete: bool
-
-
-@dataclass(frozen=True)
-class Segment:
-    """A piece in its plan: its bus frames begin at `first` and end before `end`."""
-
-    first: int
-    end: int
-    piece: Chunk
-
-
-class Trajectory:
+class Trajectory(ABC):
     """Frames of one command. For one thread.
 
     Attributes:
         plan_id: number in the log.
         command_id: the command that it carries out, empty for idle movements.
         epoch: the link's epoch when its command arrived; setpoints of an older epoch are thrown away.
-        statistics: what it did at the bus.
-        n_frames: frames so far.
+        statistics: cycle records of its frames.
+        n_frames: frames made so far.
         complete: whether no more will come.
-        end: frames that may be pushed; None for all, fewer once another plan takes over.
+        end: frames that may be pushed; None for all, fewer once another trajectory takes over.
         pushed: frames pushed so far.
+        first_target_s: monotonic time of a stream's first target; None for other trajectories and before.
     """
+
+    resumes = False
+    """Whether its command continues after the bus process ran out of frames."""
 
     def __init__(
         self, plan_id: int, command_id: str, epoch: int, rate_hz: float, statistics: TrajectoryStatistics
     ) -> None:
         self.plan_id, self.command_id, self.epoch, self.statistics = plan_id, command_id, epoch, statistics
         self._rate_hz = rate_hz
-        self._stretches: list[Segment] = []
-        self._frames: list[Array] = []
-        self._kept_from = 0
         self.n_frames: int = 0
         self.complete = False
         self.end: int | None = None
         self.pushed = 0
+        self.first_target_s: float | None = None
 
-    def append(self, piece: Chunk) -> None:
-        """Add a piece, which must begin where `state_at(n_frames - 1)` ends."""
-        frames, report = piece.path.at_rate(self._rate_hz), piece.path.report
-        self._stretches.append(Segment(self.n_frames, self.n_frames + len(frames), piece))
-        self._frames.append(frames)
-        self.n_frames += len(frames)
-        self.complete = piece.complete
-        self.statistics.take_report(report, len(frames))
-        while len(self._stretches) > 1 and self._stretches[1].first < self.pushed - KEPT_FRAMES:
-            self._kept_from += len(self._frames.pop(0))
-            del self._stretches[0]
+    @abstractmethod
+    def frames(self, first: int, end: int) -> Array:
+        """(n, J) setpoints from `first` to before `end`, at bus rate."""
 
-    def cut(self, frame: int) -> None:
-        """Forget what comes after `frame`, to go on otherwise."""
-        n = frame + 1
-        while len(self._stretches) > 1 and self._stretches[-1].first >= n:
-            self._frames.pop()
-            self._stretches.pop()
-        last = self._stretches[-1]
-        # What it was made of still tells what was to follow, so what comes next does not.
-        self._stretches[-1] = replace(last, end=n, piece=replace(last.piece, is_last=False))
-        self._frames[-1] = self._frames[-1][: n - last.first]
-        self.n_frames, self.complete = n, False
+    @abstractmethod
+    def state_at(self, frame: int) -> JointState:
+        """Position and velocity at a frame."""
+
+    @abstractmethod
+    def posture_from(self, frame: int, n: int, *, raw: bool = False) -> PoseSequence:
+        """`n` frames of poses that follow bus frame `frame`, with layers unless `raw`."""
+
+    @property
+    @abstractmethod
+    def oldest_frame(self) -> int:
+        """The first frame that is not forgotten."""
+
+    def extend(self, n: int) -> None:  # noqa: B027 - frames of a motion are appended
+        """Make frames up to the `n`-th where frames are made on demand."""
+
+    def resume(self, goal_rad: Array, *, stands: bool) -> bool:
+        """Whether frames are made on demand now, continuing from the goals (J,) after the bus process ran out of frames."""
+        del goal_rad, stands
+        return False
+
+    def ran_dry(self, queued: int) -> bool:
+        """Whether the bus process, which has `queued` frames in hand, has none of these though more were to come."""
+        return 0 < self.pushed and not self.all_pushed and self.pushed >= self.limit and queued == 0
 
     @property
     def expected_frames(self) -> int:
-        """Frames so far and those that what is being made will have, but for the last ones in which it settles."""
-        if not self._stretches or self._stretches[-1].piece.is_last:
-            return self.n_frames
-        last = self._stretches[-1]
-        posture = last.piece.posture
-        return max(self.n_frames, last.first + round(len(posture) / posture.fps * self._rate_hz))
+        """Frames of the whole trajectory, as far as that is known."""
+        return self.n_frames
 
     @property
     def limit(self) -> int:
@@ -129,8 +105,91 @@ class Trajectory:
         """Whether the bus process has played the last frame."""
         return self.complete and self.statistics.last_frame >= self.n_frames - 1
 
+    def step_at(self, frame: int) -> JointState:
+        """Position at a frame and the difference quotient up to it, from which the limiter continues."""
+        if frame <= self.oldest_frame:
+            return self.state_at(frame)
+        before, here = self.frames(frame - 1, frame + 1)
+        return JointState(here.copy(), (here - before) * self._rate_hz)
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """A block of a path.
+
+    Attributes:
+        path: of the joints.
+        posture: the poses from its first frame to the end of the segment that is being made, later chunks included.
+        raw: the same without layers.
+        is_last: whether the segment ends with it.
+        complete: whether the trajectory ends with it.
+    """
+
+    path: JointPath
+    posture: PoseSequence
+    raw: PoseSequence
+    is_last: bool
+    complete: bool
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """A chunk in its trajectory: its bus frames begin at `first` and end before `end`."""
+
+    first: int
+    end: int
+    chunk: Chunk
+
+
+class PathTrajectory(Trajectory):
+    """Frames of a motion, appended chunk by chunk."""
+
+    def __init__(
+        self, plan_id: int, command_id: str, epoch: int, rate_hz: float, statistics: TrajectoryStatistics
+    ) -> None:
+        super().__init__(plan_id, command_id, epoch, rate_hz, statistics)
+        self._placed: list[_Placed] = []
+        self._frames: list[Array] = []
+        self._kept_from = 0
+
+    def append(self, chunk: Chunk) -> None:
+        """Add a chunk, which must begin where `state_at(n_frames - 1)` ends."""
+        frames, report = chunk.path.at_rate(self._rate_hz), chunk.path.report
+        self._placed.append(_Placed(self.n_frames, self.n_frames + len(frames), chunk))
+        self._frames.append(frames)
+        self.n_frames += len(frames)
+        self.complete = chunk.complete
+        self.statistics.take_report(report, len(frames))
+        while len(self._placed) > 1 and self._placed[1].first < self.pushed - KEPT_FRAMES:
+            self._kept_from += len(self._frames.pop(0))
+            del self._placed[0]
+
+    def cut(self, frame: int) -> None:
+        """Forget the frames after `frame`, which others will replace."""
+        n = frame + 1
+        while len(self._placed) > 1 and self._placed[-1].first >= n:
+            self._frames.pop()
+            self._placed.pop()
+        last = self._placed[-1]
+        # The poses that were to follow are still those of this chunk, so the next chunk does not add to them.
+        self._placed[-1] = replace(last, end=n, chunk=replace(last.chunk, is_last=False))
+        self._frames[-1] = self._frames[-1][: n - last.first]
+        self.n_frames, self.complete = n, False
+
+    @property
+    def oldest_frame(self) -> int:
+        return self._kept_from
+
+    @property
+    def expected_frames(self) -> int:
+        """Frames so far and those that the segment being made will have, but for the last ones in which it settles."""
+        if not self._placed or self._placed[-1].chunk.is_last:
+            return self.n_frames
+        last = self._placed[-1]
+        posture = last.chunk.posture
+        return max(self.n_frames, last.first + round(len(posture) / posture.fps * self._rate_hz))
+
     def frames(self, first: int, end: int) -> Array:
-        """(n, J) setpoints from `first` to before `end`, at bus rate."""
         parts: list[Array] = []
         at = self._kept_from
         for part in self._frames:
@@ -140,40 +199,29 @@ class Trajectory:
         return np.concatenate(parts) if len(parts) != 1 else parts[0]
 
     def state_at(self, frame: int) -> JointState:
-        """Position and velocity at a frame."""
-        stretch = self._stretch(frame)
-        path = stretch.piece.path
-        t_s = min((frame - stretch.first + 1) / self._rate_hz, path.duration_s)
+        placed = self._at(frame)
+        path = placed.chunk.path
+        t_s = min((frame - placed.first + 1) / self._rate_hz, path.duration_s)
         return JointState(self.frames(frame, frame + 1)[0].copy(), path.velocity_at(np.array([t_s]))[0])
 
-    def step_at(self, frame: int) -> JointState:
-        """Position at a frame and the difference quotient up to it, which is what the gate goes on from."""
-        if frame <= self._kept_from:
-            return self.state_at(frame)
-        before, here = self.frames(frame - 1, frame + 1)
-        return JointState(here.copy(), (here - before) * self._rate_hz)
-
     def posture_from(self, frame: int, n: int, *, raw: bool = False) -> PoseSequence:
-        """`n` frames of posture that follow bus frame `frame`; what is not planned stays as the last one is."""
-        stretch = self._stretch(max(0, min(frame, self.n_frames - 1)))
-        posture = stretch.piece.raw if raw else stretch.piece.posture
-        return posture.at(self._posture_frame(stretch, frame) + np.arange(n))
+        """`n` frames of poses that follow bus frame `frame`; after the last one made, that one stays."""
+        placed = self._at(max(0, min(frame, self.n_frames - 1)))
+        posture = placed.chunk.raw if raw else placed.chunk.posture
+        return posture.at(self._posture_frame(placed, frame) + np.arange(n))
 
     def rest_raw(self, frame: int) -> PoseSequence:
-        """What is to follow bus frame `frame`, made already or not, without layers; at least one frame."""
-        stretch = self._stretch(frame)
-        first = self._posture_frame(stretch, frame)
-        parts = [stretch.piece.raw[min(first, len(stretch.piece.raw) - 1) :]]
-        for before, following in pairwise(self._stretches[self._stretches.index(stretch) :]):
-            if before.piece.is_last:  # else it is in what the one before was made of
-                parts.append(following.piece.raw)
+        """The poses without layers that are to follow bus frame `frame`, made already or not; at least one frame."""
+        placed = self._at(frame)
+        first = self._posture_frame(placed, frame)
+        parts = [placed.chunk.raw[min(first, len(placed.chunk.raw) - 1) :]]
+        for before, following in pairwise(self._placed[self._placed.index(placed) :]):
+            if before.chunk.is_last:  # else the poses of the chunk before hold it already
+                parts.append(following.chunk.raw)
         return joined(parts)
 
-    def _posture_frame(self, stretch: Segment, frame: int) -> int:
-        return round((frame - stretch.first + 1) / self._rate_hz * stretch.piece.posture.fps)
+    def _posture_frame(self, placed: _Placed, frame: int) -> int:
+        return round((frame - placed.first + 1) / self._rate_hz * placed.chunk.posture.fps)
 
-    def _stretch(self, frame: int) -> Segment:
-        for stretch in self._stretches:
-            if frame < stretch.end:
-                return stretch
-        return self._stretches[-1]
+    def _at(self, frame: int) -> _Placed:
+        return next((placed for placed in self._placed if frame < placed.end), self._placed[-1])

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.poses.motion_source import MotionSource
 from daemon.poses.pose_sequence import PoseSequence, mixed, smooth_step, standing
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.skeleton import JOINT_NAMES, normalise
@@ -41,7 +42,7 @@ class IdleStyle:
 STYLES = {"calm": IdleStyle(1.5, 6.0, 2.5, 0.6), "lively": IdleStyle(2.5, 16.0, 6.0, 1.8)}
 
 
-class IdleSource:
+class IdleSource(MotionSource):
     """Idle movements without end."""
 
     def __init__(self, style: str, seed: int = 0) -> None:
@@ -49,11 +50,6 @@ class IdleSource:
         self._phase = np.random.default_rng(seed).uniform(0, 2 * np.pi, (3, 3))
         self._frame = 0
         self._finishing = False
-
-    @property
-    def ready(self) -> bool:
-        """Always."""
-        return True
 
     def finish(self) -> None:
         """The next stretch leads to stillness and is the last."""

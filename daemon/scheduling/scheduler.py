@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import time
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.host.clock import REAL_CLOCK, LoopClock
 from daemon.playback.bus_follower import BusFollower
 from daemon.playback.playback import Playback
 from daemon.playback.setpoint_buffer import SetpointBuffer
@@ -67,13 +67,15 @@ class Scheduler:
         follower: BusFollower,
         ledger: Ledger,
         sources: SourceFactory,
+        clock: LoopClock = REAL_CLOCK,
     ) -> None:
+        self._clock = clock
         self._config, self._link, self._ledger, self._sources = config, link, ledger, sources
         self.planner, self.follower = planner, follower
         self.layers = Layers(config.idle)
         self.halts = StopOrdering()
         self._waiting = CommandQueue()
-        self._player = Playback(planner, follower, ledger, self.layers, sources.verdict)
+        self._player = Playback(planner, follower, ledger, self.layers, sources.verdict, clock)
 
     @property
     def machine(self) -> StateMachine:
@@ -240,7 +242,7 @@ class Scheduler:
     async def _perform(self, pending: QueuedCommand) -> None:
         entry = pending.entry
         try:
-            prepared = await self._sources.prepare(entry, self.planner)
+            prepared = await self._sources.prepare(entry, self._player)
             if pending.cancelled_by:  # Python 3.11's `wait_for` may swallow the cancellation
                 return
             self._check_deadline(entry)
@@ -249,8 +251,8 @@ class Scheduler:
             self._ledger.emit(entry, prepared.accepted(entry, plan_id))
             await self._turn(pending)
             arming = Progress(plan_id=plan_id, stage="arming")
-            await until_armed(self.follower, self._link, lambda: self._ledger.emit(entry, arming))
-            if time.monotonic() > entry.deadline_s:
+            await until_armed(self.follower, self._link, lambda: self._ledger.emit(entry, arming), self._clock)
+            if self._clock.now_s() > entry.deadline_s:
                 raise too_late(entry, "its turn came too late")
             await self._yield(pending)
             await self._take_over(pending, prepared, plan_id)
@@ -259,14 +261,12 @@ class Scheduler:
         except CommandRefusedError as error:
             self._ledger.emit(entry, refused_later(error))
         except RetargetError as error:
-            self.planner.give_up()
             event = failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
             self._ledger.emit(entry, event)
         except asyncio.CancelledError:
             self._ledger.emit(entry, Cancelled(plan_id=0, by=pending.cancelled_by or "shutdown"))
         except Exception as error:  # one command must not end the daemon
             log.exception("playing %r failed", entry.request.words)
-            self.planner.give_up()
             self._ledger.emit(entry, failed("internal", str(error), "", "see the daemon's log"))
         finally:
             self._waiting.remove(pending)
@@ -277,7 +277,7 @@ class Scheduler:
         Raises:
             NotPlayableError: it cannot.
         """
-        request, earliest_s = entry.request, time.monotonic()
+        request, earliest_s = entry.request, self._clock.now_s()
         if request.deadline_s is None:
             return
         found = "the motion was ready too late"
@@ -296,22 +296,22 @@ class Scheduler:
         if request.when == "now":
             self._overtake(pending)
         elif request.when == "at" and request.at_s is not None:
-            while (left_s := request.at_s - time.monotonic()) > 0:
-                await asyncio.sleep(min(left_s, 1.0))
+            while (left_s := request.at_s - self._clock.now_s()) > 0:
+                await self._clock.sleep(min(left_s, 1.0))
             self._waiting.renew(pending)
             self._overtake(pending)
         elif request.when == "after":
             while self._player.entry is not None or not self._waiting.is_next(pending):
-                await asyncio.sleep(TICK_S)
-                if time.monotonic() > pending.entry.deadline_s:
+                await self._clock.sleep(TICK_S)
+                if self._clock.now_s() > pending.entry.deadline_s:
                     raise too_late(pending.entry, "its turn did not come in time")
         pending.turn = True
 
     async def _yield(self, pending: QueuedCommand) -> None:
         """Wait a moment where a newer command may be about to take over: the robot does not set out twice."""
-        end_s = min(time.monotonic() + YIELD_S, pending.entry.deadline_s)
-        while self._waiting.may_be_overtaken(pending) and time.monotonic() < end_s:
-            await asyncio.sleep(TICK_S)
+        end_s = min(self._clock.now_s() + YIELD_S, pending.entry.deadline_s)
+        while self._waiting.may_be_overtaken(pending) and self._clock.now_s() < end_s:
+            await self._clock.sleep(TICK_S)
 
     async def _take_over(self, pending: QueuedCommand, prepared: PreparedSource, plan_id: int) -> None:
         """Make it what is played; what was played ends in `cancelled`."""

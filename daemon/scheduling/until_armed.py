@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
-import time
 from collections.abc import Callable
 
+from daemon.host.clock import LoopClock
 from daemon.playback.bus_follower import BusFollower
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.machine import CommandRefusedError, RobotState, Trigger
@@ -16,7 +15,7 @@ ARM_ANSWER_S = 2.0
 """How long the bus process may take to begin arming."""
 
 
-async def until_armed(follower: BusFollower, link: BusLink, tell: Callable[[], None]) -> None:
+async def until_armed(follower: BusFollower, link: BusLink, tell: Callable[[], None], clock: LoopClock) -> None:
     """Arm where a command may do so, and wait until the robot can move; `tell` is called when it has to be armed first.
 
     Raises:
@@ -30,11 +29,11 @@ async def until_armed(follower: BusFollower, link: BusLink, tell: Callable[[], N
         link.request(BusRequest.ARM)
     if machine.state in (RobotState.LIMP, RobotState.ARMING):
         tell()
-    asked_s = time.monotonic()
+    asked_s = clock.now_s()
     while not follower.can_take_over:
-        waited_s = time.monotonic() - asked_s
+        waited_s = clock.now_s() - asked_s
         if waited_s > (ARM_ANSWER_S if machine.state is RobotState.LIMP else ARM_TIMEOUT_S):
             do = f"the robot was not ready after {waited_s:.0f} s; see the log and `mmmd status`"
             raise CommandRefusedError(machine.state, Trigger.SAY, ("arm",), do)
-        await asyncio.sleep(TICK_S)
+        await clock.sleep(TICK_S)
         machine.check(Trigger.SAY)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from daemon.control.derating import DeratedBy
 from daemon.dynamixel.health import Health
 from daemon.dynamixel.reading import UNKNOWN
 from daemon.dynamixel.registers.models import MODELS
+from daemon.host.clock import REAL_CLOCK, Clock
 from daemon.shared_memory.bus_link import BusLink, BusState
 from daemon.wire.status import ServoHealth
 from retarget.robot.robot import RobotModel
@@ -39,8 +39,8 @@ class BusView:
         lost: cycles that were overwritten before they were read.
     """
 
-    def __init__(self, link: BusLink, robot: RobotModel) -> None:
-        self._link, self._robot = link, robot
+    def __init__(self, link: BusLink, robot: RobotModel, clock: Clock = REAL_CLOCK) -> None:
+        self._link, self._robot, self._clock = link, robot, clock
         self._servo_map = JointServoMap(robot)
         self.index = 0
         self.at_rest = True
@@ -64,11 +64,11 @@ class BusView:
 
     def update(self) -> tuple[NDArray[Any], int]:
         """Cycles since the last call, and how many were lost between."""
-        looked_s = time.monotonic()
+        looked_s = self._clock.now_s()
         records, self.index, lost = self._link.cycles_since(self.index)
         self.lost += lost
         if len(records) or self._last_cycle_s is None:  # None: the bus process is ready, its first cycle is to come
-            self._last_cycle_s = time.monotonic()
+            self._last_cycle_s = self._clock.now_s()
         self.silent_s = max(0.0, looked_s - self._last_cycle_s)
         if len(records):
             last = records[-1]
@@ -87,7 +87,7 @@ class BusView:
         """The bus process has just said that it is ready, in `state`: its silence counts from here."""
         self.update()  # what one before it has published is not its own
         self.state, self.at_rest = state, True
-        self.silent_s, self._last_cycle_s = 0.0, time.monotonic()
+        self.silent_s, self._last_cycle_s = 0.0, self._clock.now_s()
 
     def health(self) -> list[ServoHealth]:
         """Each servo as the bus process sees it now; none before its first cycle."""

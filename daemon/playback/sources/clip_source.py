@@ -1,16 +1,11 @@
-"""What a command plays, stretch by stretch: once, several times, or for ever.
-
-A score is asked for its next stretch shortly before it is due. Whatever can make postures in time order can be one:
-a clip here, idle movements in `daemon.poses.idle`, a generator that tells a story.
-"""
+"""A clip as a source of poses: once, several times, or for ever."""
 
 from __future__ import annotations
-
-from typing import Protocol
 
 import numpy as np
 
 from daemon.poses.cycles import Marks, after_loop, closed, marks_of
+from daemon.poses.motion_source import MotionSource
 from daemon.poses.pose_sequence import PoseSequence, at_tempo, faded_in, joined, mirrored, scaled
 from daemon.wire.requests import Play
 
@@ -20,20 +15,7 @@ LOOP_STRETCH_S = 1.5
 """Rounds are joined to stretches of at least this length."""
 
 
-class MotionSource(Protocol):
-    """Stretches of posture in order."""
-
-    @property
-    def ready(self) -> bool:
-        """Whether `next` has something without waiting; asked often, in the event loop."""
-        ...
-
-    def next(self) -> tuple[PoseSequence, bool]:
-        """The next stretch, and whether it is the last; not called again after that."""
-        ...
-
-
-class ClipSource:
+class ClipSource(MotionSource):
     """A clip as the options of `Play` want it."""
 
     def __init__(self, posture: PoseSequence, play: Play, marks: Marks | None = None) -> None:
@@ -43,18 +25,12 @@ class ClipSource:
         self._rounds_left = -1 if play.loop else play.repeat - 1
         self._begun = False
 
-    @property
-    def ready(self) -> bool:
-        """Always: the clip is there."""
-        return True
-
     def next(self) -> tuple[PoseSequence, bool]:
-        """The next stretch, and whether it is the last."""
         stretch, last = self._next()
         return varied(stretch, self._play), last
 
     def finish(self) -> None:
-        """Go round no more: the next stretch leads to the end."""
+        """Go round no more: the next segment leads to the end."""
         self._rounds_left = 0
 
     def _next(self) -> tuple[PoseSequence, bool]:

@@ -19,7 +19,7 @@ from daemon.errors import ClipError
 from daemon.generator.client import GeneratorClient, no_answer
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.gestures.library import GestureLibrary
-from daemon.playback.sources.clip_source import ClipSource, MotionSource, varied
+from daemon.playback.sources.clip_source import ClipSource, varied
 from daemon.playback.sources.kept_motions import KeptMotion, KeptMotions
 from daemon.playback.sources.originals import Originals
 from daemon.playback.sources.preview_source import PreviewSource
@@ -28,6 +28,7 @@ from daemon.playback.sources.story_source import SceneNews, StorySource
 from daemon.playback.sources.stream_source import StreamSource
 from daemon.poses.cycles import Marks
 from daemon.poses.key_poses import KeyPose, led_through
+from daemon.poses.motion_source import MotionSource
 from daemon.poses.pose_sequence import PoseSequence, joined, mirrored, posture_of
 from daemon.settings.config import DaemonConfig
 from daemon.state.lease import LeaseClock

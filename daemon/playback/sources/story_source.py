@@ -17,8 +17,10 @@ import numpy as np
 
 from daemon.generator.client import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
+from daemon.poses.motion_source import MotionSource
 from daemon.poses.pose_sequence import PoseSequence, at_steps, joined, mirrored, posture_of, scaled, standing
 from daemon.state.replies import NotPlayableError, generator_failed
+from daemon.wire.events import Progress
 from daemon.wire.requests import Story
 from mmm_core.recognition.seen import Scene, scenes_seen, sentence
 
@@ -64,12 +66,8 @@ class _Piece:
     news: tuple[SceneNews, ...]
 
 
-class StorySource:
-    """A story as the options of `Play` want it. `next` may run in a worker thread, all else in the event loop.
-
-    Attributes:
-        news: of the scenes whose stretches were given out and not told of yet.
-    """
+class StorySource(MotionSource):
+    """A story as the options of `Play` want it."""
 
     def __init__(self, request: Story, generator: GeneratorClient, timeout_s: float) -> None:
         self._request, self._generator, self._timeout_s = request, generator, timeout_s
@@ -84,7 +82,7 @@ class StorySource:
         self._task: asyncio.Task[None] | None = None
         self._failure: NotPlayableError | None = None
         self._tempo = _Tempo(request.tempo)
-        self.news: deque[SceneNews] = deque()
+        self._unreported: deque[SceneNews] = deque()
         self.generate_ms = 0.0
 
     async def begin(self) -> list[SceneNews]:
@@ -121,8 +119,19 @@ class StorySource:
             assert self._failure is not None, "asked only when it is ready"
             raise self._failure
         piece = self._pieces.popleft()
-        self.news.extend(piece.news)
+        self._unreported.extend(piece.news)
         return piece.posture, piece.last
+
+    def reports(self, plan_id: int) -> list[Progress]:
+        """How the scenes were taken whose poses have been given out since the last call."""
+        events: list[Progress] = []
+        while self._unreported:
+            n = self._unreported.popleft()
+            events.append(Progress(
+                plan_id=plan_id, stage="scene", scene=n.number, text=n.text, status=n.status, reason=n.reason,
+                understood=n.understood, scope_score=round(n.scope_score, 4),
+            ))  # fmt: skip
+        return events
 
     def finish(self) -> None:
         """Go round no more: the story ends with the round that is under way."""

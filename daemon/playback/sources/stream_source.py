@@ -80,11 +80,6 @@ class StreamSource:
         self.targets = self.bad = self.clipped = 0
         self.begun = False
 
-    @property
-    def ready(self) -> bool:
-        """Never: its frames are asked for one by one."""
-        return False
-
     def begin(self, start: JointState, now_s: float) -> None:
         """The joints are led by it from here on."""
         self.go_on(start)

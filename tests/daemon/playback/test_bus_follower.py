@@ -10,6 +10,7 @@ from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.machine import RobotState, StateMachine
 from retarget.robot.loading import load_robot
+from sim.clock import VirtualClock
 from tests.support.rig import Rig, lead_to, rig
 
 ROBOT = load_robot("reference")
@@ -18,16 +19,15 @@ ROBOT = load_robot("reference")
 class Front:
     """The front's end of a rig, on a clock that only `Front` moves."""
 
-    def __init__(self, r: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.rig, self.now_s = r, 0.0
-        monkeypatch.setattr("daemon.state.bus_view.time.monotonic", lambda: self.now_s)
-        view = BusView(r.link, ROBOT)
+    def __init__(self, r: Rig) -> None:
+        self.rig, self.clock = r, VirtualClock()
+        view = BusView(r.link, ROBOT, self.clock)
         self.machine = StateMachine()
         self.follower = BusFollower(r.link, view, SetpointBuffer(ROBOT, r.link, view, 0.1), self.machine)
 
     def tick(self, cycles: int = 1, seconds: float = 0.01) -> RobotState:
         self.rig.cycle(cycles)
-        self.now_s += seconds
+        self.clock.sleep_until(self.clock.now_s() + seconds)
         self.follower.update()
         return self.machine.state
 
@@ -38,10 +38,10 @@ class Front:
 
 
 @pytest.mark.parametrize("state", ["limp", "arming", "holding", "playing", "stopping", "parking"])
-def test_a_bus_process_that_was_silent_for_a_while_and_comes_back_latches_the_fault_that_was_told(monkeypatch, state):
+def test_a_bus_process_that_was_silent_for_a_while_and_comes_back_latches_the_fault_that_was_told(state):
     """It took up what it was doing, which cannot follow a fault, and ended in an e-stop that nobody had given."""
     with rig("reference") as r:
-        front = Front(r, monkeypatch)
+        front = Front(r)
         front.tick()
         if state == "arming":
             r.link.request(BusRequest.ARM)
@@ -61,9 +61,9 @@ def test_a_bus_process_that_was_silent_for_a_while_and_comes_back_latches_the_fa
         r.assert_limits_kept() if had_torque else None
 
 
-def test_a_reset_given_while_the_bus_process_was_silent_is_carried_out_after_the_fault(monkeypatch):
+def test_a_reset_given_while_the_bus_process_was_silent_is_carried_out_after_the_fault():
     with rig("reference") as r:
-        front = Front(r, monkeypatch)
+        front = Front(r)
         front.arm()
         front.tick(cycles=0, seconds=1.2 * BUS_SILENT_S)
         r.link.request(BusRequest.RESET)
@@ -71,9 +71,9 @@ def test_a_reset_given_while_the_bus_process_was_silent_is_carried_out_after_the
         assert states[-1] is RobotState.LIMP and RobotState.ESTOP not in states and not any(r.torque)
 
 
-def test_what_cannot_follow_is_an_e_stop_that_says_why(monkeypatch) -> None:
+def test_what_cannot_follow_is_an_e_stop_that_says_why() -> None:
     with rig("reference") as r:
-        front = Front(r, monkeypatch)
+        front = Front(r)
         front.arm()
         front.machine.state = RobotState.FAULT  # which the bus process knows nothing of
         front.tick()
@@ -82,9 +82,9 @@ def test_what_cannot_follow_is_an_e_stop_that_says_why(monkeypatch) -> None:
         assert "itself" in reason and "'bus holding'" in reason
 
 
-def test_an_e_stop_that_somebody_gave_has_no_reason_of_the_daemons(monkeypatch) -> None:
+def test_an_e_stop_that_somebody_gave_has_no_reason_of_the_daemons() -> None:
     with rig("reference") as r:
-        front = Front(r, monkeypatch)
+        front = Front(r)
         front.arm()
         r.link.request(BusRequest.ESTOP)
         assert front.tick() is RobotState.ESTOP and front.follower.fault_reason == ""

@@ -8,7 +8,7 @@ from collections.abc import Awaitable, Callable
 import numpy as np
 
 from daemon.generator.messages import Generated
-from daemon.playback.sources.preview_source import MOST_TRIES, PreviewSource
+from daemon.playback.sources.preview_source import PreviewSource
 from daemon.poses.pose_sequence import PoseSequence, posture_of
 from tests.support.kinematic import raised_arm
 
@@ -41,10 +41,10 @@ def same(a: PoseSequence, b: PoseSequence) -> bool:
 def test_a_motion_that_is_there_in_time_is_played_alone():
     async def run():
         score, come = await score_of()
-        assert score.ready and not score.may_go_over
+        assert score.ready and not score.revised
         await come()
         stretch, last = score.next()
-        assert last and same(stretch, posture_of(WHOLE)) and not score.may_go_over
+        assert last and same(stretch, posture_of(WHOLE)) and not score.revised
 
     asyncio.run(run())
 
@@ -54,9 +54,9 @@ def test_a_motion_that_comes_while_the_draft_is_played_takes_its_place():
         score, come = await score_of()
         stretch, last = score.next()
         assert not last and same(stretch, posture_of(DRAFT))
-        assert not score.ready and not score.may_go_over
+        assert not score.ready and not score.revised
         await come()
-        assert score.ready and score.may_go_over and score.tries_left == MOST_TRIES
+        assert score.ready and score.revised
         assert same(score.rest(n_left=len(DRAFT.joints_m) - 5), posture_of(WHOLE)[5:])
 
     asyncio.run(run())
@@ -78,7 +78,7 @@ def test_without_a_motion_the_draft_is_all():
         score, come = await score_of()
         score.next()
         await come(ValueError("the generator was killed"))
-        assert score.ready and not score.may_go_over
+        assert score.ready and not score.revised
         stretch, last = score.next()
         assert last and same(stretch, posture_of(DRAFT).at(np.full(2, len(DRAFT.joints_m) - 1)))
 

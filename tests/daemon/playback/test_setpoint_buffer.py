@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -11,11 +13,16 @@ from hypothesis import strategies as st
 
 from daemon.control.control_loop import ControlLoop
 from daemon.dynamixel.servo_bus import ServoBus
+from daemon.playback.chunk_maker import ChunkMaker
 from daemon.playback.latency_estimate import LatencyEstimate
 from daemon.playback.setpoint_buffer import SetpointBuffer
+from daemon.playback.splicer import Splice, Splicer
+from daemon.playback.trajectory import Chunk, PathTrajectory
+from daemon.poses.layers import Layers
 from daemon.poses.pose_sequence import at_tempo, distance_deg, posture_of, standing
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from daemon.state.bus_view import BusView
+from retarget.errors import RetargetError
 from retarget.path.limits import JointLimits
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus
@@ -41,8 +48,9 @@ class Bench:
         self.streamer = ControlLoop(
             ROBOT, ServoBus.on_port(port, ROBOT.servos, self.clock), self.link, self.clock, watch_front=False
         )
-        self.view = BusView(self.link, ROBOT)
-        self.planner = SetpointBuffer(ROBOT, self.link, self.view, queue_s)
+        self.view = BusView(self.link, ROBOT, self.clock)
+        self.buffer = SetpointBuffer(ROBOT, self.link, self.view, queue_s, clock=self.clock)
+        self.splicer, self.maker = Splicer(self.buffer, self.clock), ChunkMaker(ROBOT, Layers("off"))
         self.records: list[np.ndarray] = []
 
     def cycle(self, n: int = 1, pump: bool = True) -> None:
@@ -51,10 +59,10 @@ class Bench:
             self.streamer.cycle()
             self.clock.sleep_until(due_s)
             before = self.view.index
-            self.planner.read_cycles()
+            self.buffer.read_cycles()
             self.records += list(self.link.cycles_since(before)[0])
             if pump:
-                self.planner.pump()
+                self.buffer.pump()
 
     def arm(self) -> None:
         self.link.request(BusRequest.ARM)
@@ -64,22 +72,27 @@ class Bench:
                 return
         raise AssertionError(f"not armed: {self.view.state}, {self.link.text}")
 
-    def play(self, motion, plan_name: str = "c", retarget_cycles: int = 2):
-        """Take over as the performer does; retargeting takes some bus cycles meanwhile."""
-        posture, took_s = posture_of(motion), 0.0
+    def play(self, motion, plan_name: str = "c", retarget_cycles: int = 2) -> PathTrajectory:
+        """Take over as a `MotionPlayer` does; retargeting takes some bus cycles meanwhile."""
+        posture, late_s = posture_of(motion), 0.0
         while True:
-            start = self.planner.hand_over(took_s=took_s)
-            pieces = list(self.planner.pieces(posture, posture, start.state, complete=True))
-            self.cycle(retarget_cycles)
-            if not self.planner.hand_over_missed:
-                break
-            took_s += PERIOD_S * (retarget_cycles + 1)
-        return self.commit(pieces, plan_name)
+            with self.splicer.splice(late_s=late_s) as splice:
+                chunks = list(self.chunks(posture, splice))
+                self.cycle(retarget_cycles)
+                if not self.splicer.missed(splice):
+                    return self.place(splice, chunks, plan_name)
+            late_s += PERIOD_S * (retarget_cycles + 1)
 
-    def commit(self, pieces, plan_name: str = "c"):
-        plan = self.planner.commit(pieces[0], self.planner.new_plan_id(), plan_name, self.planner.epoch, 0)
-        for piece in pieces[1:]:
-            plan.append(piece)
+    def chunks(self, posture, splice: Splice) -> Iterator[Chunk]:
+        return self.maker.chunks(posture, splice.state, None, complete=True)
+
+    def place(self, splice: Splice, chunks: list[Chunk], plan_name: str = "c") -> PathTrajectory:
+        statistics = self.buffer.statistics(plan_id := self.buffer.new_plan_id(), 0)
+        plan = PathTrajectory(plan_id, plan_name, self.buffer.epoch, ROBOT.bus.rate_hz, statistics)
+        plan.append(chunks[0])
+        self.splicer.follow_with(splice, plan)
+        for chunk in chunks[1:]:
+            plan.append(chunk)
         return plan
 
     def finish(self) -> None:
@@ -138,12 +151,13 @@ def test_about_the_asked_time_of_setpoints_is_in_hand(bench):
 def test_the_length_of_a_plan_is_told_from_its_first_piece_on(bench):
     bench.arm()
     long = posture_of(RIGHT).at(np.arange(100))
-    pieces = list(bench.planner.pieces(long, long, bench.planner.hand_over().state, complete=True))
-    assert len(pieces) > 2
-    plan = bench.planner.commit(pieces[0], 1, "c", bench.planner.epoch, 0)
+    with bench.splicer.splice() as splice:
+        chunks = list(bench.chunks(long, splice))
+        assert len(chunks) > 2
+        plan = bench.place(splice, chunks[:1])
     assert plan.expected_frames == 5 * ROBOT.bus.rate_hz
-    for piece in pieces[1:]:
-        plan.append(piece)
+    for chunk in chunks[1:]:
+        plan.append(chunk)
     assert plan.complete and 0 <= plan.expected_frames - 5 * ROBOT.bus.rate_hz <= 0.8 * ROBOT.bus.rate_hz
 
 
@@ -152,13 +166,12 @@ def test_what_is_in_hand_is_taken_back_when_another_motion_takes_over(bench):
     bench.arm()
     bench.play(RIGHT)
     bench.cycle(40)
-    for _ in range(20):  # first pieces have been quick
-        next(bench.planner.pieces(LEFT_POSTURE, LEFT_POSTURE, bench.planner.hand_over().state, complete=True))
-    bench.planner.give_up()
-    bench.planner._queue_frames = 40
+    for _ in range(20):  # first chunks have been quick
+        bench.splicer.latency.took(0.03)
+    bench.buffer._queue_frames = 40
     bench.cycle(10)
     assert bench.link.queued_frames >= 35
-    lead = bench.planner._lead.seconds * ROBOT.bus.rate_hz
+    lead = bench.splicer.latency.seconds * ROBOT.bus.rate_hz
     plan = bench.play(LEFT, retarget_cycles=0)
     first = len(bench.records)
     bench.cycle(60)
@@ -196,10 +209,10 @@ def test_what_is_committed_is_what_will_have_been_played(bench, ahead_s, fps):
     plan = bench.play(replace(RIGHT, fps=fps))
     whole = at_tempo(posture_of(RIGHT), fps / 20.0)
     bench.cycle(30)
-    bench.planner._lead = LatencyEstimate(0.03)  # measured, else
-    shown = bench.planner.committed(8, ahead_s)
+    bench.splicer.latency = LatencyEstimate(0.03)  # measured, else
+    shown = bench.splicer.committed(8, ahead_s)
     assert shown.fps == whole.fps == 20.0
-    end_s = (plan.statistics.last_frame + 1) * PERIOD_S + ahead_s + bench.planner._lead.seconds
+    end_s = (plan.statistics.last_frame + 1) * PERIOD_S + ahead_s + bench.splicer.latency.seconds
     at = round(end_s * whole.fps)
     off_deg = [distance_deg(shown, whole.at(np.arange(at + d - 7, at + d + 1))).max() for d in (-1, 0, 1)]
     assert min(off_deg) < (1e-4 if fps == 20.0 else 10) < max(off_deg)
@@ -207,10 +220,10 @@ def test_what_is_committed_is_what_will_have_been_played(bench, ahead_s, fps):
 
 def test_what_is_committed_at_rest_is_how_the_robot_is_held(bench):
     bench.arm()
-    assert float(distance_deg(bench.planner.committed(32, 0.1), standing()).max()) < 1e-4
+    assert float(distance_deg(bench.splicer.committed(32, 0.1), standing()).max()) < 1e-4
     bench.play(RIGHT)
     bench.finish()
-    held = bench.planner.committed(32, 0.1)
+    held = bench.splicer.committed(32, 0.1)
     assert len(held) == 32 and float(distance_deg(held, posture_of(RIGHT)[-1:]).max()) < 1e-4
 
 
@@ -237,7 +250,7 @@ def test_after_a_stop_nothing_of_the_old_plan_is_played(bench):
     held = bench.goals()[-1]
     bench.cycle(50)  # the pump goes on; nothing of the stopped plan comes
     assert np.array_equal(bench.goals()[-1], held)
-    assert not plan.played and not bench.planner.running
+    assert not plan.played and not bench.buffer.running
     bench.play(LEFT)  # starts from where it was stopped
     bench.finish()
     assert_within_limits(bench)
@@ -247,17 +260,18 @@ def test_a_late_front_brakes_and_the_next_motion_starts_from_there(bench):
     bench.arm()
     bench.play(RIGHT)
     bench.cycle(20)
-    start = bench.planner.hand_over()
-    next(bench.planner.pieces(LEFT_POSTURE, LEFT_POSTURE, start.state, complete=True))
-    bench.cycle(60, pump=True)  # retargeting takes far longer than foreseen
-    assert bench.planner.hand_over_missed
+    with bench.splicer.splice() as splice:
+        next(bench.chunks(LEFT_POSTURE, splice))
+        bench.cycle(60, pump=True)  # retargeting takes far longer than foreseen
+        assert bench.splicer.missed(splice)
     for _ in range(300):
         bench.cycle()
         if not bench.records[-1]["velocity_rad_s"].any():
             break
-    start = bench.planner.hand_over().state
-    assert np.array_equal(start.position_rad, bench.view.goal_rad) and not start.velocity_rad_s.any()
-    bench.commit(list(bench.planner.pieces(LEFT_POSTURE, LEFT_POSTURE, start, complete=True)))
+    with bench.splicer.splice() as splice:
+        start = splice.state
+        assert np.array_equal(start.position_rad, bench.view.goal_rad) and not start.velocity_rad_s.any()
+        bench.place(splice, list(bench.chunks(LEFT_POSTURE, splice)))
     bench.finish()
     assert_within_limits(bench)
 
@@ -268,19 +282,19 @@ def test_a_front_held_up_just_before_it_hands_over_leaves_out_what_was_played(be
     bench.arm()
     old = bench.play(RIGHT)
     bench.cycle(25)
-    start = bench.planner.hand_over()
-    pieces = list(bench.planner.pieces(LEFT_POSTURE, LEFT_POSTURE, start.state, complete=True))
-    assert start.frame is not None
-    while bench.records[-1]["frame"] < start.frame:
-        bench.cycle()
-    assert not bench.planner.hand_over_missed, "what follows the frame of the hand-over is still to be taken"
-    bench.cycle(late, pump=False)  # between the look and the commit
-    assert bench.planner.hand_over_missed == (late > 0)
-    plan = bench.commit(pieces)
+    with bench.splicer.splice() as splice:
+        chunks = list(bench.chunks(LEFT_POSTURE, splice))
+        assert splice.frame is not None
+        while bench.records[-1]["frame"] < splice.frame:
+            bench.cycle()
+        assert not bench.splicer.missed(splice), "the frame after the splice is still to be played"
+        bench.cycle(late, pump=False)  # between the look and the splice
+        assert bench.splicer.missed(splice) == (late > 0)
+        plan = bench.place(splice, chunks)
     first = len(bench.records)
     bench.cycle(30)
     played = [(int(r["plan_id"]), int(r["frame"])) for r in bench.records[first - late : first + 20]]
-    assert played[:late] == [(old.plan_id, start.frame + 1 + k) for k in range(late)]
+    assert played[:late] == [(old.plan_id, splice.frame + 1 + k) for k in range(late)]
     assert played[late:] == [(plan.plan_id, late + k) for k in range(20)], "frame by frame, none of the old ones again"
     jumps = np.abs(np.diff(np.array([r["setpoint_rad"] for r in bench.records[first - 3 : first + 10]]), n=2, axis=0))
     assert jumps.max() < most_jump_rad, "both begin alike; what they differ by later, the gate smooths"
@@ -288,11 +302,13 @@ def test_a_front_held_up_just_before_it_hands_over_leaves_out_what_was_played(be
     assert_within_limits(bench)
 
 
-def test_giving_up_lets_the_running_plan_end(bench):
+@pytest.mark.parametrize("error", [None, RetargetError("no way")])
+def test_a_splice_that_is_left_lets_the_running_trajectory_end(bench, error):
     bench.arm()
     plan = bench.play(RIGHT)
     bench.cycle(20)
-    bench.planner.hand_over()
-    bench.planner.give_up()
+    with contextlib.suppress(RetargetError), bench.splicer.splice():
+        if error is not None:
+            raise error
     bench.finish()
     assert plan.played

@@ -70,7 +70,7 @@ def test_scenes_are_asked_in_order_each_with_what_was_told():
     score, stretches, ended = asyncio.run(tell(story("a", "b", "c"), teller))
     assert teller.asked == [("a", b"", False), ("b", b"1", False), ("c", b"2", True)]
     assert ended and sum(map(len, stretches)) == 60
-    assert [(n.number, n.status) for n in score.news] == [(1, "accepted"), (2, "accepted"), (3, "accepted")]
+    assert [(n.scene, n.status) for n in score.reports(1)] == [(1, "accepted"), (2, "accepted"), (3, "accepted")]
 
 
 def test_repeats_go_round_the_whole_story_in_one_motion():
@@ -116,7 +116,7 @@ def test_short_scenes_are_joined_to_stretches_worth_playing():
 def test_what_is_left_out_is_told_and_the_rest_goes_on():
     score, stretches, ended = asyncio.run(tell(story("away", "b", "away", "d"), Teller()))
     assert ended and sum(map(len, stretches)) == 40
-    assert [n.status for n in score.news] == ["rejected", "accepted", "rejected", "accepted"]
+    assert [n.status for n in score.reports(1)] == ["rejected", "accepted", "rejected", "accepted"]
 
 
 @pytest.mark.parametrize("options", [{}, {"loop": True}, {"repeat": 1000}], ids=str)

@@ -10,9 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from daemon.playback.chunk_maker import ChunkMaker
 from daemon.playback.setpoint_buffer import SetpointBuffer
 from daemon.playback.sources.stream_source import StreamSource
+from daemon.playback.splicer import Splicer
 from daemon.playback.stream_trajectory import StreamTrajectory
+from daemon.poses.layers import Layers
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.lease import LeaseClock, LeaseState
@@ -30,7 +33,8 @@ class Streaming:
     def __init__(self, bench: Rig) -> None:
         self.bench, self.robot = bench, bench.robot
         self.view = BusView(bench.link, bench.robot)
-        self.planner = SetpointBuffer(bench.robot, bench.link, self.view, 0.1)
+        self.planner = SetpointBuffer(bench.robot, bench.link, self.view, 0.1, clock=bench.clock)
+        self.splicer, self.person = Splicer(self.planner, bench.clock), ChunkMaker(bench.robot, Layers("off")).person
         self.guard = SafetyFilter(bench.robot)
         self.plan_ids = 0
         self.score = self.lease()
@@ -49,9 +53,14 @@ class Streaming:
         self.planner.read_cycles()
         score = StreamSource(self.robot, self.guard, LeaseClock(0.2, 5.0), "test")
         self.score = score
-        score.begin(self.planner.hand_over_at_once().state, self.now_s)
         self.plan_ids += 1
-        self.planner.commit_stream(score, self.plan_ids, f"lease {self.plan_ids}", self.planner.epoch, 0)
+        with self.splicer.splice_at_once() as splice:
+            score.begin(splice.state, self.now_s)
+            statistics, rate_hz = self.planner.statistics(self.plan_ids, 0), self.robot.bus.rate_hz
+            plan = StreamTrajectory(
+                self.plan_ids, f"lease {self.plan_ids}", self.planner.epoch, rate_hz, statistics, score, self.person
+            )
+            self.splicer.follow_with(splice, plan)
         return score
 
     def cycle(self, n: int = 1, *, fed: bool = True) -> None:

@@ -1,0 +1,81 @@
+"""Poses of a person to joint paths of the robot, chunk by chunk: layers, fade from the poses before, retargeting."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.playback.trajectory import Chunk
+from daemon.poses.layers import Layers
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, faded_in, poses_of_joints, standing
+from mmm_core.motion.motion import FPS
+from retarget.human.human import read_human
+from retarget.path.paths import JointState
+from retarget.pipeline import BLOCK_FRAMES, Retargeter
+from retarget.robot.robot import RobotModel
+from retarget.robot_to_human import joints_of_path
+
+FADE_FRAMES = 8
+"""Frames of posture (0.4 s) over which a motion grows out of the poses before it."""
+_EASY_DEG_S = 60.0
+"""Degrees a second at most with which idle movements lead back to standing."""
+
+
+class ChunkMaker:
+    """Makes the chunks of one robot, one at a time; `next` of them runs in a worker thread.
+
+    Args:
+        robot: the robot.
+        layers: gaze.
+    """
+
+    def __init__(self, robot: RobotModel, layers: Layers) -> None:
+        self._layers, self._retargeter, self._rate_hz = layers, Retargeter(robot), robot.bus.rate_hz
+
+    def chunks(
+        self, raw: PoseSequence, start: JointState, before: PoseSequence | None, *, complete: bool, easy: bool = False
+    ) -> Iterator[Chunk]:
+        """The path of poses, chunk by chunk as each is made.
+
+        Args:
+            raw: poses without layers.
+            start: of the joints.
+            before: poses out of which the first ones grow; None where these follow by themselves.
+            complete: whether the trajectory ends with them, at rest.
+            easy: grow out of `before` slowly.
+
+        Raises:
+            MotionError: the motion cannot be retargeted.
+        """
+        posture = self._layers.over(raw)
+        if before is not None:
+            n = FADE_FRAMES
+            if easy:
+                far_deg = float(distance_deg(before[-1:], posture[:1])[0])
+                n = max(n, math.ceil(far_deg / _EASY_DEG_S * posture.fps))
+            posture = faded_in(posture, before, n)
+        first, frames = 0, BLOCK_FRAMES / posture.fps * self._rate_hz
+        if abs(frames - round(frames)) < 1e-9:
+            paths = self._retargeter.pieces(posture, start, settle=complete)
+        else:  # a block would end between two frames of the bus
+            paths = iter([(self._retargeter.retarget(posture, start, settle=complete), len(posture))])
+        for path, n in paths:
+            is_last = first + n >= len(posture)
+            yield Chunk(path, posture[first:], raw[first:], is_last, is_last and complete)
+            first += n
+
+    def gaze_rad(self) -> dict[int, float]:
+        """Angles of the head's joints, by index, that show the gaze that is set; none where none is."""
+        if self._layers.gaze_deg is None:
+            return {}
+        q_rad = self._retargeter.solve(read_human(self._layers.over(standing())))[0]
+        joints = enumerate(self._retargeter.robot.joints)
+        return {j: float(q_rad[j]) for j, joint in joints if joint.role.startswith("head")}
+
+    def person(self, q_rad: NDArray[np.float64]) -> PoseSequence:
+        """(1 frame) a person who is held as the robot in a pose (J,)."""
+        joints, head = joints_of_path(self._retargeter.kinematics, q_rad[None])
+        return poses_of_joints(joints, head, np.zeros((1, 2)), FPS)

@@ -1,0 +1,192 @@
+"""The one owner of splices: lets new setpoints follow a frame of the running trajectory without a jump.
+
+New frames start from the position and velocity of a frame that is not yet played, so far ahead that they are made in time;
+the trajectory runs on beyond it meanwhile, and frames that come too late are made again from a later one. Without a running
+trajectory they start at rest from the goals that the servos hold.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Generator, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from daemon.host.clock import REAL_CLOCK, Clock
+from daemon.playback.chunk_maker import FADE_FRAMES
+from daemon.playback.latency_estimate import LatencyEstimate
+from daemon.playback.setpoint_buffer import SetpointBuffer
+from daemon.playback.trajectory import Chunk, PathTrajectory, Trajectory
+from daemon.poses.pose_sequence import PoseSequence, joined
+from mmm_core.motion.motion import FPS
+from retarget.path.paths import JointState
+
+FIRST_RETARGET_S = 0.03
+"""Seconds assumed until the first chunk of the first trajectory is made; later ones are measured."""
+RETRY_MARGIN = 1.2
+"""A second attempt is spliced in after this many times the duration of the first, which came too late."""
+
+
+@dataclass
+class Splice:
+    """The place of new frames in the running trajectory, valid inside its `with` block.
+
+    Attributes:
+        state: position and velocity of the joints there.
+        before: the poses that would have followed.
+        frame: frame of the running trajectory that is the last to be played; None at rest.
+        began_s: time at which the attempt began.
+        made: whether new frames stand there. A splice that is left without them lets the trajectory run to its end.
+    """
+
+    state: JointState
+    before: PoseSequence
+    frame: int | None
+    began_s: float
+    made: bool = False
+
+
+class Splicer:
+    """Makes splices, one at a time, and learns how long the first chunk of a trajectory takes.
+
+    Args:
+        buffer: the running trajectory.
+        clock: time.
+    """
+
+    def __init__(self, buffer: SetpointBuffer, clock: Clock = REAL_CLOCK) -> None:
+        self._buffer, self._clock = buffer, clock
+        self.latency = LatencyEstimate(FIRST_RETARGET_S)
+
+    @contextmanager
+    def splice(self, *, late_s: float = 0.0) -> Generator[Splice]:
+        """A splice so far ahead that a first chunk will be made in time.
+
+        Args:
+            late_s: seconds that an attempt took which came too late; 0 for a first attempt.
+        """
+        began_s = self._clock.now_s()
+        if late_s:
+            self.latency.took(late_s)
+        plan = self._buffer.current
+        if plan is None or not self._buffer.running or self._buffer.dry:
+            splice = self._at_rest(plan, began_s)
+        else:
+            frame = self._buffer.frame_within(plan, max(self.latency.seconds, RETRY_MARGIN * late_s))
+            plan.extend(frame + 1)
+            frame = max(0, min(frame, plan.n_frames - 1))
+            splice = Splice(plan.state_at(frame), plan.posture_from(frame, FADE_FRAMES), frame, began_s)
+        with self._open(splice):
+            yield splice
+
+    @contextmanager
+    def splice_at_once(self) -> Generator[Splice]:
+        """A splice after the last frame pushed, whose velocity is the difference quotient that the limiter continues from."""
+        began_s, plan = self._clock.now_s(), self._buffer.current
+        if plan is None or not self._buffer.running or self._buffer.dry:
+            splice = self._at_rest(plan, began_s)
+        else:
+            plan.extend(plan.pushed)
+            frame = max(0, min(plan.pushed, plan.n_frames) - 1)
+            splice = Splice(plan.step_at(frame), plan.posture_from(frame, FADE_FRAMES), frame, began_s)
+        with self._open(splice):
+            yield splice
+
+    @contextmanager
+    def _open(self, splice: Splice) -> Generator[None]:
+        try:
+            yield
+        finally:
+            if not splice.made and (plan := self._buffer.current) is not None:
+                plan.end = None
+
+    def _at_rest(self, plan: Trajectory | None, began_s: float) -> Splice:
+        if plan is not None and plan.resumes and self._buffer.running:
+            plan.end = plan.pushed  # nothing moves until the splice is made or left
+            return Splice(self._buffer.at_rest, plan.posture_from(plan.n_frames - 1, FADE_FRAMES), None, began_s)
+        self._buffer.drop()
+        return Splice(self._buffer.at_rest, self._buffer.posture_now, None, began_s)
+
+    def missed(self, splice: Splice) -> bool:
+        """Whether the bus process has played beyond the splice, or ran dry, before its frames were made."""
+        plan = self._buffer.current
+        if plan is None or splice.frame is None or plan.epoch != self._buffer.epoch:
+            return False
+        if self._buffer.dry:
+            return True
+        at_end = plan.complete and splice.frame == plan.n_frames - 1
+        return self._buffer.next_frame(plan) > splice.frame + 1 and not at_end
+
+    def follow_with(self, splice: Splice, plan: Trajectory) -> None:
+        """Let a trajectory replace all that comes after the splice.
+
+        Frames after the splice that the bus process has played meanwhile begin as those of the new trajectory do, which
+        therefore leaves out as many.
+        """
+        beyond = self._buffer.end_after(splice.frame)
+        self._buffer.follow_with(plan)
+        if plan.n_frames:
+            self.latency.took(self._clock.now_s() - splice.began_s)
+            plan.pushed = min(beyond, plan.n_frames - 1)
+            self._buffer.pump()
+        splice.made = True
+
+    def replace_tail(self, splice: Splice, plan: PathTrajectory, chunk: Chunk) -> None:
+        """Let a chunk replace all that comes after the splice in the running trajectory `plan`."""
+        assert plan is self._buffer.current and splice.frame is not None, "a splice of the running trajectory"
+        beyond = self._buffer.end_after(splice.frame)
+        plan.cut(splice.frame)
+        plan.append(chunk)
+        self.latency.took(self._clock.now_s() - splice.began_s)
+        plan.end, plan.pushed = None, min(plan.pushed + beyond, plan.n_frames - 1)
+        self._buffer.pump()
+        splice.made = True
+
+    async def first_chunk(
+        self,
+        chunks_at: Callable[[Splice], Iterator[Chunk] | None],
+        place: Callable[[Splice, Chunk], bool],
+        wanted: Callable[[], bool],
+        wait_for_rest: Callable[[], Awaitable[None]] | None = None,
+    ) -> tuple[Iterator[Chunk], Chunk] | None:
+        """Make the first chunk in a worker thread and place it, again and again until it comes in time.
+
+        Args:
+            chunks_at: gives the chunks that start at a splice; None where none can.
+            place: makes the splice; false where the chunk is not wanted any more.
+            wanted: whether to try; called before each attempt.
+            wait_for_rest: waits until the joints rest, where the bus process ran dry; None gives up there.
+
+        Returns:
+            The chunks, the first of which is placed, and that chunk; None where none was placed.
+
+        Raises:
+            RetargetError: the chunk does not fit the robot; the running trajectory goes on.
+        """
+        late_s = 0.0
+        while True:
+            if self._buffer.dry:
+                if wait_for_rest is None:
+                    return None
+                await wait_for_rest()
+            if not wanted():
+                return None
+            with self.splice(late_s=late_s) as splice:
+                chunks = chunks_at(splice)
+                if chunks is None:
+                    return None
+                chunk = await asyncio.to_thread(next, chunks)
+                if not self.missed(splice):
+                    return (chunks, chunk) if place(splice, chunk) else None
+            late_s = self._clock.now_s() - splice.began_s
+
+    def committed(self, n: int, ahead_s: float) -> PoseSequence:
+        """`n` frames at 20 fps as they are played, up to about the splice of a motion that takes `ahead_s` to generate."""
+        plan = self._buffer.current
+        if plan is None or not self._buffer.running:
+            return replace(self._buffer.posture_now.at(np.zeros(n, np.intp)), fps=FPS)
+        last = min(self._buffer.frame_within(plan, ahead_s + self.latency.seconds), plan.n_frames - 1)
+        places = [last - round(k * self._buffer.rate_hz / FPS) for k in reversed(range(n))]
+        return replace(joined([plan.posture_from(place, 1) for place in places]), fps=FPS)
