@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from daemon.dynamixel.codec.dialect import DIALECTS, Decoder, Dialect
+from daemon.dynamixel.codec.decoder import StreamDecoder
+from daemon.dynamixel.codec.dialect import DIALECTS, Dialect
 from daemon.dynamixel.codec.packet import Packet
 from daemon.dynamixel.events import BusEventKind, EventLog
 from daemon.dynamixel.feedback import Step, is_status
@@ -55,7 +56,9 @@ class ServoLink:
         self.reading = BusReading.of(len(self.ids))
         self.health = HealthTracker(len(self.ids), np.array([m.protocol == 1.0 for m in self.models], bool))
         self.row_by_id = {servo_id: i for i, servo_id in enumerate(self.ids)}
-        self.decoders: dict[float, Decoder] = {m.protocol: DIALECTS[m.protocol].decoder() for m in self.models}
+        self.decoders: dict[float, StreamDecoder[Packet]] = {
+            m.protocol: DIALECTS[m.protocol].decoder() for m in self.models
+        }
         self.torque_expected = False
         self._echo = 0
         self._sent = b""

@@ -7,22 +7,8 @@ from typing import Protocol
 
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec import packet_protocol1 as packet1
+from daemon.dynamixel.codec.decoder import StreamDecoder
 from daemon.dynamixel.codec.packet import ALERT_BIT, Packet
-
-
-class Decoder(Protocol):
-    """Bytes in, packets out."""
-
-    bad_checksums: int
-    skipped_bytes: int
-
-    def feed(self, data: bytes) -> list[Packet]:
-        """Packets completed by `data`."""
-        ...
-
-    def clear(self) -> None:
-        """Forget what was not decoded."""
-        ...
 
 
 class Dialect(Protocol):
@@ -32,7 +18,7 @@ class Dialect(Protocol):
     status_bytes: int
     """Length of a status packet without parameters."""
 
-    def decoder(self) -> Decoder:
+    def decoder(self) -> StreamDecoder[Packet]:
         """A decoder of answers."""
         ...
 
@@ -76,7 +62,7 @@ class Protocol2:
     reboot = staticmethod(packet.reboot)
     sync_write = staticmethod(packet.sync_write)
 
-    def decoder(self) -> Decoder:
+    def decoder(self) -> StreamDecoder[Packet]:
         """A decoder of answers."""
         return packet.PacketDecoder()
 
@@ -101,7 +87,7 @@ class Protocol1:
     reboot = staticmethod(packet1.reboot)
     sync_write = staticmethod(packet1.sync_write)
 
-    def decoder(self) -> Decoder:
+    def decoder(self) -> StreamDecoder[Packet]:
         """A decoder of answers."""
         return packet1.PacketDecoder(answers=True)
 

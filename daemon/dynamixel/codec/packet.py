@@ -15,12 +15,12 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from daemon.dynamixel.codec.crc import crc16
+from daemon.dynamixel.codec.decoder import StreamDecoder
 from daemon.errors import PacketError
 
 HEADER = b"\xff\xff\xfd\x00"
 STUFFED = b"\xff\xff\xfd"
-BROADCAST_ID = 0xFE
-MAX_ID = 252
+BROADCAST_ID, MAX_ID = 0xFE, 252
 MAX_LENGTH = 4096
 """Longest length field taken for real: 252 servos' goals are 1,300 bytes, a fast reply of 252 with 10 each 3,600."""
 ALERT_BIT = 0x80
@@ -269,57 +269,12 @@ def fast_parts(reply: Packet, lengths: Sequence[int]) -> list[Part]:
     return parts
 
 
-class PacketDecoder:
-    """Bytes in, packets out. Garbage is skipped and counted; a length is believed only once the checksum agrees.
+class PacketDecoder(StreamDecoder[Packet]):
+    """Packets of both roles."""
 
-    Attributes:
-        skipped_bytes, bad_checksums: counts since the beginning.
-        damaged_id: id in a packet that ended with the last byte fed and had a wrong checksum; None without one.
-    """
-
-    def __init__(self) -> None:
-        self._buffer = bytearray()
-        self.skipped_bytes = 0
-        self.bad_checksums = 0
-        self.damaged_id: int | None = None
-
-    def feed(self, data: bytes) -> list[Packet]:
-        """Packets completed by `data`."""
-        self._buffer += data
-        self.damaged_id = None
-        packets: list[Packet] = []
-        while (found := self._next()) is not None:
-            packets.append(found)
-        return packets
-
-    def clear(self) -> None:
-        """Forget what was not decoded."""
-        self.skipped_bytes += len(self._buffer)
-        self._buffer.clear()
-
-    def _next(self) -> Packet | None:
-        """First whole packet in the buffer; what stands before it is dropped, what may still grow is kept."""
-        buffer, start, keep_from = self._buffer, 0, None
-        while (start := buffer.find(HEADER, start)) >= 0:
-            end = self._end(start)
-            if end is None:  # may still grow; a later packet that is whole wins over it
-                keep_from = start if keep_from is None else keep_from
-            elif end > 0:
-                raw = bytes(buffer[start:end])
-                self._drop(end, skipped=start)
-                return _parse(raw)
-            start += 1
-        if keep_from is None:
-            keep_from = max(0, len(buffer) - (len(HEADER) - 1))  # the header may have begun
-            tail = bytes(buffer[keep_from:])
-            while tail and not HEADER.startswith(tail):
-                tail = tail[1:]
-            keep_from = len(buffer) - len(tail)
-        self._drop(keep_from, skipped=keep_from)
-        return None
+    header = HEADER
 
     def _end(self, start: int) -> int | None:
-        """Index after the packet at `start`; 0 when there is none, None when bytes are missing."""
         buffer = self._buffer
         if len(buffer) < start + 7:
             return None
@@ -338,15 +293,8 @@ class PacketDecoder:
             return 0
         return end
 
-    def _drop(self, end: int, skipped: int) -> None:
-        self.skipped_bytes += skipped
-        del self._buffer[:end]
-
-
-def _parse(raw: bytes) -> Packet:
-    body, is_status = raw[7:-2], raw[7] == Instruction.STATUS
-    if not (is_status and raw[4] == BROADCAST_ID):
-        body = body.replace(STUFFED + b"\xfd", STUFFED)
-    if is_status:
-        return Packet(raw[4], body[0], body[2:], body[1])
-    return Packet(raw[4], body[0], body[1:])
+    def _parse(self, raw: bytes) -> Packet:
+        body, is_status = raw[7:-2], raw[7] == Instruction.STATUS
+        if not (is_status and raw[4] == BROADCAST_ID):
+            body = body.replace(STUFFED + b"\xfd", STUFFED)
+        return Packet(raw[4], body[0], body[2:], body[1]) if is_status else Packet(raw[4], body[0], body[1:])

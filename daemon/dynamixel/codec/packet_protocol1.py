@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from daemon.dynamixel.codec.decoder import StreamDecoder
 from daemon.dynamixel.codec.packet import BROADCAST_ID, Access, Instruction, Packet
 from daemon.errors import PacketError
 
@@ -120,57 +121,20 @@ def status(servo_id: int, error: int = 0, parameters: bytes = b"") -> bytes:
     return encode(Packet(servo_id, Instruction.STATUS, parameters, error))
 
 
-class PacketDecoder:
-    """Bytes in, packets out. Garbage is skipped and counted; a length is believed only once the checksum agrees.
+class PacketDecoder(StreamDecoder[Packet]):
+    """Packets of one role.
 
     Args:
         answers: True for the controller's role (status packets come in), False for the servo's (requests come in).
-
-    Attributes:
-        skipped_bytes, bad_checksums: counts since the beginning.
-        damaged_id: id in a packet that ended with the last byte fed and had a wrong checksum; None without one.
     """
 
+    header = HEADER
+
     def __init__(self, *, answers: bool = True) -> None:
+        super().__init__()
         self._answers = answers
-        self._buffer = bytearray()
-        self.skipped_bytes = 0
-        self.bad_checksums = 0
-        self.damaged_id: int | None = None
-
-    def feed(self, data: bytes) -> list[Packet]:
-        """Packets completed by `data`."""
-        self._buffer += data
-        self.damaged_id = None
-        packets: list[Packet] = []
-        while (found := self._next()) is not None:
-            packets.append(found)
-        return packets
-
-    def clear(self) -> None:
-        """Forget what was not decoded."""
-        self.skipped_bytes += len(self._buffer)
-        self._buffer.clear()
-
-    def _next(self) -> Packet | None:
-        """First whole packet in the buffer; what stands before it is dropped, what may still grow is kept."""
-        buffer, start, keep_from = self._buffer, 0, None
-        while (start := buffer.find(HEADER, start)) >= 0:
-            end = self._end(start)
-            if end is None:
-                keep_from = start if keep_from is None else keep_from
-            elif end > 0:
-                packet = self._parse(bytes(buffer[start:end]))
-                self._drop(end, skipped=start)
-                return packet
-            start += 1
-        if keep_from is None:
-            keep_from = len(buffer) - buffer.endswith(b"\xff")
-        self._drop(keep_from, skipped=keep_from)
-        return None
 
     def _end(self, start: int) -> int | None:
-        """Index after the packet at `start`; 0 when there is none, None when bytes are missing."""
         buffer = self._buffer
         if len(buffer) < start + 4:
             return None
@@ -190,7 +154,3 @@ class PacketDecoder:
         if self._answers:
             return Packet(raw[2], Instruction.STATUS, raw[5:-1], raw[4])
         return Packet(raw[2], raw[4], raw[5:-1])
-
-    def _drop(self, end: int, skipped: int) -> None:
-        self.skipped_bytes += skipped
-        del self._buffer[:end]

@@ -55,20 +55,19 @@ def test_while_the_port_is_gone_no_servo_is_said_to_be_well() -> None:
         assert view.counters()["servos_not_answering"] == list(ROBOT.servo_ids)
 
 
-def test_a_front_that_was_held_up_does_not_take_its_own_pause_for_silence(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_front_that_was_held_up_does_not_take_its_own_pause_for_silence() -> None:
     """It was frozen between looking and judging: the bus process was said to be lost, and was there: an e-stop."""
-    now_s = 0.0
-    monkeypatch.setattr("daemon.state.bus_view.time.monotonic", lambda: now_s)
+    clock = VirtualClock()
     with rig("reference") as r:
-        view = BusView(r.link, ROBOT)
+        view = BusView(r.link, ROBOT, clock)
         r.cycle()
         view.update()
-        now_s = 1.2
+        clock.sleep_until(1.2)
         assert view.silent_s == 0.0
         r.cycle()
         view.update()
         assert view.silent_s == 0.0
-        now_s = 2.0
+        clock.sleep_until(2.0)
         view.update()
         assert view.silent_s == pytest.approx(0.8)
 
