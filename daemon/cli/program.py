@@ -92,9 +92,19 @@ GOOD, FAILED, BAD_USE, ROBOT_FAULT = 0, 1, 2, 3
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command; returns its exit status."""
+    """Run one command; returns its exit status, 1 where nobody reads what it prints."""
     _spell_out_what_cannot_be_shown()
-    name, *arguments = (sys.argv[1:] if argv is None else list(argv)) or [""]
+    try:
+        status = _answer(*(sys.argv[1:] if argv is None else argv))
+        sys.stdout.flush()
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # no complaint at exit either
+        return FAILED
+    return status
+
+
+def _answer(name: str = "", *arguments: str) -> int:
+    """Run a command, or tell which there are; the exit status."""
     if name in COMMANDS:
         return _guarded(name, arguments)
     if name in ("", "-h", "--help", "help"):
@@ -117,7 +127,7 @@ def _spell_out_what_cannot_be_shown() -> None:
             stream.reconfigure(errors="backslashreplace")
 
 
-def _guarded(name: str, arguments: list[str]) -> int:
+def _guarded(name: str, arguments: Sequence[str]) -> int:
     """Run a command; whatever it raises becomes one message and an exit status."""
     try:
         with _ended_by_sigterm():
@@ -127,8 +137,7 @@ def _guarded(name: str, arguments: list[str]) -> int:
     except KeyboardInterrupt:
         return _failed("interrupted", FAILED)
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # nobody reads: no complaint at exit either
-        return FAILED
+        raise
     except Exception as error:  # the border to people
         return _explain(error)
 
@@ -155,7 +164,7 @@ def _load(name: str) -> Callable[..., int | None]:
     return getattr(importlib.import_module(module_name), function_name)
 
 
-def _run(name: str, command: Callable[..., int | None], arguments: list[str]) -> int:
+def _run(name: str, command: Callable[..., int | None], arguments: Sequence[str]) -> int:
     import tyro
 
     if "-h" in arguments or "--help" in arguments:

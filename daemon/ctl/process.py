@@ -21,7 +21,7 @@ from daemon.ctl.channel import Channel, Ready
 from daemon.ctl.taker import Taker
 from daemon.errors import ConfigError
 from daemon.host.parent import Parent
-from daemon.host.realtime import CONTROL_PRIORITY, lock_memory, may_fifo, take_fifo
+from daemon.host.realtime import CONTROL_PRIORITY, lock_memory, take_fifo
 from daemon.logs.log_feed import send_logs
 from daemon.logs.log_lines import start_logging
 from daemon.network.connections import ConnectionGuard, Share
@@ -58,7 +58,11 @@ def main() -> int:
     link = BusLink.attach(Path(arguments.link), arguments.joints, arguments.servos, asker=Asker.CTL)
     channel = Channel(socket.socket(fileno=arguments.channel))
     context: zmq.Context[zmq.Socket[bytes]] = zmq.Context()
-    if may_fifo(CONTROL_PRIORITY):  # libzmq aborts where it is not permitted
+    fifo = take_fifo(
+        CONTROL_PRIORITY
+    )  # before the other threads start, which inherit it: one that waits for a core while it
+    # has the interpreter would make the thread that takes e-stops wait, too
+    if fifo:  # libzmq aborts where it is not permitted
         context.set(zmq.THREAD_SCHED_POLICY, SCHED_FIFO)
         context.set(zmq.THREAD_PRIORITY, CONTROL_PRIORITY)
     sys.setswitchinterval(SWITCH_S)
@@ -74,6 +78,8 @@ def main() -> int:
     guard = ConnectionGuard({"ctl": (ctl, SHARE)})
     guard.start()
     try:
+        if fifo:
+            log.info("the ctl process has FIFO priority")
         _serve(Taker(ctl, link, channel, guard), link, channel, parent)
     finally:
         guard.close()
@@ -92,8 +98,6 @@ def _serve(taker: Taker, link: BusLink, channel: Channel, parent: Parent) -> Non
 
     signal.signal(signal.SIGTERM, end)
     lock_memory()
-    if take_fifo(CONTROL_PRIORITY):
-        log.info("the ctl process has FIFO priority")
     gc.collect()
     gc.freeze()
     link.ctl_beats()

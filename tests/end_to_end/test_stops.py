@@ -15,6 +15,7 @@ import zmq
 
 from daemon.bench.floods import flooded
 from daemon.client import NoAnswerError
+from daemon.host.realtime import CONTROL_PRIORITY, may_fifo
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire.requests import Estop
@@ -104,6 +105,19 @@ def test_a_flood_of_subscriptions_keeps_no_estop_from_the_robot(servos):
         servos.assert_kept()
     finally:
         person.close()
+        daemon.close()
+
+
+@pytest.mark.skipif(not may_fifo(CONTROL_PRIORITY), reason="this user may not have FIFO priority")
+def test_no_thread_of_ctl_waits_for_a_core_while_it_has_the_interpreter():
+    """The thread that watches connections had normal priority: on a busy machine ctl fell silent with it, an e-stop."""
+    daemon = RunningDaemon()
+    try:
+        daemon.until_ready()
+        threads = os.listdir(f"/proc/{child_pid(daemon, 'daemon.ctl.process')}/task")
+        assert len(threads) > 2
+        assert {os.sched_getparam(int(thread)).sched_priority for thread in threads} == {CONTROL_PRIORITY}
+    finally:
         daemon.close()
 
 

@@ -23,7 +23,7 @@ from daemon.cli.tables import table_of
 from daemon.client import RefusedError
 from daemon.dynamixel.registers.models import MODELS
 from retarget.robot.loading import load_robot
-from tests.support.harness import START_TIMEOUT_S, RunningDaemon
+from tests.support.harness import MMMD, START_TIMEOUT_S, RunningDaemon
 
 WITHOUT_TORCH = """\
 import sys
@@ -179,6 +179,18 @@ def test_what_has_to_be_typed_is_whole_in_every_table(width, capsys):
         Console(width=width).print(table)
         words = set(re.split(r"[\s│┃|]+", capsys.readouterr().out))
         assert set(names) <= words, set(names) - words
+
+
+@pytest.mark.parametrize("arguments", [[], ["--help"], ["say", "--help"], ["robot", "list"]], ids=" ".join)
+def test_a_reader_that_has_gone_is_no_reason_to_complain(arguments):
+    """`mmmd | head` ended in a traceback."""
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    try:
+        done = subprocess.run([*MMMD, *arguments], stdout=write_end, stderr=subprocess.PIPE, check=False)
+    finally:
+        os.close(write_end)
+    assert (done.returncode, done.stderr) == (1, b"")
 
 
 def test_a_wrong_option_is_told_what_it_is_like(capsys):
