@@ -171,7 +171,13 @@ class Terminal:
         Raises:
             AssertionError: it ended with another status than 0.
         """
-        command = self._on_this_machine(command)
+        began_s = time.monotonic()
+        try:
+            return self._type(self._on_this_machine(command))
+        finally:
+            sys.stdout.write(f"{time.monotonic() - began_s:6.1f} s  {command}\n")
+
+    def _type(self, command: str) -> str:
         words = command.split()
         verb = words[1] if words[0] == "mmmd" and len(words) > 1 else ""
         if verb in ("run", "sim", "generator") and "--replay" not in words:

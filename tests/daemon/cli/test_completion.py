@@ -49,7 +49,7 @@ def test_a_shell_offers_commands_verbs_options_and_values(
     if shutil.which(shell) is None:
         pytest.skip(f"no {shell} here")
     said = OFFERED_BY[shell](scripts[shell], typed, tmp_path)
-    assert offered <= set(said) and all(word.startswith(typed.split(" ")[-1]) for word in said)
+    assert offered <= set(said) and all(word.startswith(typed.rpartition(" ")[2]) for word in said)
 
 
 def offered_by_bash(script: Path, typed: str, folder: Path) -> list[str]:

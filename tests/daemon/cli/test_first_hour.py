@@ -37,7 +37,6 @@ class Without(PathFinder):
 sys.meta_path[sys.meta_path.index(PathFinder)] = Without
 """
 """What a machine that has no PyTorch looks like to Python."""
-MMMD = [sys.executable, "-m", "daemon.cli"]
 
 
 @pytest.fixture(scope="module")
