@@ -46,7 +46,7 @@ _WHILE = re.compile(
 )
 _AS_YOU = re.compile(r"\s*,?\s*\bas you(?: are)?\s+")
 _SAME_TIME = re.compile(
-    r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same time|simultaneously|at once|together|in one go|all at once|concurrently)\b[,:]?\s*(?:and )?"
+    r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same (?:time|moment)|simultaneously|at once|together|in one go|all at once|concurrently)\b[,:]?\s*(?:and )?"
 )
 _LEADING = re.compile(
     r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$"
@@ -216,5 +216,9 @@ def _there(clause: str, first: str) -> str:
 def _sided(clause: str, side: str) -> str:
     if re.search(r"\b(?:left|right) (?:hand|arm)\b", clause):
         return clause
+    if re.search(r"\bother (?:hand|arm|one)\b", clause):
+        return re.sub(r"\b(?:your|the)? ?other (hand|arm|one)\b", rf" your {side} hand", clause, count=1).replace(
+            "  ", " "
+        )
     named, n = re.subn(r"\b(?:your|one|a|the) (hand|arm|fist)\b", rf"your {side} \1", clause, count=1)
     return named if n else f"{clause} with your {side} hand"

@@ -33,12 +33,14 @@ DONE = (
     + r"(?: with (?:that|this|it))?(?! \w+ing\b| with\b)"
 )
 """'Once that is done'."""
+BACK_UP = r"(?:once|when|as soon as) you(?:'re| are| stand| get| come)(?: back)?(?: up| upright| straight)(?: again)?"
+"""'Once you're up again'."""
 NEXT = _any(
     "then(?! some)", "(?:after|following) (?:all )?(?:that|this|which)", "afterwards?", "thereafter", "thereupon", "whereupon",
     "subsequently", r"(?<!\bthe )next(?!\s+to\b)",
     "later(?: on)?", "finally", "lastly", "at last", "last of all", "in the end", "to finish",
-    "(?:secondly|thirdly|fourthly)", r"(?<!one )(?<!1 )(?<!\ba )(?:second|third|fourth)(?! \w+)", "now(?! and then)",
-    "(?:then )?straight into", DONE,
+    "(?:secondly|thirdly|fourthly)", r"(?<!one )(?<!1 )(?<!\ba )(?:second|third|fourth)(?! \w+)", "(?<!right )now(?! and then)",
+    "(?:then )?straight into", BACK_UP, DONE,
 )  # fmt: skip
 DIVIDES = _pattern(
     "|".join((

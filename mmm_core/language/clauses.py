@@ -52,6 +52,8 @@ def _divided(text: str) -> list[str]:
     spans = [s for s in spans if _READS.search(_bare(s.of(text)))]
     if len(spans) == 1:
         late = words.A_FIRST_B_LATER.fullmatch(text.rstrip(" .!"))
+        if late and (whole := completed(_bare(late[2]), _bare(late[1]))):
+            return [late[1], whole]
         if late and not _leans(late[2]):
             return [late[1], late[2]]
     if not words.AT_ONCE.search(text) and not words.NOT.search(text):

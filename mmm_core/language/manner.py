@@ -67,11 +67,14 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     """
     rest, tempo = _factor(clause, "tempo", FASTEST)
     rest, size = _factor(rest, "size", LARGEST)
-    if tempo == 1.0:  # "a slow deep bow": the noun stands beside "slow" now
-        rest, tempo = _factor(rest, "tempo", FASTEST)
+    rest, again = _factor(
+        rest, "tempo", FASTEST
+    )  # "a slow deep bow": the noun stands beside "slow" now; "gently and slowly"
+    tempo = max(tempo, again, key=lambda f: abs(f - 1))
     rest, hold_s = _hold(rest)
     rest = re.sub(r"\s+([,.])", r"\1", " ".join(rest.split()))
     rest = re.sub(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+", "", rest)
+    rest = re.sub(r"\s+(?:and|but)(?=,? (?:and|but)\b)", "", rest)
     rest = re.sub(r"\ba (?=[aeiou])(?!u\w*[aeiou])", "an ", rest)
     if not re.search(r"[a-z]{2,}", rest):
         return clause, Manner()

@@ -11,16 +11,20 @@ import re
 from dataclasses import replace
 
 from mmm_core.language.at_once import SOME_ARM, base_of, divided, limbs_of, same_limbs
+from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
 from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
 from mmm_core.language.denial import without_denial
 from mmm_core.language.ellipsis import with_sides
 from mmm_core.language.manner import Manner, manner_of
-from mmm_core.language.requests import everyday, rewritten, without_request
+from mmm_core.language.requests import everyday, restated, rewritten, without_request
 from mmm_core.language.spelling import mended, normalised
 
 _PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red|need|feed)\b (?:hand|arm|fist)s?\b)\w+ed\b")
 """The verb of "once you have clapped", "if you crossed"."""
+_DO_IT = re.compile(
+    r"(?:go ahead and )?(?:do (?:it|that|so|this)|prove it|show (?:me|us|him|her|them|everybody|it))\W*"
+)
 _ANYTHING = ("wave your right hand", "clap your hands")
 """What is done where anything but the denied is asked for."""
 
@@ -41,7 +45,7 @@ def read(text: str) -> Reading:
     bare = without_request(said)
     if known := everyday(bare):
         return _known(text, known)
-    denial = without_denial(rewritten(bare))
+    denial = without_denial(rewritten(restated(_referring(bare, said))))
     if denial.denied and not denial.rest and not denial.anything:
         return Reading(text, (), denial.denied)
     if denial.anything and not denial.rest:
@@ -56,6 +60,20 @@ def read(text: str) -> Reading:
     if _is_plain(text, said, steps):
         return Reading(text, ((replace(steps[0][0], text=normalised(text)),),), plain=True)
     return Reading(text, tuple(steps), denial.denied, tuple(notes))
+
+
+def _referring(bare: str, said: str) -> str:
+    """A request with what its words before the request name: "that way" a side, "do it" an act that somebody cannot do."""
+    before = said.removesuffix(bare)
+    side = re.search(r"\b(?:on|to) (?:your|the) (left|right)\b(?! (?:hand|arm))", before)
+    if side and re.search(r"\b(?:that way|over there|in that direction)\b", bare):
+        return re.sub(r"\b(?:that way|over there|in that direction)\b", f"to the {side[1]}", bare, count=1)
+    act = re.search(
+        r"\b(?:can not|can|could|cannot|how to|how you|whether you|if you) ((?:never |ever )?\w+.*?)(?=,|\.|$)", before
+    )
+    if act and _DO_IT.fullmatch(bare) and SPEAKS_OF_AN_ACT.match(act[1]):
+        return act[1]
+    return bare
 
 
 def _known(text: str, command: str) -> Reading:

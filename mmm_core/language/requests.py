@@ -7,7 +7,7 @@ from functools import cache
 
 from mmm_core.language.at_once import base_of
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
-from mmm_core.language.word_tables import lines, substitutions
+from mmm_core.language.word_tables import WAY, lines, pairs, substitutions
 
 _ACT = (
     r"(?:also |just |please |can you |could you )*(?:wave|nod|bow|clap|shrug|salute|point|punch|shake|cross|fold|raise|lift|look|lean|beckon|hug|stretch|twist|tilt|cheer|pray|scratch|rub|pat|"
@@ -74,6 +74,25 @@ def everyday(said: str) -> str:
 @cache
 def _everyday() -> tuple[tuple[re.Pattern[str], str], ...]:
     return substitutions("everyday")
+
+
+@cache
+def _sentences() -> tuple[tuple[re.Pattern[str], str], ...]:
+    return tuple(
+        (re.compile(pattern.replace("@ACT", _ACT).replace("@WAY", f"({WAY})")), words)
+        for pattern, words in pairs("sentences")
+    )
+
+
+def restated(said: str) -> str:
+    """A sentence with its commands in the order in which they are done, and what is listed said in full.
+
+    >>> restated("look up and down"), restated("end with a bow but clap before that")
+    ('look up, then down', 'clap, then end with a bow')
+    """
+    for pattern, words in _sentences():
+        said = pattern.sub(words, said)
+    return said
 
 
 def rewritten(clause: str) -> str:

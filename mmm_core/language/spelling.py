@@ -15,7 +15,8 @@ from functools import cache
 from rapidfuzz import process
 from rapidfuzz.distance import OSA
 
-from mmm_core.language.word_tables import lines, pairs, substitutions
+from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB
+from mmm_core.language.word_tables import WAY, lines, pairs, substitutions
 
 MOST_SLIPS = {3: 1, 4: 1, 5: 2}
 """Letters of a word: greatest distance to the word that was meant; longer words 2."""
@@ -45,6 +46,8 @@ _NEIGHBOURS = {
     for i, key in enumerate(row)
 }
 """Keys beside, above and below each key."""
+_COMMON = 0.72
+"""How rare the words may be of a command in which every word is a slip: among the commonest 540 of the corpus."""
 _RARE = 0.35
 """Weight of how rare a word is in the corpus, from 0, the commonest, to 1."""
 
@@ -73,6 +76,8 @@ def mended(text: str) -> str:
     """
     said = normalised(text).lower()
     said = _chat(said)
+    for pattern, words in _corrections():
+        said = pattern.sub(words, said)
     said = _RESTART.sub("", said)
     said = _FILLERS.sub("", said)
     said = _STUTTER.sub("", said)
@@ -86,9 +91,15 @@ def _slips(said: str) -> str:
     words = _WORD.findall(said)
     unknown = [word for word in words if not _is_right(word)]
     foreign = 2 * len(unknown) >= len(words) and any(mended_word(word) == word for word in unknown)
-    if len(unknown) == len(words) > 1:
+    if len(unknown) == len(words) > 1 and not _is_command_of_common_words([mended_word(word) for word in unknown]):
         foreign |= any(_cost_of(word) > SURE_ENOUGH for word in unknown)
     return said if foreign else _WORD.sub(lambda found: mended_word(found[0]), said)
+
+
+def _is_command_of_common_words(words: list[str]) -> bool:
+    """Whether words, each of which was a slip, are a command: "lok dwon" is, a text in another language hardly ever."""
+    is_common = all(_meant().get(word, 1.0) < _COMMON for word in words)
+    return is_common and any(BEGINS_WITH_A_VERB.match(word) for word in words)
 
 
 def _chat(said: str) -> str:
@@ -103,6 +114,11 @@ def _chat_word(token: str, words: dict[str, str]) -> str:
         return token
     start = token.index(bare)
     return token[:start] + words[bare] + token[start + len(bare) :]
+
+
+@cache
+def _corrections() -> tuple[tuple[re.Pattern[str], str], ...]:
+    return tuple((re.compile(pattern.replace("@WAY", f"({WAY})")), words) for pattern, words in pairs("corrections"))
 
 
 def _homophones(said: str) -> str:
