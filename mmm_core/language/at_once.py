@@ -64,6 +64,7 @@ _FILLER = re.compile(
 _FRONTED = re.compile(
     r"^(?:(?:and|with|using) )+(?:your |the )?(left|right)(?: hand| arm)?,? (?!(?:hand|arm|on|up|to|out|over|behind|down|forward|raised|stretched)\b)(\w.+)$"
 )
+_HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)\b.*\b(?:seconds?|secs?)\b")
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
 _IS = re.compile(
     r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|stays?|remains?|goes|keeps?|rests?)(?: being| held)? (?P<rest>.+)$"
@@ -128,7 +129,10 @@ def divided(clause: str) -> list[str]:
     """
     for pair, asked in _pairs(clause):
         first, second = (_imperative(part) for part in pair)
+        second = _with_verb(second, first)
         a, b = limbs_of(first), limbs_of(second)
+        if _HOLDS.match(second):
+            continue
         if a == SOME_ARM == b and asked:
             return [_sided(first, "right"), _sided(second, "left")] if "hand" in clause else [first, second]
         if not _apart(a, b):
@@ -165,6 +169,23 @@ def _pairs(clause: str) -> list[tuple[tuple[str, str], bool]]:
     rest = _SAME_TIME.sub(" ", clause).strip(" ,") if same else clause
     found += [((rest[: m.start()], rest[m.end() :]), bool(same)) for m in _AND.finditer(rest)]
     return [(pair, asked) for pair, asked in found if all(len(p.strip()) > 2 for p in pair)]
+
+
+def _with_verb(second: str, first: str) -> str:
+    """The second part with the verb of the first: "right with the right arm" beside "point left with the left arm"."""
+    verb = re.match(r"(?:point|reach|stretch|punch|wave|swing|push|pull|raise|lower)\b", first)
+    one = re.match(
+        r"(?:with |using )(?:your |the )?(?P<side>left|right|other)(?: hand| arm| one)? (?=to\b|up\b|down\b|forward|ahead|back)",
+        second,
+    )
+    way = re.match(r"(?:to the )?(?:left|right|up|down|forward|ahead|straight ahead|back) (?=with\b|using\b)", second)
+    if verb is None or (one is None and way is None):
+        return second
+    if one is None:
+        return f"{verb[0]} {second}"
+    named = re.search(r"\b(left|right) (?:hand|arm)\b", first)
+    side = one["side"] if one["side"] != "other" else ("right" if named and named[1] == "left" else "left")
+    return f"{verb[0]} {second[one.end() :]} with your {side} hand"
 
 
 def _imperative(part: str) -> str:

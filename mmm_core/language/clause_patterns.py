@@ -144,7 +144,8 @@ _ACT = _any(
     "touch", "cover", "blow", "wip", "stir", "typ", "applau", "conduct", "greet", "swing", "bend", "turn", "reach", "mak",
     "giv", "tak", "do", "play", "act", "show", "strik", "thumb", "flex", "high", "lower", "put", "let", "bring", "hold", "keep",
     "drop", "place", "extend", "straighten", "sway", "pump", "roll", "nudg", "sink", "glanc", "gaz", "peek", "stare", "shade",
-    "cup", "hide", "facepalm", "uncross", "unfold", "press", "rock", "slump", "yawn", "breath", "conduct", "juggl",
+    "cup", "hide", "hammer", "paint", "brush", "scrub", "pour", "comb", "steer",
+    "uncross", "unfold", "press", "rock", "slump", "yawn", "breath", "conduct", "juggl",
 )  # fmt: skip
 SPEAKS_OF_AN_ACT = _pattern(rf"\b{_ACT}\w*")
 BEGINS_WITH_A_VERB = _pattern(rf"^(?:(?:{_MANNER}|to)\s+)*({_ACT})(?:e|p|s|es|d|ping|ing|ding|t|h)?\b")
@@ -153,3 +154,9 @@ PREPARES = _pattern(
     r"(?:around|confused|(?:up|out|your|the|his|her|their|its|an?|one|both)\s.*)?$"
 )
 """'Raise your hand and wave' is one gesture."""
+POSES_ANEW = _pattern(r"^(?:stretch|extend|reach|bend|lower|drop|put|bring|swing|straighten|let)\b")
+"""'Raise your arm and stretch it forward' are two."""
+LIMB_FIRST = _pattern(
+    r"^(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head|chin|eyes|gaze|shoulders|body|upper body)\s"
+)
+"""'Head up', a command without a verb."""

@@ -90,13 +90,23 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
         return [whole]
     verbs = [
         words.BEGINS_WITH_A_VERB.match(part)
+        or _is_of_the_same_limb(parts, i)
         or (i and "," in text[spans[i - 1].end : spans[i].start] and completed(part, parts[i - 1]))
         for i, part in enumerate(parts)
     ]
     if not all(verbs) or len({_bare(s.of(text)).lower() for s in spans}) < len(spans):
         return [whole]
-    prepares = len(spans) == 2 and words.PREPARES.match(_bare(spans[0].of(text)))
+    prepares = len(spans) == 2 and words.PREPARES.match(parts[0]) and not words.POSES_ANEW.match(parts[1])
     return [whole] if prepares else spans
+
+
+def _is_of_the_same_limb(parts: list[str], i: int) -> bool:
+    """Whether a part without a verb moves the limb of its neighbour, so that it cannot be done with it: "head up, head down"."""
+    if len(parts) < 2:
+        return False
+    neighbour = parts[i - 1] if i else parts[1]
+    ours, theirs = words.LIMB_FIRST.match(parts[i]), words.LIMB_FIRST.match(neighbour)
+    return bool(ours and theirs and ours[0] == theirs[0] and parts[i] != neighbour)
 
 
 def _reordered(part: str) -> list[str]:

@@ -30,6 +30,15 @@ _OTHER_ONE = re.compile(
 _AGAIN = re.compile(
     r"^(?:(?:do )?(?:it|that|the same)(?: thing)? )?(?:again|once more|one more time)$|^repeat(?: it| that)?$|^(?:do )?the same(?: again)?$"
 )
+_ONLY_BOTH = re.compile(
+    r"^(?:(?:with|using|use) )?(?:your )?both(?: of them)?(?: (?:hands|arms))?(?: together| at once| at the same time)?$"
+)
+_ONE_ARM = re.compile(r"\b(?:(?:your|the|a|one) )?(?:left|right) (?P<limb>hand|arm|fist)\b")
+_BOTH_ARMS = re.compile(r"\bboth (?:your )?(?P<limb>hand|arm|fist)s\b")
+_ONLY_TIMES = re.compile(
+    r"^(?P<times>once|twice|thrice|\w+ times)(?: more| again)?$|^(?P<number>\w+) (?:more|further)(?: times?)?$"
+)
+_SAID_TIMES = re.compile(r"\b(?:once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?)\b")
 _PLACE = re.compile(
     r"^(?:(?:on|to|over|above|behind|in front of|under|at|towards) (?:your |the )?(?:heart|hips?|waist|head|chest|belly|stomach|mouth|eyes|ears?|back|forehead|shoulders?|chin|neck|sides?|knees|face)"
     r"|(?:straight |wide |high |out )*(?:up|down|out|wide|forward|ahead|apart|crossed|folded|open)(?: (?:in the air|to the sides?|in front|wide|high))?)$"
@@ -84,11 +93,20 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
     """
     if _AGAIN.match(clause.strip(" ,.!")):
         return before
+    if (found := _ONLY_TIMES.match(clause.strip(" ,.!"))) and not re.match(r"(?:some|many|other)", clause):
+        times = found["times"] or f"{found['number']} times"
+        said, n = _SAID_TIMES.subn(times, before, count=1)
+        return said if n else None
     clause = re.sub(
         r"^(?:and |then |now |next |finally |again )+|(?: again| too| as well| instead)+$", "", clause.strip(" ,.!")
     ).strip()
     if not clause:
         return None
+    if _ONLY_BOTH.match(clause):
+        both, n = _ONE_ARM.subn(lambda m: f"both {m['limb']}s", before, count=1)
+        return both if n else None
+    if (found := _ONLY_SIDE.match(clause)) and _BOTH_ARMS.search(before):
+        return _BOTH_ARMS.sub(lambda m: f"your {found['side']} {m['limb']}", before)
     if _OTHER_ONE.match(clause):
         return _other_way(before)
     if found := _ONLY_SIDE.match(clause):

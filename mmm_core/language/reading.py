@@ -14,6 +14,7 @@ from mmm_core.language.at_once import SOME_ARM, base_of, divided, limbs_of, same
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
 from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
+from mmm_core.language.corrections import corrected
 from mmm_core.language.denial import without_denial
 from mmm_core.language.ellipsis import with_sides
 from mmm_core.language.manner import Manner, manner_of
@@ -45,7 +46,7 @@ def read(text: str) -> Reading:
     bare = without_request(said)
     if known := everyday(bare):
         return _known(text, known)
-    denial = without_denial(rewritten(restated(_referring(bare, said))))
+    denial = without_denial(rewritten(restated(corrected(_referring(bare, said)))))
     if denial.denied and not denial.rest and not denial.anything:
         return Reading(text, (), denial.denied)
     if denial.anything and not denial.rest:

@@ -1,0 +1,23 @@
+"""A command that is taken back for another side or way: "raise your left arm. No, not that arm, the other one"."""
+
+from __future__ import annotations
+
+import re
+
+from mmm_core.language.ellipsis import completed
+
+_BUT_NOW = re.compile(
+    r"^(?P<before>.+?)(?:[.,;!]+|\.\.\.)\s*(?:(?:no(?=[,.])|hm+|oh|ah|er|um|wait|sorry|well|actually|rather|i mean|or|wrong (?:one|arm|hand|side|way)|scratch that|my mistake)[,. ]+)+"
+    r"(?:not (?:that|this|with that|the)(?: (?:arm|hand|one|side|way|left|right))?[,.]? )?(?:but )?(?:(?:just|only|make (?:that|it)|i mean|i meant|use|with) )*"
+    r"(?P<now>(?:your |the )?(?:left|right|other)(?: one| arm| hand| side| way)?|both(?: arms| hands)?)(?: please)?\W*$"
+)
+
+
+def corrected(said: str) -> str:
+    """A sentence with what it takes back put right; the sentence itself where it takes nothing back.
+
+    >>> corrected("raise your left arm. no, not that arm, the other one"), corrected("raise both arms. actually just the left")
+    ('raise your right arm', 'raise your left arm')
+    """
+    found = _BUT_NOW.match(said)
+    return (completed(found["now"], found["before"]) or said) if found else said
