@@ -55,7 +55,7 @@ _WITH_LEADING = re.compile(
     rf"^with (?P<first>(?:your |both |the )*(?:left |right )?{_LIMB} (?:crossed|folded|raised|stretched|spread|up|out|on|behind|over|wide|high)\b[^,]*),\s*(?P<second>\w.+)$"
 )
 _WITH_POSE = re.compile(
-    rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{_LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to|at|in front|out|up|in|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
+    rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{_LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to (?:your |the )?(?:heart|chest|head|ears?|mouth|chin|face|forehead|temple|sides?|sky|ceiling|front|left|right|belly|shoulder)|at(?! the (?:very )?same)|in front|out|up|in|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
 )
 _AND = re.compile(r"\s*,\s*(?:and\s+|but\s+)?(?:also\s+)?|\s+(?:and|plus|but)\s+(?:also\s+)?")
 _FILLER = re.compile(
@@ -64,6 +64,9 @@ _FILLER = re.compile(
 _FRONTED = re.compile(
     r"^(?:(?:and|with|using) )+(?:your |the )?(left|right)(?: hand| arm)?,? (?!(?:hand|arm|on|up|to|out|over|behind|down|forward|raised|stretched)\b)(\w.+)$"
 )
+_RAISES = re.compile(r"^(?:raise|lift|put up|hold up) (?:your |the )?(?:left|right) (?:hand|arm)(?: up| high)?$")
+_ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
+"""'Raise your left hand and wave' is one gesture."""
 _HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)\b.*\b(?:seconds?|secs?)\b")
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
 _IS = re.compile(
@@ -131,7 +134,7 @@ def divided(clause: str) -> list[str]:
         first, second = (_imperative(part) for part in pair)
         second = _with_verb(second, first)
         a, b = limbs_of(first), limbs_of(second)
-        if _HOLDS.match(second):
+        if _HOLDS.match(second) or (not asked and _RAISES.match(first) and _ONLY_WAVES.match(second)):
             continue
         if a == SOME_ARM == b and asked:
             return [_sided(first, "right"), _sided(second, "left")] if "hand" in clause else [first, second]
@@ -229,9 +232,12 @@ def _freed(clause: str, other: frozenset[str]) -> str:
 def _there(clause: str, first: str) -> str:
     """A clause with the way of the first in place of "there": "look there" beside "point to the left" -> "look to the left"."""
     way = re.search(r"\b(?:to (?:the |your )?(?:left|right)|up|down|left|right)\b(?! (?:hand|arm))", first)
-    if way is None or not re.match(r"look(?:ing)?(?: (?:there|that way|over there|in that direction))?$", clause):
+    found = re.match(
+        r"(look|point)(?: (?:there|that way|over there|in that direction)(?: too)?| (?=with\b)|$)(?P<rest>.*)", clause
+    )
+    if way is None or found is None or (found[1] == "point" and found[0] == "point"):
         return clause
-    return f"look {way[0]}"
+    return f"{found[1]} {way[0]}{found['rest']}"
 
 
 def _sided(clause: str, side: str) -> str:

@@ -144,7 +144,7 @@ _ACT = _any(
     "touch", "cover", "blow", "wip", "stir", "typ", "applau", "conduct", "greet", "swing", "bend", "turn", "reach", "mak",
     "giv", "tak", "do", "play", "act", "show", "strik", "thumb", "flex", "high", "lower", "put", "let", "bring", "hold", "keep",
     "drop", "place", "extend", "straighten", "sway", "pump", "roll", "nudg", "sink", "glanc", "gaz", "peek", "stare", "shade",
-    "cup", "hide", "hammer", "paint", "brush", "scrub", "pour", "comb", "steer",
+    "cup", "hide", "fist (?:bump|pump)", "hammer", "paint", "brush", "scrub", "pour", "comb", "steer",
     "uncross", "unfold", "press", "rock", "slump", "yawn", "breath", "conduct", "juggl",
 )  # fmt: skip
 SPEAKS_OF_AN_ACT = _pattern(rf"\b{_ACT}\w*")

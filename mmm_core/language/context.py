@@ -272,7 +272,7 @@ def _in_manner(command: PlainCommand, *, tempo: float = 1.0, size: float = 1.0) 
 def _times(steps: Steps, times: int) -> tuple[Steps, int]:
     """Steps of which there are so many strokes; where there are several commands the whole is done so often."""
     only = next(c for step in steps for c in step)
-    if len(steps) > 1 or len(steps[0]) > 1 or is_pose(only.text):
+    if sum(map(len, steps)) > 1 or is_pose(only.text):
         return steps, times
     number = {1: "once", 2: "twice"}.get(times, f"{_word(times)} times")
     words, n = _SAID_TIMES.subn(number, only.text, count=1)

@@ -38,6 +38,9 @@ _BOTH_ARMS = re.compile(r"\bboth (?:your )?(?P<limb>hand|arm|fist)s\b")
 _ONLY_TIMES = re.compile(
     r"^(?P<times>once|twice|thrice|\w+ times)(?: more| again)?$|^(?P<number>\w+) (?:more|further)(?: times?)?$"
 )
+_COUNTED = re.compile(
+    r"^(?P<times>once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?) (?P<rest>(?:with|using|on|to) .+)$"
+)
 _SAID_TIMES = re.compile(r"\b(?:once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?)\b")
 _PLACE = re.compile(
     r"^(?:(?:on|to|over|above|behind|in front of|under|at|towards) (?:your |the )?(?:heart|hips?|waist|head|chest|belly|stomach|mouth|eyes|ears?|back|forehead|shoulders?|chin|neck|sides?|knees|face)"
@@ -102,6 +105,10 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
     ).strip()
     if not clause:
         return None
+    if (counted := _COUNTED.match(clause)) and (
+        whole := completed(counted["rest"], _SAID_TIMES.sub("", before).strip())
+    ):
+        return f"{whole} {counted['times']}"
     if _ONLY_BOTH.match(clause):
         both, n = _ONE_ARM.subn(lambda m: f"both {m['limb']}s", before, count=1)
         return both if n else None

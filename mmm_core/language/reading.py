@@ -24,7 +24,11 @@ from mmm_core.language.spelling import mended, normalised
 _PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red|need|feed)\b (?:hand|arm|fist)s?\b)\w+ed\b")
 """The verb of "once you have clapped", "if you crossed"."""
 _DO_IT = re.compile(
-    r"(?:go ahead and )?(?:do (?:it|that|so|this)|prove it|show (?:me|us|him|her|them|everybody|it))\W*"
+    r"(?:go ahead and )?(?:do (?:it|that|so|this)|prove it|show (?:me|us|him|her|them|everybody|it))"
+    r"(?P<how> with (?:your|the) (?:left|right) (?:hand|arm))?\W*"
+)
+_LIMB_OF_ALL = re.compile(
+    r"(?P<limb>(?:your |the )?(?:(?:left|right|both) )?(?:arms?|hands?|head|body)): (?P<parts>.+)$"
 )
 _ANYTHING = ("wave your right hand", "clap your hands")
 """What is done where anything but the denied is asked for."""
@@ -46,7 +50,8 @@ def read(text: str) -> Reading:
     bare = without_request(said)
     if known := everyday(bare):
         return _known(text, known)
-    denial = without_denial(rewritten(restated(corrected(_referring(bare, said)))))
+    bare, first_hand = _hand_first(restated(corrected(_referring(bare, said))))
+    denial = without_denial(rewritten(bare))
     if denial.denied and not denial.rest and not denial.anything:
         return Reading(text, (), denial.denied)
     if denial.anything and not denial.rest:
@@ -56,6 +61,7 @@ def read(text: str) -> Reading:
     steps: list[tuple[PlainCommand, ...]] = []
     notes: list[str] = []
     rest, hand = _for_all(rest)
+    hand = hand or first_hand
     for clause in commands_in_turn(with_sides(rest)):
         steps += _steps(clause + hand if hand and limbs_of(clause) == SOME_ARM else clause, notes)
     if _is_plain(text, said, steps):
@@ -66,20 +72,41 @@ def read(text: str) -> Reading:
 def _referring(bare: str, said: str) -> str:
     """A request with what its words before the request name: "that way" a side, "do it" an act that somebody cannot do."""
     before = said.removesuffix(bare)
-    side = re.search(r"\b(?:on|to) (?:your|the) (left|right)\b(?! (?:hand|arm))", before)
+    side = re.search(r"\b(?:on|to|from|by) (?:your|the) (left|right)\b(?! (?:hand|arm))", before)
     if side and re.search(r"\b(?:that way|over there|in that direction)\b", bare):
         return re.sub(r"\b(?:that way|over there|in that direction)\b", f"to the {side[1]}", bare, count=1)
     act = re.search(
         r"\b(?:can not|can|could|cannot|how to|how you|whether you|if you) ((?:never |ever )?\w+.*?)(?=,|\.|$)", before
     )
-    if act and _DO_IT.fullmatch(bare) and SPEAKS_OF_AN_ACT.match(act[1]):
-        return act[1]
+    again = _DO_IT.fullmatch(bare)
+    if act and again and SPEAKS_OF_AN_ACT.match(act[1]):
+        return act[1] + (again["how"] or "")
     return bare
 
 
 def _known(text: str, command: str) -> Reading:
     """The reading of an everyday phrase."""
     return Reading(text, ((PlainCommand(command, Manner(), limbs_of(command)),),))
+
+
+def _hand_first(said: str) -> tuple[str, str]:
+    """Several commands without the hand that their beginning names for all: "with your right arm first point up, then forward"."""
+    listed = _LIMB_OF_ALL.match(said)
+    if listed is not None:
+        parts = re.split(r",?\s+(?:and|then)\s+|,\s*", listed["parts"])
+        return ", then ".join(f"{listed['limb']} {part}" for part in parts if part), ""
+    found = re.match(
+        r"(?:with|using|use) (?:your |the )?(left|right) (?:hand|arm)[:,]? (?:first |to )?(?P<rest>.+)$", said
+    )
+    rest = found["rest"] if found else ""
+    if (
+        found is None
+        or not re.search(r"\bthen\b|,", rest)
+        or re.search(r"\b(?:left|right|other) (?:hand|arm|one)\b|\bthe other\b|\bnot\b", rest)
+    ):
+        return said, ""
+    verbs = "raise|lift|put|lower|drop|stretch|swing|bend|hold|let|move|bring|wave"
+    return re.sub(rf"\b({verbs}) it\b", rf"\1 your {found[1]} arm", rest), f" with your {found[1]} hand"
 
 
 def _for_all(said: str) -> tuple[str, str]:

@@ -12,7 +12,8 @@ from mmm_core.language.word_tables import WAY, lines, pairs, substitutions
 _ACT = (
     r"(?:also |just |please |can you |could you )*(?:wave|nod|bow|clap|shrug|salute|point|punch|shake|cross|fold|raise|lift|look|lean|beckon|hug|stretch|twist|tilt|cheer|pray|scratch|rub|pat|"
     r"knock|push|pull|throw|catch|flap|march|dance|drum|circle|spread|open|touch|cover|blow|wipe|stir|applaud|conduct|greet|swing|bend|turn|reach|make|give|take|do|"
-    r"play|act|show|strike|flex|lower|put|hold|shade|celebrate|throw|welcome|thank|say|tell|hush|call|flex|pretend|move|bring|let us see you|sway|duck|facepalm)\b"
+    r"play|act|show|strike|flex|lower|put|hold|shade|celebrate|throw|welcome|thank|say|tell|hush|call|flex|pretend|move|bring|let us see you|sway|duck|facepalm|signal|hammer|paint|brush|drum|box|drink|eat|pour|kiss|listen|yawn|climb|swim|steer|type|juggle|flip|rotate|rock|slump|relax|drop|place|"
+    r"extend|straighten|uncross|roll|bob|wag|tip|incline|motion|gesture|indicate|demonstrate|perform|imitate|mime|box|jab|row|saw|sow)\b"
 )
 _END = re.compile(r"[\s,.!?;:]+$")
 

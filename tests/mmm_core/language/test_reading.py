@@ -56,6 +56,53 @@ def test_what_is_read(text: str, steps: list[list[str]]) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("look up and down", [["look up"], ["look down"]]), ("end with a bow but clap before that", [["clap"], ["a bow"]]),
+        ("shake your head, pause, nod", [["shake your head"], ["nod"]]),
+        ("only after you have bowed may you raise your right hand", [["bow"], ["raise your right hand"]]),
+        ("first shrug, second nod, third clap", [["shrug"], ["nod"], ["clap"]]),
+        ("wave twice with the left and once with the right",
+         [["wave twice with your left hand"], ["wave once with your right hand"]]),
+        ("head up, head down, head to the left", [["look up"], ["look down"], ["look to the left"]]),
+        ("left arm: up, out to the side, and down",
+         [["raise your left hand"], ["raise your left arm to the side"], ["lower your left arm"]]),
+        ("with your right arm first point up, then forward",
+         [["point up with your right hand"], ["point forward with your right hand"]]),
+        ("nod once and then three times more", [["nod once"], ["nod three times"]]),
+        ("wave with your right hand, then both", [["wave with your right hand"], ["wave with both hands"]]),
+        ("put your right hand on your heart and, while you do that, nod", [["put your right hand on your heart", "nod"]]),
+        ("nod during the clapping", [["nod", "clap"]]), ("lean to the left and hold it for five seconds", [["lean to the left"]]),
+        ("raise your left arm. No, not that arm, the other one.", [["raise your right arm"]]),
+        ("Raise both arms. Hmm, actually just the left.", [["raise your left arm"]]),
+        ("left, i mean right, arm up", [["raise your right hand"]]),
+        ("lean forward, actually no, backwards", [["lean back"]]), ("don't point just wave", [["wave"]]),
+        ("wave with the hand that isn't your right", [["wave with the left hand"]]), ("nobody needs you to applaud now", []),
+        ("wave a couple of times", [["wave twice"]]), ("clap 3x", [["clap 3 times"]]), ("lok dwon", [["look down"]]),
+        ("there's something on your left, would you turn your head that way", [["turn your head to the left"]]),
+        ("my sister bets that you can't clap four times, so please do it", [["clap four times"]]),
+        ("I'd be really grateful if you just shook your head", [["shake your head"]]),
+        ("punch with your left, and with your right too", [["punch with your left hand"], ["punch with your right hand"]]),
+    ],
+)  # fmt: skip
+def test_orders_lists_and_corrections_of_the_tables(text: str, steps: list[list[str]]) -> None:
+    assert said(text) == steps
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "turn your head right and back", "lean back", "do not move until I tell you", "a left wave", "lopen dansen", "mira arriba",
+        "wave to the second person", "shake up and down", "raise your left hand and wave", "draw a circle in the air",
+    ],
+)  # fmt: skip
+def test_what_the_tables_of_orders_and_corrections_leave_alone(text: str) -> None:
+    assert len(read(text).steps) <= 1
+    assert all(len(step) == 1 for step in read(text).steps)
+    assert all(c.text.split()[-1] == text.rsplit(maxsplit=1)[-1] for step in read(text).steps for c in step)
+
+
+@pytest.mark.parametrize(
     "text",
     ["wave with your right hand", "Clap your hands twice!", "play the guitar", "act like a zombie", "look around", "stir the soup",
      "point to the left", "wave like there is no tomorrow", "nod your head up and down", "make a stop sign", "dance the macarena"],
