@@ -106,7 +106,7 @@ def eval(
         seeds: motions for each probe, or each family (fidelity).
         robots: names or robot files, each of which shows the probes' motions as well.
         probes: which set of probes: models are chosen by one, and reported on the other.
-        words: which set of sentences: rules are written by dev2 (dev is by their own writer); test is spent.
+        words: which set of sentences; the rules have been written by all three (docs/language.md).
         executed: seeds of each probe that the simulated robots execute too; 0: none.
         families: families of the corpus (fidelity); all when none is given.
         steps: decoding steps of every motion (fidelity); the model's own when it is not given.
