@@ -35,8 +35,9 @@ CLIENTS = (
 )  # fmt: skip
 """Commands that talk to a daemon, and take its endpoints."""
 TTY = "/dev/ttyUSB0"
-WATCHED_S, LONGEST_S = 2.0, 120.0
+LONGEST_S = 300.0
 _NOT_RUN = re.compile(r"<!-- not run: (?:(mmmd [\w -]+): )?(.+?) -->")
+_COMMENT = re.compile(r"^<!-- .* -->$")
 _OUTPUT = re.compile(r"<!-- output of: (.+?) -->")
 
 
@@ -86,7 +87,7 @@ def blocks(page: str) -> list[Block]:
         elif match := _OUTPUT.search(lines[i]):
             output = match[1]
         fence = re.match(r"^```(\w*)", lines[i])
-        indented = lines[i].startswith("    ") and (i == 0 or not lines[i - 1].strip() or _NOT_RUN.search(lines[i - 1]))
+        indented = lines[i].startswith("    ") and (i == 0 or not _COMMENT.sub("", lines[i - 1]).strip())
         if not fence and not indented:
             i += 1
             continue
@@ -150,13 +151,18 @@ def help_examples() -> list[tuple[str, str]]:
 
 
 class Terminal:
-    """A folder in which commands are typed, and what runs behind them."""
+    """A folder in which commands are typed, and what runs behind them.
+
+    Attributes:
+        printed: what each command has printed, by its line.
+    """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         cmd, ctl, pub, stream = (f"tcp://127.0.0.1:{port}" for port in free_ports(4))
         self.endpoints = Endpoints(cmd, ctl, pub, stream=stream)
         self.at = f"--cmd {cmd} --ctl {ctl} --pub {pub}"
+        self.printed = dict[str, str]()
         self._behind: dict[str, subprocess.Popen[bytes]] = {}
         (folder / "bin").mkdir()
         script = folder / "bin" / "mmmd"
@@ -173,7 +179,8 @@ class Terminal:
         """
         began_s = time.monotonic()
         try:
-            return self._type(self._on_this_machine(command))
+            self.printed[command] = self._type(self._on_this_machine(command))
+            return self.printed[command]
         finally:
             sys.stdout.write(f"{time.monotonic() - began_s:6.1f} s  {command}\n")
 
@@ -195,7 +202,7 @@ class Terminal:
     def python(self, code: str) -> str:
         """Run a snippet, at this terminal's daemon."""
         code = code.replace("tcp://127.0.0.1:5871", self.endpoints.cmd)
-        done = subprocess.run([sys.executable, "-c", code], cwd=self.folder, timeout=30, check=False, capture_output=True,
+        done = subprocess.run([sys.executable, "-c", code], cwd=self.folder, timeout=LONGEST_S, check=False, capture_output=True,
                               text=True, env=self.environment)  # fmt: skip
         assert done.returncode == 0, done.stderr
         return done.stdout
