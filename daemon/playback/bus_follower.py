@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 
 from daemon.playback.setpoint_buffer import SetpointBuffer
-from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
+from daemon.shared_memory.bus_link import Asked, BusLink, BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.machine import ImpossibleTransitionError, RobotState, StateMachine, Trigger
 
@@ -34,7 +34,7 @@ class BusFollower:
         self.bus_alive = True
         self.fault_reason = ""
         self._own_estop = ""
-        self._to_latch = False
+        self._to_latch: Asked | None = None
         self.stopped = False
         self.idling = False
         self._epoch: int = planner.epoch
@@ -46,10 +46,14 @@ class BusFollower:
         self._planner.pump()
         if self._planner.epoch != self._epoch:
             self._epoch, self._settled_at = self._planner.epoch, self._view.index + SETTLING_CYCLES
+        was_latched = self._to_latch is not None and self._link.carried_out(self._to_latch)
         self._planner.read_cycles()
         if self.machine.state is RobotState.FAULT and self.bus_alive and self._view.message:
             self.fault_reason = self._view.message  # the bus process is back and knows better
         entered = [self._follow(self._report(state)) for state in self._view.passed or [self._view.state]]
+        if was_latched and self._to_latch is not None:  # a reset, or a new bus process, came before the fault was seen
+            self._to_latch = None
+            entered.append(self._follow(self._report(self._view.state)))
         self._link.show_robot_state(_PLACES[self.machine.state])
         return [state for state in entered if state is not None]
 
@@ -70,13 +74,14 @@ class BusFollower:
 
     def _report(self, state: BusState) -> Trigger:
         if not self.bus_alive or self._view.silent_s > BUS_SILENT_S:
-            if self.bus_alive and not self._to_latch:  # frozen: when it goes on it must not take up what it was doing
-                self._link.request(BusRequest.FAULT)
-                self._to_latch = True
+            if (
+                self.bus_alive and self._to_latch is None
+            ):  # frozen: it must not take up what it was doing when it goes on
+                self._to_latch = self._link.request(BusRequest.FAULT)
             return Trigger.BUS_LOST
-        if self._to_latch and state not in (BusState.FAULT, BusState.ESTOP):
+        if self._to_latch is not None and state not in (BusState.FAULT, BusState.ESTOP):
             return Trigger.BUS_LOST  # cycles of a bus process that has not taken the request yet
-        self._to_latch = False
+        self._to_latch = None
         report = REPORTS[state]
         if report is Trigger.BUS_HOLDING and self.stopped:
             return Trigger.BUS_STOPPED

@@ -21,7 +21,7 @@ class Front:
 
     def __init__(self, r: Rig) -> None:
         self.rig, self.clock = r, VirtualClock()
-        view = BusView(r.link, ROBOT, self.clock)
+        self.view = view = BusView(r.link, ROBOT, self.clock)
         self.machine = StateMachine()
         self.follower = BusFollower(r.link, view, SetpointBuffer(ROBOT, r.link, view, 0.1), self.machine)
 
@@ -69,6 +69,25 @@ def test_a_reset_given_while_the_bus_process_was_silent_is_carried_out_after_the
         r.link.request(BusRequest.RESET)
         states = [front.tick() for _ in range(4)]
         assert states[-1] is RobotState.LIMP and RobotState.ESTOP not in states and not any(r.torque)
+
+
+@pytest.mark.parametrize("halt", [None, BusRequest.ESTOP])
+def test_a_fault_that_was_latched_and_reset_unseen_is_over(halt: BusRequest | None) -> None:
+    """The robot stayed in a fault for ever: its bus process was limp, where a reset does nothing."""
+    with rig("reference") as r:
+        front = Front(r)
+        front.arm()
+        assert front.tick(cycles=0, seconds=1.2 * BUS_SILENT_S) is RobotState.FAULT
+        if halt is not None:
+            r.link.request(halt)
+        r.cycle(3)
+        r.link.request(BusRequest.RESET)
+        r.cycle(3)
+        front.view.begin(BusState.FAULT)  # of a new bus process: the cycles so far are not looked at
+        front.tick(3)
+        assert front.tick() is RobotState.LIMP and r.state is BusState.LIMP and not any(r.torque)
+        front.arm()
+        r.assert_limits_kept()
 
 
 def test_what_cannot_follow_is_an_e_stop_that_says_why() -> None:
