@@ -34,11 +34,13 @@ $(VENV)/.ready: pyproject.toml constraints.txt
 demo: setup
 	$(BIN)/mmmd demo --out out/demo
 
-# Tests of daemons wait for real time: four files at once keep two cores busy. Their processes may starve on a slow machine, so
-# what failed runs once more by itself, in a still moment, and has to pass then, unless the machine itself stood still meanwhile
-# (tests/host_watch.py).
+# Tests of daemons wait for real time: four files at once keep two cores busy, those that take longest first (tests/conftest.py).
+# Their processes may starve on a slow machine, so what failed runs once more by itself, in a still moment, and has to pass then,
+# unless the machine itself stood still meanwhile (tests/host_watch.py). Compiled modules are kept whatever the environment says:
+# a daemon whose four processes compile theirs at every start takes half as much processor time again.
+test soak: export PYTHONDONTWRITEBYTECODE =
 test: setup
-	$(BIN)/python -m pytest -n 4 --dist loadfile || \
+	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder || \
 	$(BIN)/python -m pytest --last-failed --last-failed-no-failures none --void-when-held-up -rs
 
 check: setup

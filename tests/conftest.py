@@ -5,11 +5,15 @@ from __future__ import annotations
 import signal
 import time
 from collections.abc import Generator
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
 
 from tests.host_watch import HostWatch
+
+if TYPE_CHECKING:
+    from mmm_core.generate.engine import Engine
 
 # No timed assertions: machines are shared and noisy; speed lives in `mmmd bench`.
 settings.register_profile("mmmd", deadline=None)
@@ -17,6 +21,14 @@ settings.load_profile("mmmd")
 
 WATCH = pytest.StashKey[HostWatch]()
 BEGAN = pytest.StashKey[float]()
+
+
+@pytest.fixture(scope="session")
+def engine() -> Engine:
+    """The shipped model, as it is: a test that changes it loads its own."""
+    from tests.support.shipped import shipped_engine  # PyTorch is loaded where a test needs it
+
+    return shipped_engine()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -29,6 +41,12 @@ def pytest_configure(config: pytest.Config) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     if config.getoption("--void-when-held-up"):
         config.stash[WATCH] = HostWatch().start()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files with whole daemons first: they take longest and mostly wait; what only computes fills the processors at the end."""
+    waiting = {item.path for item in items if item.get_closest_marker("realtime")}
+    items.sort(key=lambda item: (item.path not in waiting, "end_to_end" not in item.path.parts))
 
 
 @pytest.hookimpl(tryfirst=True)

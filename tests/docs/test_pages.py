@@ -55,10 +55,11 @@ pytestmark = pytest.mark.realtime
 
 
 def commands() -> list[tuple[str, str]]:
-    """(place, command line) of all pages and help texts."""
+    """(first place, command line) of all pages and help texts."""
     found = [(str(b), c) for blocks_of in PAGES.values() for b in blocks_of if b.kind == "commands" for c in b.commands]
     found += [(f"{name} --help", example) for name, example in EXAMPLES]
-    return [(place, c) for place, c in found if c.startswith("mmmd ")]
+    first_places = {command: place for place, command in reversed(found) if command.startswith("mmmd ")}
+    return [(place, command) for command, place in first_places.items()]
 
 
 @pytest.mark.parametrize(("place", "command"), commands())

@@ -188,16 +188,13 @@ def child_pid(daemon: RunningDaemon, module: str) -> int:
     raise AssertionError(f"no child runs {module}")
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
-def test_a_bus_process_that_dies_or_freezes_is_a_fault(number):
+def test_a_bus_process_that_dies_is_a_fault_and_so_are_the_exit_statuses():
     daemon = RunningDaemon()
-    pid = None
     try:
         daemon.until_ready()
         with daemon.client() as client:
             client.arm()
-            pid = child_pid(daemon, "daemon.control.process")
-            os.kill(pid, number)
+            os.kill(child_pid(daemon, "daemon.control.process"), signal.SIGKILL)
             status = client.wait_for("fault", timeout_s=5)
             assert "bus process" in status.reason
         refused_say = daemon.mmmd("say", "wave")
@@ -205,9 +202,4 @@ def test_a_bus_process_that_dies_or_freezes_is_a_fault(number):
         assert daemon.mmmd("status").returncode == 3
         assert daemon.terminate() == 3
     finally:
-        if pid is not None and number == signal.SIGSTOP:
-            try:
-                os.kill(pid, signal.SIGCONT)
-            except ProcessLookupError:
-                pass
         daemon.close()

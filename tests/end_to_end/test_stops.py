@@ -19,20 +19,14 @@ from daemon.host.realtime import CONTROL_PRIORITY, may_fifo
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire.requests import Estop
-from tests.end_to_end.test_chaos import Servos, assert_works, bring_to, daemon_on, lead_to, within
 from tests.end_to_end.test_start_and_end import child_pid
 from tests.support.harness import RunningDaemon
+from tests.support.robot_states import assert_works, bring_to, daemon_on, gone, lead_to, within
+from tests.support.sizes import some_and_all
 
 pytestmark = [pytest.mark.timeout(240), pytest.mark.realtime]
 BACK_WITHIN_S = 40.0
 """Until a process that was lost serves again, on a machine that has much else to do."""
-
-
-@pytest.fixture
-def servos(tmp_path):
-    made = Servos(tmp_path)
-    yield made
-    made.close()
 
 
 class Person:
@@ -83,7 +77,7 @@ def test_the_front_keeps_no_estop_from_the_bus_process(servos, number):
             assert daemon.terminate() == 0
         else:
             daemon.process.wait(5)
-        within(40.0, "no process is left", lambda: _gone(bus) and _gone(ctl))
+        within(40.0, "no process is left", lambda: gone(bus) and gone(ctl))
         servos.assert_kept()
     finally:
         daemon.process.send_signal(signal.SIGCONT) if daemon.process.poll() is None else None
@@ -122,11 +116,12 @@ def test_no_thread_of_ctl_waits_for_a_core_while_it_has_the_interpreter():
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
-def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(servos, number):
+@pytest.mark.parametrize("states", some_and_all(("moving",), ("moving", "limp")))
+def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(servos, number, states):
     daemon = daemon_on(servos)
     try:
         with daemon.client() as client:
-            for state in ("moving", "limp"):
+            for state in states:
                 bring_to(client, state)
                 os.kill(child_pid(daemon, "daemon.ctl.process"), number)
                 within(1.0, "no torque", lambda: not servos.torque)
@@ -142,8 +137,15 @@ def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(servo
         daemon.close()
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
-@pytest.mark.parametrize("after_s", [0.02, 0.6])
+@pytest.mark.parametrize(
+    ("number", "after_s"),
+    [
+        (signal.SIGKILL, 0.6),
+        (signal.SIGSTOP, 0.02),
+        pytest.param(signal.SIGKILL, 0.02, marks=pytest.mark.soak),
+        pytest.param(signal.SIGSTOP, 0.6, marks=pytest.mark.soak),
+    ],
+)
 def test_an_estop_without_a_bus_process_is_told_as_owed_and_carried_out_by_the_next_one(servos, number, after_s):
     """Of nine e-stops given so all nine were acknowledged, and none was carried out."""
     daemon = daemon_on(servos)
@@ -174,11 +176,3 @@ def _state(client) -> str:
         return client.status().state
     except NoAnswerError:
         return "no answer"
-
-
-def _gone(pid: int) -> bool:
-    try:
-        with open(f"/proc/{pid}/stat") as f:
-            return f.read().rsplit(")", 1)[1].split()[0] == "Z"
-    except OSError:
-        return True

@@ -62,10 +62,11 @@ def test_on_no_way_to_park_or_rest_it_touches_itself(name, seed, parks):
     assert (np.diff(depth, axis=0) >= -2e-4).all()
 
 
+@pytest.mark.parametrize("n_poses", [20, pytest.param(60, marks=pytest.mark.soak)])
 @pytest.mark.parametrize("name", sorted(ROBOTS))
-def test_from_clear_poses_and_from_slight_contacts_a_way_is_found(name):
+def test_from_clear_poses_and_from_slight_contacts_a_way_is_found(name, n_poses):
     """Shapes are coarse: an arm that rests on the body may be some millimetres in it."""
-    depths = {seed: -float(BODIES[name].clearance_m(drawn(name, seed)[None])[0]) for seed in range(60)}
+    depths = {seed: -float(BODIES[name].clearance_m(drawn(name, seed)[None])[0]) for seed in range(n_poses)}
     for low_m, high_m, share in ((-np.inf, 0.0, 1.0), (0.0, 0.006, 0.6)):
         some = [seed for seed, depth in depths.items() if low_m <= depth < high_m]
         searches = [searched(name, drawn(name, seed), ROBOTS[name].park_rad) for seed in some]

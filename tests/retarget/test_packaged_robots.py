@@ -209,8 +209,7 @@ TEXTS = ("wave with your right hand", "clap your hands three times", "bow", "rai
 
 
 @pytest.fixture(scope="module")
-def gestures() -> dict[str, Motion]:
-    engine = Engine.load(threads=None)
+def gestures(engine: Engine) -> dict[str, Motion]:
     return {text: engine.generate(text, seed=1).motion for text in TEXTS}
 
 

@@ -10,7 +10,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from mmm_core.generate.engine import Engine
 from retarget.errors import RobotFileError
 from retarget.pipeline import Retargeter
 from retarget.robot.description import rotation_to_standard
@@ -21,6 +20,7 @@ from retarget.setup.limb_detection import find_anatomy
 from retarget.setup.scaffold import propose
 from retarget.setup.standing_pose import Direction, standing_pose
 from tests.retarget.test_pipeline import RATES_HZ, at_rest, check_bounds
+from tests.support.shipped import shipped_engine
 
 SHARED = Path(__file__).parents[3] / "shared" / "robots"
 NEW_NAMES = {"upper_arm_yaw": "shoulder_yaw", "torso": "waist"}
@@ -89,7 +89,7 @@ def test_a_description_of_strangers_works_with_no_edits_but_ids(tmp_path: Path) 
         zip((p.name for p in r.kinematics.key_points), r.kinematics.places(robot.rest_rad[None])[0], strict=True)
     )
     assert places["left_wrist"][2] < places["left_elbow"][2] < places["left_shoulder"][2], "its arms hang at rest"
-    engine = Engine.load(threads=None)
+    engine = shipped_engine()
     for text, up in (("raise your right arm", "right"), ("wave with your left hand", "left"), ("clap your hands", "")):
         path = r.retarget(engine.generate(text, seed=1).motion, at_rest(r))
         for rate_hz in RATES_HZ:

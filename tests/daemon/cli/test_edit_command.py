@@ -9,8 +9,8 @@ import pytest
 from daemon.cli import main
 from daemon.generator.messages import EditMessage, GenerateMessage, UnfitRequestError, arrays_of
 from daemon.generator.service import EngineService
-from mmm_core.generate.engine import Engine
 from mmm_core.motion.motion import load_npz
+from tests.support.shipped import shipped_engine
 
 WRIST, SHOULDER = 20, 16
 """Joints of the left arm."""
@@ -54,7 +54,7 @@ def test_what_is_not_reached_ends_with_status_1(wave: Path, tmp_path: Path, caps
 
 def test_the_generator_says_what_is_not_reached() -> None:
     """`rejected` with `not_reached`: the robot does not move."""
-    maker = EngineService(Engine.load(threads=None))
+    maker = EngineService(shipped_engine())
     (nod,) = maker.generate(GenerateMessage(id=1, text="nod twice", seconds=3.0))
     with pytest.raises(UnfitRequestError) as caught:
         maker.edit(EditMessage(id=2, motion=arrays_of(nod.motion), text="clap your hands", parts=["left_arm"]))

@@ -22,9 +22,9 @@ from daemon.generator.client import GeneratorClient
 from daemon.generator.messages import Generated, GeneratorError
 from daemon.generator.process import MOST_BEGUN, answers
 from mmm_core.generate.continuation import continue_motion
-from mmm_core.generate.engine import Engine
 from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.support.kinematic import KinematicGenerator, KinematicMaker, raised_arm
+from tests.support.shipped import shipped_engine
 
 pytestmark = pytest.mark.realtime
 
@@ -284,9 +284,7 @@ def test_the_process_serves_the_shipped_model_and_ends_with_its_parent(endpoint)
         alone = ask(endpoint, on).motion
         after = ask(endpoint, lambda client: on(client, before=motion, prefix_s=0.8)).motion
         other = ask(endpoint, lambda client: on(client, before=motion, prefix_s=0.2)).motion
-        expected = continue_motion(
-            Engine.load(threads=None), motion, 0.8, "raise both arms", seed=4, seconds=2.0
-        ).motion
+        expected = continue_motion(shipped_engine(), motion, 0.8, "raise both arms", seed=4, seconds=2.0).motion
         np.testing.assert_allclose(after.joints_m, expected.joints_m, atol=1e-3)
         for different in (alone, other):
             assert np.abs(after.joints_m - different.joints_m).max() > 0.01

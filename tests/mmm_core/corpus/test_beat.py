@@ -18,6 +18,7 @@ from mmm_core.inference.checkpoint import load_model, load_text_encoder
 from mmm_core.training.fresh import WEIGHTS_FILE, FreshClips, FreshRecipe, read_weights, usual_weights, weights_of
 from mmm_core.training.run import Run, Schedule
 from mmm_core.training.transformer_training import Batches, train_transformer
+from tests.support.shipped import shipped_engine
 
 REPEATED = (
     "row",
@@ -52,7 +53,7 @@ def test_a_stroke_on_the_beat_comes_again_as_it_was(family: str) -> None:
 
     period = min((p for p in range(12, 45, 4) if len(joints) > 3 * p), key=change_m)
     assert change_m(period) < 2e-3
-    ids = load_model().tokenizer.encode(torch.from_numpy(clip.features)[None])[0]
+    ids = shipped_engine().model.tokenizer.encode(torch.from_numpy(clip.features)[None])[0]
     first, tokens = core.start // 4 + (n - 3) * period // 4, period // 4
     assert (ids[first : first + tokens] == ids[first + tokens : first + 2 * tokens]).float().mean() > 0.9
 

@@ -34,6 +34,7 @@ from mmm_core.model.transformer import MotionTransformer, TransformerConfig
 from mmm_core.model.vqvae import VqVae, VqVaeConfig
 from mmm_core.motion.features import features_from_joints
 from tests.support.motion_folders import make_folder, standing
+from tests.support.shipped import shipped_engine
 
 DATA = Path(__file__).parents[4] / "shared" / "data"
 
@@ -234,7 +235,7 @@ class TestWhatFits:
         assert {row for rows in drawn for row in rows} == set(range(15))
 
     def test_a_caption_is_measured_whole_though_a_part_of_it_would_be_done(self) -> None:
-        engine, text = Engine.load(threads=None), "clap your hands, then run away"
+        engine, text = shipped_engine(), "clap your hands, then run away"
         assert engine.understand(text)[1].kept == "clap your hands"
         states = text_states(engine, [Pair(np.zeros((40, 263), np.float32), text, (), 0)])
         assert torch.equal(states.words, engine.encoder.encode([text]).words)
@@ -250,7 +251,7 @@ class TestWhatFits:
         assert again.keys() == {"R1", "R2", "R3", "FID", "MM-Dist", "Diversity"}
 
     def test_the_released_model_is_measured_at_temperature_one(self, tmp_path: Path) -> None:
-        official, ours = humanml3d_model(tmp_path / "m.safetensors"), Engine.load(threads=None)
+        official, ours = humanml3d_model(tmp_path / "m.safetensors"), shipped_engine()
         assert official.settings.temperature == 0.0
         assert paper.for_evaluation(official).settings.temperature == 1.0
         assert paper.for_evaluation(ours).settings == ours.settings
@@ -262,27 +263,28 @@ class TestWhatFits:
         turned = ours.copy()
         turned[:, 67:193] = np.random.default_rng(0).normal(size=126)  # somebody else's rest directions
         np.save(folder / "new_joint_vecs" / "000001.npy", turned)
-        pair = next(p for p in pairs_for([Engine.load(threads=None)], folder, ["test"]) if p.text == "a person waves.")
+        pair = next(p for p in pairs_for([shipped_engine()], folder, ["test"]) if p.text == "a person waves.")
         np.testing.assert_allclose(pair.features, ours, atol=1e-3)
         np.testing.assert_allclose(to_our_rest_pose(turned), ours, atol=1e-3)
         kept = pairs_for([humanml3d_model(tmp_path / "m.safetensors")], folder, ["test"])
         assert any(np.array_equal(p.features, turned) for p in kept)
 
     def test_what_does_not_fit_is_refused_by_name(self, tmp_path: Path) -> None:
-        ours, theirs = Engine.load(threads=None), humanml3d_model(tmp_path / "m.safetensors")
+        ours, theirs = shipped_engine(), humanml3d_model(tmp_path / "m.safetensors")
         folder = make_folder(tmp_path / "data")
         with pytest.raises(EvaluationError, match=r"models with 263 features \(humanml3d\) and 263 features \(mmmd\)"):
             pairs_for([ours, theirs], folder, ["test"])
         with pytest.raises(EvaluationError, match="251 features, the model 263"):
             pairs_for([ours], make_folder(tmp_path / "kit", "kit"), ["test"])
-        published = Reader(Evaluator(EvaluatorConfig(word=384, part_of_speech=0)).eval(), load_text_encoder())
+        small = EvaluatorConfig(word=384, part_of_speech=0, text_hidden=8, embedding=6, movement=4, motion_hidden=4)
+        published = Reader(Evaluator(small).eval(), load_text_encoder())
         with pytest.raises(EvaluationError, match="rest directions"):
             published.fit(ours)
-        kit = Reader(Evaluator(EvaluatorConfig(251, word=384, part_of_speech=0)).eval(), load_text_encoder())
+        kit = Reader(Evaluator(replace(small, n_features=251)).eval(), load_text_encoder())
         with pytest.raises(EvaluationError, match="motions of 263 features; expected 251"):
             kit.fit(theirs)
         with pytest.raises(EvaluationError, match="words of width 384; expected 300"):
-            Reader(Evaluator(EvaluatorConfig()), load_text_encoder())
+            Reader(Evaluator(replace(small, word=300)), load_text_encoder())
 
     @pytest.mark.skipif(not DATA.is_dir(), reason="the data set is not beside the checkout")
     def test_our_clips_have_no_humanml3d_rotations(self, tmp_path: Path) -> None:
@@ -293,7 +295,7 @@ class TestWhatFits:
     def test_the_shipped_evaluator_finds_real_motions_by_their_captions(self) -> None:
         """On held-out recordings: four times chance at least, or no figure made with it says anything."""
         pairs, reader = read_pairs(DATA, ["val", "test"]), report.load_reader()[0]
-        row = measure_same(reader, pairs, lambda some, _seed: [p.features for p in some], 20)
+        row = measure_same(reader, pairs, lambda some, _seed: [p.features for p in some], 5)
         assert row["R1"].mean > 4 / 32
         assert row["R3"].mean > 8 / 32
 
@@ -301,7 +303,10 @@ class TestWhatFits:
 class TestCommand:
     """On a folder of four motions: too few for R-precision, enough to see every table."""
 
-    def test_paper_prints_every_table(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def test_paper_prints_every_table(
+        self, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(paper, "STEPS", (2, 4))
         folder = make_folder(tmp_path / "data")
         model = str(small_model(tmp_path / "m.safetensors"))
         command = [
@@ -314,7 +319,7 @@ class TestCommand:
             "--repeats",
             "2",
             "--motions-per-text",
-            "3",
+            "2",
         ]
         assert main([*command, "--json"]) == 0
         figures = json.loads(capsys.readouterr().out)

@@ -18,11 +18,6 @@ from mmm_core.generate.engine import Engine
 from mmm_core.motion.skeleton import Array
 
 
-@pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine.load()
-
-
 def shown(engine: Engine, text: str, seconds: float) -> PostureFeatures:
     motion = engine.generate(text, seconds=seconds).motion
     return PostureFeatures.of(motion.joints_m, motion.head_quat_wxyz)

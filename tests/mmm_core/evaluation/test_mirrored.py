@@ -16,11 +16,6 @@ from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import MIRROR
 
 
-@pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine.load()
-
-
 @pytest.mark.parametrize(
     ("text", "read", "is_mirrored"),
     [

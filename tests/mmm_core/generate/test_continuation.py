@@ -18,11 +18,6 @@ from mmm_core.motion.motion import Motion
 
 
 @pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine.load(threads=None)
-
-
-@pytest.fixture(scope="module")
 def raised(engine: Engine) -> Motion:
     """The 1.6 s in which both arms go up, as the daemon shows what it plays: posture alone."""
     motion = engine.generate("raise both arms", seed=1).motion

@@ -23,11 +23,6 @@ from mmm_core.motion.motion import FPS
 from mmm_core.motion.posture_features import part, posture_features
 
 
-@pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine.load(threads=None)
-
-
 def ids(engine: Engine, motion: object) -> torch.Tensor:
     return engine.ids_of(motion)  # type: ignore[arg-type]
 

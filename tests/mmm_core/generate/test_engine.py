@@ -19,11 +19,6 @@ from mmm_core.model.tokens import unpack_ids
 from mmm_core.motion.posture_features import posture_features
 
 
-@pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine.load()
-
-
 def test_the_same_text_seed_and_length_give_the_same_motion(engine: Engine) -> None:
     a, b, c = (engine.generate("wave with your left hand", seed=s).motion for s in (4, 4, 5))
     assert np.array_equal(a.joints_m, b.joints_m)

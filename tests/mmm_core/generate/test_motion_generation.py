@@ -2,37 +2,30 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 
-from mmm_core.generate.engine import Engine
 from mmm_core.generate.motion_generation import OPENING_TOKENS
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from tests.support.shipped import shipped_engine
 
 TEXTS = (
     "wave with your right hand", "wave with your left hand", "clap three times", "nod, then bow", "point up with your left hand"
 )  # fmt: skip
 
 
-@cache
-def engine() -> Engine:
-    return Engine.load(threads=None)
-
-
 @pytest.mark.parametrize("text", TEXTS)
 def test_the_motion_is_the_same_with_and_without_a_draft(text: str) -> None:
-    generation = engine().begin(text, seed=3)
+    generation = shipped_engine().begin(text, seed=3)
     draft, motion = generation.preview(), generation.result().motion
     assert draft is not None and draft.status == "accepted"
-    assert np.array_equal(motion.features, engine().generate(text, seed=3).motion.features)
-    assert np.array_equal(motion.tokens, engine().generate(text, seed=3).motion.tokens)
+    assert np.array_equal(motion.features, shipped_engine().generate(text, seed=3).motion.features)
+    assert np.array_equal(motion.tokens, shipped_engine().generate(text, seed=3).motion.tokens)
 
 
 @pytest.mark.parametrize("text", TEXTS)
 def test_the_motion_begins_as_its_draft_does(text: str) -> None:
-    generation = engine().begin(text, seed=3)
+    generation = shipped_engine().begin(text, seed=3)
     draft, motion = generation.preview(), generation.result().motion
     assert draft is not None
     half = OPENING_TOKENS * FRAMES_PER_TOKEN // 2
@@ -41,7 +34,7 @@ def test_the_motion_begins_as_its_draft_does(text: str) -> None:
 
 
 def test_the_later_part_of_a_motion_is_made_anew() -> None:
-    generation = engine().begin(TEXTS[0], seed=3)
+    generation = shipped_engine().begin(TEXTS[0], seed=3)
     draft, motion = generation.preview(), generation.result().motion
     assert draft is not None
     assert np.array_equal(draft.motion.tokens[:OPENING_TOKENS], motion.tokens[:OPENING_TOKENS])
@@ -51,19 +44,19 @@ def test_the_later_part_of_a_motion_is_made_anew() -> None:
 @pytest.mark.parametrize("seconds", [None, 3.3])
 def test_the_motion_has_as_many_frames_as_was_told(seconds: float | None) -> None:
     for text in ("wave with your right hand", "nod, then bow"):
-        generation = engine().begin(text, seed=1, seconds=seconds)
+        generation = shipped_engine().begin(text, seed=1, seconds=seconds)
         assert generation.n_frames == len(generation.result().motion.joints_m)
 
 
 def test_of_several_commands_the_first_is_drafted() -> None:
-    generation = engine().begin("nod, then clap your hands", seed=1)
+    generation = shipped_engine().begin("nod, then clap your hands", seed=1)
     draft = generation.preview()
     assert draft is not None
-    assert len(draft.motion.joints_m) == len(engine().begin("nod", seed=1).result().motion.joints_m)
+    assert len(draft.motion.joints_m) == len(shipped_engine().begin("nod", seed=1).result().motion.joints_m)
     assert generation.n_frames > len(draft.motion.joints_m)
 
 
 def test_what_is_rejected_has_no_draft() -> None:
-    generation = engine().begin("do a backflip", seed=1)
+    generation = shipped_engine().begin("do a backflip", seed=1)
     assert generation.preview() is None
     assert generation.result().status == "rejected" and generation.n_frames == 0

@@ -19,6 +19,7 @@ from mmm_core.language.count_words import count_asked
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.repetitions import Strokes, peaks_beyond, strokes_of
+from tests.support.shipped import shipped_engine
 
 MASK = -1
 
@@ -62,7 +63,7 @@ def test_any_text_has_a_number_or_none(text: str) -> None:
 
 @cache
 def nodding() -> Motion:
-    return Engine.load().generate("nod", seed=0).motion
+    return shipped_engine().generate("nod", seed=0).motion
 
 
 def swinging(n: int, period: int = 12, rest: int = 8) -> Motion:
@@ -125,11 +126,6 @@ def test_strokes_that_are_not_clear_are_not_left_out() -> None:
     ids, strokes = known(4, 12)
     assert with_count(ids, replace(strokes, sure=False), 2, MASK) is None
     assert with_count(ids, replace(strokes, misfit=0.4), 2, MASK) is None
-
-
-@pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine.load()
 
 
 @pytest.mark.parametrize("count", [2, 4, 6])

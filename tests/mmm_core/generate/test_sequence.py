@@ -24,11 +24,6 @@ from mmm_core.motion.posture_features import part, posture_features
 SENTENCES = json.loads((Path(__file__).parent / "sequences.json").read_text())
 
 
-@pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine.load()
-
-
 class TestReading:
     @pytest.mark.parametrize(
         ("text", "commands"),

@@ -23,9 +23,13 @@ from mmm_core.model.text import TextStates
 from mmm_core.model.transformer import MotionTransformer
 from tests.mmm_core.imports.test_official import SAMPLES, recorded_noise, text_of
 from tests.support.golden import GOLDEN, golden, needs_golden
+from tests.support.sizes import some_and_all
 
 TABLE = Path(__file__).parent / "released_counts.txt"
 LENGTHS = range(1, 50)
+SOME_LENGTHS = (1, 2, 3, 8, 14, 15, 16, 22, 28, 29, 30, 36, 44, 46, 49)
+"""The ends, and lengths that once came out with other ids."""
+by_lengths = pytest.mark.parametrize("lengths", some_and_all(SOME_LENGTHS, LENGTHS))
 
 
 def table() -> dict[tuple[int, int], list[int]]:
@@ -44,8 +48,10 @@ class TestCounts:
 
     @pytest.mark.parametrize("max_steps", [10, 20])
     @pytest.mark.parametrize("early_exit", [False, True])
-    def test_all_1225_pairs_of_open_positions_and_tokens(self, max_steps: int, early_exit: bool) -> None:
-        for n_tokens in LENGTHS:
+    @by_lengths
+    def test_every_number_of_open_positions(self, max_steps: int, early_exit: bool, lengths: tuple[int, ...]) -> None:
+        """All 1,225 pairs of open positions and tokens in the soak run."""
+        for n_tokens in lengths:
             for n_open in range(1, n_tokens + 1):
                 how = {"max_steps": max_steps, "early_exit": early_exit}
                 assert official_counts(n_open, n_tokens, **how) == masked_counts_by_torch(n_open, n_tokens, **how)
@@ -113,27 +119,34 @@ class TestIds:
         assert torch.equal(ids[:, 0], io[f"smp.{name}.out.ids"][0, :n])
 
     @pytest.mark.parametrize(("max_steps", "temperature"), [(10, 0.0), (10, 1.0), (20, 1.0)])
+    @by_lengths
     def test_texts_of_all_lengths(
-        self, model: MotionTransformer, text: TextStates, max_steps: int, temperature: float
+        self, model: MotionTransformer, text: TextStates, max_steps: int, temperature: float, lengths: tuple[int, ...]
     ) -> None:
         how = dataclasses.replace(OFFICIAL_SAMPLING, steps=max_steps, temperature=temperature)
-        for n in LENGTHS:
+        for n in lengths:
             row = empty_row(model, n)
             expected = sample_plainly(
                 model, text, row, max_steps=max_steps, temperature=temperature, noise=self.noise()
             )
             assert torch.equal(fill(model, text, [row], [0], how, self.noise())[0], expected), f"{n} tokens"
 
-    def test_all_lengths_in_one_batch(self, model: MotionTransformer, text: TextStates) -> None:
-        rows = [empty_row(model, n) for n in LENGTHS]
+    @by_lengths
+    def test_all_lengths_in_one_batch(
+        self, model: MotionTransformer, text: TextStates, lengths: tuple[int, ...]
+    ) -> None:
+        rows = [empty_row(model, n) for n in lengths]
         filled = fill(model, text.repeated(len(rows)), rows, [0] * len(rows), OFFICIAL_SAMPLING)
         for row, ids in zip(rows, filled, strict=True):
             assert torch.equal(ids, sample_plainly(model, text, row, early_exit=False)), f"{len(row)} tokens"
 
     @pytest.mark.parametrize("edit", list(holes(8)))
-    def test_edits_of_all_lengths(self, model: MotionTransformer, text: TextStates, edit: str) -> None:
+    @by_lengths
+    def test_edits_of_all_lengths(
+        self, model: MotionTransformer, text: TextStates, edit: str, lengths: tuple[int, ...]
+    ) -> None:
         codes = torch.randint(64, (49, 1), generator=torch.Generator().manual_seed(3))
-        for n in LENGTHS:
+        for n in lengths:
             row = codes[:n].clone()
             holes(n)[edit](row)
             row[row < 0] = model.ids.mask
@@ -144,11 +157,14 @@ class TestIds:
             known = row != model.ids.mask
             assert torch.equal(ids[known], row[known])
 
-    def test_upper_bodies_of_all_lengths(self, upper: MotionTransformer, text: TextStates) -> None:
+    @by_lengths
+    def test_upper_bodies_of_all_lengths(
+        self, upper: MotionTransformer, text: TextStates, lengths: tuple[int, ...]
+    ) -> None:
         """Twenty steps, the lower body known; at every other length half of it is masked."""
         how = dataclasses.replace(OFFICIAL_SAMPLING, steps=20, temperature=1.0)
         lower = torch.randint(64, (49,), generator=torch.Generator().manual_seed(4))
-        for n in LENGTHS:
+        for n in lengths:
             row = empty_row(upper, n)
             row[:, 1] = lower[:n]
             if n % 4 < 2:

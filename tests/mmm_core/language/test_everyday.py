@@ -9,11 +9,6 @@ from mmm_core.motion.posture_features import posture_features
 from mmm_core.recognition.signs import shows
 
 
-@pytest.fixture(scope="module")
-def engine() -> Engine:
-    return Engine.load()
-
-
 @pytest.mark.parametrize(
     ("text", "family"),
     [

@@ -44,9 +44,24 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ablation, "REAL_EACH", 2)
 
 
+@pytest.fixture
+def some_recordings(tmp_path: Path) -> Path:
+    """A folder with a dozen clips to train on, and as many held-out ones as R-precision needs."""
+    folder = tmp_path / "data"
+    folder.mkdir()
+    for name in ("trials.jsonl", "motions_common_skeleton.npz"):
+        (folder / name).symlink_to(DATA / name)
+    lines = (DATA / "clips.jsonl").read_text().splitlines()
+    train, test = ([line for line in lines if f'"split": "{split}"' in line] for split in ("train", "test"))
+    (folder / "clips.jsonl").write_text("\n".join([*train[:12], *test]))
+    return folder
+
+
 @needs_data
 @pytest.mark.usefixtures("few")
-def test_variants_are_trained_and_measured_and_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_variants_are_trained_and_measured_and_kept(
+    tmp_path: Path, some_recordings: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     recipe = tmp_path / "small.toml"
     shipped = (Path(ablation.__file__).parent / "recipes" / "ablation.toml").read_text()
     small = shipped.replace("synthesised = 10000", "synthesised = 20")
@@ -55,7 +70,7 @@ def test_variants_are_trained_and_measured_and_kept(tmp_path: Path, capsys: pyte
         .replace("steps = 1200", "steps = 2")
         .replace("steps = 2500", "steps = 2")
     )
-    command = ["train", "ablation", "--config", str(recipe), "--data", str(DATA), "--run", str(tmp_path / "run"),
+    command = ["train", "ablation", "--config", str(recipe), "--data", str(some_recordings), "--run", str(tmp_path / "run"),
                "--variant", TUNED, SMALL]  # fmt: skip
     assert main(command) == 0
     printed = capsys.readouterr().out
@@ -65,7 +80,9 @@ def test_variants_are_trained_and_measured_and_kept(tmp_path: Path, capsys: pyte
     assert load_model(tmp_path / "run" / FOLDER / "model.safetensors").transformer.config.n_words == 2
     assert figures[FOLDER]["r1_ratio"] >= 0 and figures["512_x_4"]["codes_used"] > 0
     (tmp_path / "run" / FOLDER / "figures.json").write_text(json.dumps({"limb": 0.25}))
-    assert run_ablations(read_recipe(str(recipe)), Run(tmp_path / "run"), DATA, [TUNED]) == {TUNED: {"limb": 0.25}}
+    assert run_ablations(read_recipe(str(recipe)), Run(tmp_path / "run"), some_recordings, [TUNED]) == {
+        TUNED: {"limb": 0.25}
+    }
 
 
 def test_what_is_asked_for_wrongly_is_named(tmp_path: Path) -> None:

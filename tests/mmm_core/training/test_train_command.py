@@ -5,11 +5,14 @@ from __future__ import annotations
 import csv
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -67,16 +70,16 @@ outside = 100
 """
 
 
-INDEX_ROWS = 1
-"""Known commands of a row in the index: reading all four that ship have takes longer than the training here."""
+INDEX_COMMANDS = sorted(known_commands(1))[::20]
+"""The known commands in the index: reading all that ship have takes longer than the training here."""
 
 
 _READ: dict[str, torch.Tensor] = {}
 """Vectors of the scope's sentences: most are the same in every training here, and reading them takes longer than it."""
 
 
-@pytest.fixture(autouse=True)
-def quick_scope(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(scope="module", autouse=True)
+def quick_scope() -> Iterator[None]:
     read = scope_training.sentence_vectors
 
     def read_once(texts: list[str], encoder: TextEncoder) -> torch.Tensor:
@@ -84,14 +87,33 @@ def quick_scope(monkeypatch: pytest.MonkeyPatch) -> None:
             _READ.update(zip(new, read(new, encoder), strict=True))
         return torch.stack([_READ[text] for text in texts])
 
-    monkeypatch.setattr(scope_training, "sentence_vectors", read_once)
-    monkeypatch.setattr(scope_training, "INDEX_ROWS", INDEX_ROWS)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(scope_training, "sentence_vectors", read_once)
+        patch.setattr(scope_training, "known_commands", lambda *_: set(INDEX_COMMANDS))
+        patch.setattr(scope_training, "OUTSIDE", scope_training.OUTSIDE[::8])
+        yield
+
+
+class Finished(NamedTuple):
+    """A recipe's file, and the model that its run gave."""
+
+    recipe: Path
+    model: Path
 
 
 def small(path: Path, layout: str = "parts", steps: int = 8, synthesised: int = 12) -> Path:
     schedule = SCHEDULE.format(steps=steps)
     path.write_text(SMALL.format(layout=layout, schedule=schedule, synthesised=synthesised))
     return path
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Finished:
+    """A small recipe and the model that it gave, from which the runs of several tests go on."""
+    folder = tmp_path_factory.mktemp("finished")
+    recipe = small(folder / "first.toml")
+    assert main(["train", "--config", str(recipe), "--run", str(folder / "first"), "--sample-every", "0"]) == 0
+    return Finished(recipe, folder / "first" / "model.safetensors")
 
 
 def environment() -> dict[str, str]:
@@ -143,12 +165,10 @@ def test_a_recipe_makes_clips_while_it_trains(tmp_path: Path, capsys: pytest.Cap
     assert "text.tuned_layers" in capsys.readouterr().err
 
 
-def test_a_recipe_with_more_codes_refines_those_of_its_start(tmp_path: Path) -> None:
+def test_a_recipe_with_more_codes_refines_those_of_its_start(tmp_path: Path, finished: Finished) -> None:
     """The refined model is made once; a run that is started again goes on from it as it is."""
-    first = small(tmp_path / "first.toml")
-    assert main(["train", "--config", str(first), "--run", str(tmp_path / "first"), "--sample-every", "0"]) == 0
     more, run = small(tmp_path / "more.toml"), tmp_path / "more"
-    start = f'start = "{tmp_path / "first" / "model.safetensors"}"\n'
+    start = f'start = "{finished.model}"\n'
     more.write_text(start + more.read_text().replace("n_codes = 16", "n_codes = 24"))
     for _ in range(2):
         assert main(["train", "--config", str(more), "--run", str(run), "--sample-every", "0"]) == 0
@@ -158,11 +178,12 @@ def test_a_recipe_with_more_codes_refines_those_of_its_start(tmp_path: Path) -> 
         assert made.tokenizer.config.n_codes == made.transformer.config.n_codes == 24
 
 
-def test_a_recipe_goes_on_from_a_finished_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_recipe_goes_on_from_a_finished_model(
+    tmp_path: Path, finished: Finished, capsys: pytest.CaptureFixture[str]
+) -> None:
     """The tokenizer, decoder and all, is as it was; the transformer has its weights and goes on from there."""
-    first = small(tmp_path / "first.toml")
-    assert main(["train", "--config", str(first), "--run", str(tmp_path / "first"), "--sample-every", "0"]) == 0
-    start = tmp_path / "first" / "model.safetensors"
+    start = tmp_path / "model.safetensors"
+    shutil.copy(finished.model, start)
     old = load_model(start)
     for steps in (0, 8):
         config, run = small(tmp_path / f"more{steps}.toml", steps=steps, synthesised=14), tmp_path / f"more{steps}"
@@ -194,10 +215,11 @@ def test_a_recipe_goes_on_from_a_finished_model(tmp_path: Path, capsys: pytest.C
     assert "whose tokenizer stays" in capsys.readouterr().err
 
 
-def test_the_mean_of_models_that_went_on_from_one_start(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    first = small(tmp_path / "first.toml")
-    assert main(["train", "--config", str(first), "--run", str(tmp_path / "first"), "--sample-every", "0"]) == 0
-    start, made = tmp_path / "first" / "model.safetensors", []
+def test_the_mean_of_models_that_went_on_from_one_start(
+    tmp_path: Path, finished: Finished, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, start = finished
+    made: list[Path] = []
     for seed in (4, 5):
         config = tmp_path / "on.toml"
         config.write_text(f'start = "{start}"\n{first.read_text()}')
@@ -234,12 +256,10 @@ def test_the_mean_of_models_that_went_on_from_one_start(tmp_path: Path, capsys: 
 
 
 def test_the_last_layers_of_the_text_encoder_become_the_models_own(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, finished: Finished, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """They begin as the encoder's: untrained they change nothing. Trained they change words and leave sentences as they were."""
-    first = small(tmp_path / "first.toml")
-    assert main(["train", "--config", str(first), "--run", str(tmp_path / "first"), "--sample-every", "0"]) == 0
-    start, text = tmp_path / "first" / "model.safetensors", "wave with your right hand"
+    (first, start), text = finished, "wave with your right hand"
     made = {}
     for steps in (0, 8):
         config, run = small(tmp_path / f"tuned{steps}.toml", steps=steps), tmp_path / f"tuned{steps}"
@@ -302,7 +322,7 @@ def test_the_scope_of_a_finished_run_is_built_again(tmp_path: Path, capsys: pyte
     assert main(["train", "scope", "--config", str(config), "--run", str(run), "--out", str(out)]) == 0
     model = load_model(out)
     assert model.scope is not None and model.scope.classifier is not None
-    assert model.scope.commands[: model.scope.n_known] == sorted(known_commands(INDEX_ROWS))
+    assert model.scope.commands[: model.scope.n_known] == INDEX_COMMANDS
     assert torch.equal(model.transformer.head.weight, old.transformer.head.weight)
     old.scope = None
     save_model(run / "model.safetensors", old)
@@ -331,8 +351,9 @@ def test_a_users_own_folder_trains(tmp_path: Path, kind: str) -> None:
     np.testing.assert_array_equal(model.tokenizer.mean.numpy(), np.load(folder / "Mean.npy").astype(np.float32))
 
 
-def test_a_killed_run_goes_on_with_the_same_weights(tmp_path: Path) -> None:
-    """SIGKILL at a random moment, again and again until it is done; then against a run that nobody cut."""
+@pytest.mark.parametrize("times", [1, pytest.param(6, marks=pytest.mark.soak)])
+def test_a_killed_run_goes_on_with_the_same_weights(tmp_path: Path, times: int) -> None:
+    """SIGKILL at a random moment, in the soak run again and again; then against a run that nobody cut."""
     config = small(tmp_path / "small.toml", steps=60)
     command = [sys.executable, "-m", "daemon.cli", "train", "tokenizer", "--config", str(config), "--sample-every", "0"]
     rng = np.random.default_rng()
@@ -345,7 +366,7 @@ def test_a_killed_run_goes_on_with_the_same_weights(tmp_path: Path) -> None:
         before = state.stat().st_mtime_ns if state.is_file() else 0
         deadline = time.monotonic() + 60
         while process.poll() is None and time.monotonic() < deadline:
-            if killed < 2 and state.is_file() and state.stat().st_mtime_ns != before:
+            if killed < times and state.is_file() and state.stat().st_mtime_ns != before:
                 time.sleep(rng.uniform(0, 0.1))
                 process.send_signal(signal.SIGKILL)
                 killed += 1
@@ -362,6 +383,7 @@ def test_a_killed_run_goes_on_with_the_same_weights(tmp_path: Path) -> None:
     assert all(torch.equal(a, b) for a, b in zip(cut["averages"], whole["averages"], strict=True))
 
 
+@pytest.mark.soak  # three more processes that import PyTorch, for training on several machines
 def test_two_processes_have_the_loss_of_one_with_the_whole_batch(tmp_path: Path) -> None:
     config = small(tmp_path / "small.toml", steps=41)
     options = ["train", "transformer", "--config", str(config), "--sample-every", "0", "--run-dir"]

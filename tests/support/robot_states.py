@@ -1,0 +1,115 @@
+"""A robot led to a state by commands, on servos behind a real tty that outlive the daemon's processes and audit every goal."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from daemon.bench.tty_servos import TtyServos
+from daemon.client import Client
+from retarget.robot.loading import load_robot
+from tests.support.harness import RunningDaemon
+
+ROBOT = load_robot("reference")
+STATES = ("limp", "arming", "idle", "moving", "holding", "parking", "estop")
+ALL_STATES = (*STATES, "fault")
+STAYS = {state: (state,) for state in ALL_STATES} | {
+    "arming": ("arming", "idle"),
+    "parking": ("parking", "limp"),
+}
+"""What the robot may be in a moment later when nothing touches it."""
+FAULT_WITHIN_S = 6.0
+"""From the signal to a robot in a latched fault that can be reset: 1 s of silence, 2.5 s to the kill, the restart."""
+
+
+class Servos(TtyServos):
+    """The simulated robot behind a tty, its audit at hand."""
+
+    def __init__(self, folder) -> None:
+        super().__init__(ROBOT, folder)
+
+    def assert_kept(self) -> None:
+        report = self.bus.audit.report()
+        assert report["violations"] == 0, report["details"]
+
+    @property
+    def moves(self) -> bool:
+        """Whether a shaft turns, by more than the creep of friction."""
+        return bool((np.abs(self.bus.world.drives.velocity_tick_s) > 20).any())
+
+
+def within(seconds: float, what: str, condition: Callable[[], bool]) -> None:
+    end_s = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end_s, f"not within {seconds} s: {what}"
+        time.sleep(0.03)
+
+
+def bring_to(client: Client, state: str) -> None:
+    """Lead the robot from anywhere to a state."""
+    status = client.status()
+    now = status.state
+    if now in ("moving", "holding") or status.command:  # what moves without end, or is held up in it and about to go on
+        client.stop()
+    if now in ("fault", "estop"):
+        client.reset()
+        client.wait_for("limp", timeout_s=5)
+    if state in ("limp", "estop", "arming"):
+        client.park()
+        if state == "estop":
+            client.estop()
+        elif state == "arming":
+            client.arm(wait=False)
+            client.wait_for("arming", timeout_s=5)
+        return
+    client.arm()
+    status = client.wait_for("idle", "holding", "fault", timeout_s=10)
+    assert status.state != "fault", status.reason
+    if state == "idle":
+        client.gesture("nod")
+        client.wait_for("idle", timeout_s=3)
+        return
+    client.gesture("wave_right", loop=True, wait=False)  # needs no generator; ended by nothing but what is done to it
+    client.wait_for("moving", timeout_s=5)
+    time.sleep(0.3)
+    if state == "holding":
+        client.stop()
+        client.wait_for("holding", timeout_s=3)
+    elif state == "parking":
+        client.park(wait=False)
+        client.wait_for("parking", timeout_s=3)
+
+
+def bring_to_fault(client: Client, servos: Servos) -> None:
+    """The bus is unplugged in a motion, and plugged in again: the fault stays."""
+    bring_to(client, "moving")
+    servos.unplugged(True)
+    within(FAULT_WITHIN_S, "fault", lambda: client.status().state == "fault")
+    servos.unplugged(False)
+
+
+def lead_to(client: Client, servos: Servos, state: str) -> None:
+    """To any state, the fault of a bus that was gone for a while too."""
+    bring_to_fault(client, servos) if state == "fault" else bring_to(client, state)
+
+
+def assert_works(client: Client) -> None:
+    client.arm()
+    status = client.wait_for("idle", "holding", "fault", timeout_s=10)
+    assert status.state != "fault", status.reason
+    assert client.say("wave", seconds=0.8).done
+
+
+def daemon_on(servos: Servos, *options: str) -> RunningDaemon:
+    return RunningDaemon(*options, bus=servos.url).until_ready()
+
+
+def gone(pid: int) -> bool:
+    """Whether a process has ended, buried by its parent or not."""
+    try:
+        with open(f"/proc/{pid}/stat") as f:
+            return f.read().rsplit(")", 1)[1].split()[0] == "Z"
+    except OSError:
+        return True
