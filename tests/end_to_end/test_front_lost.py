@@ -18,7 +18,7 @@ from tests.support.sizes import some_and_all
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
 
-@pytest.mark.parametrize("states", some_and_all(("arming", "moving", "parking", "fault"), ALL_STATES))
+@pytest.mark.parametrize("states", some_and_all(("arming", "moving", "parking", "estop"), ALL_STATES))
 def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands_and_goes_on_with_it(servos, states):
     """After 0.5 s the bus process brings to rest what moves; what is being parked is parked."""
     daemon = daemon_on(servos)
