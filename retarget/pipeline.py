@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +18,9 @@ from retarget.human.human import HumanMotion, HumanPose, read_human
 from retarget.human.poser import ArmsFollow, Poser, Poses
 from retarget.path.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.path.collision import Allowed, SelfContact
-from retarget.path.limit_path import limit_path
-from retarget.path.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
+from retarget.path.control_points import braking, controls_near, held, hits_of_frames, joined
+from retarget.path.limit_path import Matters
+from retarget.path.limits import JointLimits
 from retarget.path.paths import JointPath, JointState
 from retarget.path.report import BONES, Comparison
 from retarget.robot.kinematics import Kinematics
@@ -118,8 +118,7 @@ class Retargeter:
         Raises:
             MotionError: as in `retarget`.
         """
-        poses, _ = self._wanted(motion, start)
-        first = 0
+        (poses, _), first = self._wanted(motion, start), 0
         for block, n, changes in self._blocks(poses.q_rad, self._begin(poses.q_rad, start), 1.0 / motion.fps, settle):
             part = poses.part(slice(first, first + n))
             yield self._joint_path(block, part, HumanContacts({}), motion.fps, changes, 1.0), n
@@ -183,7 +182,7 @@ class Retargeter:
             if not hit.any():
                 break
             interventions += stretches(hit)
-            eased = self._avoidance.push(eased, path, _of_frames(hit, len(path)), strength)
+            eased = self._avoidance.push(eased, path, hits_of_frames(hit, len(path)), strength)
             path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
         if hit.any() and allowed is not None:  # it begins too near itself to turn to the motion: away from there first
             eased = eased.copy()
@@ -241,17 +240,10 @@ class Retargeter:
         back = 1
         while True:
             kept = max(2, min(first + 2 - back, len(path)))
-            stopped = self._held(path[:kept], period, len(path))
+            stopped = held(path[:kept], period, len(path), self.limits)
             if kept == 2 or not self.contact.along(stopped, allowed).any():
                 return stopped
             back *= 2
-
-    def _held(self, control: Array, period: float, n: int) -> Array:
-        """At least `n` control points: `control`, brake, and hold."""
-        points = list(control)
-        while len(points) < n or not np.array_equal(points[-1], points[-2]):
-            points.append(brake(points[-1], (points[-1] - points[-2]) / period, self.limits, period))
-        return np.array(points)
 
     def _limited(
         self,
@@ -269,58 +261,31 @@ class Retargeter:
         What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
         touches when the path brakes after `keep` frames or at its end counts too.
         """
-        wanted, shown, led = _controls(eased, pose_before), eased, eased - posed
+        wanted, shown, led = controls_near(eased, pose_before), eased, eased - posed
         half = start.velocity_rad_s * (period / 2)
         before, position = start.position_rad - half, start.position_rad + half
         if settle:
             every = (wanted, shown, led)
             wanted, shown, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in every)
-        points = np.concatenate([[before], self._joined(wanted, shown, led, before, position, period)])
+
+        def matters_from(k: int) -> Matters:
+            return self._poser.matters(shown[k:], led[k:])
+
+        points = np.concatenate([[before], joined(wanted, before, position, period, self.limits, matters_from)])
         if settle:
             n = len(points)
             moves = np.abs(np.diff(points[n - _SETTLE_FRAMES - 1 :], axis=0)).max(1) > _STILL_RAD
             still = np.flatnonzero(~moves)
             last = n - _SETTLE_FRAMES + (int(still[0]) if len(still) else len(moves))  # where it first stands
-            points = self._held(points[:last], period, last + 1)
+            points = held(points[:last], period, last + 1, self.limits)
             return points, self.contact.along(points, allowed)
-        hit = self.contact.along(np.concatenate([points, self._braking(points, period)]), allowed)
+        hit = self.contact.along(np.concatenate([points, braking(points, period, self.limits)]), allowed)
         if keep < len(eased):
             cut = points[: keep + 2]
-            hit[keep - 1] |= self.contact.along(np.concatenate([cut[-2:], self._braking(cut, period)]), allowed).any()
+            hit[keep - 1] |= self.contact.along(
+                np.concatenate([cut[-2:], braking(cut, period, self.limits)]), allowed
+            ).any()
         return points, hit
-
-    def _braking(self, control: Array, period: float) -> Array:
-        """(n, J) control points after `control` when every joint stops as fast as its acceleration allows."""
-        step = control[-1] - control[-2]
-        loss = self.limits.acceleration_rad_s2 * period**2
-        n = int(np.ceil((np.abs(step) / loss).max()))
-        left = np.maximum(np.abs(step) - np.arange(1, n + 1)[:, None] * loss, 0.0)
-        return control[-1] + np.cumsum(np.sign(step) * left, 0)
-
-    def _joined(self, wanted: Array, shown: Array, led: Array, before: Array, position: Array, period: float) -> Array:
-        """(T + 1, J) control points from the second, `position`, on, near `wanted` (T, J) to show poses `shown` (T, J).
-
-        A joint that the start leaves just enough room to brake has its next control points at or beyond the position
-        limit, though its path is not: until there is room for whole steps it brakes as hard as the path needs.
-        """
-        limits = self.limits
-        points = [before, position]
-        for k in range(len(wanted)):
-            velocity = (points[-1] - points[-2]) / period
-            end = np.where(velocity > 0, limits.position_max_rad, limits.position_min_rad)
-            toward = np.sign(velocity)
-            room = stopping_velocity_rad_s(toward * (end - points[-1]), limits.acceleration_rad_s2, period)
-            short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
-            short |= toward * (points[-1] - end) > 0
-            if not short.any():
-                matters = partial(self._poser.matters, shown[k:], led[k:])
-                rest = limit_path(wanted[k:], points[-1], velocity, limits, period, matters)
-                return np.concatenate([points[1:], rest])
-            gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
-            braking = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)
-            inward = points[-1] + velocity * period - toward * braking * period**2
-            points.append(np.where(short, inward, limit_step(wanted[k], points[-1], velocity, limits, period)))
-        return np.array(points[1:])
 
     def _compare(
         self, poses: Poses, contacts: HumanContacts, path: Array, rate_hz: float, interventions: int, stretch: float
@@ -333,20 +298,3 @@ class Retargeter:
             self.robot.joint_names, lambda: self.direction_errors_deg(poses, q), poses.q_rad - q, poses.outside, path,
             rate_hz, self.limits, interventions, lambda: hands.kept(q, contacts) if hands else {}, stretch,
         )  # fmt: skip
-
-
-def _controls(frames: Array, before: Array) -> Array:
-    """(T, J) control points whose spline passes near frames (T, J): the spline's own smoothing undone to fourth order.
-
-    The path is at frame t half way between two control points, so these are for the times between frames; `before`
-    (1, J) is the frame before the first.
-    """
-    more = np.concatenate([before, frames, frames[-1:], frames[-1:]])
-    return (5 * (more[1:-2] + more[2:-1]) - more[:-3] - more[3:]) / 8
-
-
-def _of_frames(hit: NDArray[np.bool_], n: int) -> NDArray[np.bool_]:
-    """(n - 2,) segments of n control points that touch; what touches while braking after them is the last one's doing."""
-    of = hit[: n - 2].copy()
-    of[-1] |= hit[n - 2 :].any()
-    return of

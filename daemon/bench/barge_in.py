@@ -17,7 +17,7 @@ from daemon.bench.report import HostShare, context
 from daemon.bench.texts import draw_texts
 from daemon.client import Client
 from daemon.client.errors import stamp
-from daemon.recording.mcap_log import LoggedCycle, read_log
+from daemon.recording.mcap_reading import LoggedCycle, read_log
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.events import AnyEvent, Failed, Progress
 from daemon.wire.requests import Say

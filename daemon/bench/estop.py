@@ -16,7 +16,7 @@ from daemon.bench.estop_rig import CLIENT_PRIORITY
 from daemon.bench.report import context
 from daemon.client import Client
 from daemon.host.realtime import give_back_fifo, take_fifo
-from daemon.recording.mcap_log import read_log
+from daemon.recording.mcap_reading import read_log
 from retarget.robot.loading import load_robot
 
 _METHOD = (

@@ -20,7 +20,7 @@ import numpy as np
 
 from daemon.client import Client
 from daemon.errors import DaemonError
-from daemon.recording.mcap_log import Log, read_log
+from daemon.recording.mcap_reading import Log, read_log
 from daemon.settings.config import Endpoints
 from daemon.wire.events import Accepted, AnyEvent, Cancelled, Done, Progress, Refusal
 from daemon.wire.requests import Say

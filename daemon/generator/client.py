@@ -15,26 +15,26 @@ from collections.abc import Sequence
 import zmq
 import zmq.asyncio
 
-from daemon.generator.messages import (
+from daemon.generator.generated import (
     MIN_FRAMES,
+    Generated,
+    GeneratorError,
+    arrays_of,
+    generated_of,
+)
+from daemon.generator.messages import (
     MOST_REQUEST_BYTES,
     BetweenMessage,
     EditMessage,
     FailureMessage,
     FromGenerator,
-    Generated,
-    GeneratedMessage,
     GenerateMessage,
-    GeneratorError,
     PingMessage,
     PongMessage,
     SceneMessage,
     ToGenerator,
-    arrays_of,
-    bad_motion,
     decode_reply,
     encode,
-    generated_from,
 )
 from daemon.network.keys import KeyFolder, connect_curve
 from daemon.wire.showing import shortened
@@ -144,7 +144,7 @@ class GeneratorClient:
         follows = self._follows[request.id] = asyncio.get_running_loop().create_future()
         whole: asyncio.Task[Generated] | None = None
         try:
-            first = _generated(await self._ask(request, timeout_s, asked), asked, may_be_draft=True)
+            first = generated_of(await self._ask(request, timeout_s, asked), asked, may_be_draft=True)
             if first.draft_of:
                 whole = asyncio.create_task(self._whole(request.id, follows, timeout_s, asked))
                 whole.add_done_callback(_heard)
@@ -160,7 +160,7 @@ class GeneratorClient:
         life = self._lives
         try:
             async with asyncio.timeout(timeout_s):
-                return _generated(await follows, asked)
+                return generated_of(await follows, asked)
         except TimeoutError:
             self.timeouts += life == self._lives
             raise no_answer(asked, timeout_s) from None
@@ -212,7 +212,7 @@ class GeneratorClient:
     async def _motion(
         self, request: ToGenerator, timeout_s: float, asked: str, min_frames: int = MIN_FRAMES
     ) -> Generated:
-        return _generated(await self._ask(request, timeout_s, asked), asked, min_frames)
+        return generated_of(await self._ask(request, timeout_s, asked), asked, min_frames)
 
     async def ping(self, timeout_s: float) -> str:
         """The hash of the generator's checkpoint.
@@ -280,26 +280,6 @@ class GeneratorClient:
             with contextlib.suppress(asyncio.CancelledError):
                 await self._reader
         self._socket.close(0)
-
-
-def _generated(
-    reply: FromGenerator, asked: str, min_frames: int = MIN_FRAMES, *, may_be_draft: bool = False
-) -> Generated:
-    """The motion in a reply.
-
-    Raises:
-        GeneratorError: there is none.
-    """
-    if isinstance(reply, FailureMessage):
-        do = "see the daemon's output; say it in other words or with another seed"
-        if reply.code in ("bad_edit", "bad_keyframes"):
-            do = "correct it"
-        elif reply.code == "not_reached":
-            do = "edit a longer stretch or more parts of the body, or take other words or another seed"
-        raise GeneratorError(reply.code, asked, reply.found, reply.allowed, do)
-    if not isinstance(reply, GeneratedMessage):
-        raise bad_motion(asked, f"the answer '{type(reply).__name__}'")
-    return generated_from(reply, min_frames, may_be_draft=may_be_draft)
 
 
 def _heard(whole: asyncio.Task[Generated]) -> None:

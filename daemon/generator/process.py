@@ -18,6 +18,7 @@ from typing import Protocol
 import zmq
 
 from daemon.errors import ConfigError
+from daemon.generator.generated import Generated, generated_message
 from daemon.generator.messages import (
     GENERATION_VERSION,
     MOST_REQUEST_BYTES,
@@ -25,7 +26,6 @@ from daemon.generator.messages import (
     EditMessage,
     FailureMessage,
     FromGenerator,
-    Generated,
     GeneratedMessage,
     GenerateMessage,
     PingMessage,
@@ -35,7 +35,6 @@ from daemon.generator.messages import (
     UnfitRequestError,
     decode_request,
     encode,
-    generated_message,
 )
 from daemon.host.descriptors import die_with_parent
 from daemon.logs.log_feed import send_logs

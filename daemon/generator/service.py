@@ -9,15 +9,8 @@ from pathlib import Path
 
 import msgspec
 
-from daemon.generator.messages import (
-    BetweenMessage,
-    EditMessage,
-    Generated,
-    GenerateMessage,
-    SceneMessage,
-    UnfitRequestError,
-    motion_from,
-)
+from daemon.generator.generated import Generated, motion_from
+from daemon.generator.messages import BetweenMessage, EditMessage, GenerateMessage, SceneMessage, UnfitRequestError
 from daemon.wire.requests import LONGEST_S
 from mmm_core.errors import GenerationError
 from mmm_core.generate.continuation import continue_motion

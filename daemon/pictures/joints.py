@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.recording.mcap_log import Log
+from daemon.recording.mcap_reading import Log
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.errors import DaemonError
-from daemon.recording.mcap_log import Log, read_log
+from daemon.recording.mcap_reading import Log, read_log
 from mmm_core.motion.motion import Motion, load_npz
 from mmm_core.motion.skeleton import matrix_from_quat
 from retarget.pipeline import Retargeter

@@ -44,16 +44,10 @@ STALL_S = 0.5
 """Seconds for which the bus process holds without having played all frames that were pushed, after which it has dropped them."""
 IDLE_AFTER_S = 0.8
 """Seconds of stillness before idle movements begin."""
-GAZE_S = 0.8
-BRAKING_TIMEOUT_S = 2.0
-TICK_S = 0.005
+GAZE_S, BRAKING_TIMEOUT_S, TICK_S = 0.8, 2.0, 0.005
 
 ShownCheck = Callable[[Entry, NDArray[np.float64], float], Verdict]
-"""Whether goals (T, J) of so many a second have shown what a command's motion shows."""
-
-
-def _not_judged(_entry: Entry, _q_rad: NDArray[np.float64], _fps: float) -> Verdict:
-    return Verdict()
+"""Whether goals (T, J) of so many a second have shown the motion of a command."""
 
 
 class Playback:
@@ -65,7 +59,7 @@ class Playback:
 
     def __init__(
         self, buffer: SetpointBuffer, follower: BusFollower, ledger: Ledger, layers: Layers,
-        judge: ShownCheck = _not_judged, clock: LoopClock = REAL_CLOCK,
+        judge: ShownCheck | None = None, clock: LoopClock = REAL_CLOCK,
     ) -> None:  # fmt: skip
         self._buffer, self._follower, self._ledger, self._layers = buffer, follower, ledger, layers
         self._judge, self._clock = judge, clock
@@ -75,9 +69,7 @@ class Playback:
         self._player: MotionPlayer | StreamPlayer | None = None
         self._lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()
-        self._feeding = False
-        self._moving_reported = False
-        self._held = False
+        self._feeding = self._moving_reported = self._held = False
         self._held_since_s: float | None = None
         self._still_since_s = clock.now_s()
 
@@ -179,10 +171,8 @@ class Playback:
         if self.entry is None or self._moving_reported or plan.statistics.first_motion_ms is None:
             return
         self._moving_reported = True
-        first_ms = round(plan.statistics.first_motion_ms, 2)
-        moving = Progress(
-            plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms, target_t_mono=plan.first_target_s
-        )
+        first_ms, came_s = round(plan.statistics.first_motion_ms, 2), plan.first_target_s
+        moving = Progress(plan_id=plan.plan_id, stage="moving", first_motion_ms=first_ms, target_t_mono=came_s)
         self._ledger.emit(self.entry, moving)
 
     def _watch_end(self, plan: Trajectory) -> None:
@@ -196,7 +186,7 @@ class Playback:
             if player is not None:
                 player.close()
             if entry is not None:
-                verdict = self._judge(entry, statistics.goals_rad, SAMPLED_HZ)
+                verdict = self._judge(entry, statistics.goals_rad, SAMPLED_HZ) if self._judge else Verdict()
                 self._ledger.emit(entry, statistics.done(plan.n_frames, verdict.shown, verdict.seen, verdict.missing))
         elif stalled:
             self._fail(entry, f"{statistics.last_frame + 1} of {plan.n_frames} frames were played", plan.plan_id)
@@ -222,9 +212,7 @@ class Playback:
                 if player is self._player:
                     await player.follow_gaze()
             return
-        end_s = self._clock.now_s() + BRAKING_TIMEOUT_S
-        while self._follower.machine.state is RobotState.MOVING and self._clock.now_s() < end_s:
-            await self._clock.sleep(TICK_S)  # the last frames of a motion, or a stop
+        await self._while(lambda: self._follower.machine.state is RobotState.MOVING)  # its last frames, or a stop
         if self._follower.machine.state in (RobotState.IDLE, RobotState.HOLDING) and self._follower.can_take_over:
             held = self._buffer.raw_now
             await self._take_idle(HeldPose(held.at(np.zeros(round(GAZE_S * held.fps), np.intp))))
@@ -290,8 +278,8 @@ class Playback:
         except NotPlayableError as error:
             self._give_up(player, error.event)
         except RetargetError as error:
-            do = "say it in other words"
-            self._give_up(player, failed("retarget", str(error), "a motion that fits the robot", do))
+            event = failed("retarget", str(error), "a motion that fits the robot", "say it in other words")
+            self._give_up(player, event)
         except Exception as error:
             self._give_up(player, failed("internal", str(error), "", "see the daemon's log"))
             raise
@@ -300,15 +288,13 @@ class Playback:
 
     def _give_up(self, player: MotionPlayer | StreamPlayer, event: Rejected | Failed) -> None:
         """End the command whose next chunk failed; the frames in the bus process are played, then it brakes and holds."""
-        entry, plan = self.entry, self._buffer.current
-        if player is not self._player:
-            return
-        self._forget()
-        self._buffer.drop()
-        if entry is not None:
-            self._ledger.emit(entry, ending(plan.plan_id if plan is not None else 0, "", as_failure(event)))
+        if player is self._player:
+            self.end("", as_failure(event))
 
     async def _until_at_rest(self) -> None:
+        await self._while(lambda: not self._follower.at_rest)
+
+    async def _while(self, braking: Callable[[], bool]) -> None:
         end_s = self._clock.now_s() + BRAKING_TIMEOUT_S
-        while not self._follower.at_rest and self._clock.now_s() < end_s:
+        while braking() and self._clock.now_s() < end_s:
             await self._clock.sleep(TICK_S)

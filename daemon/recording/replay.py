@@ -18,7 +18,7 @@ from daemon.control.control_loop import ControlLoop
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import DaemonError, LogError
 from daemon.host.clock import Clock
-from daemon.recording.mcap_log import Log, LoggedCycle
+from daemon.recording.mcap_reading import Log, LoggedCycle
 from daemon.recording.wiretap import Wiretap
 from daemon.shared_memory.bus_link import N_SETPOINTS, BusLink, BusRequest, BusState
 from retarget.robot.robot import RobotModel

@@ -17,7 +17,8 @@ from daemon.host.clock import REAL_CLOCK, LoopClock
 from daemon.playback.bus_follower import BusFollower
 from daemon.playback.playback import Playback
 from daemon.playback.setpoint_buffer import SetpointBuffer
-from daemon.playback.sources.source_factory import PreparedSource, SourceFactory
+from daemon.playback.sources.prepared_source import PreparedSource
+from daemon.playback.sources.source_factory import SourceFactory
 from daemon.playback.sources.stream_source import StreamSource
 from daemon.poses.layers import Layers
 from daemon.scheduling.command_queue import MOST_WAITING, CommandQueue, QueuedCommand, StopOrdering

@@ -6,7 +6,7 @@ import time
 
 import msgspec
 
-from daemon.generator.messages import GeneratorError
+from daemon.generator.generated import GeneratorError
 from daemon.state.ledger import Entry
 from daemon.state.machine import CommandRefusedError
 from daemon.wire.events import Cancelled, Failed, Rejected

@@ -24,7 +24,7 @@ from daemon.errors import ConfigError, DaemonError
 from daemon.front.front import Front
 from daemon.front.metrics import MetricsServer, exposition
 from daemon.generator.client import GeneratorClient
-from daemon.generator.messages import GeneratorError
+from daemon.generator.generated import GeneratorError
 from daemon.host.cores import CoreClaim
 from daemon.host.notify import Notifier
 from daemon.host.realtime import BUS_PRIORITY, may_fifo

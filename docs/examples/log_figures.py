@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from daemon.recording.mcap_log import read_log
+from daemon.recording.mcap_reading import read_log
 from retarget.robot.loading import load_robot
 from retarget.robot.ticks import JointServoMap
 

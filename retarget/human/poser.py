@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.human.arm_chain import ArmChain, read_arm
-from retarget.human.arms import Arms, Bones
+from retarget.human.arms import Arms
+from retarget.human.bones import Bones
 from retarget.human.branches import choose
 from retarget.human.human import SIDES, HumanPose
 from retarget.human.objective import ArmMatters, PoseMatters

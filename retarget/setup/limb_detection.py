@@ -8,7 +8,6 @@ hand. Names decide two things only, where they speak of them: which side is left
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from retarget.errors import RobotFileError
 from retarget.robot.description import followers, loops, mujoco
+from retarget.setup.anatomy import Anatomy, FoundJoint
 from retarget.setup.body_tree import BodyTree, FoundPoint
 
 Array = NDArray[np.float64]
@@ -26,49 +26,6 @@ _ELBOW = 0.15
 """An elbow is farther from shoulder and hand than this share of the distance between them."""
 _TO_THE_WRIST = 0.3
 """A joint nearer to the elbow than this share of forearm and hand is no wrist."""
-
-
-@dataclass(frozen=True)
-class FoundJoint:
-    """A joint with a role.
-
-    Attributes:
-        axis: unit axis in the zero pose, x forward, y left, z up.
-        range_deg: its range, None where the description has none.
-        sign: 1 where its positive sense is the usual one (raises the arm forward or sideways, bends the elbow, turns to
-            the left, nods down), -1 where it is the other, 0 where the zero pose does not tell.
-        gear: (turns of the servo for one of the joint, direction) where another joint of the description drives it.
-    """
-
-    name: str
-    role: str
-    axis: tuple[float, float, float]
-    range_deg: tuple[float, float] | None
-    sign: int
-    gear: tuple[float, int] | None = None
-
-
-@dataclass(frozen=True)
-class Anatomy:
-    """What was found.
-
-    Attributes:
-        path: the description.
-        forward: its axis that looks ahead.
-        up: its axis that looks up.
-        joints: joints with a role.
-        points: the places that retargeting needs and the description does not name.
-        reach_m: from the shoulder over the elbow to the wrist.
-        notes: what was decided or left out, and why.
-    """
-
-    path: Path
-    forward: str
-    up: str
-    joints: tuple[FoundJoint, ...]
-    points: dict[str, FoundPoint]
-    reach_m: float
-    notes: tuple[str, ...]
 
 
 def find_anatomy(path: Path) -> Anatomy:

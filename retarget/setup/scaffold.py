@@ -15,7 +15,8 @@ from retarget.pipeline import Retargeter
 from retarget.robot.loading import load_robot
 from retarget.robot.servos import servo_models
 from retarget.robot.tables import BLANK
-from retarget.setup.limb_detection import Anatomy, FoundJoint, find_anatomy
+from retarget.setup.anatomy import Anatomy, FoundJoint
+from retarget.setup.limb_detection import find_anatomy
 from retarget.setup.standing_pose import standing_pose
 
 Array = NDArray[np.float64]

@@ -1,6 +1,6 @@
 """One half-duplex wire and the adapter at its end: when each byte is where, and what is left of bytes that met.
 
-Ten bits a byte in both directions. Two talkers at once garble each other (`bursts.py`). The adapter hands bytes on as they
+Ten bits a byte in both directions. Two talkers at once garble each other (`wire_bytes.py`). The adapter hands bytes on as they
 come, in lumps by its latency timer (FTDI: when the timer fires or a USB packet is full), or in pieces cut anywhere.
 """
 

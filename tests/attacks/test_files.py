@@ -14,7 +14,7 @@ import pytest
 from daemon.errors import ClipError, LogError
 from daemon.gestures.clips import load_clips
 from daemon.gestures.library import SHIPPED
-from daemon.recording.mcap_log import read_log
+from daemon.recording.mcap_reading import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.shared_memory.bus_link import cycle_dtype
 from mmm_core.errors import MmmError, MotionFileError

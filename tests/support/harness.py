@@ -16,7 +16,7 @@ from pathlib import Path
 
 from daemon.cli import main
 from daemon.client import Client, NoAnswerError
-from daemon.generator.messages import Generated
+from daemon.generator.generated import Generated
 from daemon.scheduling.command_queue import SHADOW_S
 from daemon.settings.config import Endpoints
 from daemon.wire.events import Done

@@ -13,15 +13,8 @@ from dataclasses import replace
 import numpy as np
 import zmq
 
-from daemon.generator.messages import (
-    BetweenMessage,
-    EditMessage,
-    Generated,
-    GenerateMessage,
-    SceneMessage,
-    UnfitRequestError,
-    motion_from,
-)
+from daemon.generator.generated import Generated, motion_from
+from daemon.generator.messages import BetweenMessage, EditMessage, GenerateMessage, SceneMessage, UnfitRequestError
 from daemon.generator.process import serve
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS

@@ -136,7 +136,7 @@ def _compare(path: Path, robot: str | None, body: str, *, as_json: bool) -> int:
 
     import numpy as np
 
-    from daemon.recording.mcap_log import read_log
+    from daemon.recording.mcap_reading import read_log
     from daemon.recording.replay import check_robot, stretches
     from retarget.robot.loading import load_robot
     from sim.replay import Stretch, compare

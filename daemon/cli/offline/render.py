@@ -86,7 +86,7 @@ def plot(file: Annotated[Path, tyro.conf.Positional], out: Path, robot: str | No
 
     from daemon.pictures.joints import joint_plot
     from daemon.pictures.picture_files import check_picture
-    from daemon.recording.mcap_log import read_log
+    from daemon.recording.mcap_reading import read_log
     from retarget.robot.loading import load_robot
 
     check_picture(out, "--out")

@@ -12,7 +12,7 @@ import tyro
 if TYPE_CHECKING:
     from daemon.dynamixel.ports.port import Port
     from daemon.host.clock import Clock
-    from daemon.recording.mcap_log import Log
+    from daemon.recording.mcap_reading import Log
     from retarget.robot.robot import RobotModel
 
 
@@ -39,7 +39,7 @@ def replay(
     from rich.progress import Progress
 
     from daemon.dynamixel.servo_bus import ServoBus
-    from daemon.recording.mcap_log import read_log
+    from daemon.recording.mcap_reading import read_log
     from daemon.recording.replay import check_robot, robot_changed
     from daemon.recording.replay import replay as play
     from daemon.shared_memory.bus_link import BusLink

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from daemon.generator.messages import Generated
+from daemon.generator.generated import Generated
 from daemon.poses.motion_source import MotionSource
 from daemon.poses.pose_sequence import PoseSequence
 

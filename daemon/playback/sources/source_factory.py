@@ -8,7 +8,6 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Awaitable, Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, TypeVar
 
@@ -17,11 +16,20 @@ from numpy.typing import NDArray
 
 from daemon.errors import ClipError
 from daemon.generator.client import GeneratorClient, no_answer
-from daemon.generator.messages import Generated, GeneratorError
+from daemon.generator.generated import Generated, GeneratorError
 from daemon.gestures.library import GestureLibrary
 from daemon.playback.sources.clip_source import ClipSource, varied
 from daemon.playback.sources.kept_motions import KeptMotion, KeptMotions
 from daemon.playback.sources.originals import Originals
+from daemon.playback.sources.prepared_source import (
+    PreparedSource,
+    check_in_scope,
+    out_of_scope,
+    performance_s,
+    prepared_source,
+    scenes_or_whole,
+    words_of,
+)
 from daemon.playback.sources.preview_source import PreviewSource
 from daemon.playback.sources.showing import Showing, Shows, Verdict, at_tempo
 from daemon.playback.sources.story_source import SceneNews, StorySource
@@ -34,15 +42,14 @@ from daemon.settings.config import DaemonConfig
 from daemon.state.lease import LeaseClock
 from daemon.state.ledger import Entry
 from daemon.state.replies import NotPlayableError, generator_failed, too_late
-from daemon.wire.events import Accepted, Rejected
-from daemon.wire.requests import Command, Edit, Gesture, Inbetween, Lease, Play, Replay, Say, Story, tag_of
+from daemon.wire.events import Rejected
+from daemon.wire.requests import Edit, Gesture, Inbetween, Lease, Play, Replay, Say, Story, tag_of
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.motion.motion import Motion
 from mmm_core.recognition.seen import Scene
 from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.robot import RobotModel
 
-OUT_OF_SCOPE_DO = "ask for gestures of head, arms and torso, in English, e.g. 'wave with your right hand'"
 PREFIX_FRAMES = 32
 """So much of what is played is shown to the generator, however little of it is the prefix: ids depend on what was before."""
 FIRST_MAKE_S = 0.1
@@ -63,43 +70,6 @@ class Played(Protocol):
     def committed(self, n: int, ahead_s: float) -> PoseSequence:
         """`n` frames up to where a motion would take over that takes `ahead_s` to make."""
         ...
-
-
-@dataclass(frozen=True)
-class PreparedSource:
-    """A motion ready to be played, and what is told about it when it is accepted."""
-
-    score: MotionSource | StreamSource
-    duration_s: float
-    status: str = "accepted"
-    understood: str = ""
-    reason: str = ""
-    scope_score: float = 1.0
-    generate_ms: float = 0.0
-    silence_s: float | None = None
-    nearest: str = ""
-    lacks: str = ""
-    commands: tuple[str, ...] = ()
-    denied: tuple[str, ...] = ()
-
-    def accepted(self, entry: Entry, plan_id: int) -> Accepted:
-        """The event."""
-        return Accepted(
-            plan_id=plan_id,
-            text=entry.asked.words,
-            status=self.status,
-            understood=self.understood,
-            reason=self.reason,
-            scope_score=round(self.scope_score, 4),
-            duration_s=round(self.duration_s, 3),
-            generate_ms=round(self.generate_ms, 2),
-            silence_s=self.silence_s,
-            nearest=self.nearest,
-            lacks=self.lacks,
-            commands=self.commands,
-            denied=self.denied,
-            refers_to=entry.refers_to,
-        )
 
 
 class SourceFactory:
@@ -135,7 +105,11 @@ class SourceFactory:
             posture = await asyncio.to_thread(posture_of, motion)
             score, shows = await self._score(entry, posture, motion, words=motion.text)
             return PreparedSource(
-                score, _duration_s(posture, request), understood=shows.sentence, nearest=motion.text, lacks=shows.lacks
+                score,
+                performance_s(posture, request),
+                understood=shows.sentence,
+                nearest=motion.text,
+                lacks=shows.lacks,
             )
         if isinstance(request, Gesture):
             clip = self._originals.clip(request.name)
@@ -143,7 +117,11 @@ class SourceFactory:
             score, shows = await self._score(entry, clip.posture, motion, marks=clip.marks, words=clip.text)
             nearest = f"{clip.text} (gesture {clip.name})"
             return PreparedSource(
-                score, _duration_s(clip.posture, request), understood=shows.sentence, nearest=nearest, lacks=shows.lacks
+                score,
+                performance_s(clip.posture, request),
+                understood=shows.sentence,
+                nearest=nearest,
+                lacks=shows.lacks,
             )
         if isinstance(request, Lease):
             return await self._lease(request)
@@ -169,14 +147,14 @@ class SourceFactory:
     ) -> PreparedSource:
         """What the generator makes of one request, led through `keys`."""
         generated = await self._asked(entry, ask)
-        _check_in_scope(entry, generated)
+        check_in_scope(entry, generated)
         motion = generated.motion
         posture = posture_of(motion)
         if keys:
             posture = led_through(posture, keys)
             motion = posture.motion(motion)
-        score, shows = await self._score(entry, posture, motion, generated.scenes, words=_words_of(generated))
-        return _prepared(generated, score, _duration_s(posture, entry.request), shows)
+        score, shows = await self._score(entry, posture, motion, generated.scenes, words=words_of(generated))
+        return prepared_source(generated, score, performance_s(posture, entry.request), shows)
 
     def verdict(self, entry: Entry, q_rad: NDArray[np.float64], fps: float) -> Verdict:
         """Whether the robot has shown what a command's motion shows.
@@ -193,13 +171,13 @@ class SourceFactory:
         """What can be played at once of a text, while the generator goes on with it."""
         ask = self._generator.draft
         first, whole = await self._asked(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
-        _check_in_scope(entry, first)
+        check_in_scope(entry, first)
         draft = posture_of(first.motion)
         score, shows = await self._score(
-            entry, draft, first.motion, first.scenes, words=_words_of(first), draft=whole is not None
+            entry, draft, first.motion, first.scenes, words=words_of(first), draft=whole is not None
         )
         if whole is None:
-            return _prepared(first, score, _duration_s(draft, request), shows)
+            return prepared_source(first, score, performance_s(draft, request), shows)
 
         def posture(generated: Generated) -> PoseSequence:
             return varied(posture_of(generated.motion), request)
@@ -208,12 +186,12 @@ class SourceFactory:
             if not done.cancelled() and done.exception() is None:
                 made = done.result()
                 as_played = posture(made)
-                scenes = at_tempo(_scenes(made.scenes, made.motion, _words_of(made)), request.tempo)
+                scenes = at_tempo(scenes_or_whole(made.scenes, made.motion, words_of(made)), request.tempo)
                 self.kept.renew(entry.id, as_played, made.motion, scenes)
 
         whole.add_done_callback(keep)
         duration_s = first.draft_of / draft.fps / request.tempo
-        return _prepared(first, PreviewSource(varied(draft, request), whole, posture), duration_s, shows)
+        return prepared_source(first, PreviewSource(varied(draft, request), whole, posture), duration_s, shows)
 
     async def _said(self, entry: Entry, request: Say, played: Played) -> PreparedSource:
         ask = self._generator.generate
@@ -247,7 +225,7 @@ class SourceFactory:
         news = await self._asked(entry, begin)
         away = [f"scene {n.number} ({n.text[:40]!r}) is left out: {n.reason}" for n in news if n.status == "rejected"]
         if score.empty:
-            raise _out_of_scope(entry, "; ".join(away)[:1000], news[0].understood, max(n.scope_score for n in news))
+            raise out_of_scope(entry, "; ".join(away)[:1000], news[0].understood, max(n.scope_score for n in news))
         first = next(n for n in news if n.status != "rejected")
         status = "degraded" if any(n.status != "accepted" for n in news) else "accepted"
         reason = "; ".join([*away, *(n.reason for n in news if n.status == "degraded")])[:1000]
@@ -314,57 +292,9 @@ class SourceFactory:
         said = words if isinstance(play, Gesture) and words else play.words
         said = mirror_words(said) if play.mirror else said
         as_played = varied(posture, play)
-        parts = at_tempo(_scenes(scenes, motion, words or play.words), play.tempo)
+        parts = at_tempo(scenes_or_whole(scenes, motion, words or play.words), play.tempo)
         self.kept.add(entry.id, KeptMotion(said, as_played, motion, parts))
         shows = await asyncio.to_thread(self._showing.of, as_played, parts, draft=draft)
         if play.loop or play.hold or play.repeat > 1:  # looking for the loop takes a while
             return await asyncio.to_thread(ClipSource, posture, play, marks), shows
         return ClipSource(posture, play, marks), shows
-
-
-def _prepared(generated: Generated, score: MotionSource, duration_s: float, shows: Shows) -> PreparedSource:
-    """With what the generator tells of a motion, and what the motion shows."""
-    motion, made_ms = generated.motion, sum(generated.timings_ms.values())
-    how = (motion.status, shows.sentence, generated.reason, motion.scope_score, made_ms)
-    return PreparedSource(
-        score,
-        duration_s,
-        *how,
-        nearest=generated.understood,
-        lacks=shows.lacks,
-        commands=generated.commands,
-        denied=generated.denied,
-    )
-
-
-def _scenes(scenes: Sequence[Scene], motion: Motion, words: str) -> Sequence[Scene]:
-    """The scenes of a motion; one where none are told."""
-    return scenes or [Scene(motion.duration_s, words)]
-
-
-def _words_of(generated: Generated) -> str:
-    """The words that may name what a generated motion shows: its text, and the known command that is nearest."""
-    return f"{generated.motion.text}\n{generated.understood}"
-
-
-def _check_in_scope(entry: Entry, generated: Generated) -> None:
-    """Raises NotPlayableError for what was refused."""
-    if generated.motion.status == "rejected":
-        raise _out_of_scope(entry, generated.reason, generated.understood, generated.motion.scope_score)
-
-
-def _out_of_scope(entry: Entry, reason: str, understood: str, score: float) -> NotPlayableError:
-    return NotPlayableError(Rejected(
-        code="out_of_scope",
-        asked=f"{tag_of(entry.request)} {entry.asked.words[:200]!r}",
-        found=reason or "nothing the model knows",
-        allowed="upper-body motion of one person without objects",
-        do=OUT_OF_SCOPE_DO,
-        understood=understood,
-        scope_score=round(score, 4),
-    ))  # fmt: skip
-
-
-def _duration_s(posture: PoseSequence, request: Command) -> float:
-    """Length of one performance at the asked tempo."""
-    return len(posture) / posture.fps / (request.tempo if isinstance(request, Play) else 1.0)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from daemon.generator.client import GeneratorClient
-from daemon.generator.messages import Generated, GeneratorError
+from daemon.generator.generated import Generated, GeneratorError
 from daemon.poses.motion_source import MotionSource
 from daemon.poses.pose_sequence import PoseSequence, at_steps, joined, mirrored, posture_of, scaled, standing
 from daemon.state.replies import NotPlayableError, generator_failed

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from daemon.demo.main_job import audited_plans
-from daemon.recording.mcap_log import Log, LoggedCycle
+from daemon.recording.mcap_reading import Log, LoggedCycle
 from retarget.robot.loading import load_robot
 from retarget.robot.ticks import JointServoMap
 from tests.support.rig import swing

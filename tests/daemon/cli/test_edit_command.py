@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from daemon.cli import main
-from daemon.generator.messages import EditMessage, GenerateMessage, UnfitRequestError, arrays_of
+from daemon.generator.generated import arrays_of
+from daemon.generator.messages import EditMessage, GenerateMessage, UnfitRequestError
 from daemon.generator.service import EngineService
 from mmm_core.motion.motion import load_npz
 from tests.support.shipped import shipped_engine

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from daemon.front.target_parsing import TargetParser
-from daemon.recording.mcap_log import read_log
+from daemon.recording.mcap_reading import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.shared_memory.bus_link import BusRequest, cycle_dtype
 from daemon.wire import codec as wire

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from daemon.generator import messages as generation
 from daemon.generator.client import GeneratorClient
-from daemon.generator.messages import Generated, GeneratorError
+from daemon.generator.generated import Generated, GeneratorError, generated_from, generated_message
 from daemon.generator.process import MOST_BEGUN, answers
 from mmm_core.generate.continuation import continue_motion
 from mmm_core.inference.checkpoint import MODEL_FILE
@@ -56,10 +56,8 @@ def ask(endpoint: str, call):
 def test_a_motion_survives_the_wire_bit_for_bit():
     motion = raised_arm()
     sent = Generated(motion, "raise", "why", {"decode": 1.5}, "hash")
-    message = generation.generated_message(4, sent)
-    received = generation.generated_from(
-        msgspec.msgpack.decode(generation.encode(message), type=generation.GeneratedMessage)
-    )
+    message = generated_message(4, sent)
+    received = generated_from(msgspec.msgpack.decode(generation.encode(message), type=generation.GeneratedMessage))
     for field in ("joints_m", "head_quat_wxyz", "forearm_twist_rad", "features", "tokens"):
         assert np.array_equal(getattr(received.motion, field), getattr(motion, field))
     assert (received.understood, received.reason, received.timings_ms) == ("raise", "why", {"decode": 1.5})
@@ -76,11 +74,11 @@ def test_a_motion_survives_the_wire_bit_for_bit():
     ],
 )
 def test_what_is_no_motion_is_a_named_failure(change, found):
-    message = generation.generated_message(1, Generated(raised_arm(), "", "", {}, ""))
+    message = generated_message(1, Generated(raised_arm(), "", "", {}, ""))
     for key, value in change.items():
         setattr(message, key, value)
     with pytest.raises(GeneratorError, match=found) as caught:
-        generation.generated_from(message)
+        generated_from(message)
     assert caught.value.code == "bad_motion"
 
 
@@ -195,10 +193,10 @@ def test_a_motion_that_never_follows_its_draft_is_a_named_failure(endpoint, end,
 
 
 def test_a_draft_that_nobody_asked_for_is_no_motion():
-    reply = generation.generated_message(1, Generated(raised_arm(), "", "", {}, "", draft_of=20))
+    reply = generated_message(1, Generated(raised_arm(), "", "", {}, "", draft_of=20))
     with pytest.raises(GeneratorError, match="nobody asked for"):
-        generation.generated_from(reply)
-    assert generation.generated_from(reply, may_be_draft=True).draft_of == 20
+        generated_from(reply)
+    assert generated_from(reply, may_be_draft=True).draft_of == 20
 
 
 def test_a_generator_that_is_silent_is_a_named_failure(endpoint):

@@ -20,7 +20,7 @@ from daemon.client import Client, NoAnswerError, RefusedError
 from daemon.demo.main_job import free_endpoints
 from daemon.errors import ConfigError
 from daemon.front.rate_limits import BURST, PEER_BURST, PEER_RATE_HZ, RATE_HZ, Rates, RequestLimits
-from daemon.generator.messages import Generated
+from daemon.generator.generated import Generated
 from daemon.network.keys import ZAP, Doorkeeper, KeyFolder, as_hex, checked_key
 from daemon.settings.config import Endpoints
 from tests.support.harness import MMMD, RunningDaemon, mmmd

@@ -17,7 +17,7 @@ from daemon.pictures.film import write_film
 from daemon.pictures.joints import joint_plot, spans
 from daemon.pictures.performance import Performance, cut, of_motion, of_run
 from daemon.pictures.scene import VIEWS, Scene
-from daemon.recording.mcap_log import Log, LoggedCycle
+from daemon.recording.mcap_reading import Log, LoggedCycle
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import JOINT_NAMES
 from retarget.robot.loading import load_robot

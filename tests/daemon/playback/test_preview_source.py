@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable
 
 import numpy as np
 
-from daemon.generator.messages import Generated
+from daemon.generator.generated import Generated
 from daemon.playback.sources.preview_source import PreviewSource
 from daemon.poses.pose_sequence import PoseSequence, posture_of
 from tests.support.kinematic import raised_arm

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from daemon.generator.messages import Generated, GeneratorError
+from daemon.generator.generated import Generated, GeneratorError
 from daemon.playback.sources import story_source as story_score
 from daemon.playback.sources.story_source import PIECES_AHEAD, StorySource
 from daemon.poses.key_poses import KeyPose, led_through

@@ -19,7 +19,8 @@ from mcap.writer import Writer
 from daemon.errors import LogError
 from daemon.recording.feed import RecorderFeed
 from daemon.recording.foxglove import GOAL_TOPIC, LOG_TOPIC, MEASURED_TOPIC, SCHEMAS, TRANSFORMS_TOPIC
-from daemon.recording.mcap_log import CYCLE_TOPIC, LogWriter, read_log
+from daemon.recording.mcap_log import CYCLE_TOPIC, LogWriter
+from daemon.recording.mcap_reading import read_log
 from daemon.recording.schemas import DROPPED_TOPIC
 from daemon.settings.sources import DEFAULTS
 from daemon.shared_memory.bus_link import BusLink, BusState

@@ -7,7 +7,8 @@ import pytest
 from daemon.cli import main
 from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import LogError
-from daemon.recording.mcap_log import Log, LogWriter, read_log
+from daemon.recording.mcap_log import LogWriter
+from daemon.recording.mcap_reading import Log, read_log
 from daemon.recording.replay import ReplayFaultError, replay, stretches
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from retarget.robot.loading import load_robot

@@ -23,7 +23,7 @@ import pytest
 from daemon.demo.main_job import free_endpoints
 from daemon.errors import ConfigError
 from daemon.logs.log_lines import JsonLines
-from daemon.recording.mcap_log import read_log
+from daemon.recording.mcap_reading import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.settings.sources import DEFAULTS, config_of, resolve
 from daemon.shared_memory.bus_link import cycle_dtype

@@ -1,0 +1,106 @@
+"""A source that is ready to be played, and the facts about it that are told when its command is accepted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from daemon.generator.generated import Generated
+from daemon.playback.sources.showing import Shows
+from daemon.playback.sources.stream_source import StreamSource
+from daemon.poses.motion_source import MotionSource
+from daemon.poses.pose_sequence import PoseSequence
+from daemon.state.ledger import Entry
+from daemon.state.replies import NotPlayableError
+from daemon.wire.events import Accepted, Rejected
+from daemon.wire.requests import Command, Play, tag_of
+from mmm_core.motion.motion import Motion
+from mmm_core.recognition.seen import Scene
+
+OUT_OF_SCOPE_DO = "ask for gestures of head, arms and torso, in English, e.g. 'wave with your right hand'"
+
+
+@dataclass(frozen=True)
+class PreparedSource:
+    """A motion ready to be played, and what is told about it when it is accepted."""
+
+    score: MotionSource | StreamSource
+    duration_s: float
+    status: str = "accepted"
+    understood: str = ""
+    reason: str = ""
+    scope_score: float = 1.0
+    generate_ms: float = 0.0
+    silence_s: float | None = None
+    nearest: str = ""
+    lacks: str = ""
+    commands: tuple[str, ...] = ()
+    denied: tuple[str, ...] = ()
+
+    def accepted(self, entry: Entry, plan_id: int) -> Accepted:
+        """The event."""
+        return Accepted(
+            plan_id=plan_id,
+            text=entry.asked.words,
+            status=self.status,
+            understood=self.understood,
+            reason=self.reason,
+            scope_score=round(self.scope_score, 4),
+            duration_s=round(self.duration_s, 3),
+            generate_ms=round(self.generate_ms, 2),
+            silence_s=self.silence_s,
+            nearest=self.nearest,
+            lacks=self.lacks,
+            commands=self.commands,
+            denied=self.denied,
+            refers_to=entry.refers_to,
+        )
+
+
+def prepared_source(generated: Generated, score: MotionSource, duration_s: float, shows: Shows) -> PreparedSource:
+    """With what the generator tells of a motion, and what the motion shows."""
+    motion, made_ms = generated.motion, sum(generated.timings_ms.values())
+    how = (motion.status, shows.sentence, generated.reason, motion.scope_score, made_ms)
+    return PreparedSource(
+        score,
+        duration_s,
+        *how,
+        nearest=generated.understood,
+        lacks=shows.lacks,
+        commands=generated.commands,
+        denied=generated.denied,
+    )
+
+
+def scenes_or_whole(scenes: Sequence[Scene], motion: Motion, words: str) -> Sequence[Scene]:
+    """The scenes of a motion; one where none are told."""
+    return scenes or [Scene(motion.duration_s, words)]
+
+
+def words_of(generated: Generated) -> str:
+    """The words that may name what a generated motion shows: its text, and the known command that is nearest."""
+    return f"{generated.motion.text}\n{generated.understood}"
+
+
+def check_in_scope(entry: Entry, generated: Generated) -> None:
+    """Raises NotPlayableError for what was refused."""
+    if generated.motion.status == "rejected":
+        raise out_of_scope(entry, generated.reason, generated.understood, generated.motion.scope_score)
+
+
+def out_of_scope(entry: Entry, reason: str, understood: str, score: float) -> NotPlayableError:
+    """The error of a text that the model cannot carry out."""
+    return NotPlayableError(Rejected(
+        code="out_of_scope",
+        asked=f"{tag_of(entry.request)} {entry.asked.words[:200]!r}",
+        found=reason or "nothing the model knows",
+        allowed="upper-body motion of one person without objects",
+        do=OUT_OF_SCOPE_DO,
+        understood=understood,
+        scope_score=round(score, 4),
+    ))  # fmt: skip
+
+
+def performance_s(posture: PoseSequence, request: Command) -> float:
+    """Length of one performance at the asked tempo."""
+    return len(posture) / posture.fps / (request.tempo if isinstance(request, Play) else 1.0)

@@ -1,0 +1,77 @@
+"""Control points of a spline: near frames, braking, held, and joined on to a start that leaves hardly room to brake."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from retarget.path.limit_path import Matters, limit_path
+from retarget.path.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
+
+Array = NDArray[np.float64]
+
+
+def controls_near(frames: Array, before: Array) -> Array:
+    """(T, J) control points whose spline passes near frames (T, J): the spline's own smoothing undone to fourth order.
+
+    The path is at frame t half way between two control points, so these are for the times between frames; `before`
+    (1, J) is the frame before the first.
+    """
+    more = np.concatenate([before, frames, frames[-1:], frames[-1:]])
+    return (5 * (more[1:-2] + more[2:-1]) - more[:-3] - more[3:]) / 8
+
+
+def held(control: Array, period: float, n: int, limits: JointLimits) -> Array:
+    """At least `n` control points: `control`, brake, and hold."""
+    points = list(control)
+    while len(points) < n or not np.array_equal(points[-1], points[-2]):
+        points.append(brake(points[-1], (points[-1] - points[-2]) / period, limits, period))
+    return np.array(points)
+
+
+def braking(control: Array, period: float, limits: JointLimits) -> Array:
+    """(n, J) control points after `control` when every joint stops as fast as its acceleration allows."""
+    step = control[-1] - control[-2]
+    loss = limits.acceleration_rad_s2 * period**2
+    n = int(np.ceil((np.abs(step) / loss).max()))
+    left = np.maximum(np.abs(step) - np.arange(1, n + 1)[:, None] * loss, 0.0)
+    return control[-1] + np.cumsum(np.sign(step) * left, 0)
+
+
+def joined(
+    wanted: Array, before: Array, position: Array, period: float, limits: JointLimits,
+    matters_from: Callable[[int], Matters],
+) -> Array:  # fmt: skip
+    """(T + 1, J) control points from the second, `position`, on, near `wanted` (T, J).
+
+    `matters_from` gives the objective from a frame on.
+
+    A joint that the start leaves just enough room to brake has its next control points at or beyond the position
+    limit, though its path is not: until there is room for whole steps it brakes as hard as the path needs.
+    """
+    points = [before, position]
+    for k in range(len(wanted)):
+        velocity = (points[-1] - points[-2]) / period
+        end = np.where(velocity > 0, limits.position_max_rad, limits.position_min_rad)
+        toward = np.sign(velocity)
+        room = stopping_velocity_rad_s(toward * (end - points[-1]), limits.acceleration_rad_s2, period)
+        short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
+        short |= toward * (points[-1] - end) > 0
+        if not short.any():
+            rest = limit_path(wanted[k:], points[-1], velocity, limits, period, partial(matters_from, k))
+            return np.concatenate([points[1:], rest])
+        gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
+        braking_rad_s2 = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)
+        inward = points[-1] + velocity * period - toward * braking_rad_s2 * period**2
+        points.append(np.where(short, inward, limit_step(wanted[k], points[-1], velocity, limits, period)))
+    return np.array(points[1:])
+
+
+def hits_of_frames(hit: NDArray[np.bool_], n: int) -> NDArray[np.bool_]:
+    """(n - 2,) segments of n control points that touch; what touches while braking after them is the last one's doing."""
+    of = hit[: n - 2].copy()
+    of[-1] |= hit[n - 2 :].any()
+    return of

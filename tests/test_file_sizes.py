@@ -1,0 +1,35 @@
+"""No file of the packages holds more than one reads at a sitting; those that do stand here with the reason."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+PACKAGES = ("mmm_core", "retarget", "daemon", "sim")
+MOST_LINES = 300
+LONGER = {
+    "daemon/control/control_loop.py": "the hot path of the bus process in one file (STYLE 8)",
+    "daemon/shared_memory/bus_link.py": "one class: both ends of the shared memory, word by word",
+    "daemon/supervisor/supervisor.py": "one class: five processes, their starts and ends",
+    "daemon/view/server.py": "one class a socket, each a few lines on the same base",
+    "daemon/front/front.py": "one class: all sockets and the tick",
+    "daemon/scheduling/scheduler.py": "one class: every end of a command",
+    "daemon/client/async_client.py": "one method a request",
+    "mmm_core/training/stages.py": "one class: the stages of a recipe in their order",
+    "mmm_core/corpus/grammar.py": "tables of phrases",
+    "mmm_core/language/context.py": "the context between commands and its words",
+    "retarget/human/arms.py": "closed forms of three families of arms that share their state",
+    "sim/bus.py": "one class: a half-duplex bus",
+}
+
+
+def test_no_file_is_longer_than_one_reads_at_a_sitting():
+    lines = {
+        str(path.relative_to(ROOT)): len(path.read_text("utf-8").splitlines())
+        for package in PACKAGES
+        for path in (ROOT / package).rglob("*.py")
+    }
+    assert len(lines) > 300, "the packages were found"
+    longer = {name for name, n in lines.items() if n > MOST_LINES}
+    assert longer - LONGER.keys() == set(), f"split these along their concepts, {MOST_LINES} lines each"
+    assert LONGER.keys() - longer == set(), "these need no exception any more"
