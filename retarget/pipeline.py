@@ -19,7 +19,7 @@ from retarget.human.poser import ArmsFollow, Poser, Poses
 from retarget.path.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.path.collision import Allowed, SelfContact
 from retarget.path.control_points import braking, controls_near, held, hits_of_frames, joined
-from retarget.path.limit_path import Matters
+from retarget.path.limit_path import Objective
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointPath, JointState
 from retarget.path.report import BONES, Comparison
@@ -175,7 +175,7 @@ class Retargeter:
         When `continued`, the first pose is the one before the block.
         """
         before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
-        eased, interventions = self._avoidance.lead_round(posed, begin.position_rad)
+        eased, interventions = self._avoidance.push_out(posed, begin.position_rad)
         allowed = self.contact.allowed_from(begin.position_rad)
         path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
         for strength in STRENGTHS:
@@ -186,7 +186,7 @@ class Retargeter:
             path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
         if hit.any() and allowed is not None:  # it begins too near itself to turn to the motion: away from there first
             eased = eased.copy()
-            eased[:_AWAY_FRAMES] = self._avoidance.lead_round(begin.position_rad[None], begin.position_rad)[0]
+            eased[:_AWAY_FRAMES] = self._avoidance.push_out(begin.position_rad[None], begin.position_rad)[0]
             path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
         if hit.any():
             path = self._stop_before_contact(path, hit, period, allowed)
@@ -229,7 +229,7 @@ class Retargeter:
         """The given start, or at rest in the first frame's pose, led round contacts."""
         if start is not None:
             return start
-        first, _ = self._avoidance.lead_round(wanted[:1], self.robot.rest_rad)
+        first, _ = self._avoidance.push_out(wanted[:1], self.robot.rest_rad)
         return JointState(first[0], np.zeros(self.robot.n_joints))
 
     def _stop_before_contact(
@@ -268,10 +268,10 @@ class Retargeter:
             every = (wanted, shown, led)
             wanted, shown, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in every)
 
-        def matters_from(k: int) -> Matters:
-            return self._poser.matters(shown[k:], led[k:])
+        def objective_from(k: int) -> Objective:
+            return self._poser.objective(shown[k:], led[k:])
 
-        points = np.concatenate([[before], joined(wanted, before, position, period, self.limits, matters_from)])
+        points = np.concatenate([[before], joined(wanted, before, position, period, self.limits, objective_from)])
         if settle:
             n = len(points)
             moves = np.abs(np.diff(points[n - _SETTLE_FRAMES - 1 :], axis=0)).max(1) > _STILL_RAD

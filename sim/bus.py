@@ -21,7 +21,7 @@ from sim.faults import FaultSchedule
 from sim.servos.instructions import Instructions, accesses_of
 from sim.servos.servo import SimServo
 from sim.wire.fast_reply import share_as, shares_of
-from sim.wire.packet_faults import Piece, spoil
+from sim.wire.packet_faults import Piece, apply_packet_faults
 from sim.wire.wire import Wire, WireSettings
 from sim.world import World
 
@@ -211,7 +211,7 @@ class SimBus:
         alert = servo.alert()
         error |= alert
         end_s = start_s + byte_s * (len(parameters) + (11 if servo.model.protocol == 2.0 else 6))
-        pieces = spoil(self.faults, servo_id, lambda i: status(i, error, parameters), start_s, byte_s)
+        pieces = apply_packet_faults(self.faults, servo_id, lambda i: status(i, error, parameters), start_s, byte_s)
         if ((alert and servo.is_faulted) or servo.watchdog_tripped) and pieces == [
             Piece(status(servo_id, error, parameters))
         ]:
@@ -271,7 +271,9 @@ class SimBus:
             pieces = [
                 (start_s if turn else t_s + self._pause_s(servo), piece)
                 for servo, part in zip(servos, parts[turn], strict=True)
-                for piece in spoil(self.faults, part.servo_id, share_as(parts[:turn], part, length), start_s, byte_s)
+                for piece in apply_packet_faults(
+                    self.faults, part.servo_id, share_as(parts[:turn], part, length), start_s, byte_s
+                )
             ]
             for own_s, piece in pieces:
                 self.wire.answer(own_s + piece.after_s, piece.data, baud, alone=piece.alone)

@@ -160,7 +160,7 @@ class _Program:
         """(T,) metres that the nearest pair lacks of its margin."""
         if not self._contact:
             return np.zeros(0)
-        return np.maximum(-self._retargeter.contact.rooms_m(frames, 1.0).min(1, initial=np.inf), 0.0)
+        return np.maximum(-self._retargeter.contact.slacks_m(frames, 1.0).min(1, initial=np.inf), 0.0)
 
     def _inside(self, x: Array) -> bool:
         """Whether (N, n) control points keep every bound."""
@@ -170,7 +170,7 @@ class _Program:
     def _cost(self, x: Array) -> float:
         """Half the squared error of all directions, and the penalty of all contacts."""
         frames = self._frames(self._all(x))
-        rooms = self._retargeter.contact.rooms_m(frames, 1.0) if self._contact else np.zeros((0, 0))
+        rooms = self._retargeter.contact.slacks_m(frames, 1.0) if self._contact else np.zeros((0, 0))
         missed = self._retargeter.missed(self._poses, frames)
         return float((missed**2).sum() / 2 + _STIFFNESS * (np.minimum(rooms, 0.0) ** 2).sum() / 2)
 
@@ -207,7 +207,7 @@ class _Program:
     def _near_pairs(self, frames: Array) -> tuple[Any, Array]:
         """How the room of each near pair grows with the arms' joints, (R, T n), and the rooms, (R,)."""
         contact, n = self._retargeter.contact, len(self._joints)
-        rooms = contact.rooms_m(frames, 1.0)
+        rooms = contact.slacks_m(frames, 1.0)
         data: list[Array] = []
         columns: list[Indices] = []
         room: list[Array] = []

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from daemon.control.ptp_trajectory import PtpTrajectory
 from daemon.control.safety_limiter import SafetyLimiter
 from retarget.path.collision import SelfContact
-from retarget.path.rrt_connect import WaySearch
+from retarget.path.rrt_connect import RrtConnect
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
@@ -45,12 +45,12 @@ class PointToPointMove:
     def begin(self) -> None:
         """Forget the way: the next step begins anew from where the robot stands then."""
         self._approach: PtpTrajectory | None = None
-        self._search: WaySearch | None = None
+        self._search: RrtConnect | None = None
         self._searches = 0
         self._gone_s = self._held_s = 0.0
         self.setpoint_rad: Array | None = None
         self.arrived = False
-        self.blocked: WaySearch | None = None
+        self.blocked: RrtConnect | None = None
 
     def step(self, to_rad: Array, stay_s: float) -> Array:
         """(J,) the next goal on the way to a pose (J,) in which it stays for a while."""
@@ -74,7 +74,7 @@ class PointToPointMove:
     def _look_for_a_way(self, to_rad: Array) -> None:
         """Some pieces of the search from where it stands; then the way, or the end of hope."""
         if self._search is None:
-            self._search = WaySearch(self._robot, self._contact, self._gate.position_rad, to_rad)
+            self._search = RrtConnect(self._robot, self._contact, self._gate.position_rad, to_rad)
             self._searches += 1
         for _ in range(self._pieces):
             if self._search.work():

@@ -75,30 +75,32 @@ class Arms:
         self._pose_directions = np.concatenate([upper, fore], -1)
         self._pose_cosines = np.vecdot(upper, fore)  # (G, S)
 
-    def ways(self, upper: Array, fore: Array, weights: Array | None = None) -> tuple[Array, Array]:
-        """Angles of each way to unit directions (G, M, 3), and how much each joint shows there, both (G, M, C, n).
+    def ik_solutions(self, upper: Array, fore: Array, weights: Array | None = None) -> tuple[Array, Array]:
+        """Joint angles of each solution for unit directions (G, M, 3), and the observability of each joint, both (G, M, C, n).
 
-        Ways of arms that reach all directions may lie outside the limits. What shows is 0 to 1: with the third axis along
-        the first only their sum does, with the arm straight the third does not.
+        Solutions of arms that reach all directions may lie outside the limits. Observability is 0 to 1: with the third axis
+        along the first only the sum of both is observable, with the arm straight the third is not.
         """
         if not self.reaches_all:
             if weights is None:
                 weights = np.broadcast_to(np.eye(2), (*upper.shape[:2], 2, 2))
-            ways = self._refine(self._starts(upper, fore, weights), upper, fore, _LEAST_ERROR_STEPS, weights)
-            return ways, np.ones_like(ways)
-        ways, seen = self._every_pair(upper, fore)
+            solutions = self._refine(self._starts(upper, fore, weights), upper, fore, _LEAST_ERROR_STEPS, weights)
+            return solutions, np.ones_like(solutions)
+        solutions, observability = self._every_pair(upper, fore)
         if self._has_offsets:
-            ways = self._refine(ways, upper, fore, _OFFSET_STEPS)
-        return self._nearest_turn(ways), seen
+            solutions = self._refine(solutions, upper, fore, _OFFSET_STEPS)
+        return self._nearest_turn(solutions), observability
 
-    def own_cost(self, ways: Array, upper: Array, fore: Array, seen: Array, weights: Array | None = None) -> Array:
-        """(G, M, C) what each way costs by itself, in radians of movement: what lies outside limits, directions missed."""
-        outside = np.abs(ways - np.minimum(np.maximum(ways, self.low[:, None]), self.high[:, None]))
-        cost = _LIMIT_COST * np.einsum("gmcn,gmcn->gmc", outside, seen)
+    def unary_cost(
+        self, solutions: Array, upper: Array, fore: Array, observability: Array, weights: Array | None = None
+    ) -> Array:
+        """(G, M, C) cost of each solution by itself, in radians of movement: angles outside limits and directions missed."""
+        outside = np.abs(solutions - np.minimum(np.maximum(solutions, self.low[:, None]), self.high[:, None]))
+        cost = _LIMIT_COST * np.einsum("gmcn,gmcn->gmc", outside, observability)
         if not self.reaches_all or self._has_offsets:
-            found = self.directions(ways.reshape(len(ways), -1, self.n_joints))
+            found = self.directions(solutions.reshape(len(solutions), -1, self.n_joints))
             missed = [
-                f.reshape(*ways.shape[:3], 3) - wanted[:, :, None]
+                f.reshape(*solutions.shape[:3], 3) - wanted[:, :, None]
                 for f, wanted in zip(found, (upper, fore), strict=True)
             ]
             if weights is None or self.reaches_all:
@@ -121,18 +123,18 @@ class Arms:
             inside[:, cut] = np.where(some[..., None], better, inside[:, cut])
         return inside
 
-    def rested(self, q: Array, seen: Array, upper: Array, fore: Array, previous: Array) -> Array:
+    def rested(self, q: Array, observability: Array, upper: Array, fore: Array, previous: Array) -> Array:
         """(G, M, n) angles near which those of `q` that do not show may rest, from `previous` (G, n) on.
 
         With the first and the third axis in line only the sum of their angles shows, which stays as it is.
         """
-        if not (seen < UNSEEN).any():
+        if not (observability < UNSEEN).any():
             return q
         x = q.copy()
         straight = (1 - np.einsum("gmi,gmi->gm", upper, fore) ** 2) / _SEEN_BENT
         in_line = np.sign(self._third_turn.at(np.cos(q[..., 1]), np.sin(q[..., 1])) @ self.axes[:, 0, :, None])[..., 0]
         for g in range(len(q)):
-            fill_unseen(x[g, :, 0], seen[g, :, 0], previous[g, 0])
+            fill_unseen(x[g, :, 0], observability[g, :, 0], previous[g, 0])
             x[g, :, 2] += in_line[g] * (q[g, :, 0] - x[g, :, 0])
             fill_unseen(x[g, :, 2], straight[g], previous[g, 2])
         return x
@@ -211,15 +213,17 @@ class Arms:
         c2, s2 = np.cos(q2), np.sin(q2)
         q1, lost = angle_about(a1, self._third_turn.at(c2, s2), third)
         q3, _ = angle_about(a3, first, self._first_turn.at(c2, -s2), first_has_ways=False)
-        ways = np.empty((G, M, 2, 2, 4))
-        ways[..., 0], ways[..., 1], ways[..., 2], ways[..., 3] = q1, q2, q3, elbow[..., None]
+        solutions = np.empty((G, M, 2, 2, 4))
+        solutions[..., 0], solutions[..., 1], solutions[..., 2], solutions[..., 3] = q1, q2, q3, elbow[..., None]
         if lost.any():  # the first and the third axis in line: their sum alone counts, and must be right
-            ways[..., 2] = np.where(lost, self._third_alone(ways, R), q3)
-        seen = np.ones((G, M, 2, 2, 4))
+            solutions[..., 2] = np.where(lost, self._third_alone(solutions, R), q3)
+        observability = np.ones((G, M, 2, 2, 4))
         across = np.minimum(np.maximum(1 - height**2, 0.0) / _SEEN_ACROSS, 1)
-        seen[..., 0] = across[..., None]
-        seen[..., 2] = (across * np.minimum(np.maximum(1 - cosine**2, 0.0) / _SEEN_BENT, 1)[:, :, None])[..., None]
-        return ways.reshape(G, M, 4, 4), seen.reshape(G, M, 4, 4)
+        observability[..., 0] = across[..., None]
+        observability[..., 2] = (across * np.minimum(np.maximum(1 - cosine**2, 0.0) / _SEEN_BENT, 1)[:, :, None])[
+            ..., None
+        ]
+        return solutions.reshape(G, M, 4, 4), observability.reshape(G, M, 4, 4)
 
     def _zero_frame(self, bent: Array) -> Array:
         """(..., 3, 3) frames of the zero pose with the elbow bent: upper arm, across both bones, across those."""
@@ -237,11 +241,11 @@ class Arms:
         columns[..., 2] = across @ np.swapaxes(self._skew_upper, -1, -2)[:, None]
         return columns
 
-    def _third_alone(self, ways: Array, R: Array) -> Array:
+    def _third_alone(self, solutions: Array, R: Array) -> Array:
         """(G, M, 2, 2) the third angle that completes the first two to the rotation `R` (G, M, 2, 3, 3)."""
         a3 = self.axes[:, 2]
         probe = unit(cross(a3, np.eye(3)[np.abs(a3).argmin(-1)]))
-        turns = self._rotations(ways.reshape(len(ways), -1, 4)).reshape(*ways.shape, 3, 3)
+        turns = self._rotations(solutions.reshape(len(solutions), -1, 4)).reshape(*solutions.shape, 3, 3)
         left = np.swapaxes(turns[..., 0, :, :] @ turns[..., 1, :, :], -1, -2) @ R[:, :, :, None]
         moved = np.einsum("gmewij,gj->gmewi", left, probe)
         sine = np.einsum("gmewi,gi->gmew", moved, cross(a3, probe))
@@ -279,10 +283,10 @@ class Arms:
         elbow, _ = angle_about(self.axes[:, -1], self.fore0[:, None, None], local[..., 0])
         return np.concatenate([shoulder, elbow], -1)
 
-    def _refine(self, ways: Array, upper: Array, fore: Array, steps: int, weights: Array | None = None) -> Array:
+    def _refine(self, solutions: Array, upper: Array, fore: Array, steps: int, weights: Array | None = None) -> Array:
         """Gauss-Newton on both direction errors from angles (G, M, C, n), kept inside their limits."""
-        G, M, C, n = ways.shape
-        q = self._nearest_turn(ways).reshape(G, M * C, n)
+        G, M, C, n = solutions.shape
+        q = self._nearest_turn(solutions).reshape(G, M * C, n)
         q = np.minimum(np.maximum(q, self.low), self.high)
         upper, fore = np.repeat(upper, C, 1), np.repeat(fore, C, 1)
         of = None if weights is None else np.repeat(weights, C, 1)
@@ -302,6 +306,6 @@ class Arms:
                 break
         return q.reshape(G, M, C, n)
 
-    def _nearest_turn(self, ways: Array) -> Array:
+    def _nearest_turn(self, solutions: Array) -> Array:
         """Whole turns added where that brings an angle into its limits."""
-        return ways - 2 * np.pi * np.round((ways - self._middle[:, None]) / (2 * np.pi))
+        return solutions - 2 * np.pi * np.round((solutions - self._middle[:, None]) / (2 * np.pi))

@@ -1,4 +1,4 @@
-"""Which of an arm's ways to the same directions: dynamic programming over all frames and what was done before.
+"""Which of an arm's solutions for the same directions: dynamic programming over all frames and the pose before them.
 
 Staying within the limits and moving least decide. A joint whose turning cannot be seen at a frame (the yaw of a straight
 arm, the first joint of an arm along its axis) has no say there: it counts as staying where it was last seen, so that an
@@ -14,29 +14,29 @@ Array = NDArray[np.float64]
 UNSEEN = 0.5
 """A joint seen less than this is filled in from the frames around."""
 _OUT_OF_QUESTION_RAD = 0.5
-"""A way that costs more in every frame is not looked at where another costs nothing."""
+"""Radians: a solution that costs more in every frame is left out where another costs nothing."""
 _HIDDEN_SHARE = 0.3
-"""What going over to another way costs of its angles' change where it is not seen: none at all, and ways alternate there."""
+"""Share of the angles' change that a change of solutions costs where it is not observable; with none, solutions alternate."""
 
 
-def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tuple[Array, Array]:
-    """Angles of the cheapest row of ways, and how much each is seen there, both (G, T, n).
+def choose(solutions: Array, unary_cost: Array, observability: Array, previous_rad: Array) -> tuple[Array, Array]:
+    """Angles of the cheapest sequence of solutions, and the observability of each, both (G, T, n).
 
     Args:
-        ways: (G, T, C, n) angles of G arms in C ways.
-        own_cost: (G, T, C) what each costs by itself, in radians of movement.
-        seen: (G, T, C, n) how much each joint shows, 0 to 1.
+        solutions: (G, T, C, n) angles of G arms in C solutions.
+        unary_cost: (G, T, C) cost of each by itself, in radians of movement.
+        observability: (G, T, C, n) of each joint, 0 to 1.
         previous_rad: (G, n) angles before the first frame.
     """
-    G, T, C, n = ways.shape
-    free, costly = own_cost.max(1) == 0, own_cost.min(1) > _OUT_OF_QUESTION_RAD  # (G, C)
+    G, T, C, n = solutions.shape
+    free, costly = unary_cost.max(1) == 0, unary_cost.min(1) > _OUT_OF_QUESTION_RAD  # (G, C)
     if (
         (free.sum(1) == 1) & (free | costly).all(1)
-    ).all():  # one way lies within the limits all along, the others never
-        way = free.argmax(1)[:, None, None, None]
-        return np.take_along_axis(ways, way, 2)[:, :, 0], np.take_along_axis(seen, way, 2)[:, :, 0]
-    known = np.concatenate([np.broadcast_to(previous_rad[:, None, None], (G, 1, C, n)), ways], 1)
-    unhidden, hidden = known, seen < UNSEEN
+    ).all():  # one solution lies within the limits all along, the others never
+        branch = free.argmax(1)[:, None, None, None]
+        return np.take_along_axis(solutions, branch, 2)[:, :, 0], np.take_along_axis(observability, branch, 2)[:, :, 0]
+    known = np.concatenate([np.broadcast_to(previous_rad[:, None, None], (G, 1, C, n)), solutions], 1)
+    unhidden, hidden = known, observability < UNSEEN
     if hidden.any():
         known = known.copy()
         frames = np.arange(1, T + 1, dtype=np.int64)[:, None, None]
@@ -45,22 +45,22 @@ def choose(ways: Array, own_cost: Array, seen: Array, previous_rad: Array) -> tu
     move = _moved(known)
     if hidden.any():
         move += _HIDDEN_SHARE * _moved(unhidden)
-    way = np.array([_cheapest(move[g].tolist(), own_cost[g].tolist()) for g in range(G)])
-    at = way[:, :, None, None]
-    return np.take_along_axis(ways, at, 2)[:, :, 0], np.take_along_axis(seen, at, 2)[:, :, 0]
+    branch = np.array([_cheapest(move[g].tolist(), unary_cost[g].tolist()) for g in range(G)])
+    at = branch[:, :, None, None]
+    return np.take_along_axis(solutions, at, 2)[:, :, 0], np.take_along_axis(observability, at, 2)[:, :, 0]
 
 
 def _moved(angles: Array) -> Array:
-    """(G, T, C to, C from) how far the joints go from each way of (G, T + 1, C, n) to each of the next frame."""
+    """(G, T, C to, C from) how far the joints go from each solution of (G, T + 1, C, n) to each of the next frame."""
     return np.abs(angles[:, 1:, :, None] - angles[:, :-1, None]).sum(-1)
 
 
-def fill_unseen(q_rad: Array, seen: Array, previous_rad: float) -> None:
+def fill_unseen(q_rad: Array, observability: Array, previous_rad: float) -> None:
     """Draw a line in place over the angles (T,) of one joint where it is hardly seen (T,).
 
     Before the first seen frame the joint comes from `previous_rad`; after the last it stays.
     """
-    hidden = seen < UNSEEN
+    hidden = observability < UNSEEN
     if hidden.any():
         frames = np.concatenate([[0], np.flatnonzero(~hidden) + 1])
         known = np.concatenate([[previous_rad], q_rad[~hidden]])
@@ -68,23 +68,23 @@ def fill_unseen(q_rad: Array, seen: Array, previous_rad: float) -> None:
 
 
 def _cheapest(move: list[list[list[float]]], own: list[list[float]]) -> list[int]:
-    """The way of each frame, for costs of going (T, C to, C from) and of being there (T, C); all start as one.
+    """The solution of each frame, for costs of going (T, C to, C from) and of being there (T, C); all start as one.
 
-    Plain numbers: with so few ways a loop is faster than arrays.
+    Plain numbers: with so few solutions a loop is faster than arrays.
     """
     total = [0.0] * len(own[0])
     came: list[list[int]] = []
     for to_each, own_t in zip(move, own, strict=True):
         best: list[int] = []
         after: list[float] = []
-        for costs, own_cost in zip(to_each, own_t, strict=True):
+        for costs, unary_cost in zip(to_each, own_t, strict=True):
             via = [a + b for a, b in zip(total, costs, strict=True)]
             least = min(via)
             best.append(via.index(least))
-            after.append(least + own_cost)
+            after.append(least + unary_cost)
         came.append(best)
         total = after
-    way = [total.index(min(total))]
+    branch = [total.index(min(total))]
     for best in reversed(came[1:]):
-        way.append(best[way[-1]])
-    return way[::-1]
+        branch.append(best[branch[-1]])
+    return branch[::-1]

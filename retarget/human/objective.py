@@ -1,6 +1,6 @@
-"""What matters of poses, for the limiter: bone directions for arms, angles for the rest.
+"""The objective of poses for the limiter: bone directions for arms, angles for the other joints.
 
-Directions are linearised around poses: the wish itself first, then where the limits led.
+Directions are linearised around poses: the wanted ones first, then the solutions inside the limits.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.human.arms import Arms
-from retarget.path.limit_path import Angles, Importance
+from retarget.path.limit_path import Angles, QuadraticCost
 
 Array = NDArray[np.float64]
 _LEAST = 1e-4
@@ -21,21 +21,21 @@ _LED_RAD = 1e-6
 """Weight of the way in which a pose was led round a contact, against one radian of direction error; least such way."""
 
 
-class ArmMatters:
-    """What matters of the arms of one kind in T frames."""
+class ArmObjective:
+    """The objective of the arms of one kind in T frames."""
 
     def __init__(self, arms: Arms, joints: NDArray[np.int64], q_rad: Array, led_rad: Array) -> None:
-        """Take the wish.
+        """Take the wanted poses.
 
         Args:
             arms: G arms.
             joints: (G, n) their joints.
-            q_rad: (T, J) the poses wished for.
-            led_rad: (T, J) how they were led round contacts.
+            q_rad: (T, J) the wanted poses.
+            led_rad: (T, J) how far they were pushed out of contacts.
         """
         self._arms, self._joints = arms, joints
-        self._wish = q_rad[:, joints].transpose(1, 0, 2)
-        self._bones = arms.bones(self._wish)
+        self._target_rad = q_rad[:, joints].transpose(1, 0, 2)
+        self._bones = arms.bones(self._target_rad)
         led = led_rad[:, joints].transpose(1, 0, 2)
         self._angles = _LEAST * np.eye(arms.n_joints)  # weight of angles, or of each frame's
         length = np.linalg.norm(led, axis=-1, keepdims=True)
@@ -43,30 +43,30 @@ class ArmMatters:
             way = np.where(length > _LED_RAD, led / np.maximum(length, _LED_RAD), 0.0)
             self._angles = self._angles + _LED_WEIGHT * way[..., None] * way[..., None, :]
 
-    def around(self, first: int, q_rad: Array | None) -> Importance:
-        """As `following.Matters`, of these arms."""
+    def around(self, first: int, q_rad: Array | None) -> QuadraticCost:
+        """The cost of these arms; see `Objective`."""
         if q_rad is None:
             frames = slice(first, None)
             hessian = self._bones.hessian()[:, frames] + self._of(frames)
-            return Importance(self._joints, hessian, (hessian @ self._wish[:, frames, :, None])[..., 0])
+            return QuadraticCost(self._joints, hessian, (hessian @ self._target_rad[:, frames, :, None])[..., 0])
         frames, at = slice(first, first + len(q_rad)), q_rad[:, self._joints].transpose(1, 0, 2)
         bones, angles = self._arms.bones(at), self._of(frames)
-        seen = bones.hessian()
+        curvature = bones.hessian()
         linear = bones.towards(self._bones.upper[:, frames], self._bones.fore[:, frames])
-        linear += ((seen @ at[..., None]) + angles @ self._wish[:, frames, :, None])[..., 0]
-        return Importance(self._joints, seen + angles, linear)
+        linear += ((curvature @ at[..., None]) + angles @ self._target_rad[:, frames, :, None])[..., 0]
+        return QuadraticCost(self._joints, curvature + angles, linear)
 
     def _of(self, frames: slice) -> Array:
         return self._angles if self._angles.ndim == 2 else self._angles[:, frames]
 
 
-class PoseMatters:
-    """What matters of all joints of a robot."""
+class PoseObjective:
+    """The objective of all joints of a robot."""
 
-    def __init__(self, arms: Sequence[ArmMatters], others: Angles | None) -> None:
+    def __init__(self, arms: Sequence[ArmObjective], others: Angles | None) -> None:
         self._arms, self._others = arms, others
 
-    def around(self, first: int, q_rad: Array | None) -> Sequence[Importance]:
-        """As `following.Matters`."""
+    def around(self, first: int, q_rad: Array | None) -> Sequence[QuadraticCost]:
+        """The costs of all groups; see `Objective`."""
         groups = [arms.around(first, q_rad) for arms in self._arms]
         return groups if self._others is None else [*groups, *self._others.around(first, q_rad)]

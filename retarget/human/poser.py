@@ -18,12 +18,12 @@ from retarget.human.arms import Arms
 from retarget.human.bones import Bones
 from retarget.human.branches import choose
 from retarget.human.human import SIDES, HumanPose
-from retarget.human.objective import ArmMatters, PoseMatters
+from retarget.human.objective import ArmObjective, PoseObjective
 from retarget.human.trunk import Trunk
 from retarget.human.weighing import bone_weights
 from retarget.path.limit_path import Angles
 from retarget.path.limits import JointLimits
-from retarget.path.lookahead_qp import Wish, least_moving
+from retarget.path.lookahead_qp import LeastSquares, least_moving
 from retarget.robot.kinematics import Kinematics
 
 Array = NDArray[np.float64]
@@ -161,13 +161,13 @@ class Poser:
                 falls[:, of] += fall[g]
         return every, falls
 
-    def matters(self, q_rad: Array, led_rad: Array) -> PoseMatters:
-        """What matters of the wish to show poses (T, J): directions for arms, angles for the rest.
+    def objective(self, q_rad: Array, led_rad: Array) -> PoseObjective:
+        """The objective of showing poses (T, J): directions for arms, angles for the other joints.
 
-        Where poses were led round a contact by `led_rad` (T, J), going less far that way matters too.
+        Where poses were pushed out of a contact by `led_rad` (T, J), going less far that way has a cost too.
         """
-        arms = [ArmMatters(a, j, q_rad, led_rad) for a, j in zip(self._arms, self._joints, strict=True)]
-        return PoseMatters(arms, Angles(q_rad, self._others) if self._others else None)
+        arms = [ArmObjective(a, j, q_rad, led_rad) for a, j in zip(self._arms, self._joints, strict=True)]
+        return PoseObjective(arms, Angles(q_rad, self._others) if self._others else None)
 
     def _arm_angles(
         self, arms: Arms, upper: Array, fore: Array, weights: Array, before: Array
@@ -177,8 +177,10 @@ class Poser:
         Arms that reach every pair of directions rest where their turning is not seen; the others move less where little is
         lost by it.
         """
-        ways, seen = arms.ways(upper, fore, weights)
-        chosen, seen = choose(ways, arms.own_cost(ways, upper, fore, seen, weights), seen, before)
+        solutions, observability = arms.ik_solutions(upper, fore, weights)
+        chosen, observability = choose(
+            solutions, arms.unary_cost(solutions, upper, fore, observability, weights), observability, before
+        )
         cut = (chosen < arms.low) | (chosen > arms.high)
         closed = arms.within_limits(chosen, upper, fore) if cut.any() else chosen
         if not arms.reaches_all:
@@ -188,7 +190,7 @@ class Poser:
             return x, cut
         bones = arms.bones(closed)
         shown = bones.upper, bones.fore
-        x = arms.rested(closed, seen, *shown, before)
+        x = arms.rested(closed, observability, *shown, before)
         if x is not closed:
             bones = arms.bones(x)
         lost = np.zeros(0)
@@ -213,4 +215,4 @@ class Poser:
         """(G, T, n) one Gauss-Newton step from angles `x` with `bones` towards directions `wanted` and little movement."""
         hessian = bones.hessian(weights) + arms.eye * _NEARBY
         linear = (hessian @ x[..., None])[..., 0] + bones.towards(*wanted, weights)
-        return np.minimum(np.maximum(least_moving(Wish(hessian, linear, pull), before), arms.low), arms.high)
+        return np.minimum(np.maximum(least_moving(LeastSquares(hessian, linear, pull), before), arms.low), arms.high)

@@ -46,7 +46,7 @@ class Avoidance:
         self._rest_rad = robot.rest_rad
         self._mobility = np.array([j.role.startswith(("left_", "right_")) for j in robot.joints], np.float64)
 
-    def lead_round(self, wanted_rad: Array, before_rad: Array) -> tuple[Array, int]:
+    def push_out(self, wanted_rad: Array, before_rad: Array) -> tuple[Array, int]:
         """Poses (T, J) clear of the robot, each near the wanted one; how many stretches of them were changed."""
         clear = wanted_rad.copy()
         touching = self._contact.frames(clear, 1.0)

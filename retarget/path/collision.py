@@ -44,17 +44,17 @@ class SelfContact(PairDistances):
         """(T,) smallest distance of each frame of (T, J)."""
         return self.distances_m(q_rad).min(1, initial=np.inf)
 
-    def rooms_m(self, q_rad: Array, share: float = KEPT) -> Array:
+    def slacks_m(self, q_rad: Array, share: float = KEPT) -> Array:
         """(T, P) what each pair has beyond a share of its margin, what paths keep of it, in each pose of (T, J)."""
         return self.distances_m(q_rad) - share * self._margin_m
 
-    def room_m(self, q_rad: Array, share: float = KEPT) -> Array:
+    def slack_m(self, q_rad: Array, share: float = KEPT) -> Array:
         """(P,) the same in one pose (J,)."""
-        return self.rooms_m(q_rad[None], share)[0]
+        return self.slacks_m(q_rad[None], share)[0]
 
-    def within_room(self, room_m: Array, moved_rad: Array) -> bool:
-        """Whether every pair keeps that share wherever the joints are within (J,) `moved_rad` of where it has `room_m` (P,)."""
-        return bool((room_m > self._sweep_m @ moved_rad).all())
+    def within_slack(self, slack_m: Array, moved_rad: Array) -> bool:
+        """Whether every pair keeps that share wherever the joints are within (J,) `moved_rad` of where it has `slack_m` (P,)."""
+        return bool((slack_m > self._sweep_m @ moved_rad).all())
 
     def pairs(self, q_rad: Array) -> list[tuple[str, str]]:
         """Names of the bodies that touch in one pose (J,)."""
@@ -161,17 +161,17 @@ class SelfContact(PairDistances):
         hit[segment[near.any(1)]] = True
         return hit
 
-    def clear_along(self, way_rad: Array, share: float = KEPT, first_room_m: Array | None = None) -> bool:
+    def clear_along(self, way_rad: Array, share: float = KEPT, first_slack_m: Array | None = None) -> bool:
         """Whether straight lines from pose to pose of (N, J) keep a share of every margin at every instant.
 
-        On a stretch whose ends have the rooms a and b and on which a pair moves by m, it has at least (a + b - m) / 2;
-        stretches on which that is not enough are halved. `first_room_m` (P,) is the room at the first pose where it is known.
+        On a segment whose ends have the slack a and b and on which a pair moves by m, it has at least (a + b - m) / 2;
+        segments on which that is not enough are halved. `first_slack_m` (P,) is the slack at the first pose where it is known.
         """
         gone = np.zeros_like(way_rad)  # (N, J) what each joint has turned so far
         np.cumsum(np.abs(np.diff(way_rad, axis=0)), 0, out=gone[1:])
         kept_m, of, sweep_m = share * self._margin_m, self._every, self._sweep_m
-        first = (self.room_m(way_rad[0], share) if first_room_m is None else first_room_m)[None]
-        last = self.rooms_m(way_rad[-1:], share)
+        first = (self.slack_m(way_rad[0], share) if first_slack_m is None else first_slack_m)[None]
+        last = self.slacks_m(way_rad[-1:], share)
         if (first <= 0).any() or (last <= 0).any():
             return False
         u = np.array([[0.0, len(way_rad) - 1.0]])

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from retarget.path.limit_path import Matters, limit_path
+from retarget.path.limit_path import Objective, limit_path
 from retarget.path.limits import JointLimits, brake, limit_step, stopping_velocity_rad_s
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ def braking(control: Array, period: float, limits: JointLimits) -> Array:
 
 def joined(
     wanted: Array, before: Array, position: Array, period: float, limits: JointLimits,
-    matters_from: Callable[[int], Matters],
+    objective_from: Callable[[int], Objective],
 ) -> Array:  # fmt: skip
     """(T + 1, J) control points from the second, `position`, on, near `wanted` (T, J).
 
@@ -61,7 +61,7 @@ def joined(
         short = np.abs(velocity) - limits.acceleration_rad_s2 * period > room
         short |= toward * (points[-1] - end) > 0
         if not short.any():
-            rest = limit_path(wanted[k:], points[-1], velocity, limits, period, partial(matters_from, k))
+            rest = limit_path(wanted[k:], points[-1], velocity, limits, period, partial(objective_from, k))
             return np.concatenate([points[1:], rest])
         gap = np.maximum(toward * (end - (points[-1] + points[-2]) / 2), 1e-12)
         braking_rad_s2 = np.minimum(velocity**2 / (2 * gap), limits.acceleration_rad_s2)

@@ -1,8 +1,8 @@
-"""Paths near a wish that keep every limit, with all that is known of the future in view.
+"""Paths near a reference that keep every limit, with all that is known of the future in view.
 
-What already keeps the limits is left alone, bit for bit. For the rest `lookahead` finds the best path inside them, with
-what matters linearised at the wish, then where that led until it settles (Gauss-Newton); where a start breaks a limit, so that
-there is none, exact causal steps (`limits.limit_step`) lead back first.
+A reference that keeps the limits is left alone, bit for bit. For the rest `lookahead_qp` finds the best path inside them, with
+the objective linearised at the reference, then at each solution until it settles (Gauss-Newton); where a start breaks a limit,
+so that there is no such path, exact causal steps (`limits.limit_step`) lead back first.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.path.limits import JointLimits, keeps, limit_step
-from retarget.path.lookahead_qp import Bounds, Wish, frames_between, nearer_path
+from retarget.path.lookahead_qp import Bounds, LeastSquares, frames_between, nearer_path
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -25,14 +25,14 @@ _TAIL_WEIGHT = 1e-3
 """Weight of the frames after the last known one, in which the joints come to rest."""
 _PULL = 1e-3
 _LINEARISED = 4
-"""Times that what matters is linearised at most: where the wish jumps, the second time is not the last that gains."""
+"""Linearisations at most: where the reference jumps, the second one is not the last that gains."""
 _SETTLED_RAD = 0.1
-"""It is linearised again as long as a control point moved further."""
+"""Radians: the objective is linearised again as long as a control point moved further."""
 
 
 @dataclass(frozen=True)
-class Importance:
-    """What matters of a group of joints: angles q in a frame cost q' H q / 2 - b' q.
+class QuadraticCost:
+    """The cost of a group of joints: angles q in a frame cost q' H q / 2 - b' q.
 
     Attributes:
         joints: (G, w) indices of the joints of G groups.
@@ -45,26 +45,26 @@ class Importance:
     linear: Array
 
 
-class Matters(Protocol):
-    """What matters of T frames, for groups that hold every joint once."""
+class Objective(Protocol):
+    """The objective of T frames, for groups that hold every joint once."""
 
-    def around(self, first: int, q_rad: Array | None) -> Sequence[Importance]:
-        """Linearised around frames (n, J) from frame `first` on; None: around all that are wished for from there."""
+    def around(self, first: int, q_rad: Array | None) -> Sequence[QuadraticCost]:
+        """The costs linearised around frames (n, J) from frame `first` on; None: around the reference from there on."""
         ...
 
 
 class Angles:
-    """Joints of which the angles (T, J) matter, all alike."""
+    """The objective of joints whose angles (T, J) are to be met, all alike."""
 
     def __init__(self, q_rad: Array, joints: Sequence[int]) -> None:
-        """Of (T, J) angles those of some joints."""
+        """Take the angles (T, J) of some joints."""
         self._joints = np.array(joints, np.int64)[:, None]
-        self._wish: Array = q_rad[:, joints].T[..., None]  # (G, T, 1)
+        self._target_rad: Array = q_rad[:, joints].T[..., None]  # (G, T, 1)
 
-    def around(self, first: int, q_rad: Array | None) -> Sequence[Importance]:
+    def around(self, first: int, q_rad: Array | None) -> Sequence[QuadraticCost]:
         """The same everywhere."""
-        wish = self._wish[:, first : None if q_rad is None else first + len(q_rad)]
-        return (Importance(self._joints, np.ones((*wish.shape, 1)), wish),)
+        target = self._target_rad[:, first : None if q_rad is None else first + len(q_rad)]
+        return (QuadraticCost(self._joints, np.ones((*target.shape, 1)), target),)
 
 
 def limit_path(
@@ -73,19 +73,23 @@ def limit_path(
     velocity_rad_s: Array,
     limits: JointLimits,
     period_s: float,
-    ask: Callable[[], Matters] | None = None,
+    make_objective: Callable[[], Objective] | None = None,
 ) -> Array:
     """(T, J) path near `reference_rad` (T, J) that keeps every limit, from the given position and velocity.
 
-    Both are control points of splines. Only when a limit is passed `ask` is asked what matters in the frames half way
-    between them; None: every joint alike.
+    Both are control points of splines. `make_objective` gives the objective of the frames half way between them and is called
+    only when a limit is passed; None weighs every joint alike.
     """
     T, J = reference_rad.shape
     path = np.minimum(np.maximum(reference_rad, limits.position_min_rad), limits.position_max_rad)
     kept = _kept(path, position_rad, velocity_rad_s, limits, period_s)
     if kept.all():
         return path
-    matters = ask() if ask else Angles(frames_between(reference_rad[None], position_rad[None])[0], range(J))
+    objective = (
+        make_objective()
+        if make_objective
+        else Angles(frames_between(reference_rad[None], position_rad[None])[0], range(J))
+    )
     position, velocity = position_rad, velocity_rad_s
     for k in range(0, T, _WINDOW_FRAMES):
         n = min(_WINDOW_FRAMES, T - k)
@@ -94,7 +98,7 @@ def limit_path(
             kept = _kept(part, position, velocity, limits, period_s)
         if not kept.all():
             near = reference_rad[k : k + n + _AHEAD_FRAMES]
-            _solve(matters, k, near, kept, part, position, velocity, limits, period_s)
+            _solve(objective, k, near, kept, part, position, velocity, limits, period_s)
             np.clip(part[:n], limits.position_min_rad, limits.position_max_rad, out=part[:n])
             part[:n] = _follow(part[:n], position, velocity, limits, period_s)
         before = path[k + n - 2] if n > 1 else position
@@ -105,7 +109,7 @@ def limit_path(
 
 
 def _solve(
-    matters: Matters,
+    objective: Objective,
     first: int,
     near: Array,
     kept: NDArray[np.bool_],
@@ -120,7 +124,7 @@ def _solve(
     for linearised in range(_LINEARISED):
         led = path.copy()
         at = None if not linearised else frames_between(path[None], position[None])[0]
-        for group in matters.around(first, at):
+        for group in objective.around(first, at):
             some = np.flatnonzero(~kept[group.joints].all(1))
             if not len(some):
                 continue
@@ -137,8 +141,8 @@ def _solve(
             hessian[:, -tail:] *= _TAIL_WEIGHT
             linear[:, -tail:] *= _TAIL_WEIGHT
             step = (velocity * period_s)[joints]
-            wish = Wish(hessian, linear, _PULL)
-            if nearer_path(wish, points, target, position[joints], step, bounds, inside[joints]):
+            problem = LeastSquares(hessian, linear, _PULL)
+            if nearer_path(problem, points, target, position[joints], step, bounds, inside[joints]):
                 path[:, joints.ravel()] = points[:, : len(path)].transpose(1, 0, 2).reshape(len(path), -1)
                 inside[joints] = True
         if np.abs(path - led).max() < _SETTLED_RAD:

@@ -1,8 +1,8 @@
-"""Following a wish within position, velocity and acceleration bounds, knowing all of it beforehand.
+"""Least squares within position, velocity and acceleration bounds, with all frames known beforehand.
 
 A quadratic program: the weighted least-squares path under box bounds on positions, first and second differences of a
-spline's control points, wished for in the frames half way between them. Only the weights couple the joints of an arm, the
-bounds do not, so the program is solved joint by joint, each knowing where the others went (block coordinate descent, which
+spline's control points, whose costs are those of the frames half way between them. Only the weights couple the joints of an
+arm, the bounds do not, so the program is solved joint by joint, each knowing where the others went (block coordinate descent, which
 ends at the optimum: Tseng 2001, theorem 4.1). One joint's program is small and dense, for which a dual active-set method
 (DAQP: Arnström, Bemporad, Axehill 2022) was the fastest of those measured, see docs/retargeting.md.
 """
@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 _daqp: Any = importlib.import_module("daqp")  # neither has types
 _lapack: Any = importlib.import_module("scipy.linalg.lapack")
 Array = NDArray[np.float64]
-_SAME_WISH_RAD = 0.01
-"""A joint that wishes to be nowhere further away than this is not solved anew."""
+_SAME_TARGET_RAD = 0.01
+"""Radians: a joint whose optimum is nowhere further away is not solved anew."""
 _OPTIMAL = 1
 _TIGHTENED = 1e-4
 """Share of a bound kept free: the solver keeps bounds within 1e-6."""
@@ -42,8 +42,8 @@ class Bounds:
 
 
 @dataclass(frozen=True)
-class Wish:
-    """What is wanted of G groups of w joints in T frames: least x' H x / 2 - b' x, and few movements.
+class LeastSquares:
+    """The problem of G groups of w joints in T frames: least x' H x / 2 - b' x, and little movement.
 
     Attributes:
         hessian: (G, T, w, w).
@@ -56,20 +56,20 @@ class Wish:
     pull: float
 
 
-def least_moving(wish: Wish, start: Array) -> Array:
-    """(G, T, w) path of a wish without bounds from `start` (G, w): where the wish says nothing, joints rest.
+def least_moving(objective: LeastSquares, start: Array) -> Array:
+    """(G, T, w) the optimum without bounds from `start` (G, w): joints without a cost rest.
 
     The matrix couples the joints of a group within a frame and each joint with itself a frame later: it is banded.
     """
-    G, T, w = wish.linear.shape
+    G, T, w = objective.linear.shape
     band = np.zeros((G, T, w, w + 1))
     for j in range(w):
-        band[:, :, j, : w - j] = wish.hessian[:, :, j:, j]
-    band[..., 0] += 2 * wish.pull
-    band[:, -1, :, 0] -= wish.pull
-    band[:, :-1, :, w] = -wish.pull
-    right = wish.linear.copy()
-    right[:, 0] += wish.pull * start
+        band[:, :, j, : w - j] = objective.hessian[:, :, j:, j]
+    band[..., 0] += 2 * objective.pull
+    band[:, -1, :, 0] -= objective.pull
+    band[:, :-1, :, w] = -objective.pull
+    right = objective.linear.copy()
+    right[:, 0] += objective.pull * start
     # LAPACK reads the transpose of a lower band, row by row.
     _, x, info = _lapack.dpbsv(band.reshape(-1, w + 1).T, right.reshape(-1, 1), lower=1, overwrite_ab=1, overwrite_b=1)
     if info:
@@ -78,30 +78,36 @@ def least_moving(wish: Wish, start: Array) -> Array:
 
 
 def nearer_path(
-    wish: Wish, path: Array, near: Array, start: Array, start_step: Array, bounds: Bounds, inside: NDArray[np.bool_]
+    objective: LeastSquares,
+    path: Array,
+    near: Array,
+    start: Array,
+    start_step: Array,
+    bounds: Bounds,
+    inside: NDArray[np.bool_],
 ) -> bool:
-    """Move a path within the bounds to the best there is of a wish, one joint after another; whether it could.
+    """Move a path within the bounds to the optimum, one joint after another; whether the solver succeeded.
 
-    The path is a spline's control points, the wish is for the frames half way between them. There a zigzag of control points
+    The path is a spline's control points, the costs are those of the frames half way between them. There a zigzag of control points
     does not show: half of each step's difference from `near`'s counts like an error of the joint's own in the frame.
 
     Args:
-        wish: what is wanted in the frames.
+        objective: costs of the frames.
         path: (G, T, w) control points to start from, changed in place; at the end they come to rest.
-        near: (G, T, w) control points that show about what is wanted.
+        near: (G, T, w) control points near the optimum without bounds.
         start: (G, w) the control point before the first.
         start_step: (G, w) the step that led to it.
         bounds: bounds, the same for all control points.
-        inside: (G, w) joints whose path keeps the bounds already; they stay unless they wish for something else.
+        inside: (G, w) joints whose path keeps the bounds already; they stay unless their optimum is elsewhere.
     """
     G, T, w = path.shape
     rows, pull = _differences(T)
     upper, lower = _sides(bounds, start, start_step, T)
     inactive = np.zeros(3 * T, np.int32)
-    own = np.ascontiguousarray(np.einsum("gtjj->gjt", wish.hessian))  # (G, w, T)
-    enough = _SAME_WISH_RAD * (own + wish.pull)
+    own = np.ascontiguousarray(np.einsum("gtjj->gjt", objective.hessian))  # (G, w, T)
+    enough = _SAME_TARGET_RAD * (own + objective.pull)
     # With steps counted like frames, squares of sums and of differences, no two control points are coupled.
-    matrix = np.repeat((wish.pull * pull)[None], G * w, 0).reshape(G, w, T, T)
+    matrix = np.repeat((objective.pull * pull)[None], G * w, 0).reshape(G, w, T, T)
     diagonal = matrix.reshape(G, w, T * T)[..., :: T + 1]
     diagonal += own / 2
     diagonal[..., :-1] += own[..., 1:] / 2
@@ -111,14 +117,14 @@ def nearer_path(
     zigzag *= own / 4
     known = -zigzag
     known[..., :-1] += zigzag[..., 1:]
-    known[..., 0] -= wish.pull * start
+    known[..., 0] -= objective.pull * start
     frames = frames_between(path, start)
     for j in range(w):
-        slope = np.vecdot(wish.hessian[:, :, j], frames) - wish.linear[:, :, j]  # (G, T)
+        slope = np.vecdot(objective.hessian[:, :, j], frames) - objective.linear[:, :, j]  # (G, T)
         moves = ~inside[:, j] | (np.abs(slope) > enough[:, j]).any(1)
         if not moves.any():
             continue
-        # What the others leave to wish for in the frames, and for the control points, of which each is half of two frames.
+        # The slope that the other joints leave in the frames, and for the control points, of which each is half of two frames.
         slope -= own[:, j] * frames[:, :, j]
         slope /= 2
         linear = known[:, j] + slope

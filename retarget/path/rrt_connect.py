@@ -35,7 +35,7 @@ _NEARER_M = 1e-6
 _DAMPING = 1e-4
 
 
-class WaySearch:
+class RrtConnect:
     """Looks for one way. No clock; the same arguments, the same way.
 
     Args:
@@ -83,7 +83,7 @@ class WaySearch:
 
     def _search(self) -> Pieces:
         for self._share in SHARES:
-            if (self._contact.room_m(self._goal, self._share) <= 0).any():
+            if (self._contact.slack_m(self._goal, self._share) <= 0).any():
                 continue
             out = yield from self._way_out()
             if out is None:
@@ -173,7 +173,7 @@ class WaySearch:
         low, high = self._limits.position_min_rad, self._limits.position_max_rad
         q, way = self._start, [self._start]
         for _ in range(_OUT_STEPS):
-            room = self._contact.room_m(q, self._share)
+            room = self._contact.slack_m(q, self._share)
             if (room > 0).all():
                 return self._straightened(way)
             yield
@@ -210,7 +210,7 @@ class WaySearch:
         """Whether on the line from `a` to `b` pairs that are too near only part, at least one of them, and none comes too near."""
         n = max(1, int(np.ceil(np.abs(b - a).max() / _OUT_RAD)))
         looks = np.linspace(0.0, 1.0, 4 * n + 1)[:, None]
-        room = np.minimum(self._contact.rooms_m(a + looks * (b - a), self._share), 0.0)
+        room = np.minimum(self._contact.slacks_m(a + looks * (b - a), self._share), 0.0)
         parted = room[-1].sum() > room[0].sum() + _NEARER_M
         return bool(parted and (np.diff(room, axis=0) >= -_NEARER_M).all())
 

@@ -51,7 +51,7 @@ class SafetyFilter:
         self.held = self.clipped = False
         self._refused_rad: Array | None = None
         self._known_rad = self.position_rad
-        self._room_m = self._contact.room_m(self.position_rad, self._share)
+        self._slack_m = self._contact.slack_m(self.position_rad, self._share)
 
     @property
     def at_rest(self) -> bool:
@@ -94,7 +94,7 @@ class SafetyFilter:
             goal = limit_step(target, position, velocity, self.limits, self.period_s)
             position, velocity = goal, (goal - position) / self.period_s
             path.append(goal)
-        here = self._contact.room_m(self.position_rad, self._share)
+        here = self._contact.slack_m(self.position_rad, self._share)
         free = self._clear([*path, *self._braking(position, velocity)], here)
         self._refused_rad = None if free or not self.at_rest else target.copy()
         return free
@@ -104,15 +104,15 @@ class SafetyFilter:
         way = [goal, *self._braking(goal, (goal - self.position_rad) / self.period_s)]
         if len(way) == 1 and (goal == self.position_rad).all():
             return True
-        if self._within_room(way):
+        if self._within_slack(way):
             return True
-        self._known_rad, self._room_m = self.position_rad, self._contact.room_m(self.position_rad, self._share)
-        return self._within_room(way) or self._clear(way, self._room_m)
+        self._known_rad, self._slack_m = self.position_rad, self._contact.slack_m(self.position_rad, self._share)
+        return self._within_slack(way) or self._clear(way, self._slack_m)
 
-    def _within_room(self, way: list[Array]) -> bool:
-        """Whether nothing can touch because all of it is near a pose that has room enough on every side."""
+    def _within_slack(self, way: list[Array]) -> bool:
+        """Whether nothing can touch because all poses are near one that has slack enough on every side."""
         far = np.abs(np.array([self.position_rad, *way]) - self._known_rad).max(0)
-        return self._contact.within_room(self._room_m, far)
+        return self._contact.within_slack(self._slack_m, far)
 
     def _braking(self, position: Array, velocity: Array) -> list[Array]:
         """Positions while every joint stops as hard as it can; what `brake` gives step by step, at once where it is plain."""
@@ -130,10 +130,10 @@ class SafetyFilter:
         return way
 
     def _clear(self, way: list[Array], here: Array) -> bool:
-        """Whether a way from here, where each pair has (P,) room, stays off the robot, between its poses too."""
+        """Whether a way from here, where each pair has (P,) slack, stays off the robot, between its poses too."""
         points = np.array([self.position_rad, *way])
         if (here > 0).all():
             return self._contact.clear_along(points, self._share, here)
         # A robot that stands within the margin (it was led there by hand, or rests so) may leave it, not go deeper.
         path = np.concatenate([points[1:], (points[1:] + points[:-1]) / 2])
-        return bool((self._contact.rooms_m(path, self._share) >= np.minimum(here, 0.0) - _NEARER_M).all())
+        return bool((self._contact.slacks_m(path, self._share) >= np.minimum(here, 0.0) - _NEARER_M).all())

@@ -1,4 +1,4 @@
-"""What the faults of the wire do to one status packet: pieces of bytes, each with its delay."""
+"""Faults of the wire applied to one status packet: pieces of bytes, each with its delay."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Piece:
     alone: bool = False
 
 
-def spoil(
+def apply_packet_faults(
     faults: FaultSchedule, servo_id: int, encode: Callable[[int], bytes], t_s: float, byte_s: float
 ) -> list[Piece]:
     """The answer of a servo as it is sent at `t_s`; nothing when it is lost.

@@ -77,13 +77,13 @@ def test_a_shoulder_of_three_axes_reaches_every_pair_in_all_its_ways(family, tmp
     arms, rng = both_arms(made_robot(tmp_path, family)), np.random.default_rng(2)
     pose = rng.uniform(-2.9, 2.9, (2, 300, 4))
     upper, fore = arms.directions(pose)
-    ways, _ = arms.ways(upper, fore)
-    found_upper, found_fore = (d.reshape(2, 300, 4, 3) for d in arms.directions(ways.reshape(2, -1, 4)))
+    solutions, _ = arms.ik_solutions(upper, fore)
+    found_upper, found_fore = (d.reshape(2, 300, 4, 3) for d in arms.directions(solutions.reshape(2, -1, 4)))
     missed = np.abs(found_upper - upper[:, :, None]).max(-1) + np.abs(found_fore - fore[:, :, None]).max(-1)
     assert missed.min(-1).max() < 1e-4, "at least one way reaches"
     if "slanted" not in family:
         assert np.percentile(missed, 99) < 1e-4, "with axes at right angles, all four do"
-    turned = np.abs((ways - pose[:, :, None] + np.pi) % (2 * np.pi) - np.pi).max(-1).min(-1)
+    turned = np.abs((solutions - pose[:, :, None] + np.pi) % (2 * np.pi) - np.pi).max(-1).min(-1)
     assert np.percentile(turned, 98) < 1e-5, "the pose they came from is among the ways"
 
 
@@ -97,9 +97,9 @@ def test_the_straight_and_the_raised_arm_are_reached_too(family, tmp_path):
         np.broadcast_to(-arms.axes[:, :1], (2, 50, 3)),
     ):
         for other in (direction, around):
-            ways, seen = arms.ways(direction, other)
-            assert np.isfinite(ways).all() and (seen >= 0).all() and (seen <= 1).all()
-            found = arms.directions(ways.reshape(2, -1, 4))
+            solutions, observability = arms.ik_solutions(direction, other)
+            assert np.isfinite(solutions).all() and (observability >= 0).all() and (observability <= 1).all()
+            found = arms.directions(solutions.reshape(2, -1, 4))
             missed = [
                 np.abs(f.reshape(2, 50, 4, 3) - d[:, :, None]).max(-1)
                 for f, d in zip(found, (direction, other), strict=True)
@@ -113,8 +113,8 @@ def test_an_arm_that_cannot_reach_comes_as_near_as_any_pose_of_a_fine_grid(famil
     arms = both_arms(made_robot(tmp_path, family, range_deg=(low, high)))
     rng, n = np.random.default_rng(4), arms.n_joints
     upper, fore = unit(rng.normal(size=(2, 2, 120, 3)))
-    ways, _ = arms.ways(upper, fore)
-    found_upper, found_fore = (d.reshape(2, 120, -1, 3) for d in arms.directions(ways.reshape(2, -1, n)))
+    solutions, _ = arms.ik_solutions(upper, fore)
+    found_upper, found_fore = (d.reshape(2, 120, -1, 3) for d in arms.directions(solutions.reshape(2, -1, n)))
     cost = ((found_upper - upper[:, :, None]) ** 2).sum(-1) + ((found_fore - fore[:, :, None]) ** 2).sum(-1)
     steps = np.deg2rad(np.linspace(low, high, 42))
     grid = np.broadcast_to(np.stack(np.meshgrid(*[steps] * n), -1).reshape(-1, n), (2, len(steps) ** n, n))
@@ -123,7 +123,7 @@ def test_an_arm_that_cannot_reach_comes_as_near_as_any_pose_of_a_fine_grid(famil
     best = 4 - 2 * (aim @ poses.swapaxes(-1, -2)).max(-1)
     worse = cost.min(-1) - best
     assert np.percentile(worse, 97) < 0.01
-    assert (ways >= np.deg2rad(low) - 1e-12).all() and (ways <= np.deg2rad(high) + 1e-12).all()
+    assert (solutions >= np.deg2rad(low) - 1e-12).all() and (solutions <= np.deg2rad(high) + 1e-12).all()
 
 
 @pytest.mark.parametrize("family", list(FAMILIES))
@@ -142,7 +142,7 @@ def test_a_motion_is_retargeted_on_every_family(family, tmp_path):
 def test_a_joint_cut_off_by_its_limit_is_made_up_for_by_the_others(tmp_path):
     arms = both_arms(made_robot(tmp_path, "4 hanging", range_deg=(-60, 60)))
     upper, fore = unit(np.random.default_rng(5).normal(size=(2, 2, 200, 3)))
-    way = arms.ways(upper, fore)[0][:, :, 0]
+    way = arms.ik_solutions(upper, fore)[0][:, :, 0]
     clipped = np.clip(way, arms.low, arms.high)
     better = arms.within_limits(way, upper, fore)
     assert (better >= arms.low).all() and (better <= arms.high).all()
@@ -183,28 +183,28 @@ def test_an_arm_led_past_its_first_axis_comes_out_on_the_near_side(tmp_path):
 def test_the_row_of_ways_is_the_cheapest_of_all_rows(seed):
     rng = np.random.default_rng(seed)
     G, T, C, n = 1, 4, 3, 2
-    ways, own = rng.normal(size=(G, T, C, n)), rng.uniform(0, 1, (G, T, C))
+    solutions, own = rng.normal(size=(G, T, C, n)), rng.uniform(0, 1, (G, T, C))
     before = rng.normal(size=(G, n))
-    q, _ = choose(ways, own, np.ones(ways.shape), before)
+    q, _ = choose(solutions, own, np.ones(solutions.shape), before)
 
     def cost(row):
-        picked = np.concatenate([before, ways[0, np.arange(T), row]])
+        picked = np.concatenate([before, solutions[0, np.arange(T), row]])
         return np.abs(np.diff(picked, axis=0)).sum() + own[0, np.arange(T), row].sum()
 
     best = min((np.array(r) for r in np.ndindex(*[C] * T)), key=cost)
-    np.testing.assert_allclose(q[0], ways[0, np.arange(T), best])
+    np.testing.assert_allclose(q[0], solutions[0, np.arange(T), best])
 
 
 def test_of_two_ways_that_cost_nothing_the_near_one_is_taken():
     """Both ways of an arm with wide limits lie within them: it once swung half round to reach the first."""
-    ways = np.broadcast_to(np.array([[3.0, 3.0], [0.1, 0.1]]), (1, 5, 2, 2))
-    q, _ = choose(ways, np.zeros((1, 5, 2)), np.ones(ways.shape), np.zeros((1, 2)))
+    solutions = np.broadcast_to(np.array([[3.0, 3.0], [0.1, 0.1]]), (1, 5, 2, 2))
+    q, _ = choose(solutions, np.zeros((1, 5, 2)), np.ones(solutions.shape), np.zeros((1, 2)))
     np.testing.assert_allclose(q, 0.1)
 
 
 def test_an_unseen_joint_is_filled_in_from_the_frames_around():
-    q, seen = np.array([0.0, 9.0, 9.0, 3.0, -7.0]), np.array([1.0, 0.1, 0.1, 1.0, 0.0])
-    fill_unseen(q, seen, 5.0)
+    q, observability = np.array([0.0, 9.0, 9.0, 3.0, -7.0]), np.array([1.0, 0.1, 0.1, 1.0, 0.0])
+    fill_unseen(q, observability, 5.0)
     np.testing.assert_allclose(q, [0, 1, 2, 3, 3])
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from retarget.path import rrt_connect
 from retarget.path.collision import KEPT, SelfContact
 from retarget.path.limits import JointLimits
-from retarget.path.rrt_connect import WaySearch
+from retarget.path.rrt_connect import RrtConnect
 from retarget.robot.loading import list_robots, load_robot
 
 ROBOTS = {name: load_robot(name) for name in ("reference", "toddlerbot", "op2")}
@@ -37,8 +37,8 @@ def dense(way: list[np.ndarray], step_rad: float = 0.01) -> np.ndarray:
     return np.concatenate(parts)
 
 
-def searched(name: str, start: np.ndarray, goal: np.ndarray) -> WaySearch:
-    search = WaySearch(ROBOTS[name], CONTACTS[name], start, goal)
+def searched(name: str, start: np.ndarray, goal: np.ndarray) -> RrtConnect:
+    search = RrtConnect(ROBOTS[name], CONTACTS[name], start, goal)
     while not search.work():
         pass
     return search
@@ -78,11 +78,11 @@ def test_from_clear_poses_and_from_slight_contacts_a_way_is_found(name, n_poses)
 def test_rest_and_park_pose_of_every_robot_are_joined_by_a_way_that_keeps_the_margin(name):
     robot = load_robot(name)
     contact = SelfContact(robot)
-    search = WaySearch(robot, contact, robot.rest_rad, robot.park_rad)
+    search = RrtConnect(robot, contact, robot.rest_rad, robot.park_rad)
     while not search.work():
         pass
     assert search.way is not None
-    assert (contact.rooms_m(dense(search.way)) > 0).all()
+    assert (contact.slacks_m(dense(search.way)) > 0).all()
 
 
 def blocked(name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -90,7 +90,7 @@ def blocked(name: str) -> tuple[np.ndarray, np.ndarray]:
     for seed in range(1000):
         start = drawn(name, seed)
         line = dense([start, ROBOTS[name].park_rad])
-        if (CONTACTS[name].room_m(start) > 0).all() and (BODIES[name].distances_m(line) < -0.005).any():
+        if (CONTACTS[name].slack_m(start) > 0).all() and (BODIES[name].distances_m(line) < -0.005).any():
             return start, ROBOTS[name].park_rad
     raise AssertionError("no such pose")
 
@@ -128,7 +128,7 @@ def test_a_line_that_is_called_clear_keeps_its_share_everywhere(name, seed, n, r
     at = drawn(name, seed)
     way = at + np.cumsum(draw.uniform(-reach, reach, (n, len(at))), 0)
     contact = CONTACTS[name]
-    least = contact.rooms_m(dense(list(way), 0.005)).min()
+    least = contact.slacks_m(dense(list(way), 0.005)).min()
     clear = contact.clear_along(way)
     assert not clear or least > 0
     if least > 0.004:

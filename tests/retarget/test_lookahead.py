@@ -8,7 +8,7 @@ from scipy.optimize import LinearConstraint, minimize
 
 from retarget.path.limit_path import limit_path
 from retarget.path.limits import JointLimits
-from retarget.path.lookahead_qp import Bounds, Wish, frames_between, nearer_path
+from retarget.path.lookahead_qp import Bounds, LeastSquares, frames_between, nearer_path
 from retarget.robot.loading import load_robot
 
 T, W = 10, 3
@@ -16,17 +16,17 @@ BOUNDS = Bounds(*(np.full((1, W), x) for x in (-1.0, 1.2, 0.24, 0.1)))
 START, STEP = np.array([[0.1, -0.2, 0.3]]), np.array([[0.02, 0.05, -0.04]])
 
 
-def program(seed: int) -> tuple[Wish, np.ndarray]:
+def program(seed: int) -> tuple[LeastSquares, np.ndarray]:
     """A wish that runs into every bound, all joints coupled, and control points near it."""
     rng = np.random.default_rng(seed)
     slope = rng.normal(size=(1, T, W, 4))
     near = np.clip(np.cumsum(rng.normal(scale=0.5, size=(1, T, W)), 1), -1.0, 1.2)
     hessian = slope @ np.swapaxes(slope, -1, -2) + 0.05 * np.eye(W)
     shown = frames_between(near, START)
-    return Wish(hessian, (hessian @ shown[..., None])[..., 0], 1e-3), near
+    return LeastSquares(hessian, (hessian @ shown[..., None])[..., 0], 1e-3), near
 
 
-def cost(wish: Wish, near: np.ndarray, path: np.ndarray) -> float:
+def cost(wish: LeastSquares, near: np.ndarray, path: np.ndarray) -> float:
     """What the module says is least, written out."""
     shown = frames_between(path, START)
     wished = 0.5 * (shown[..., None, :] @ wish.hessian @ shown[..., None]).sum() - (wish.linear * shown).sum()
@@ -71,7 +71,7 @@ def test_a_joint_that_keeps_its_bounds_is_left_where_it_is() -> None:
     hessian = wish.hessian * np.eye(W)
     shown = frames_between(near, START)
     path = near.copy()
-    apart = Wish(hessian, (hessian @ shown[..., None])[..., 0], 1e-3)
+    apart = LeastSquares(hessian, (hessian @ shown[..., None])[..., 0], 1e-3)
     assert nearer_path(apart, path, near, START, STEP, BOUNDS, np.array([[True, False, True]]))
     np.testing.assert_array_equal(path[..., [0, 2]], near[..., [0, 2]])
     assert (path[..., 1] != near[..., 1]).any()

@@ -24,7 +24,7 @@ def poses_within(robot: RobotModel, contact: SelfContact) -> NDArray[np.float64]
     rng, limits = np.random.default_rng(3), JointLimits.of(robot)
     anywhere = rng.uniform(limits.position_min_rad, limits.position_max_rad, (4000, robot.n_joints))
     q_rad = robot.rest_rad + rng.random((4000, 1)) * (anywhere - robot.rest_rad)
-    room, gate_room = contact.rooms_m(q_rad, 1.0).min(1), contact.rooms_m(q_rad, 1.05 * GATE_SHARE).min(1)
+    room, gate_room = contact.slacks_m(q_rad, 1.0).min(1), contact.slacks_m(q_rad, 1.05 * GATE_SHARE).min(1)
     return q_rad[(room < 0) & (gate_room > 0)][:N_POSES]
 
 
@@ -39,8 +39,8 @@ def test_a_motion_leaves_a_pose_within_the_margin(name: str) -> None:
     for pose in poses:
         path = retargeter.retarget(motion, JointState(pose, np.zeros(robot.n_joints)))
         q_rad = path.at_rate(4 * robot.bus.rate_hz)
-        start_m = contact.room_m(pose, 0.0)
-        margin_m = start_m - contact.room_m(pose, 1.0)
+        start_m = contact.slack_m(pose, 0.0)
+        margin_m = start_m - contact.slack_m(pose, 1.0)
         least_m = np.minimum(KEPT * margin_m, start_m - 0.1 * margin_m)
         assert (contact.distances_m(q_rad) >= least_m - 1e-5).all()
         gate, goals = SafetyLimiter(robot, contact=contact), []

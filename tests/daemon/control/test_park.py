@@ -129,7 +129,7 @@ def blocked(name: str) -> np.ndarray:
     park_rad, contact = load_robot(name).park_rad, SelfContact(load_robot(name))
     for seed in range(1000):
         start = drawn(name, np.random.default_rng(seed))
-        if (contact.room_m(start) > 0).all() and BODIES[name].clearance_m(
+        if (contact.slack_m(start) > 0).all() and BODIES[name].clearance_m(
             np.linspace(start, park_rad, 100)
         ).min() < -0.01:
             return start
