@@ -68,15 +68,15 @@ class ScaledSetpoints:
         if self._given is None or (share >= 1.0 and self._following is None):
             self._given = self._source.take_setpoint()
             return self._given
-        phase = self._phase + share
+        phase, arrives = self._phase + share, False
         while phase >= 1.0 or (phase > 0.0 and self._following is None):
             if self._following is not None:
-                self._given, self._following, phase = self._following, None, phase - 1.0
+                self._given, self._following, phase, arrives = self._following, None, phase - 1.0, True
             elif (following := self._source.take_setpoint()) is not None:
                 self._following = following
             else:  # the end, or the front is late: from here it goes on as from anywhere
-                arrived, self._phase = self._given if phase < share else None, 0.0
-                return arrived
+                self._phase = 0.0
+                return self._given if arrives else None
         self._phase = phase
         a, b = self._given, self._following
         if b is None or phase == 0.0:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from daemon.control.derating import LEAST_SHARE
@@ -24,6 +24,7 @@ class Ring:
 
 
 @given(st.lists(st.floats(LEAST_SHARE, 1.0), min_size=1, max_size=200), st.integers(2, 60))
+@example([1.0, np.nextafter(1.0, 0.0)], 2)  # their sum rounds to 2: the last setpoint was left out
 def test_slowed_setpoints_keep_to_the_path_and_come_to_its_end(shares, n):
     """On a straight ramp the value tells the place: it never goes back, never faster than the share, to the very end."""
     q = np.linspace(0, n - 1, n)[:, None]
