@@ -74,9 +74,8 @@ class BusFollower:
 
     def _report(self, state: BusState) -> Trigger:
         if not self.bus_alive or self._view.silent_s > BUS_SILENT_S:
-            if (
-                self.bus_alive and self._to_latch is None
-            ):  # frozen: it must not take up what it was doing when it goes on
+            if self.bus_alive and self._to_latch is None:
+                # A frozen bus process must not take up its motion when it goes on.
                 self._to_latch = self._link.request(BusRequest.FAULT)
             return Trigger.BUS_LOST
         if self._to_latch is not None and state not in (BusState.FAULT, BusState.ESTOP):

@@ -43,7 +43,7 @@ class ChunkMaker:
         Args:
             raw: poses without layers.
             start: of the joints.
-            before: poses out of which the first ones grow; None where these follow by themselves.
+            before: poses from which the first ones are blended in; None where `raw` continues the path by itself.
             complete: whether the trajectory ends with them, at rest.
             easy: grow out of `before` slowly.
 

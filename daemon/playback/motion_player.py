@@ -67,10 +67,6 @@ class MotionPlayer:
         Raises:
             RetargetError: the motion does not fit the robot.
         """
-        if self._buffer.dry:
-            await wait_for_rest()
-        if not wanted():
-            return False
         raw, last = await asyncio.to_thread(self.source.next)
         idle = not start.command_id
 

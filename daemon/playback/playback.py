@@ -86,7 +86,9 @@ class Playback:
             player = self._player_of(entry, source)
             received_ns = entry.t_received_ns if entry is not None else round(self._clock.now_s() * 1e9)
             start = PlanStart(plan_id, "" if entry is None else entry.id, epoch, received_ns)
-            if not await player.begin(start, alive, self._until_at_rest):
+            if self._buffer.dry:
+                await self._until_at_rest()
+            if not alive() or not await player.begin(start, alive, self._until_at_rest):
                 return False
             before, plan_id_before = self.entry, self._plan_id
             self._begin(entry, player, plan_id)

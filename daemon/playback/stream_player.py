@@ -43,13 +43,9 @@ class StreamPlayer:
         self._reported_s = float("-inf")
 
     async def begin(
-        self, start: PlanStart, wanted: Callable[[], bool], wait_for_rest: Callable[[], Awaitable[None]]
+        self, start: PlanStart, _wanted: Callable[[], bool], _wait_for_rest: Callable[[], Awaitable[None]]
     ) -> bool:
-        """Let the lease begin in the next frame; false when it was not wanted any more."""
-        if self._buffer.dry:
-            await wait_for_rest()
-        if not wanted():
-            return False
+        """Let the lease begin in the next frame, without waiting for anything: true."""
         self.stream.look(self._maker.gaze_rad())
         with self._splicer.splice_at_once() as splice:
             self.stream.begin(splice.state, self._clock.now_s())
@@ -105,7 +101,7 @@ class StreamPlayer:
         self.stream.look(self._maker.gaze_rad())
 
     async def feed(self, _wanted: Callable[[], bool]) -> None:
-        """Its frames are made tick by tick."""
+        """`watch` makes the frames of a lease, tick by tick."""
 
     async def revise(self, _wanted: Callable[[], bool]) -> None:
         """Targets have no revision."""

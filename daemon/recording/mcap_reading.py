@@ -40,7 +40,7 @@ class LoggedCycle:
 
 
 class _LoggedEvent(msgspec.Struct):
-    """What is read of an event of the front."""
+    """The fields of a front's event that a reader of logs needs."""
 
     type: str | None = None
     plan_id: int | None = None

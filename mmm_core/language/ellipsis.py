@@ -21,11 +21,12 @@ _DIRECTION = re.compile(
     rf"^(?!(?:come|go|get|move|step) back){_AFTER_VERB}(?P<way>(?:(?:to|towards?|at|on) )?(?:the |your )?(?P<side>left|right)(?: side| one| again)?|{_WAYS}|(?:up|down|back|over) to (?:the |your )?\w+)$"
 )
 _SIDED = re.compile(rf"\b(left|right)\b(?= {_LIMB}\b)|\b(?:the|your) (left|right)\b")
+_THE_SAME = r"(?:also |and |now )?(?:(?:do )?(?:the same|it|that|so|likewise)(?: thing)?(?: again)? )?"
 _ONLY_SIDE = re.compile(
-    rf"^(?:also |and |now )?(?:(?:do )?(?:the same|it|that|so|likewise)(?: thing)?(?: again)? )?(?:with|using|on|for|by|use)? ?(?:the |your )?(?P<side>left|right)(?: (?P<limb>{_LIMB}))?(?: (?:too|as well|again|instead))?$"
+    rf"^{_THE_SAME}(?:with|using|on|for|by|use)? ?(?:the |your )?(?P<side>left|right)(?: (?P<limb>{_LIMB}))?(?: (?:too|as well|again|instead))?$"
 )
 _OTHER_ONE = re.compile(
-    rf"^(?:also |and |now )?(?:(?:do )?(?:the same|it|that|so|likewise)(?: thing)?(?: again)? )?(?:(?:with|using|on|to|in|for|by|use|your|at) )*(?:the |your )?(?:other|opposite)(?: (?:way|direction|{_LIMB}))?(?: (?:too|as well|round|around))?$|^vice versa$|^(?:switch|swap|change)(?: sides| hands| arms| over)?$"
+    rf"^{_THE_SAME}(?:(?:with|using|on|to|in|for|by|use|your|at) )*(?:the |your )?(?:other|opposite)(?: (?:way|direction|{_LIMB}))?(?: (?:too|as well|round|around))?$|^vice versa$|^(?:switch|swap|change)(?: sides| hands| arms| over)?$"
 )
 _AGAIN = re.compile(
     r"^(?:(?:do )?(?:it|that|the same)(?: thing)? )?(?:again|once more|one more time)$|^repeat(?: it| that)?$|^(?:do )?the same(?: again)?$"
@@ -42,14 +43,11 @@ _COUNTED = re.compile(
     r"^(?P<times>once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?) (?P<rest>(?:with|using|on|to) .+)$"
 )
 _SAID_TIMES = re.compile(r"\b(?:once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?)\b")
-_PLACE = re.compile(
-    r"^(?:(?:on|to|over|above|behind|in front of|under|at|towards) (?:your |the )?(?:heart|hips?|waist|head|chest|belly|stomach|mouth|eyes|ears?|back|forehead|shoulders?|chin|neck|sides?|knees|face)"
-    r"|(?:straight |wide |high |out )*(?:up|down|out|wide|forward|ahead|apart|crossed|folded|open)(?: (?:in the air|to the sides?|in front|wide|high))?)$"
+_A_PLACE = (
+    r"(?:(?:on|to|over|above|behind|in front of|under|at|towards) (?:your |the )?(?:heart|hips?|waist|head|chest|belly|stomach|mouth|eyes|ears?|back|forehead|shoulders?|chin|neck|sides?|knees|face)"
+    r"|(?:straight |wide |high |out )*(?:up|down|out|wide|forward|ahead|apart|crossed|folded|open)(?: (?:in the air|to the sides?|in front|wide|high))?)"
 )
-_AT_PLACE = re.compile(
-    r"\b(?:(?:on|to|over|above|behind|in front of|under|at|towards) (?:your |the )?(?:heart|hips?|waist|head|chest|belly|stomach|mouth|eyes|ears?|back|forehead|shoulders?|chin|neck|sides?|knees|face)"
-    r"|(?:straight |wide |high |out )*(?:up|down|out|wide|forward|ahead|apart|crossed|folded|open)(?: (?:in the air|to the sides?|in front|wide|high))?)$"
-)
+_PLACE, _AT_PLACE = re.compile(rf"^{_A_PLACE}$"), re.compile(rf"\b{_A_PLACE}$")
 _TARGET = re.compile(r"^(?:at )?(?:me|yourself|you|us|the \w+)$")
 _AT_TARGET = re.compile(r"\bat (?:me|yourself|you|us|the \w+)$")
 _NAMED_LIMB = re.compile(

@@ -30,7 +30,7 @@ class FoundJoint:
 
 @dataclass(frozen=True)
 class Anatomy:
-    """What was found.
+    """The parts of a humanoid that were found in a robot description.
 
     Attributes:
         path: the description.

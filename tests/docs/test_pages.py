@@ -231,7 +231,7 @@ TAKEN_FOR_GRANTED = {
     "docs/simulator.md": ("mmmd run --robot reference --bus sim:// --log run.mcap", 'mmmd say "nod"'),
     "docs/wire/README.md": ("mmmd run --robot reference --bus sim://",),
 }
-"""What the reader of a page has typed before, as README has it."""
+"""Commands that the reader of a page has typed before, as README gives them."""
 
 
 def json_objects(text: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""What tests of whole daemons share."""
+"""Fixtures of the tests that start whole daemons."""
 
 from __future__ import annotations
 

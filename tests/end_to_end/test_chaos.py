@@ -24,6 +24,7 @@ from tests.support.robot_states import (
     daemon_on,
     lead_to,
     within,
+    working_daemon,
 )
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
@@ -39,30 +40,23 @@ pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
     ],
 )
 def test_the_bus_process_in_any_state_ends_in_a_fault_that_can_be_reset(servos, number, states):
-    daemon = daemon_on(servos)
-    try:
-        with daemon.client() as client:
-            for state in states:
-                lead_to(client, servos, state)
-                bus = child_pid(daemon, "daemon.control.process")
-                os.kill(bus, number)
-                began_s = time.monotonic()
-                within(FAULT_WITHIN_S, f"{state}: fault", lambda: client.status().state == "fault")
-                within(FAULT_WITHIN_S, f"{state}: its command ends", lambda: client.status().command is None)
-                assert client.status().must_arm
-                within(FAULT_WITHIN_S, f"{state}: named", lambda: "reset" in client.status().reason)
-                with pytest.raises(RefusedError, match="mmmd reset"):
-                    client.say("wave")
-                client.reset()
-                client.wait_for("limp", timeout_s=3)
-                assert time.monotonic() - began_s < 2 * FAULT_WITHIN_S
-                within(2, f"{state}: no torque", lambda: not servos.torque)
-                servos.assert_kept()
-            assert_works(client)
-        assert daemon.terminate() == 0
-        servos.assert_kept()
-    finally:
-        daemon.close()
+    with working_daemon(servos) as (daemon, client):
+        for state in states:
+            lead_to(client, servos, state)
+            bus = child_pid(daemon, "daemon.control.process")
+            os.kill(bus, number)
+            began_s = time.monotonic()
+            within(FAULT_WITHIN_S, f"{state}: fault", lambda: client.status().state == "fault")
+            within(FAULT_WITHIN_S, f"{state}: its command ends", lambda: client.status().command is None)
+            assert client.status().must_arm
+            within(FAULT_WITHIN_S, f"{state}: named", lambda: "reset" in client.status().reason)
+            with pytest.raises(RefusedError, match="mmmd reset"):
+                client.say("wave")
+            client.reset()
+            client.wait_for("limp", timeout_s=3)
+            assert time.monotonic() - began_s < 2 * FAULT_WITHIN_S
+            within(2, f"{state}: no torque", lambda: not servos.torque)
+            servos.assert_kept()
 
 
 @pytest.mark.parametrize(

@@ -12,39 +12,32 @@ import pytest
 
 from tests.end_to_end.test_start_and_end import child_pid
 from tests.support.harness import RunningDaemon
-from tests.support.robot_states import ALL_STATES, STAYS, Servos, assert_works, daemon_on, gone, lead_to, within
+from tests.support.robot_states import ALL_STATES, STAYS, Servos, daemon_on, gone, lead_to, within, working_daemon
 from tests.support.sizes import some_and_all
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
 
 @pytest.mark.parametrize("states", some_and_all(("arming", "moving", "parking", "estop"), ALL_STATES))
-def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands_and_goes_on_with_it(servos, states):
+def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands(servos, states):
     """After 0.5 s the bus process brings to rest what moves; what is being parked is parked."""
-    daemon = daemon_on(servos)
-    try:
-        with daemon.client() as client:
-            for state in states:
-                lead_to(client, servos, state)
-                had_torque = servos.torque
-                daemon.process.send_signal(signal.SIGSTOP)
-                try:
-                    time.sleep(1.2)
-                    assert state in ("arming", "parking", "fault") or servos.torque == had_torque, state
-                    assert state == "parking" or not servos.moves, f"{state}: it moves and nobody leads it"
-                finally:
-                    daemon.process.send_signal(signal.SIGCONT)
-                after = ("idle", "moving", "holding") if state in ("idle", "moving", "holding") else STAYS[state]
-                after = ("limp", "holding", "idle") if state == "arming" else after
-                assert client.wait_for(*after, timeout_s=5).state in after
-                servos.assert_kept()
-            client.reset()
-            client.wait_for("limp", timeout_s=5)
-            assert_works(client)
-        assert daemon.terminate() == 0
-        servos.assert_kept()
-    finally:
-        daemon.close()
+    with working_daemon(servos) as (daemon, client):
+        for state in states:
+            lead_to(client, servos, state)
+            had_torque = servos.torque
+            daemon.process.send_signal(signal.SIGSTOP)
+            try:
+                time.sleep(1.2)
+                assert state in ("arming", "parking", "fault") or servos.torque == had_torque, state
+                assert state == "parking" or not servos.moves, f"{state}: it moves and nobody leads it"
+            finally:
+                daemon.process.send_signal(signal.SIGCONT)
+            after = ("idle", "moving", "holding") if state in ("idle", "moving", "holding") else STAYS[state]
+            after = ("limp", "holding", "idle") if state == "arming" else after
+            assert client.wait_for(*after, timeout_s=5).state in after
+            servos.assert_kept()
+        client.reset()
+        client.wait_for("limp", timeout_s=5)
 
 
 @pytest.mark.parametrize(

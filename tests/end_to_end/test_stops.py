@@ -21,7 +21,7 @@ from daemon.wire import events as ev
 from daemon.wire.requests import Estop
 from tests.end_to_end.test_start_and_end import child_pid
 from tests.support.harness import RunningDaemon
-from tests.support.robot_states import assert_works, bring_to, daemon_on, gone, lead_to, within
+from tests.support.robot_states import assert_works, bring_to, daemon_on, gone, lead_to, within, working_daemon
 from tests.support.sizes import some_and_all
 
 pytestmark = [pytest.mark.timeout(240), pytest.mark.realtime]
@@ -118,23 +118,16 @@ def test_no_thread_of_ctl_waits_for_a_core_while_it_has_the_interpreter():
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 @pytest.mark.parametrize("states", some_and_all(("moving",), ("moving", "limp")))
 def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(servos, number, states):
-    daemon = daemon_on(servos)
-    try:
-        with daemon.client() as client:
-            for state in states:
-                bring_to(client, state)
-                os.kill(child_pid(daemon, "daemon.ctl.process"), number)
-                within(1.0, "no torque", lambda: not servos.torque)
-                within(BACK_WITHIN_S, "estop", lambda: _state(client) == "estop")
-                assert "nobody took e-stops" in client.status().reason
-                client.reset()
-                client.wait_for("limp", timeout_s=5)
-                servos.assert_kept()
-            assert_works(client)
-        assert daemon.terminate() == 0
-        servos.assert_kept()
-    finally:
-        daemon.close()
+    with working_daemon(servos) as (daemon, client):
+        for state in states:
+            bring_to(client, state)
+            os.kill(child_pid(daemon, "daemon.ctl.process"), number)
+            within(1.0, "no torque", lambda: not servos.torque)
+            within(BACK_WITHIN_S, "estop", lambda: _state(client) == "estop")
+            assert "nobody took e-stops" in client.status().reason
+            client.reset()
+            client.wait_for("limp", timeout_s=5)
+            servos.assert_kept()
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -19,7 +20,7 @@ STAYS = {state: (state,) for state in ALL_STATES} | {
     "arming": ("arming", "idle"),
     "parking": ("parking", "limp"),
 }
-"""What the robot may be in a moment later when nothing touches it."""
+"""States in which the robot may be found a moment later, when nobody has touched it."""
 FAULT_WITHIN_S = 6.0
 """From the signal to a robot in a latched fault that can be reset: 1 s of silence, 2.5 s to the kill, the restart."""
 
@@ -104,6 +105,20 @@ def assert_works(client: Client) -> None:
 
 def daemon_on(servos: Servos, *options: str) -> RunningDaemon:
     return RunningDaemon(*options, bus=servos.url).until_ready()
+
+
+@contextmanager
+def working_daemon(servos: Servos) -> Iterator[tuple[RunningDaemon, Client]]:
+    """A daemon that still works when the block ends, ends well, and has kept every limit."""
+    daemon = daemon_on(servos)
+    try:
+        with daemon.client() as client:
+            yield daemon, client
+            assert_works(client)
+        assert daemon.terminate() == 0
+        servos.assert_kept()
+    finally:
+        daemon.close()
 
 
 def gone(pid: int) -> bool:

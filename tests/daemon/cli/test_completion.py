@@ -53,7 +53,7 @@ def test_a_shell_offers_commands_verbs_options_and_values(
 
 
 def offered_by_bash(script: Path, typed: str, folder: Path) -> list[str]:
-    """What bash's completion function leaves, called as bash calls it."""
+    """The offers of bash's completion function, called as bash calls it."""
     words = " ".join(f"'{word}'" for word in typed.split(" "))
     line = f'. {script}; COMP_WORDS=({words}); COMP_CWORD={typed.count(" ")}; _mmmd; echo "${{COMPREPLY[@]}}"'
     return subprocess.run(["bash", "-c", line], cwd=folder, capture_output=True, text=True, check=True).stdout.split()
@@ -76,7 +76,7 @@ zle -N zle-line-init
 
 
 def offered_by_zsh(script: Path, typed: str, folder: Path) -> list[str]:
-    """What zsh adds to its list at Tab behind the words that were typed: it completes at a terminal alone."""
+    """The words that zsh offers at Tab; it completes at a terminal alone, so a pseudo-terminal is given to it."""
     mine, its = pty.openpty()
     (folder / ".zshrc").write_text(ZSH.format(script=script))
     env = os.environ | {"TERM": "dumb", "HOME": str(folder), "ZDOTDIR": str(folder)}
@@ -94,7 +94,7 @@ def offered_by_zsh(script: Path, typed: str, folder: Path) -> list[str]:
 
 
 def read_until(fd: int, wanted: bytes) -> bytes:
-    """What a terminal shows up to `wanted`, and that."""
+    """The output of a terminal, read up to and with the text `wanted`."""
     said, end_s = b"", time.monotonic() + 60
     while wanted not in said:
         assert select.select([fd], [], [], max(0.0, end_s - time.monotonic()))[0], said

@@ -38,7 +38,7 @@ class Front:
 
 
 @pytest.mark.parametrize("state", ["limp", "arming", "holding", "playing", "stopping", "parking"])
-def test_a_bus_process_that_was_silent_for_a_while_and_comes_back_latches_the_fault_that_was_told(state):
+def test_a_bus_process_back_from_silence_latches_the_fault_told(state):
     """It took up what it was doing, which cannot follow a fault, and ended in an e-stop that nobody had given."""
     with rig("reference") as r:
         front = Front(r)
@@ -61,7 +61,7 @@ def test_a_bus_process_that_was_silent_for_a_while_and_comes_back_latches_the_fa
         r.assert_limits_kept() if had_torque else None
 
 
-def test_a_reset_given_while_the_bus_process_was_silent_is_carried_out_after_the_fault():
+def test_a_reset_given_in_the_silence_is_carried_out_after_the_fault():
     with rig("reference") as r:
         front = Front(r)
         front.arm()

@@ -125,7 +125,7 @@ def test_the_test_set_shares_no_sentence_with_the_development_set() -> None:
 
 @pytest.mark.parametrize(("name", "n"), [("words_dev2", 160), ("words_test", 200)])
 def test_sentences_as_people_say_them_name_gestures_that_exist(name: str, n: int) -> None:
-    """Their writers had seen neither the rules nor a phrase of the corpus."""
+    """One was written before its writer had read a rule, the other by writers who had seen neither rules nor corpus."""
     sentences = read_sentences(name)
     assert len({s.text for s in sentences}) == len(sentences) == n
     for s in sentences:
