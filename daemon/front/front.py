@@ -25,6 +25,7 @@ from daemon.front.subscriptions import MOST_BYTES, RECEIVE_QUEUE, LastValues
 from daemon.front.target_handler import TargetHandler
 from daemon.generator.client import GeneratorClient
 from daemon.gestures.library import GestureLibrary
+from daemon.host.clock import TICK_S
 from daemon.logs.log_feed import EVENT_LOGGER
 from daemon.network.connections import ConnectionGuard, Share
 from daemon.network.inbox import Inbox, Message
@@ -34,7 +35,6 @@ from daemon.playback.bus_follower import BusFollower
 from daemon.playback.setpoint_buffer import SetpointBuffer
 from daemon.playback.sources.source_factory import SourceFactory
 from daemon.scheduling.scheduler import Scheduler
-from daemon.scheduling.until_armed import TICK_S
 from daemon.settings.config import DaemonConfig
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.bus_view import BusView

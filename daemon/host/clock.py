@@ -7,6 +7,7 @@ import functools
 import hashlib
 import os
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
@@ -14,6 +15,8 @@ BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
 """Drawn by Linux at each start of the machine (proc(5))."""
 TIME_NAMESPACE = Path("/proc/self/ns/time")
 """A container may have a monotonic clock of its own (time_namespaces(7))."""
+TICK_S = 0.005
+"""How often code of an event loop looks whether something has come true."""
 
 
 @functools.cache
@@ -69,3 +72,10 @@ class LoopClock(Clock, Protocol):
     async def sleep(self, seconds: float) -> None:
         """Let others of the event loop run until so many seconds have passed."""
         ...
+
+
+async def sleep_while(clock: LoopClock, condition: Callable[[], bool], at_most_s: float) -> None:
+    """Let others of the event loop run as long as the condition holds, up to so many seconds."""
+    end_s = clock.now_s() + at_most_s
+    while condition() and clock.now_s() < end_s:
+        await clock.sleep(TICK_S)

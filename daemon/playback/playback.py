@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.host.clock import REAL_CLOCK, LoopClock
+from daemon.host.clock import REAL_CLOCK, LoopClock, sleep_while
 from daemon.playback.bus_follower import BusFollower
 from daemon.playback.chunk_maker import ChunkMaker
 from daemon.playback.motion_player import MotionPlayer, PlanStart
@@ -44,7 +44,7 @@ STALL_S = 0.5
 """Seconds for which the bus process holds without having played all frames that were pushed, after which it has dropped them."""
 IDLE_AFTER_S = 0.8
 """Seconds of stillness before idle movements begin."""
-GAZE_S, BRAKING_TIMEOUT_S, TICK_S = 0.8, 2.0, 0.005
+GAZE_S, BRAKING_TIMEOUT_S = 0.8, 2.0
 
 ShownCheck = Callable[[Entry, NDArray[np.float64], float], Verdict]
 """Whether goals (T, J) of so many a second have shown the motion of a command."""
@@ -214,8 +214,9 @@ class Playback:
                 if player is self._player:
                     await player.follow_gaze()
             return
-        await self._while(lambda: self._follower.machine.state is RobotState.MOVING)  # its last frames, or a stop
-        if self._follower.machine.state in (RobotState.IDLE, RobotState.HOLDING) and self._follower.can_take_over:
+        machine = self._follower.machine
+        await sleep_while(self._clock, lambda: machine.state is RobotState.MOVING, BRAKING_TIMEOUT_S)
+        if machine.state in (RobotState.IDLE, RobotState.HOLDING) and self._follower.can_take_over:
             held = self._buffer.raw_now
             await self._take_idle(HeldPose(held.at(np.zeros(round(GAZE_S * held.fps), np.intp))))
 
@@ -294,9 +295,4 @@ class Playback:
             self.end("", as_failure(event))
 
     async def _until_at_rest(self) -> None:
-        await self._while(lambda: not self._follower.at_rest)
-
-    async def _while(self, braking: Callable[[], bool]) -> None:
-        end_s = self._clock.now_s() + BRAKING_TIMEOUT_S
-        while braking() and self._clock.now_s() < end_s:
-            await self._clock.sleep(TICK_S)
+        await sleep_while(self._clock, lambda: not self._follower.at_rest, BRAKING_TIMEOUT_S)

@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.host.clock import REAL_CLOCK, LoopClock
+from daemon.host.clock import REAL_CLOCK, TICK_S, LoopClock, sleep_while
 from daemon.playback.bus_follower import BusFollower
 from daemon.playback.playback import Playback
 from daemon.playback.setpoint_buffer import SetpointBuffer
@@ -22,7 +22,7 @@ from daemon.playback.sources.source_factory import SourceFactory
 from daemon.playback.sources.stream_source import StreamSource
 from daemon.poses.layers import Layers
 from daemon.scheduling.command_queue import MOST_WAITING, CommandQueue, QueuedCommand, StopOrdering
-from daemon.scheduling.until_armed import TICK_S, until_armed
+from daemon.scheduling.until_armed import until_armed
 from daemon.settings.config import DaemonConfig
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.lease import LeaseState
@@ -310,9 +310,8 @@ class Scheduler:
 
     async def _yield(self, pending: QueuedCommand) -> None:
         """Wait a moment where a newer command may be about to take over: the robot does not set out twice."""
-        end_s = min(self._clock.now_s() + YIELD_S, pending.entry.deadline_s)
-        while self._waiting.may_be_overtaken(pending) and self._clock.now_s() < end_s:
-            await self._clock.sleep(TICK_S)
+        at_most_s = min(YIELD_S, pending.entry.deadline_s - self._clock.now_s())
+        await sleep_while(self._clock, lambda: self._waiting.may_be_overtaken(pending), at_most_s)
 
     async def _take_over(self, pending: QueuedCommand, prepared: PreparedSource, plan_id: int) -> None:
         """Make it what is played; what was played ends in `cancelled`."""

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from daemon.host.clock import LoopClock
+from daemon.host.clock import TICK_S, LoopClock
 from daemon.playback.bus_follower import BusFollower
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.machine import CommandRefusedError, RobotState, Trigger
 
-TICK_S = 0.005
 ARM_TIMEOUT_S = 30.0
 ARM_ANSWER_S = 2.0
 """How long the bus process may take to begin arming."""

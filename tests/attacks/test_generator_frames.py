@@ -98,6 +98,13 @@ def children_of(pid: int) -> list[int]:
     return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
 
 
+def wait_until_gone(pid: int) -> None:
+    end_s = time.monotonic() + 20
+    while Path(f"/proc/{pid}/cmdline").exists() and Path(f"/proc/{pid}/cmdline").read_bytes():
+        assert time.monotonic() < end_s, "the generator outlives its keeper"
+        time.sleep(0.05)
+
+
 def test_a_shared_generator_that_is_killed_starts_again_and_ends_with_its_keeper(tmp_path):
     """`mmmd generator` was one process: whatever ended it left every robot without texts."""
     endpoint = f"ipc://{tmp_path}/generator"
@@ -125,11 +132,23 @@ def test_a_shared_generator_that_is_killed_starts_again_and_ends_with_its_keeper
         assert answers()
         keeper.kill()
         keeper.wait(10)
-        end_s = time.monotonic() + 20
-        while Path(f"/proc/{second}/cmdline").exists() and Path(f"/proc/{second}/cmdline").read_bytes():
-            assert time.monotonic() < end_s, "the generator outlives its keeper"
-            time.sleep(0.05)
+        wait_until_gone(second)
     finally:
         keeper.kill()
         keeper.wait(10)
         context.destroy(linger=0)
+
+
+def test_a_shared_generator_that_is_terminated_ends_at_once(tmp_path):
+    """On SIGTERM `mmmd generator` waited for its child, which waited for it to end."""
+    keeper = subprocess.Popen([*MMMD, "generator", "--bind", f"ipc://{tmp_path}/generator"], stderr=subprocess.DEVNULL)
+    try:
+        while not (children := children_of(keeper.pid)):
+            assert keeper.poll() is None
+            time.sleep(0.05)
+        keeper.terminate()
+        keeper.wait(60)
+        wait_until_gone(children[0])
+    finally:
+        keeper.kill()
+        keeper.wait(10)

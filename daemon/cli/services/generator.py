@@ -43,7 +43,10 @@ def generator(
         while True:
             began_s = time.monotonic()
             with subprocess.Popen(command) as process:
-                status = process.wait()
+                try:
+                    status = process.wait()
+                finally:
+                    process.terminate()  # on SIGTERM the block waits for it
             if status in TOLD:
                 return status
             back_off_s = FIRST_BACK_OFF_S if time.monotonic() - began_s > GOOD_LIFE_S else back_off_s
