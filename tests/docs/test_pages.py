@@ -40,8 +40,9 @@ NOT_RUN_IN_HELP = {
     "mmmd generator --bind tcp://0.0.0.0": "keys of two machines; tests/daemon/network/test_keys.py",
     "mmmd import-official": "the authors' weights do not ship; tests/mmm_core/imports",
     "mmmd install-torch": "it would change this environment; tests/packaging/test_cpu_torch.py",
-    "mmmd keys": "two machines; tests/daemon/network/test_keys.py",
+    "mmmd keys": "two machines; `test_two_machines_exchange_keys` below",
     "mmmd retarget HumanML3D": "a data set, or a cluster, that is not here",
+    "mmmd run --keys": "two machines; `test_two_machines_exchange_keys` below",
     "mmmd train": "hours of training; tests/mmm_core/training",
     "mmmd view": "serves a page until Ctrl-C; tests/end_to_end/test_page.py",
     "my_tracker": "a program of the reader's own; tests/end_to_end/test_stream.py",
@@ -129,21 +130,39 @@ def test_examples_of_help_do_what_they_say(tmp_path: Path) -> None:
     with prepared(tmp_path) as typed:
         for command in FIRST:
             typed.type(command)
-        typed.type("mmmd run --robot reference --bus sim:// --log run.mcap")
-        for _, example in sorted(EXAMPLES, key=lambda e: (" run.mcap" in e[1], e[1].startswith("mmmd run "))):
-            if not any(example.startswith(prefix) for prefix in NOT_RUN_IN_HELP):
-                if example.startswith(
-                    ("mmmd say", "mmmd story", "mmmd gesture", "mmmd edit gesture", "mmmd inbetween")
-                ):
-                    typed.leave_safe_states()
-                if example == "mmmd cancel":
-                    typed.leave_safe_states()
-                    typed.type('mmmd say "clap your hands" --loop --no-wait')
-                if example == "mmmd robot check my_robot":
-                    fill_in(tmp_path / "my_robot/robot.toml")
-                typed.type(example)
-                done.append(example)
-    assert len(done) > 35
+        for _, example in sorted(EXAMPLES, key=lambda e: (" run.mcap" in e[1], e[1].startswith(ON_THEIR_OWN))):
+            if any(example.startswith(prefix) for prefix in NOT_RUN_IN_HELP):
+                continue
+            if example.startswith(("mmmd say", "mmmd story", "mmmd gesture", "mmmd edit gesture", "mmmd inbetween")):
+                typed.leave_safe_states()
+            if example == "mmmd cancel":
+                typed.leave_safe_states()
+                typed.type('mmmd say "clap your hands" --loop --no-wait')
+            if example == "mmmd robot check my_robot":
+                fill_in(tmp_path / "my_robot/robot.toml")
+            if "--log run.mcap" in example:  # a log is never overwritten
+                (tmp_path / "run.mcap").rename(tmp_path / "before.mcap")
+            typed.type(example)
+            done.append(example)
+    assert len(done) > 60
+
+
+@pytest.mark.soak
+def test_two_machines_exchange_keys(tmp_path: Path) -> None:
+    """docs/daemon.md, Over the network: robot and laptop are two homes on this machine, the endpoints loopback's."""
+    block = next(b for b in PAGES["docs/daemon.md"] if b.lines[0].startswith("robot$"))
+    homes, keys, said = {"robot": "", "laptop": "HOME=$PWD/laptop "}, dict[str, str](), ""
+    with prepared(tmp_path) as typed:
+        for machine, line in (line.split("$ ") for line in block.lines):
+            command = homes[machine] + line.partition(" #")[0].strip()
+            for name, key in keys.items():
+                command = command.replace(f"{name.upper()}_KEY", key)
+            for name in ("cmd", "ctl", "pub"):
+                command = re.sub(rf"--{name} tcp://robot:\d+", f"--{name} {getattr(typed.endpoints, name)}", command)
+            said = typed.type(command)
+            if line.startswith("mmmd keys new"):
+                keys[machine] = said.split()[0]
+    assert "done" in said
 
 
 @pytest.mark.soak
@@ -224,8 +243,13 @@ def urdf() -> str:
 FIRST = (
     'mmmd generate "wave with your right hand" --seconds 4 --out wave.npz',
     'mmmd generate "clap your hands" --seconds 3 --out clap.npz',
+    "mmmd run --robot reference --bus sim:// --log run.mcap",
+    'mmmd story "wave with your right hand" "bow"',
+    "mmmd run --robot reference --bus sim://",
 )
-"""What the examples of help take for granted."""
+"""What the examples of help take for granted: motions, a recorded run, and a daemon."""
+ON_THEIR_OWN = ("mmmd run ", "mmmd sim ")
+"""Beginnings of examples that start a robot of their own: they come after those that talk to the daemon."""
 TAKEN_FOR_GRANTED = {
     "docs/retargeting.md": ('mmmd generate "wave with your right hand" --out wave.npz',),
     "docs/simulator.md": ("mmmd run --robot reference --bus sim:// --log run.mcap", 'mmmd say "nod"'),

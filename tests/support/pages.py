@@ -34,7 +34,8 @@ CLIENTS = (
     "reset", "arm", "park", "torque",
 )  # fmt: skip
 """Commands that talk to a daemon, and take its endpoints."""
-TTY = "/dev/ttyUSB0"
+TTY, SERVO_BAUD = "/dev/ttyUSB0", 1_000_000
+"""The adapter of pages and help, and the baud that `mmmd servo` takes where none is given."""
 LONGEST_S = 300.0
 _NOT_RUN = re.compile(r"<!-- not run: (?:(mmmd [\w -]+): )?(.+?) -->")
 _COMMENT = re.compile(r"^<!-- .* -->$")
@@ -143,9 +144,8 @@ def help_examples() -> list[tuple[str, str]]:
     for path in sorted((ROOT / "daemon/cli").rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and (text := ast.get_docstring(node)):
-                for match in re.finditer(r"^Example[^:\n]*: (.+(?:\n[^\n]+)*)", text, re.MULTILINE):
-                    example = re.split(r"\nExample", match[1])[0]
-                    parts = _NEXT_EXAMPLE.split(" ".join(example.split()))
+                for match in re.finditer(r"^Example[^:\n]*: (.+(?:\n(?!Example)[^\n]+)*)", text, re.MULTILINE):
+                    parts = _NEXT_EXAMPLE.split(" ".join(match[1].split()))
                     found += [(node.name.replace("_", "-"), part) for part in parts if part]
     return found
 
@@ -164,6 +164,7 @@ class Terminal:
         self.at = f"--cmd {cmd} --ctl {ctl} --pub {pub}"
         self.printed = dict[str, str]()
         self._behind: dict[str, subprocess.Popen[bytes]] = {}
+        self._adapter = ""
         (folder / "bin").mkdir()
         script = folder / "bin" / "mmmd"
         script.write_text(f'#!/bin/sh\nexec {sys.executable} -P -m daemon.cli "$@"\n')
@@ -231,10 +232,11 @@ class Terminal:
             self._end(verb)
 
     def _on_this_machine(self, command: str) -> str:
+        if command.startswith("mmmd servo ") and "--bus" not in command:
+            command += f' --bus "dxl://{TTY}?baud={SERVO_BAUD}"'
         if TTY in command:
-            if "adapter" not in self._behind:
-                self._start("adapter", "mmmd sim --robot op3 --link ./ttyUSB0")
-            command = command.replace(TTY, "./ttyUSB0").replace("dxl:///./", "dxl://./")
+            self._plug(re.search(r"(?:\?baud=|--baud )(\d+)", command))
+            command = command.replace(TTY, "./ttyUSB0")
         parts: list[str] = []
         for part in re.split(r"( && )", command):
             words = part.split()
@@ -245,6 +247,13 @@ class Terminal:
             else:
                 parts.append(part)
         return "".join(parts)
+
+    def _plug(self, baud: re.Match[str] | None) -> None:
+        """Put OP3's servos behind the adapter, set to the baud that a command names, or to the robot's own."""
+        command = "mmmd sim --robot op3 --link ./ttyUSB0" + (f" --baud {baud[1]}" if baud else "")
+        if self._adapter != command:
+            self._start("adapter", command)
+            self._adapter = command
 
     def _start(self, verb: str, command: str) -> str:
         self._end(verb)
@@ -261,6 +270,8 @@ class Terminal:
         return self.said(verb)
 
     def _is_ready(self, verb: str, command: str) -> bool:
+        if verb == "run" and "--keys" in command:  # it answers nobody without one
+            return "ready: robot" in self.said(verb)
         if verb == "run":
             with contextlib.suppress(NoAnswerError), Client(self.endpoints) as client:
                 now = client.status()
