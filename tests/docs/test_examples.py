@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
@@ -9,8 +10,10 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+from mcap.reader import make_reader
 
 from tests.support.harness import RunningDaemon
 
@@ -78,13 +81,64 @@ def test_an_assistant_is_interrupted_and_stopped_by_voice(daemon: RunningDaemon)
     assert told["nod twice"] == "done"
 
 
-def test_figures_of_a_log(daemon: RunningDaemon) -> None:
-    """Last, as it ends the daemon."""
+@pytest.fixture(scope="module")
+def log(daemon: RunningDaemon) -> Path:
+    """The log of a run with a gesture in it; the tests that read it come last, as the daemon has ended by then."""
     with daemon.armed() as robot:
         robot.gesture("wave_right")
-        log = robot.status().recording
+        path = Path(robot.status().recording)
     assert daemon.terminate() == 0
-    table = run(sys.executable, str(EXAMPLES / "log_figures.py"), log)
+    return path
+
+
+def test_figures_of_a_log(log: Path) -> None:
+    table = run(sys.executable, str(EXAMPLES / "log_figures.py"), str(log))
     assert table.startswith("reference, ") and table.count("\n") == 2 + 16
     right, left = (float(re.search(rf"{side}_elbow +([\d.]+)", table)[1]) for side in ("right", "left"))
     assert right > left
+
+
+def test_the_layout_for_foxglove_shows_what_a_log_holds(log: Path) -> None:
+    """Every panel stands in the layout, every path has values in the log, the log panel lines, and the 3D panel its frame."""
+    layout = json.loads((EXAMPLES / "foxglove_layout.json").read_text())
+    panels, variables = layout["configById"], layout["globalVariables"]
+    assert sorted(leaves(layout["layout"])) == sorted(panels)
+
+    with log.open("rb") as f:
+        messages: dict[str, list[Any]] = {}
+        schemas: dict[str, str] = {}
+        for schema, channel, message in make_reader(f).iter_messages():
+            messages.setdefault(channel.topic, []).append(json.loads(message.data))
+            schemas[channel.topic] = schema.name if schema else ""
+
+    paths = {path["value"] for panel in panels.values() for path in panel.get("paths", ())}
+    assert {p.partition(".")[0] for p in paths} == {"/joint_states", "/joint_goals", "v1/state", "v1/event"}
+    for path in paths:
+        topic, _, fields = path.partition(".")
+        found = [value for message in messages[topic] for value in values_at(message, fields, variables)]
+        assert found, path
+        numbers = topic.startswith("/")
+        assert all(isinstance(value, float if numbers else str) for value in found), path
+        assert len(set(found)) > 1, path  # something moved, the state changed, there were events of several types
+
+    assert schemas[panels["RosOut!log"]["topicToRender"]] == "foxglove.Log" and messages["/log"]
+    frames = {t[end] for m in messages["/tf"] for t in m["transforms"] for end in ("parent_frame_id", "child_frame_id")}
+    assert schemas["/tf"] == "foxglove.FrameTransforms" and panels["3D!robot"]["followTf"] in frames
+
+
+def leaves(node: str | dict[str, Any]) -> list[str]:
+    """Ids of the panels in a layout's tree."""
+    return [node] if isinstance(node, str) else [*leaves(node["first"]), *leaves(node["second"])]
+
+
+def values_at(message: Any, fields: str, variables: dict[str, str]) -> list[Any]:
+    """What Foxglove plots of a message: fields, whole slices `[:]`, and filters by a variable (its message path syntax)."""
+    found = [message]
+    for field in fields.split("."):
+        parsed = re.fullmatch(r"(\w+)(\[:\])?(?:\{(\w+)==\$(\w+)\})?", field)
+        assert parsed is not None, field
+        name, is_slice, key, variable = parsed.groups()
+        found = [m[name] for m in found if name in m]
+        found = [item for items in found for item in items] if is_slice else found
+        found = [item for item in found if key is None or item[key] == variables[variable]]
+    return found

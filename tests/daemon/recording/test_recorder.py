@@ -1,7 +1,6 @@
 import asyncio
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -32,7 +31,6 @@ from retarget.robot.ticks import JointServoMap
 from tests.support.harness import RunningDaemon
 from tests.support.rig import rig, swing
 
-ROOT = Path(__file__).parents[3]
 pytestmark = pytest.mark.realtime
 
 
@@ -183,22 +181,6 @@ def test_lines_of_the_log_are_foxglove_logs_too(run, tmp_path):
     assert {k: message[k] for k in ("level", "message", "name", "file", "line")} == {
         "level": 3, "message": "servo 3 is late", "name": "bus", "file": "daemon.control", "line": 0,
     }  # fmt: skip
-
-
-def test_the_layout_for_foxglove_opens_topics_that_a_log_has(run, tmp_path):
-    """docs/examples/foxglove_layout.json: its panels, their topics, and the joint that its variable names."""
-    layout = json.loads((ROOT / "docs/examples/foxglove_layout.json").read_text())
-
-    def leaves(node) -> list[str]:
-        return [node] if isinstance(node, str) else [*leaves(node["first"]), *leaves(node["second"])]
-
-    assert sorted(leaves(layout["layout"])) == sorted(layout["configById"])
-    known = {*SCHEMAS, "v1/state", "v1/event", "v1/health"}
-    paths = [p["value"] for c in layout["configById"].values() for p in c.get("paths", [])]
-    named = [re.match(r'"?([\w/]+)"?[.]', path)[1] for path in paths]
-    named += [c[key] for c in layout["configById"].values() for key in ("topicToRender", "topicPath") if key in c]
-    assert set(named) <= known and {MEASURED_TOPIC, GOAL_TOPIC, LOG_TOPIC} <= set(named)
-    assert layout["globalVariables"]["joint"] in run[0].joint_names
 
 
 def cycles_of(path: Path) -> list[tuple[int, bytes]]:
