@@ -29,21 +29,25 @@ def mirrored_ids(engine: MotionModel, ids: Tensor) -> Tensor:
     return engine.model.tokenizer.encode(features[None])[0]
 
 
-def composed(engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequence[Tensor]) -> Tensor:
+def composed(
+    engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequence[Tensor],
+    arms: Sequence[tuple[str, ...]] | None = None,
+) -> Tensor:  # fmt: skip
     """(L, C) ids in which every command has its own parts; the first has what is left.
 
     Args:
         engine: the model.
         commands: done at once; each with its limbs.
         rows: their ids (L, C); a shorter one stays at its end.
+        arms: the arms of each command; None finds them (`arms_of`).
     """
     names = engine.model.tokenizer.part_names
     longest = max(len(row) for row in rows)
     rows = [torch.cat([row, row[-1:].repeat(longest - len(row), 1)]) for row in rows]
     ids = rows[0].clone()
-    taken = _arms_of(engine, commands, rows)
-    for row, arms in zip(rows, taken, strict=True):
-        for arm in arms:
+    taken = arms_of(engine, commands, rows) if arms is None else arms
+    for row, mine in zip(rows, taken, strict=True):
+        for arm in mine:
             ids[:, names.index(arm)] = row[:, names.index(arm)]
     rest = _rest(engine, commands, rows)
     if rest is not None:
@@ -51,7 +55,7 @@ def composed(engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequenc
     return ids
 
 
-def _arms_of(engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequence[Tensor]) -> list[tuple[str, ...]]:
+def arms_of(engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequence[Tensor]) -> list[tuple[str, ...]]:
     """The arms that each command has: those its words name, else those that its motion moves and no other has."""
     named = [tuple(arm for arm in _ARMS if arm in c.limbs) for c in commands]
     free = [arm for arm in _ARMS if not any(arm in arms for arms in named)]

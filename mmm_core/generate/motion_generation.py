@@ -15,7 +15,7 @@ from functools import cached_property
 import torch
 from torch import Tensor
 
-from mmm_core.generate.at_once import composed, mirrored_ids
+from mmm_core.generate.at_once import arms_of, composed, mirrored_ids
 from mmm_core.generate.interpretation import ReadCommand, interpret
 from mmm_core.generate.motion_model import MotionModel
 from mmm_core.generate.repetition_editing import ids_of_count
@@ -83,10 +83,10 @@ class MotionGeneration:
     def preview(self) -> GenerationResult | None:
         """The first command's motion after a single decoding step; None where there is no motion or no opening.
 
-        Its first 0.4 s are those of the motion, but for the last frames, which later tokens still change. Commands at once,
-        and words of size or hold, leave no opening: they depend on the whole motion.
+        Its first 0.4 s are those of the motion, but for the last frames, which later tokens still change. Words of size or
+        hold leave no opening: they depend on the whole motion.
         """
-        if not self.settings.opening or not self._steps or not self._opens:
+        if not self._steps or not self._opens:
             return None
         with torch.inference_mode():
             ids = self._preview_ids
@@ -113,40 +113,65 @@ class MotionGeneration:
     @property
     def _opens(self) -> bool:
         """Whether the first step's preview begins as its motion does."""
-        first = self._steps[0]
-        manner = first.manner
-        return (
-            len(first.commands) == 1 and not first.commands[0].is_mirrored and manner.size == 1.0 and not manner.hold_s
-        )
+        manner = self._steps[0].manner
+        return bool(self.settings.opening) and manner.size == 1.0 and not manner.hold_s
+
+    @cached_property
+    def _drafts(self) -> list[Tensor]:
+        """(L, C) ids of each command of the first step after one decoding step."""
+        step, one_step = self._steps[0], replace(self.settings, steps=1)
+        rows = [empty_row(self._engine.model.transformer, step.tokens_of(k)) for k in range(len(step.commands))]
+        return [
+            self._fill(command.states, [row], [self._seed_of(0, k)], one_step)[0]
+            for k, (command, row) in enumerate(zip(step.commands, rows, strict=True))
+        ]
 
     @cached_property
     def _preview_ids(self) -> Tensor:
-        """(n_tokens, C) ids of the first command after one step."""
-        step, one_step = self._steps[0], replace(self.settings, steps=1)
-        row = empty_row(self._engine.model.transformer, step.n_tokens)
-        return self._fill(step.states, [row], [self._seed], one_step)[0]
+        """(n_tokens, C) ids of the first step after one decoding step."""
+        return self._together(self._steps[0], self._drafts)
+
+    @cached_property
+    def _preview_arms(self) -> list[tuple[str, ...]]:
+        """The arms of each command of the first step: those that its draft moves, where its words name none."""
+        commands = self._steps[0].commands
+        return arms_of(self._engine, commands, self._mirrored_where_asked(commands, self._drafts))
 
     def _row(self, i: int, step: Step) -> Tensor:
-        """(L, C) ids of a step."""
+        """(L, C) ids of a step; the first one begins as its preview does."""
         rows = [self._command_row(i, k, command, step.tokens_of(k)) for k, command in enumerate(step.commands)]
-        return rows[0] if len(rows) == 1 else composed(self._engine, step.commands, rows)
+        ids = self._together(step, rows)
+        if i == 0 and self._opens:
+            ids[: self.settings.opening] = self._preview_ids[: self.settings.opening]
+        return ids
+
+    def _together(self, step: Step, rows: Sequence[Tensor]) -> Tensor:
+        """(L, C) ids of a step's commands, done at once."""
+        rows = self._mirrored_where_asked(step.commands, rows)
+        if len(rows) == 1:
+            return rows[0]
+        has_opening = step is self._steps[0] and self._opens
+        return composed(self._engine, step.commands, rows, self._preview_arms if has_opening else None)
+
+    def _mirrored_where_asked(self, commands: Sequence[ReadCommand], rows: Sequence[Tensor]) -> list[Tensor]:
+        return [mirrored_ids(self._engine, r) if c.is_mirrored else r for c, r in zip(commands, rows, strict=True)]
 
     def _command_row(self, i: int, k: int, command: ReadCommand, n_tokens: int) -> Tensor:
         """(L, C) ids of a command: the candidate nearest to the count that its words name, else the likeliest one."""
         count, settings = self._counts[i], self.settings
         n = CANDIDATES_TO_COUNT if self._candidates == 1 and count is not None else self._candidates
-        seeds = [
-            (self._seed + i * COMMAND_STRIDE + k * TOGETHER_STRIDE) % 2**31 + c * CANDIDATE_STRIDE for c in range(n)
-        ]
+        seeds = [self._seed_of(i, k) + c * CANDIDATE_STRIDE for c in range(n)]
         row = empty_row(self._engine.model.transformer, n_tokens)
-        if n > 1 and i == 0 and settings.opening and self._opens:  # all candidates begin as the preview does
-            row[: settings.opening] = self._preview_ids[: settings.opening]
+        if n > 1 and i == 0 and self._opens:  # all candidates begin as the preview does
+            row[: settings.opening] = self._drafts[k][: settings.opening]
         candidates = self._fill(command.states, [row] * n, seeds, settings)
         if count is not None:
-            ids = ids_of_count(self._engine, command.states, candidates, count, self._seed)
-        else:
-            ids = candidates[0] if n == 1 else self._likeliest(command.states, candidates)
-        return mirrored_ids(self._engine, ids) if command.is_mirrored else ids
+            return ids_of_count(self._engine, command.states, candidates, count, self._seed)
+        return candidates[0] if n == 1 else self._likeliest(command.states, candidates)
+
+    def _seed_of(self, i: int, k: int) -> int:
+        """The seed of the k-th command of a step."""
+        return (self._seed + i * COMMAND_STRIDE + k * TOGETHER_STRIDE) % 2**31
 
     def _likeliest(self, states: TextStates, candidates: Sequence[Tensor]) -> Tensor:
         likely = pseudo_log_likelihood(self._engine.model.transformer, states.repeated(len(candidates)), candidates)

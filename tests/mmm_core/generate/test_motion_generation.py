@@ -10,7 +10,8 @@ from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from tests.support.shipped import shipped_engine
 
 TEXTS = (
-    "wave with your right hand", "wave with your left hand", "clap three times", "nod, then bow", "point up with your left hand"
+    "wave with your right hand", "wave with your left hand", "clap three times", "nod, then bow", "point up with your left hand",
+    "wave and nod", "lean left with your arms up", "look left and bow",
 )  # fmt: skip
 
 
