@@ -100,11 +100,18 @@ class World:
         for servo in self.all:
             servo.watch(t_s)
 
-    def lead_by_hand(self, pose_rad: Sequence[float]) -> None:
-        """Put limp joints (J,) where a person leads them, and switch servos that count turns off and on there."""
+    def move_by_hand(self, pose_rad: Sequence[float]) -> None:
+        """Put the limp joints where a hand leads them in a pose (J,); servos that have torque do not follow."""
         ticks = JointServoMap(self.robot).to_ticks(np.array(pose_rad, np.float64))
-        for servo, tick in zip(self.servos.values(), ticks.tolist(), strict=True):
-            self.drives.place(servo.index, tick)
+        with self.lock:
+            for servo, tick in zip(self.servos.values(), ticks.tolist(), strict=True):
+                if not servo.torque:
+                    self.drives.place(servo.index, tick)
+
+    def lead_by_hand(self, pose_rad: Sequence[float]) -> None:
+        """The same, then switch servos that count turns off and on there."""
+        self.move_by_hand(pose_rad)
+        for servo in self.servos.values():
             if servo.spec.extended:
                 servo.lose_power()
                 servo.restore_power()

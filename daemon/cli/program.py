@@ -42,7 +42,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "say": CommandEntry("daemon.cli.client.say:say", "tell the robot what to do"),
     "story": CommandEntry("daemon.cli.client.story:story", "several things in one motion, for as long as you like"),
     "inbetween": CommandEntry("daemon.cli.client.story:inbetween", "poses at given times; the middle is generated"),
-    "gesture": CommandEntry("daemon.cli.client.gesture:gesture", "play, list, record and add named gestures"),
+    "gesture": CommandEntry("daemon.cli.client.gesture:gesture", "play, list, record, teach and add named gestures"),
     "look": CommandEntry("daemon.cli.client.layers:look", "turn the head, whatever the body does"),
     "idle": CommandEntry("daemon.cli.client.layers:idle", "small movements while there is nothing to play"),
     "stream": CommandEntry("daemon.cli.client.stream:stream", "joint targets from another program, under a lease"),

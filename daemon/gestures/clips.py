@@ -42,6 +42,7 @@ class Clip:
         marks: where it goes round and where it is held.
         mirror: name of the clip that shows the same on the other side, empty when there is none.
         source: what made it.
+        side: arms that it was taught with, left, right or both; empty where nobody said so.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Clip:
     marks: Marks
     mirror: str = ""
     source: str = ""
+    side: str = ""
 
 
 def save_clips(path: Path, clips: Mapping[str, Clip]) -> None:
@@ -67,7 +69,7 @@ def save_clips(path: Path, clips: Mapping[str, Clip]) -> None:
         arrays[f"{name}.twist"] = np.rint(np.clip(p.forearm_twist_rad / _TWIST_RAD, -1, 1) * _UNIT).astype(np.int16)
         meta["clips"][name] = {
             "text": clip.text, "mirror": clip.mirror, "source": clip.source, "loop": clip.marks.loop,
-            "hold": clip.marks.hold,
+            "hold": clip.marks.hold, "side": clip.side,
         }  # fmt: skip
     partial = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
@@ -94,7 +96,7 @@ def load_clips(path: Path) -> dict[str, Clip]:
     except ClipError:
         raise
     except Exception as error:  # whatever a file that somebody else made can lead to
-        do = "gestures are written by `mmmd gesture add` and `mmmd gesture record`"
+        do = "gestures are written by `mmmd gesture add`, `record` and `teach`"
         raise ClipError(f"{path}: no clips to be read there ({error}); {do}") from error
 
 
@@ -112,4 +114,6 @@ def _clip(name: str, row: dict[str, Any], data: Mapping[str, NDArray[Any]]) -> C
     posture = PoseSequence(
         bones, BONE_LENGTHS_M.copy(), np.asarray(normalise(head), np.float64), twist / _UNIT * _TWIST_RAD, FPS
     )
-    return Clip(name, str(row["text"]), posture, Marks(loop, int(row["hold"])), str(row["mirror"]), str(row["source"]))
+    marks = Marks(loop, int(row["hold"]))
+    told = (str(row["mirror"]), str(row["source"]), str(row.get("side", "")))  # older files know no side
+    return Clip(name, str(row["text"]), posture, marks, *told)

@@ -53,7 +53,21 @@ class GestureLibrary:
             raise UnknownGestureError(name, difflib.get_close_matches(name, names, 4, 0.5), len(names))
         return clip
 
-    def keep(self, name: str, text: str, posture: PoseSequence, source: str, *, replace: bool = False) -> Clip:
+    def check_name(self, name: str, *, replace: bool = False) -> None:
+        """Refuse what `keep` would.
+
+        Raises:
+            GestureExistsError: there is one of that name, and `replace` is not given.
+            ClipError: the name is not allowed.
+        """
+        if not _NAME.fullmatch(name):
+            raise ClipError(f"gesture name {name!r}; allowed: 1 to 64 of a-z, 0-9 and _, for example 'my_wave'")
+        if not replace and (name in self._shipped or self._path(name).exists()):
+            raise GestureExistsError(name, own=self._path(name).exists())
+
+    def keep(
+        self, name: str, text: str, posture: PoseSequence, source: str, *, side: str = "", replace: bool = False
+    ) -> Clip:
         """Make a clip of the user's own.
 
         Args:
@@ -61,22 +75,20 @@ class GestureLibrary:
             text: what it shows.
             posture: its frames.
             source: what made it.
+            side: arms that it was taught with.
             replace: take the place of a clip of that name.
 
         Raises:
             GestureExistsError: there is one of that name, and `replace` is not given.
             ClipError: the name or the length is not allowed, or the file cannot be written.
         """
-        if not _NAME.fullmatch(name):
-            raise ClipError(f"gesture name {name!r}; allowed: 1 to 64 of a-z, 0-9 and _, for example 'my_wave'")
-        if not replace and (name in self._shipped or self._path(name).exists()):
-            raise GestureExistsError(name, own=self._path(name).exists())
+        self.check_name(name, replace=replace)
         if not 2 <= len(posture) <= LONGEST_CLIP_S * posture.fps:
             seconds = len(posture) / posture.fps
             raise ClipError(f"gesture '{name}': {seconds:.2f} s of motion; allowed: 2 frames to {LONGEST_CLIP_S:g} s")
         if posture.fps != FPS:
             posture = at_tempo(posture, posture.fps / FPS)
-        clip = Clip(name, text, posture, marks_of(posture), source=source)
+        clip = Clip(name, text, posture, marks_of(posture), source=source, side=side)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             save_clips(self._path(name), {name: clip})
@@ -130,5 +142,5 @@ def _info(clip: Clip, own: bool) -> GestureInfo:
     p = clip.posture
     return GestureInfo(
         name=clip.name, text=clip.text, seconds=round(len(p) / p.fps, 2), loop=clip.marks.loop is not None,
-        hold_s=round(clip.marks.hold / p.fps, 2), mirror=clip.mirror, own=own,
+        hold_s=round(clip.marks.hold / p.fps, 2), mirror=clip.mirror, own=own, side=clip.side,
     )  # fmt: skip

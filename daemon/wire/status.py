@@ -19,7 +19,8 @@ class GestureInfo(msgspec.Struct):
         loop: whether a part of it goes round; else the whole is done again.
         hold_s: when it is held, with `hold`.
         mirror: the clip that shows the same on the other side, empty when it is symmetric.
-        own: recorded or added by the user.
+        own: recorded, taught or added by the user.
+        side: arms that it was taught with, left, right or both; else empty.
     """
 
     name: str
@@ -29,6 +30,7 @@ class GestureInfo(msgspec.Struct):
     hold_s: float
     mirror: str
     own: bool = False
+    side: str = ""
 
 
 class JointInfo(msgspec.Struct):

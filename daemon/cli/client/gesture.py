@@ -1,4 +1,4 @@
-"""`mmmd gesture`: play, list, record and add named clips."""
+"""`mmmd gesture`: play, list, record, teach and add named clips."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 import tyro
 from tyro.conf import OmitArgPrefixes
 
+from daemon.cli.client.teach import TeachFlags, teach
 from daemon.cli.connection import Connection
 from daemon.cli.play_flags import PlayFlags, built, play
 from daemon.errors import CommandError
@@ -18,18 +19,22 @@ WIDE = 100
 
 
 def gesture(
-    verb: Annotated[Literal["play", "list", "record", "add"], tyro.conf.Positional],
+    verb: Annotated[Literal["play", "list", "record", "teach", "add"], tyro.conf.Positional],
     name: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[NAME]")] = "",
     file: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="[F.npz]")] = None,
     command: str = "",
-    replace: bool = False,
+    replace: Annotated[bool, tyro.conf.arg(aliases=["--force"])] = False,
     folder: Path | None = None,
     how: OmitArgPrefixes[PlayFlags] = PlayFlags(),  # noqa: B008
+    taught: OmitArgPrefixes[TeachFlags] = TeachFlags(),  # noqa: B008
     wait: bool = True,
     json: bool = False,
     at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
 ) -> int:
-    """Play a named gesture, list them, keep the robot's last motion as one, or add one from a file.
+    """Play a named gesture, list them, keep the robot's last motion as one, teach one by hand, or add one from a file.
+
+    `teach` parks the robot, cuts its torque, asks first, and records what its joints measure while you lead its arms
+    (docs/teaching.md).
 
     Example: mmmd gesture play wave_right --repeat 2
 
@@ -37,17 +42,20 @@ def gesture(
 
     Example: mmmd generate "salute" --out s.npz && mmmd gesture add my_salute s.npz
 
+    Example: mmmd gesture teach my_wave --text "waves at the door" --play
+
     Args:
-        verb: play, list (all the library), record (the motion of a command) or add (a motion file).
-        name: of the gesture; for play, record and add.
+        verb: play, list (all the library), record (the motion of a command), teach (by hand) or add (a motion file).
+        name: of the gesture; for all but list.
         file: .npz of `mmmd generate`; for add.
         command: id of the command whose motion to record; the newest when it is not given.
-        replace: for record and add: take the place of a gesture of that name.
-        folder: where your own gestures are; your data folder when it is not given. For list and add.
+        replace: for record, teach and add: take the place of a gesture of that name.
+        folder: where your own gestures are; your data folder when it is not given. For list, teach and add.
         how: how it is to be played.
+        taught: how it is taught.
         wait: return when the motion has ended; --no-wait returns once it is accepted.
         json: print events, or the list, as JSON.
-        at: where the daemon is; for play and record.
+        at: where the daemon is; for play, record and teach.
     """
     if verb == "list":
         return _list(folder, json)
@@ -55,6 +63,8 @@ def gesture(
         raise CommandError(f"gesture {verb}: no name; allowed: a name of `mmmd gesture list`, or a new one")
     if verb == "add":
         return _add(name, file, folder, replace=replace)
+    if verb == "teach":
+        return teach(name, taught, at, folder, replace=replace)
     if verb == "record":
         with at.client() as robot:
             ack = robot.record(name, command, replace=replace)
@@ -83,7 +93,7 @@ def _list(folder: Path | None, json: bool) -> int:
     shown = columns if console.width >= WIDE else columns[:3]  # a name that is cut cannot be typed
     table = table_of(shown, ("name", "other side"), f"{len(infos)} gestures")
     for i in infos:
-        loop, own = "in part" if i.loop else "as a whole", "yes" if i.own else ""
+        loop, own = "in part" if i.loop else "as a whole", ", ".join(filter(None, ("yes" if i.own else "", i.side)))
         row = (i.name, i.text, f"{i.seconds:.1f}", loop, f"{i.hold_s:.1f} s", i.mirror, own)
         table.add_row(*row[: len(shown)])
     console.print(table)

@@ -1,0 +1,225 @@
+"""A gesture out of positions that a hand led the limp arms through: smoothed, cut, inside the limits. Sans-I/O.
+
+even -> arms that are kept -> smoothed -> still ends cut -> position limits -> velocity limits -> person -> the robot's own path.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from daemon.errors import ClipError
+from daemon.poses.pose_sequence import PoseSequence, poses_of_joints
+from mmm_core.motion.motion import FPS
+from retarget.path.limits import JointLimits
+from retarget.pipeline import Retargeter
+from retarget.robot.kinematics import Kinematics
+from retarget.robot.robot import RobotModel
+from retarget.robot_to_human import joints_of_path
+
+scipy_signal: Any = importlib.import_module("scipy.signal")  # it has no types
+Array = NDArray[np.float64]
+Sides = Literal["left", "right", "both"]
+
+CUTOFF_HZ = 4.0
+"""Movements of a led arm lie below it (our estimate: a quick wave has 2 to 3 Hz), steps of encoders and a shaking hand above."""
+_ORDER = 2
+_LOW_PASS: Any = scipy_signal.butter(_ORDER, CUTOFF_HZ, fs=FPS, output="sos")
+STILL_RAD = float(np.deg2rad(2.0))
+"""An end in which no joint is further than this from its first or last angle counts as still."""
+KEPT_STILL_FRAMES = 4
+"""Of a still end 0.2 s are kept: a motion sets out from rest."""
+MOVED_RAD = float(np.deg2rad(5.0))
+"""An arm of which a joint ranges over more than this was led."""
+_PLAY_DEG = 0.5
+"""Further beyond a limit is told: less is play and rounding."""
+POSE_S = 0.5
+"""A pose is the mean of so much, and is kept as a motion of a second."""
+_LONGEST_GAP_S = 0.25
+"""A longer pause between two positions is told; it is bridged by a straight line."""
+
+
+@dataclass(frozen=True)
+class Taught:
+    """What was taught.
+
+    Attributes:
+        posture: its frames, on a person.
+        sides: which arms were kept.
+        notes: what was changed or found, a sentence each.
+    """
+
+    posture: PoseSequence
+    sides: Sides
+    notes: tuple[str, ...]
+
+
+def taught_gesture(retargeter: Retargeter, t_s: Sequence[float], q_rad: Array, sides: Sides | None = None) -> Taught:
+    """The gesture in measured positions.
+
+    Args:
+        retargeter: of the robot.
+        t_s: (N,) times of the measurements, rising.
+        q_rad: (N, J) measured joint angles.
+        sides: which arms count; None for those that were led.
+
+    Raises:
+        ClipError: fewer than two measurements, nothing moved, or no free path leads through it.
+    """
+    q, notes = even(t_s, q_rad)
+    sides = sides or sides_led(retargeter.robot, q)
+    q = still_ends_cut(smoothed(arms_alone(retargeter.robot, q, sides)))
+    return _checked(retargeter, q, sides, notes)
+
+
+def taught_pose(retargeter: Retargeter, t_s: Sequence[float], q_rad: Array, sides: Sides | None = None) -> Taught:
+    """The pose in which the arms were held at the end; arguments as for `taught_gesture`, both arms when `sides` is None.
+
+    Raises:
+        ClipError: too few measurements, the arms moved, or the robot cannot be in that pose.
+    """
+    q, notes = even(t_s, q_rad)
+    sides = sides or "both"
+    held = arms_alone(retargeter.robot, q, sides)[-round(POSE_S * FPS) :]
+    moved_deg = float(np.rad2deg(np.ptp(held, axis=0).max()))
+    if moved_deg > np.rad2deg(MOVED_RAD):
+        raise ClipError(
+            f"pose: a joint moved by {moved_deg:.0f} degrees in the last {POSE_S:g} s; hold the arms still, then Enter"
+        )
+    return _checked(retargeter, np.repeat(held.mean(0)[None], int(FPS), 0), sides, notes)
+
+
+def even(t_s: Sequence[float], q_rad: Array) -> tuple[Array, list[str]]:
+    """Measurements (N, J) at times (N,) on an even grid of `FPS` frames a second, and a note of each long pause.
+
+    Raises:
+        ClipError: fewer than two.
+    """
+    t = np.asarray(t_s, np.float64)
+    if len(t) < 2 or t[-1] - t[0] < 1 / FPS:
+        raise ClipError(f"{len(t)} positions were recorded; allowed: 0.1 s and more; teach it again")
+    grid = np.arange(t[0], t[-1] + 1e-9, 1 / FPS)
+    notes = [
+        f"no position for {t[k + 1] - t[k]:.2f} s at {t[k] - t[0]:.1f} s: bridged by a straight line"
+        for k in np.flatnonzero(np.diff(t) > _LONGEST_GAP_S)
+    ]
+    columns: list[Array] = [np.interp(grid, t, q_rad[:, j]) for j in range(q_rad.shape[1])]
+    return np.stack(columns, 1), notes
+
+
+def sides_led(robot: RobotModel, q_rad: Array) -> Sides:
+    """Which arms were led in (T, J) positions.
+
+    Raises:
+        ClipError: none.
+    """
+    ranges = np.ptp(q_rad, axis=0)
+    led = [side for side in ("left", "right") if ranges[arm_joints(robot, side)].max(initial=0.0) > MOVED_RAD]
+    if not led:
+        raise ClipError(f"no arm was moved by more than {np.rad2deg(MOVED_RAD):.0f} degrees; nothing to keep")
+    return "both" if len(led) == 2 else "left" if led == ["left"] else "right"
+
+
+def arm_joints(robot: RobotModel, sides: Sides) -> list[int]:
+    """Indices of the joints of these arms."""
+    wanted = ("left_", "right_") if sides == "both" else (f"{sides}_",)
+    return [j for j, joint in enumerate(robot.joints) if joint.role.startswith(wanted)]
+
+
+def arms_alone(robot: RobotModel, q_rad: Array, sides: Sides) -> Array:
+    """(T, J) positions in which all joints but those of these arms are at rest: a limp head hangs, and teaches nothing."""
+    q = np.repeat(robot.rest_rad[None], len(q_rad), 0)
+    arms = arm_joints(robot, sides)
+    q[:, arms] = q_rad[:, arms]
+    return q
+
+
+def smoothed(q_rad: Array) -> Array:
+    """(T, J) positions without what is faster than `CUTOFF_HZ`, not delayed (forward and backward, scipy)."""
+    padding = min(3 * (2 * _ORDER + 1), len(q_rad) - 1)
+    return np.asarray(scipy_signal.sosfiltfilt(_LOW_PASS, q_rad, axis=0, padlen=padding), np.float64)
+
+
+def still_ends_cut(q_rad: Array) -> Array:
+    """The frames of (T, J) in which something moves, and `KEPT_STILL_FRAMES` before and after.
+
+    Raises:
+        ClipError: nothing moves.
+    """
+    away = np.flatnonzero((np.abs(q_rad - q_rad[0]) > STILL_RAD).any(1))
+    back = np.flatnonzero((np.abs(q_rad - q_rad[-1]) > STILL_RAD).any(1))
+    if not len(away):
+        raise ClipError(f"nothing moved by more than {np.rad2deg(STILL_RAD):.0f} degrees; nothing to keep")
+    last = int(back[-1]) if len(back) else int(away[-1])  # it may end where it began
+    return q_rad[max(0, int(away[0]) - KEPT_STILL_FRAMES) : max(last, int(away[-1])) + 1 + KEPT_STILL_FRAMES]
+
+
+def inside_positions(q_rad: Array, limits: JointLimits, names: Sequence[str]) -> tuple[Array, list[str]]:
+    """(T, J) positions inside the position limits, and a note of each joint that was led beyond."""
+    clipped = np.clip(q_rad, limits.position_min_rad, limits.position_max_rad)
+    beyond_deg = np.rad2deg(np.abs(q_rad - clipped).max(0))
+    return clipped, [
+        f"{names[j]} was led {beyond_deg[j]:.1f} degrees beyond its limit: it is kept at the limit"
+        for j in np.flatnonzero(beyond_deg > _PLAY_DEG).tolist()
+    ]
+
+
+def slowed(q_rad: Array, velocity_rad_s: Array) -> tuple[Array, float]:
+    """The same way (T, J), slower where a joint was faster than `velocity_rad_s` (J,); and how many times at most.
+
+    Every frame lies on the straight lines between the given ones, so that none is nearer to anything than they are.
+    """
+    share = (np.abs(np.diff(q_rad, axis=0)) * FPS / velocity_rad_s).max(1, initial=0.0)
+    times = np.concatenate([[0.0], np.cumsum(np.maximum(share, 1.0))])  # in frames
+    n = int(np.ceil(times[-1] - 1e-9)) + 1
+    frames = np.arange(len(q_rad), dtype=np.float64)
+    at: Array = np.interp(np.linspace(0.0, float(times[-1]), n), times, frames)
+    before = np.minimum(at.astype(np.intp), len(q_rad) - 2)
+    return q_rad[before] + (at - before)[:, None] * (q_rad[before + 1] - q_rad[before]), float(max(share.max(), 1.0))
+
+
+def on_a_person(kinematics: Kinematics, q_rad: Array) -> PoseSequence:
+    """A person in a robot's positions (T, J): bones, head, and the twist of the forearms where the robot has that joint."""
+    joints_m, head_quat_wxyz = joints_of_path(kinematics, q_rad)
+    points = {p.name: p.zero_m for p in kinematics.key_points}
+    twist_rad = np.zeros((len(q_rad), 2))
+    for i, side in enumerate(("left", "right")):
+        joint = kinematics.robot.joint_with_role(f"{side}_forearm_yaw")
+        if joint is not None:
+            along = points[f"{side}_wrist"] - points[f"{side}_elbow"]
+            twist_rad[:, i] = np.sign(kinematics.axes[joint] @ along) * q_rad[:, joint]
+    return poses_of_joints(joints_m, head_quat_wxyz, twist_rad, FPS)
+
+
+def _checked(retargeter: Retargeter, q_rad: Array, sides: Sides, notes: list[str]) -> Taught:
+    """Positions as a gesture that this robot can show, with notes of what it took.
+
+    Raises:
+        ClipError: the robot's path for it is not free of itself.
+    """
+    limits = retargeter.limits
+    q, beyond = inside_positions(q_rad, limits, retargeter.robot.joint_names)
+    q, times = slowed(q, limits.velocity_rad_s)
+    if times > 1:
+        beyond.append(
+            f"a hand was {times:.2f} times as fast as a joint may be: slower there, {len(q) / FPS:.1f} s in all"
+        )
+    near = np.flatnonzero(retargeter.contact.frames(q))
+    if len(near):
+        pairs = ", ".join(f"{a} and {b}" for a, b in retargeter.contact.pairs(q[near[0]])[:3])
+        beyond.append(
+            f"from {near[0] / FPS:.1f} to {near[-1] / FPS:.1f} s the robot was led nearer to itself than it goes by itself"
+            f"{f' ({pairs})' if pairs else ''}: it keeps its distance there"
+        )
+    posture = on_a_person(retargeter.kinematics, q)
+    path = retargeter.retarget(posture.motion())
+    if retargeter.contact.along(path.control_rad).any():
+        raise ClipError("no path leads through it that keeps the robot off itself; teach it with the arms further out")
+    report = path.report
+    shown = f"played back, the arms point within {report.direction_mean_deg:.1f} degrees of what was taught on average"
+    return Taught(posture, sides, (*notes, *beyond, f"{shown}, {report.direction_max_deg:.1f} at most"))

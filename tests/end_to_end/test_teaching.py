@@ -1,0 +1,200 @@
+"""`mmmd gesture teach` as a person uses it: a hand leads the limp arms of simulated servos, and the robot shows it afterwards."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+from daemon.client import RefusedError
+from daemon.gestures.library import GestureLibrary
+from retarget.pipeline import Retargeter
+from tests.support.harness import MMMD, RunningDaemon
+from tests.support.robot_states import ROBOT, within
+
+pytestmark = [pytest.mark.realtime, pytest.mark.timeout(180)]
+RIGHT_ROLL, RIGHT_ELBOW = (ROBOT.joint_names.index(f"right_{part}") for part in ("shoulder_roll", "elbow"))
+
+
+def raised(share: float) -> np.ndarray:
+    """The park pose with the right arm lifted to the side by a share of 60 degrees, its elbow bent."""
+    q = ROBOT.park_rad.copy()
+    out = 1 if ROBOT.position_max_rad[RIGHT_ROLL] > -ROBOT.position_min_rad[RIGHT_ROLL] else -1
+    q[RIGHT_ROLL] += out * share * np.deg2rad(60)
+    q[RIGHT_ELBOW] += share * np.deg2rad(50)
+    return q
+
+
+UP_AND_DOWN = [raised((1 - np.cos(2 * np.pi * k / 50)) / 2) for k in range(51)]
+"""Poses of a hand that lifts the arm and lowers it again in 2.5 s, 20 a second."""
+
+
+class Teaching:
+    """The command in a process of its own, with a person at its terminal."""
+
+    def __init__(self, daemon: RunningDaemon, *arguments: str) -> None:
+        self.said = ""
+        self._process = subprocess.Popen(
+            [*MMMD, "gesture", "teach", *arguments, *daemon.at],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+
+    def until(self, words: str) -> None:
+        """Read what is printed up to a line with these words."""
+        assert self._process.stdout is not None
+        while words not in self.said:
+            line = self._process.stdout.readline()
+            assert line, f"{words!r} was not said in {self.said!r}: {self._process.communicate(timeout=10)}"
+            self.said += line
+
+    def type(self, line: str) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.write(line + "\n")
+        self._process.stdin.flush()
+
+    def interrupt(self) -> None:
+        self._process.send_signal(signal.SIGINT)
+
+    def ended(self) -> tuple[int, str]:
+        """Exit status and the complaints."""
+        said, complaints = self._process.communicate(timeout=60)
+        self.said += said
+        return self._process.returncode, complaints
+
+    def close(self) -> None:
+        if self._process.poll() is None:
+            self._process.kill()
+        self._process.communicate()
+
+
+@pytest.fixture
+def taught(servos, tmp_path, monkeypatch) -> Iterator[tuple[RunningDaemon, Callable]]:
+    """A daemon with a gesture folder of its own; and how `teach` is begun."""
+    monkeypatch.setenv("MMMD_GESTURES", str(tmp_path / "gestures"))
+    daemon = RunningDaemon(bus=servos.url)
+
+    @contextmanager
+    def begun(*arguments: str) -> Iterator[Teaching]:
+        teaching = Teaching(daemon, *arguments)
+        try:
+            yield teaching
+        finally:
+            teaching.close()
+
+    try:
+        daemon.until_ready()
+        yield daemon, begun
+        servos.assert_kept()
+    finally:
+        daemon.close()
+
+
+def lead(daemon: RunningDaemon, servos, poses) -> None:
+    """A hand goes on by a pose with each measurement that the daemon publishes."""
+    with daemon.client() as client:
+        for pose, _ in zip(poses, client.watch("v1/state"), strict=False):
+            servos.bus.world.move_by_hand(pose)
+
+
+def test_a_led_arm_becomes_a_gesture_that_the_robot_shows(taught, servos, tmp_path):
+    """From an armed robot to the played gesture; text cannot arm it meanwhile, and the audit of every goal is clean."""
+    daemon, begun = taught
+    with daemon.client() as client:
+        client.arm()
+        client.wait_for("idle", timeout_s=20)
+        with begun("my_lift", "--limp", "--play", "--text", "lifts an arm") as teaching:
+            teaching.until("it may go limp now? (yes or no)")
+            assert servos.torque and "FALLS" in teaching.said and "waist_pitch" in teaching.said
+            teaching.type("yes")
+            teaching.until("Enter ends it")
+            within(5, "no servo has torque", lambda: not servos.torque)
+            lead(daemon, servos, UP_AND_DOWN)
+            with pytest.raises(RefusedError, match="arm"):
+                client.say("wave", wait=False)
+            lead(daemon, servos, [raised(0.6)] * 3)  # it is armed from where the hand left it
+            teaching.type("")
+            teaching.until("let go of the robot")
+            assert client.status().state == "limp" and not servos.torque
+            teaching.type("yes")
+            status, complaints = teaching.ended()
+        assert status == 0, complaints
+        assert "kept my_lift: gesture of" in teaching.said and "the right arm" in teaching.said
+        clip = GestureLibrary(tmp_path / "gestures").get("my_lift")
+        assert (clip.side, clip.text) == ("right", "lifts an arm")
+        shown = Retargeter(ROBOT).retarget(clip.posture.motion()).q_rad
+        assert np.abs(shown - raised(1.0))[:, [RIGHT_ROLL, RIGHT_ELBOW]].max(1).min() < np.deg2rad(5)
+        assert 2.0 < len(clip.posture) / clip.posture.fps < 4.0, "its still ends are cut"
+        info = next(g for g in client.capabilities().gestures if g.name == "my_lift")
+        assert info.own and info.side == "right"
+        assert client.gesture("my_lift", mirror=True).done is not None
+
+
+def test_ctrl_c_leaves_the_robot_limp_and_says_what_is_lost(taught, servos, tmp_path):
+    daemon, begun = taught
+    with begun("my_lift", "--limp", "--yes") as teaching:
+        teaching.until("Enter ends it")
+        lead(daemon, servos, UP_AND_DOWN[:20])
+        teaching.interrupt()
+        status, complaints = teaching.ended()
+    assert status == 130
+    assert "recorded and are NOT kept" in complaints and "only `mmmd arm` leads on" in complaints
+    assert not servos.torque and not (tmp_path / "gestures").exists()
+    with daemon.client() as client:
+        assert client.status().state == "limp"
+
+
+def test_an_estop_or_somebody_who_arms_ends_the_recording(taught, servos):
+    daemon, begun = taught
+    for disturb in ("arm", "estop"):
+        with begun("my_lift", "--limp", "--yes", "--seconds", "30") as teaching, daemon.client() as client:
+            teaching.until("move the arms; 30 s")
+            lead(daemon, servos, UP_AND_DOWN[:5])
+            getattr(client, disturb)()
+            status, complaints = teaching.ended()
+            assert status == 2 and "so the recording ended" in complaints and "NOT kept" in complaints
+
+
+def test_a_pose_is_taught_and_gone_through(taught, servos, tmp_path):
+    daemon, begun = taught
+    lead(daemon, servos, [raised(1.0)])
+    with begun("arm_out", "--limp", "--yes", "--pose", "--seconds", "1") as teaching:
+        status, complaints = teaching.ended()
+    assert status == 0, complaints
+    clip = GestureLibrary(tmp_path / "gestures").get("arm_out")
+    assert len(clip.posture) == 20 and "inbetween arm_out@2" in teaching.said
+    with daemon.client() as client:
+        client.arm()
+        client.wait_for("idle", timeout_s=20)
+        client.gesture("arm_out", hold=True)
+        there = np.array(client.status().goal_rad)
+        assert np.abs(there - raised(1.0))[[RIGHT_ROLL, RIGHT_ELBOW]].max() < np.deg2rad(5)
+
+
+def test_nothing_goes_limp_or_is_written_over_unasked(taught, servos, tmp_path):
+    """A trunk that would fall, a name that is taken, a no, an end of input: refused before anything changes."""
+    daemon, _ = taught
+    with daemon.client() as client:
+        client.arm()
+        client.wait_for("idle", timeout_s=20)
+        cases = [
+            (("my_lift", "--yes"), "", 2, "waist_pitch would fall"),
+            (("nod", "--limp", "--yes"), "", 1, "one that ships"),
+            (("nod", "--limp"), "no", 1, "one that ships"),
+            (("my_lift", "--limp"), "no", 2, "nothing was changed"),
+            (("my_lift", "--limp"), None, 2, "end of input"),
+            (("My Lift", "--limp"), "", 1, "a-z"),
+            (("my_lift", "--limp", "--seconds", "600"), "", 2, "60 at most"),
+        ]  # fmt: skip
+        for arguments, typed, wanted, says in cases:
+            done = subprocess.run(
+                [*MMMD, "gesture", "teach", *arguments, *daemon.at], capture_output=True, text=True, timeout=60,
+                check=False, **({"stdin": subprocess.DEVNULL} if typed is None else {"input": typed + "\n"}),
+            )  # fmt: skip
+            assert done.returncode == wanted and says in done.stderr, (arguments, done.returncode, done.stderr)
+            assert client.status().state in ("idle", "holding") and servos.torque
+    assert not os.path.exists(tmp_path / "gestures")
