@@ -8,12 +8,13 @@ TORCH ?= cpu
 export OMP_NUM_THREADS ?= 1
 export OMP_WAIT_POLICY ?= passive
 
-.PHONY: help setup demo test check format soak clean
+.PHONY: help setup demo test check docs format soak clean
 
 help:
 	@echo "make demo    set up, start the simulated robot and the daemon, send three commands, show what happened"
 	@echo "make test    set up and pass the tests"
 	@echo "make check   formatting, lint, types, import rules"
+	@echo "make docs    the pages of docs/ as a site, in out/site; a warning or a link that leads nowhere is an error"
 	@echo "make format  let ruff format the code"
 	@echo "make soak    hours of simulated faults (not part of make test)"
 	@echo "make clean   remove the virtual environment and what runs wrote"
@@ -48,6 +49,9 @@ check: setup
 	$(BIN)/ruff check .
 	$(BIN)/pyright
 	$(BIN)/lint-imports
+
+docs: setup
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet -f docs/tools/mkdocs.yml
 
 format: setup
 	$(BIN)/ruff format .
