@@ -203,9 +203,11 @@ def prepared(folder: Path):
     shutil.copy(ROOT / "retarget/robots/reference/robot.xml", folder / "my_torso.xml")
     (folder / "my.urdf").write_text(urdf())
     (folder / "path.jsonl").write_text("".join(f'{{"right_elbow": {0.2 + 0.001 * i:.3f}}}\n' for i in range(20)))
-    faults = next(b for b in PAGES["docs/simulator.md"] if b.kind == "toml")
-    for name in ("f.toml", "faults.toml"):
-        (folder / name).write_text("\n".join(faults.lines))
+    faults = next(b for b in PAGES["docs/simulator.md"] if b.kind == "toml").lines
+    (folder / "f.toml").write_text("\n".join(faults))
+    (folder / "faults.toml").write_text(
+        "\n".join(line for line in faults if not line.startswith("path"))
+    )  # for two ports
     return terminal(folder)
 
 
