@@ -13,6 +13,7 @@ import pytest
 
 from daemon.client import RefusedError
 from daemon.gestures.library import GestureLibrary
+from daemon.wire.requests import KeyPoseOf
 from retarget.pipeline import Retargeter
 from tests.support.harness import MMMD, RunningDaemon
 from tests.support.robot_states import ROBOT, within
@@ -148,6 +149,45 @@ def test_ctrl_c_leaves_the_robot_limp_and_says_what_is_lost(taught, servos, tmp_
         assert client.status().state == "limp"
 
 
+def test_ctrl_c_before_and_after_the_recording_says_what_the_robot_does(taught, servos, tmp_path):
+    """At the question, on the way to the park pose or to rest, in the motion: safe, and nothing that was taught is lost."""
+    daemon, begun = taught
+    asked, plays = ("my_lift", "--limp"), ("my_lift", "--limp", "--play", "--force")
+    with daemon.client() as client:
+        client.arm()
+        client.gesture("raise_right", hold=True)
+
+        def stopped(teaching: Teaching, says: str, *ends: str) -> None:
+            teaching.interrupt()
+            status, complaints = teaching.ended()
+            assert status == 130 and says in complaints and "NOT kept" not in complaints, complaints
+            client.wait_for(*ends, timeout_s=20)
+
+        with begun(*asked) as teaching:
+            teaching.until("(yes or no)")
+            stopped(teaching, "nothing was changed", "idle", "holding")
+            assert servos.torque
+        with begun(*asked) as teaching:
+            teaching.until("(yes or no)")
+            teaching.type("yes")
+            client.wait_for("parking", timeout_s=5)
+            stopped(teaching, "goes on to park", "limp")
+        for moment, says, ends in (
+            ("arming", "goes on slowly to its rest pose", "idle"), ("moving", "cancelled 'my_lift'", "holding"),
+        ):  # fmt: skip
+            with begun(*plays) as teaching:
+                teaching.until("(yes or no)")
+                teaching.type("yes")
+                teaching.until("Enter ends it")
+                lead(daemon, servos, UP_AND_DOWN)
+                teaching.type("")
+                teaching.until("let go of the robot")
+                teaching.type("yes")
+                client.wait_for(moment, timeout_s=20)
+                stopped(teaching, says, ends)
+    assert GestureLibrary(tmp_path / "gestures").get("my_lift").side == "right"
+
+
 def test_an_estop_or_somebody_who_arms_ends_the_recording(taught, servos):
     daemon, begun = taught
     for disturb in ("arm", "estop"):
@@ -170,9 +210,13 @@ def test_a_pose_is_taught_and_gone_through(taught, servos, tmp_path):
     with daemon.client() as client:
         client.arm()
         client.wait_for("idle", timeout_s=20)
-        client.gesture("arm_out", hold=True)
-        there = np.array(client.status().goal_rad)
-        assert np.abs(there - raised(1.0))[[RIGHT_ROLL, RIGHT_ELBOW]].max() < np.deg2rad(5)
+        for show in (
+            lambda: client.gesture("arm_out", hold=True),
+            lambda: client.inbetween([KeyPoseOf(at_s=1, standing=True), KeyPoseOf(at_s=2.5, gesture="arm_out")]),
+        ):
+            show()
+            there = np.array(client.status().goal_rad)
+            assert np.abs(there - raised(1.0))[[RIGHT_ROLL, RIGHT_ELBOW]].max() < np.deg2rad(5)
 
 
 def test_nothing_goes_limp_or_is_written_over_unasked(taught, servos, tmp_path):

@@ -91,6 +91,13 @@ TYPED = (
     Typed(("say", "wave", "--seed", "-4", *NOWHERE), 2, "a seed outside its range", "choose a value within it"),
     Typed(("say", "wave", "--loop", "--hold", *NOWHERE), 2, "options that exclude each other", "leave one out"),
     Typed(("gesture", "play", "No Such", *NOWHERE), 2, "a name that no gesture can have", "mmmd gesture list"),
+    Typed(
+        ("gesture", "teach", "nod", "--yes", *NOWHERE), 1, "a gesture has that name, and --yes takes no gesture's place",
+        "another name, or --force",
+    ),
+    Typed(
+        ("gesture", "teach", "my_nod", "--seconds", "90", *NOWHERE), 2, "longer than a gesture may be", "60 s or less",
+    ),
     Typed(("status", *NOWHERE), 1, "no daemon there", "start `mmmd run`, or name its endpoints"),
     Typed(("status", "--ctl", "5872"), 2, "an endpoint that is none", "name it as tcp://HOST:PORT or ipc://PATH"),
     Typed(("stop", "--ctl", "tcp://192.168.1.5:5872"), 2, "another machine without keys", "mmmd keys --help"),
