@@ -10,6 +10,8 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
+from daemon.cli.program import COMMANDS
+
 ROOT = Path(__file__).parent.parent.parent
 DOCS, SETTINGS = ROOT / "docs", ROOT / "docs/tools/mkdocs.yml"
 PAGES = sorted(str(page.relative_to(DOCS)) for page in DOCS.rglob("*.md"))
@@ -78,6 +80,14 @@ def test_the_first_page_leads_to_every_part_of_the_site(site):
         str((site / unquote(urlsplit(link).path)).relative_to(site)) for link in index if not urlsplit(link).scheme
     }
     assert {str(html(site, page).relative_to(site)) for page in PAGES} - {"index.html"} <= reached
+
+
+def test_every_command_is_in_the_site_with_its_options(site):
+    page = Links(site / "commands.html")
+    assert {f"mmmd-{name}" for name in COMMANDS} <= page.places
+    said = (site / "commands.html").read_text("utf-8")
+    assert all(option in said for option in ("--sides", "--estop", "--tempo", "--robot"))
+    assert leads_nowhere(site, site / "commands.html") == []
 
 
 def test_a_wrong_link_and_a_page_left_out_are_found(tmp_path):
