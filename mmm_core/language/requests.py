@@ -15,13 +15,29 @@ _ACT = (
     r"play|act|show|strike|flex|lower|put|hold|shade|celebrate|throw|welcome|thank|say|tell|hush|call|flex|pretend|move|bring|let us see you|sway|duck|facepalm|signal|hammer|paint|brush|drum|box|drink|eat|pour|kiss|listen|yawn|climb|swim|steer|type|juggle|flip|rotate|rock|slump|relax|drop|place|"
     r"extend|straighten|uncross|roll|bob|wag|tip|incline|motion|gesture|indicate|demonstrate|perform|imitate|mime|box|jab|row|saw|sow)\b"
 )
+_STORY = (
+    r"(?!(?:please |now |and |then |ok(?:ay)?,? |robot,? |first,? |@ACT)*(?:@ACT|hands?\b|arms?\b|head\b|(?:your|both|left|right|the (?:left|right))\b|"
+    r"(?:after|before|once|when|while|as|if|instead of|without|rather than|having)(?: you\b| \w+ing\b)|do not|never|not\b|no\b|stop|skip|forget|only\b|neither))"
+).replace("|@ACT)*", ")*").replace("@ACT", _ACT)
+"""What a story before a request does not begin with: a command, an order of commands, a denial."""
+_ASKS = (
+    r"(?:(?:can|could|would|will|might) you|(?:might|may|could|can|must|should|would) (?:i|we) (?:please |just |kindly |also )*(?:trouble|ask|beg|request|invite|persuade|bother|get|have) you to|"
+    r"(?:i|we) (?:(?:would|do|really|just|only|simply|also|am|was|were) )*wonder(?:ing)?(?: if| whether) you (?:would|could|might|can|will)|"
+    r"(?:i|we|they|he|she|everybody|everyone|the \w+|my \w+)(?: would| do| really| just| now| simply| only| all)* (?:like|love|want|need|wish|expect|ask|beg|prefer|ought|likes|loves|wants|needs)(?: to (?:see|have|watch))? you(?: to)?|"
+    r"if you (?:could|would|might|were to)|(?:perhaps|maybe) you (?:could|would|might|can|should)|(?:i|we) (?:think|believe|guess|suggest|propose|recommend|insist)(?: that)? you (?:should|could|might|ought to|had better|must)?|"
+    r"(?:so|therefore|and|now) (?:please|kindly|just|do)|(?:so|and) be (?:so )?(?:kind|good|nice|an? \w+)(?: enough)?(?: as)? (?:to|and)|do (?:just|please|kindly)|please|go ahead and|why do not you|how about you|"
+    r"let (?:me|us) see you|the time has come (?:for you )?to|it is (?:now )?time (?:for you )?to|your (?:job|task|turn|part) (?:now )?is (?:simply |just )?to|what about|how about)[, ]+"
+)
+"""Words that ask for something in the middle of a sentence."""
 _END = re.compile(r"[\s,.!?;:]+$")
 
 
 @cache
 def _frames() -> tuple[tuple[re.Pattern[str], ...], tuple[re.Pattern[str], ...]]:
     """Patterns at the front and at the end of a request."""
-    patterns = [line.replace("@ACT", _ACT) for line in lines("frames")]
+    patterns = [
+        line.replace("@STORY", _STORY).replace("@ASKS", _ASKS).replace("@ACT", _ACT) for line in lines("frames")
+    ]
     front = tuple(re.compile(p) for p in patterns if p.startswith("^"))
     return front, tuple(re.compile(p) for p in patterns if not p.startswith("^"))
 
