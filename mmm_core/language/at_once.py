@@ -42,11 +42,11 @@ _ENDS = re.compile(r"\b(?:bow|bows|curtsy|salute|slump|celebrate)\b")
 """Verbs of gestures that are done by themselves: "clap and bow" is in turn."""
 _VERB_FIRST = re.compile(r"^(?:also )?(?!(?:left|right|both|your|the|one|hands?|arms?|head|eyes|a|an)\b)\w+")
 _WHILE = re.compile(
-    r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as)\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*"
+    r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as|(?:during|for|all) (?:all |the (?:whole |entire )?)?time(?: that| in which)?|for as long as|as long as)\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*"
 )
 _AS_YOU = re.compile(r"\s*,?\s*\bas you(?: are)?\s+")
 _SAME_TIME = re.compile(
-    r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same (?:time|moment)|simultaneously|at once|together|in one go|all at once|concurrently)\b[,:]?\s*(?:and )?"
+    r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same (?:time|moment)|simultaneously|at once|together|(?:all )?in one(?: go| movement| motion)?(?=$|[,.])|all at once|concurrently|in parallel|meanwhile(?=$|[,.]))\b[,:]?\s*(?:and )?"
 )
 _LEADING = re.compile(
     r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$"
@@ -70,7 +70,7 @@ _ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
 _HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)\b.*\b(?:seconds?|secs?)\b")
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
 _IS = re.compile(
-    r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|stays?|remains?|goes|keeps?|rests?)(?: being| held)? (?P<rest>.+)$"
+    r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|stays?|remains?|goes|keeps?|rests?|sits?|lies|lays?|stands?)(?: being| held)? (?P<rest>.+)$"
 )
 
 

@@ -33,20 +33,21 @@ DONE = (
     + r"(?: with (?:that|this|it))?(?! \w+ing\b| with\b)"
 )
 """'Once that is done'."""
-BACK_UP = r"(?:once|when|as soon as) you(?:'re| are| stand| get| come)(?: back)?(?: up| upright| straight)(?: again)?"
+BACK_UP = r"(?:once|when|as soon as) you(?:'re| are| stand| get| come)(?: back)?(?: up| upright| straight| there| in (?:place|position)| that far)(?: again)?"
 """'Once you're up again'."""
 NEXT = _any(
     "then(?! some)", "(?:after|following) (?:all )?(?:that|this|which)", "afterwards?", "thereafter", "thereupon", "whereupon",
     "subsequently", r"(?<!\bthe )next(?!\s+to\b)",
     "later(?: on)?", "finally", "lastly", "at last", "last of all", "in the end", "to finish",
     "(?:secondly|thirdly|fourthly)", r"(?<!one )(?<!1 )(?<!\ba )(?:second|third|fourth)(?! \w+)", "(?<!right )now(?! and then)",
-    "(?:then )?straight into", BACK_UP, DONE,
+    "(?:then )?straight into", r"from there(?: on)?(?:,? (?:you )?(?:go|move|carry|pass|continue|proceed)(?: on)?(?: (?:to|with))?)?",
+    r"(?:after|following) an? (?:short |brief |little |quick )?(?:beat|pause|moment|second|while|breath|bit|rest)", BACK_UP, DONE,
 )  # fmt: skip
 DIVIDES = _pattern(
     "|".join((
         rf"\s*[,;:.!]*\s*(?<!\w)(?<!\bnow )(?<!now and )(?:and\s+|but\s+)?{NEXT}(?!\w|\s+time)[,:]?\s*",
         r"\s*,?\s*(?:and\s+)?(?:(?:is|are|being)\s+)?(?:immediately\s+)?\bfollowed\s+(?:up\s+)?(?:by|with)\b[,:]?\s*",
-        r"\s*,?\s*(?:and\s+)?\b(?:end|finish|move|wrap)(?:\s+(?:off|up|on))?\s+(?:with|by|to|on)\b\s*",
+        r"\s*,?\s*(?:and\s+)?\b(?:end|finish|move|wrap|(?:go|carry|proceed|continue)(?=\s+on\s+(?:to|with)\b))(?:\s+(?:off|up|on))?\s+(?:with|by|to|on)\b\s*",
         r"\s*,?\s*(?:and\s+)?\bend\s+up\s+(?=\w+ing\b)",
         r"\s*;\s*|\s*[.!]+\s+|\s*->\s*",
         r"(?:^|[\s,;.])\s*\(?(?:[1-9][.)]|[a-d]\))\s*(?=[A-Za-z])",

@@ -28,7 +28,7 @@ _BETWEEN = re.compile(
     r"|\binstead,? (?!of\b)|\binstead$)\s*"
 )
 _INLINE = re.compile(
-    r"\s*,?\s*\b(?P<not>instead of|rather than|as opposed to|and not|but not|but without|and never|but never|without(?: using| moving)?|(?:and|but) do not|(?<!do )(?<!is )(?<!am )(?<!are )(?<!will )(?<!can )(?<!did )(?<!does )(?<!would )(?<!it )not(?! only)|and no|but no|(?:just|only) not|except(?: for)?(?: with)?)\s+"
+    r"\s*,?\s*\b(?P<not>instead of|rather than|as opposed to|and not|but not|but without|and never|but never|without(?: using| moving)?|(?:and|but) do not|(?<!do )(?<!is )(?<!am )(?<!are )(?<!will )(?<!can )(?<!did )(?<!does )(?<!would )(?<!it )not(?! only)|and no|but no|(?:just|only) not|except(?: for)?(?: with)?|(?:and|but) (?:please )?(?:skip|leave out|forget|omit|drop|cut|spare (?:me|us)|never mind|no more|stop)(?: about)?)\s+"
     r"(?P<what>[^,;:.!]+)"
 )
 _GERUND_FIRST = re.compile(
@@ -42,7 +42,7 @@ _SIDE_ONLY = re.compile(
     r"(?: (?:hand|arm|one|side|fist|palm))?(?: (?:this time|at all|alone|though|please|either|now))?$"
 )
 _LEAVE = re.compile(
-    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:leave|keep|leaving|keeping|let)\s+(?:your |the )?(?P<side>left|right) (?:hand|arm)\s+"
+    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:leave|keep|leaving|keeping|let)\s+(?:your |the )?(?P<side>left|right) (?:hand|arm|one)\s+"
     r"(?:alone|out of it|out|still|down|hanging|at rest|where it is|at your side|rest|hang|by your side|in your pocket)\b,?\s*(?:and\s+)?"
 )
 _KEEP_STILL = re.compile(
@@ -64,7 +64,7 @@ _KEEP_DOING = re.compile(
     r"^\W*(?:please )?(?:do not|never) stop (?P<rest>\w.+)$|^\W*(?:please )?do not (?:forget|hesitate) to (?P<other>.+)$"
 )
 _ACTS_ALSO = re.compile(
-    r"\b(?:clap|bow|nod|wave|salut|point|rais|lift|shrug|shak|lean|cross|lower|mov|lookin?g?|danc|cheer|hand|arm|head|fist|finger|beckon|applau|punch|kneel|turn|tilt|touch|cover|hug|stretch|greet|twist|sway|rub|pat|fold|gestur)\w*"
+    r"\b(?:clap|bow|nod|wave|salut|point|rais|lift|shrug|shak|lean|cross|lower|mov|lookin?g?|danc|cheer|hand|arm|head|fist|finger|beckon|applau|punch|kneel|turn|tilt|touch|cover|hug|stretch|greet|twist|sway|rub|pat|fold|gestur|saw|sow|hammer|paint|drum|box|yawn|swim|row|climb|juggl|pray|push|pull|throw|catch|knock|flex|stir|conduct|steer|blow|kiss|wip|scratch|play|facepalm|flap|march)\w*"
 )
 _NOT_USING = re.compile(
     r"^\W*(?:please )?(?:do not|never) (?:use|take) (?:your |the )?(?P<side>left|right) (?:hand|arm|one) (?:to|for|when|and) (?P<rest>\w.+)$"

@@ -15,10 +15,10 @@ _AFTER_VERB = (
     r"(?:go |come |move |switch |change |over |out |straight |now |finally |also |back |all the way |around )*"
 )
 _WAY_PHRASE = re.compile(
-    rf"\b(?:(?:up|down|over) (?:to|at) (?:the|your) (?!left|right)\w+|(?:over |out |straight |up |down )*(?:to|towards?|at|on) (?:the |your )?(?:left|right)(?: side)?|(?:to )?(?:the )?(?:left|right)(?! {_LIMB}\b)(?! side)|{_WAYS})(?!\w)"
+    rf"\b(?:(?:up|down|over) (?:to|at|towards|into|on) (?:the|your|my) (?!left|right)\w+|(?:over |out |straight |up |down )*(?:to|towards?|at|on) (?:the |your )?(?:left|right)(?: side)?|(?:to )?(?:the )?(?:left|right)(?! {_LIMB}\b)(?! side)|{_WAYS})(?!\w)"
 )
 _DIRECTION = re.compile(
-    rf"^(?!(?:come|go|get|move|step) back){_AFTER_VERB}(?P<way>(?:(?:to|towards?|at|on) )?(?:the |your )?(?P<side>left|right)(?: side| one| again)?|{_WAYS}|(?:up|down|back|over) to (?:the |your )?\w+)$"
+    rf"^(?!(?:come|go|get|move|step) back)(?:one |another )?{_AFTER_VERB}(?P<way>(?:(?:up |down )?(?:to|towards?|at|on) )?(?:the |your )?(?P<side>left|right)(?: side| one| again)?|{_WAYS}|(?:up|down|back|over) (?:to|at|towards|into|on) (?:the |your |my )?\w+)$"
 )
 _SIDED = re.compile(rf"\b(left|right)\b(?= {_LIMB}\b)|\b(?:the|your) (left|right)\b")
 _THE_SAME = r"(?:also |and |now )?(?:(?:do )?(?:the same|it|that|so|likewise)(?: thing)?(?: again)? )?"

@@ -21,8 +21,8 @@ _GESTURES = (
     "glances?|looks?|rolls?|presses|press|push(?:es)?|pulls?|raises?|lifts?)"
 )
 """Nouns of gestures, which an adjective of size stands before."""
-_VERY = r"(?:(?:very|really|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|way) )*"
-_STRONG = re.compile(r"\b(?:very|really|super|extremely|incredibly|ultra|extra|terribly|awfully|much|way|oh so)\b")
+_VERY = r"(?:(?:ever so|oh so|very|really|dead|proper|bloody|insanely|crazy|ridiculously|painfully|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|way) )*"
+_STRONG = re.compile(r"\b(?:ever so|very|really|dead|insanely|ridiculously|painfully|super|extremely|incredibly|ultra|extra|terribly|awfully|much|way|oh so)\b")
 _SECONDS = {**NUMBERS, "a": 1, "a couple of": 2, "a few": 3, "several": 4, "half a": 0.5}
 _NUMBER = (
     r"(a couple of|a few|several|half a|a|\d+(?:\.\d+)?|" + "|".join(word for word in NUMBERS if word.isalpha()) + ")"

@@ -17,7 +17,7 @@ _ACT = (
 )
 _STORY = (
     r"(?!(?:please |now |and |then |ok(?:ay)?,? |robot,? |first,? |@ACT)*(?:@ACT|hands?\b|arms?\b|head\b|(?:your|both|left|right|the (?:left|right))\b|"
-    r"(?:after|before|once|when|while|as|if|instead of|without|rather than|having)(?: you\b| \w+ing\b)|do not|never|not\b|no\b|stop|skip|forget|only\b|neither))"
+    r"(?:after|before|once|when|while|as|if|instead of|without|rather than|having)(?: you\b| \w+ing\b)|do not|never|not\b|no\b|stop|skip|forget|only (?!because|since)|neither))"
 ).replace("|@ACT)*", ")*").replace("@ACT", _ACT)
 """What a story before a request does not begin with: a command, an order of commands, a denial."""
 _ASKS = (
