@@ -142,9 +142,10 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 denied.append(what)
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
         if not re.fullmatch(
-            r"(?:the|use the|with the|use) other(?: one| hand| arm| way)?|instead|(?:and |but )?that is it", clause
+            r"(?:the|use the|with the|use) other(?: one| hand| arm| way)?|instead|(?:and |but )?that is it|(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*", clause
         ):
             rest.append(clause)
+    rest = [clause for i, clause in enumerate(rest) if not (denied and _is_said_again(clause, rest[:i]))]
     if not denied:
         return Denial(text if not rest or leaves else _as_it_was(text, rest))
     joined = ", ".join(rest)
@@ -157,6 +158,11 @@ def _as_it_was(text: str, rest: list[str]) -> str:
     """The text; without its clauses that were waved aside, where there were some."""
     n = sum(bool(clause.strip(" ,")) for clause in _BETWEEN.split(text))
     return text if n == len(rest) else ", ".join(rest)
+
+
+def _is_said_again(clause: str, before: list[str]) -> bool:
+    """Whether a clause says nothing that one before does not: "hammer" after "hammer with the left hand"."""
+    return any(set(clause.split()) <= set(earlier.split()) for earlier in before)
 
 
 def _note(denied: list[str], what: str) -> str:

@@ -62,6 +62,12 @@ _ONE_OTHER = re.compile(
 )
 
 
+_OTHER_PART = re.compile(
+    r"^(?:with |so )?(?:your|the) (?P<part>trunk|torso|upper body|body|waist|head|neck|shoulders|(?:left|right) (?:arm|hand)|arms)$"
+)
+_TURNED = re.compile(r"\b(?:your|the) (?:trunk|torso|upper body|body|waist|head|neck|shoulders|(?:left |right )?(?:arms?|hands?))\b")
+
+
 def with_sides(text: str) -> str:
     """A text with sides in place of "one" and "other": "one arm ..., then the other".
 
@@ -124,6 +130,8 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         return f"{limb['limb']} {clause}"
     if found := _ONLY_SIDE.match(clause):
         return f"{before} with your {found['side']} hand"
+    if (part := _OTHER_PART.match(clause)) and (limb := _TURNED.search(before)) and not limb.start() == 0:
+        return f"{before[: limb.start()]}your {part['part']}{before[limb.end() :]}"
     if _PLACE.match(clause) and _AT_PLACE.search(before):
         return _AT_PLACE.sub(clause, before)
     if _PLACE.match(clause) and (limb := _LIMB_SUBJECT.match(before)):

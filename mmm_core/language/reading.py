@@ -94,6 +94,10 @@ def _hand_first(said: str) -> tuple[str, str]:
     listed = _LIMB_OF_ALL.match(said)
     if listed is not None:
         parts = re.split(r",?\s+(?:and|then)\s+|,\s*", listed["parts"])
+        sided = [re.match(r"(left|right)(?: one| (?:arm|hand))? (.+)", part) for part in parts if part]
+        if len(sided) > 1 and all(sided):
+            limb = "hand" if "hand" in listed["limb"] else "arm"
+            return ", ".join(f"{m[1]} {limb} {m[2]}" for m in sided if m), ""
         return ", then ".join(f"{listed['limb']} {part}" for part in parts if part), ""
     found = re.match(
         r"(?:with|using|use) (?:your |the )?(left|right) (?:hand|arm)[:,]? (?:first |to )?(?P<rest>.+)$", said

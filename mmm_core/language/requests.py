@@ -24,7 +24,7 @@ _ASKS = (
     r"(?:(?:can|could|would|will|might) you|(?:might|may|could|can|must|should|would) (?:i|we) (?:please |just |kindly |also )*(?:trouble|ask|beg|request|invite|persuade|bother|get|have) you to|"
     r"(?:i|we) (?:(?:would|do|really|just|only|simply|also|am|was|were) )*wonder(?:ing)?(?: if| whether) you (?:would|could|might|can|will)|"
     r"(?:i|we|they|he|she|everybody|everyone|the \w+|my \w+)(?: would| do| really| just| now| simply| only| all)* (?:like|love|want|need|wish|expect|ask|beg|prefer|ought|likes|loves|wants|needs)(?: to (?:see|have|watch))? you(?: to)?|"
-    r"if you (?:could|would|might|were to)|(?:perhaps|maybe) you (?:could|would|might|can|should)|(?:i|we) (?:think|believe|guess|suggest|propose|recommend|insist)(?: that)? you (?:should|could|might|ought to|had better|must)?|"
+    r"if you (?:could|would|might|were to)|(?:i|we) (?:am|was|are|were|have been) (?:just |only |really )*(?:hoping|thinking|wishing|counting on it)(?: that| if| whether)? you (?:could|might|would|can|will)|it would be (?:\w+ ){1,3}(?:if you (?:could|would)|to see you|to have you)|(?:perhaps|maybe) you (?:could|would|might|can|should)|(?:i|we) (?:think|believe|guess|suggest|propose|recommend|insist)(?: that)? you (?:should|could|might|ought to|had better|must)?|"
     r"(?:so|therefore|and|now) (?:please|kindly|just|do)|(?:so|and) be (?:so )?(?:kind|good|nice|an? \w+)(?: enough)?(?: as)? (?:to|and)|do (?:just|please|kindly)|please|go ahead and|why do not you|how about you|"
     r"let (?:me|us) see you|the time has come (?:for you )?to|it is (?:now )?time (?:for you )?to|your (?:job|task|turn|part) (?:now )?is (?:simply |just )?to|what about|how about)[, ]+"
 )

@@ -46,6 +46,10 @@ _NEIGHBOURS = {
     for i, key in enumerate(row)
 }
 """Keys beside, above and below each key."""
+_GLUES = frozenset(
+    ("your the both with left right hand hands arm arms head and then to me up down please twice times slowly fast").split()
+)
+"""Words that are typed together with the next or the one before."""
 _COMMON = 0.72
 """How rare the words may be of a command in which every word is a slip: among the commonest 540 of the corpus."""
 _RARE = 0.35
@@ -169,8 +173,22 @@ def mended_word(word: str) -> str:
     """
     if _is_right(word.lower()):
         return word
+    if glued := _parted(word.lower()):
+        return glued
     cost, meant = _nearest(word.lower())
     return meant if cost <= NEAR_ENOUGH else word
+
+
+def _parted(word: str) -> str:
+    """The words of a command that were typed without a blank: "yourleft" -> "your left"; "" where it is none.
+
+    One of two words is among those that glue to others, the other one is common in the corpus.
+    """
+    for i in range(2, len(word) - 1):
+        a, b = word[:i], word[i:]
+        if (a in _GLUES and _meant().get(b, 1.0) < _COMMON) or (b in _GLUES and _meant().get(a, 1.0) < _COMMON):
+            return f"{a} {b}"
+    return ""
 
 
 def _cost_of(word: str) -> float:

@@ -1,0 +1,175 @@
+"""General forms of English, each with many ways to say it and with sentences that look like it and are none."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmm_core.language.reading import read
+
+
+def said(text: str) -> str:
+    """The commands that are read, as one line: "nod + clap; bow"."""
+    return "; ".join(read(text).sentences)
+
+
+class TestStoriesAroundARequest:
+    @pytest.mark.parametrize(
+        ("text", "command"),
+        [
+            ("My old mum has not seen you for weeks, perhaps you could wave to her with your left hand",
+             "wave to her with your left hand"),
+            ("The kids have been asking all day so I wonder whether you might flap your arms like a bird",
+             "flap your arms like a bird"),
+            ("With the planer on I hear nothing, so for an answer do just nod twice, would you, love", "nod twice"),
+            ("We've lost the cat and my neck hurts, so might I ask you to look up for me?", "look up"),
+            ("Sorry to bother you at work, but would you mind awfully turning your head to the right?",
+             "turn your head to the right"),
+            ("The visitors are coming up the drive, so if you could manage a proper salute, that'd make their day", "a salute"),
+            ("In this session we work on the back, and what I would like to see, if it doesn't hurt, is a rotation of the trunk "
+             "to the left", "turn your trunk to the left"),
+            ("For the check we need one more measurement, so please be so kind as to extend your right arm forward",
+             "extend your right arm forward"),
+            ("I was hoping you might wave", "wave"),
+            ("I never said you should bow, I said clap", "clap"),
+            ("It's so loud in here, would you do me a favor and cover your ears, just so I don't feel alone?", "cover your ears"),
+            ("What's up there? Have a look up.", "look up"), ("can you see the moon? look up", "look up"),
+            ("clap your hands, the show is over", "clap your hands"), ("Saw away, the merchant's waiting.", "saw away"),
+            ("nod, I beg you", "nod"), ("Lean in, I'll whisper it.", "lean forward"), ("raise your left arm, it is heavy",
+             "raise your left arm"), ("lean forwards love, then backwards", "lean forward; lean back"),
+            ("tilt your head to the left, pet", "tilt your head to the left"), ("bow, old chap", "bow"),
+        ],
+    )  # fmt: skip
+    def test_is_taken_off(self, text: str, command: str) -> None:
+        assert said(text) == command
+
+    @pytest.mark.parametrize(
+        ("text", "commands"),
+        [
+            ("wave and could you please nod", "wave + nod"), ("after you clap, could you bow", "clap; bow"),
+            ("clap, then could you bow", "clap; bow"), ("I do not want you to bow", ""),
+            ("wave at the boss", "wave at the boss"), ("look at your mate", "look at your mate"),
+            ("blow a kiss to your love", "blow a kiss to your love"), ("give me some love", "give me some love"),
+            ("when I say go, wave", "when I say go, wave"), ("wave when the music starts", "wave when the music starts"),
+            ("left hand up, the right one is on your hip", "raise your left hand + put your right hand on your hip"),
+        ],
+    )  # fmt: skip
+    def test_what_is_no_story_stays(self, text: str, commands: str) -> None:
+        assert said(text) == commands
+
+
+class TestOrders:
+    @pytest.mark.parametrize(
+        ("text", "commands"),
+        [
+            ("step one tilt your head to the right step two look up step three nod", "tilt your head to the right; look up; nod"),
+            ("step 1: wave. step 2: bow", "wave; bow"), ("task one: nod, task two: clap", "nod; clap"),
+            ("First job: hands on hips. Second job: twist to the right.", "put your hands on your hips; twist to the right"),
+            ("first step is to nod, second step is to clap", "nod; clap"),
+            ("The last thing to do is bow, the first is salute.", "salute; bow"), ("bow last, wave first", "wave; bow"),
+            ("nod first, clap second", "nod; clap"), ("Wave to Mum, but bow first.", "bow; wave to mum"),
+            ("Start by shrugging; from there go on to shake your head.", "shrug; shake your head"),
+            ("cross your arms, after a beat shake your head", "cross your arms; shake your head"),
+            ("before you clap, nod", "nod; clap"), ("clap and after a short pause nod", "clap; nod"),
+            ("extend your right arm forward, and once it has been there for four seconds, lower it again",
+             "extend your right arm forward (held for 4 s); lower your right arm"),
+            ("Lean to the left, and when you're there look that way", "lean to the left; look to the left"),
+        ],
+    )  # fmt: skip
+    def test_are_read(self, text: str, commands: str) -> None:
+        assert said(text) == commands
+
+    @pytest.mark.parametrize(
+        "text", ["point at number two", "take one step to the left", "wave to the first one", "nod at the last man first"]
+    )
+    def test_numbers_of_things_are_no_order(self, text: str) -> None:
+        assert ";" not in said(text)
+
+
+class TestWhatIsLeftOut:
+    @pytest.mark.parametrize(
+        ("text", "commands"),
+        [
+            ("uppercuts please. left one. right one.", "uppercuts with your left hand; uppercuts with your right hand"),
+            ("jabs. right. left.", "jabs with your right hand; jabs with your left hand"),
+            ("lean: left, then right", "lean to the left; lean to the right"),
+            ("arms: left up, right down", "raise your left hand + lower your right arm"),
+            ("Look up at the lamp, next down at the floor.", "look up at the lamp; look down at the floor"),
+            ("I need a peek down to the left, followed by one down to the right", "look down to the left; look down to the right"),
+            ("turn your head to the right, then your trunk", "turn your head to the right; turn your trunk to the right"),
+            ("Salute with your right hand while the left sits on your hip.",
+             "salute with your right hand + put your left hand on your hip"),
+            ("Bow, hands clasped while you do it.", "bow + clasp your hands"),
+            ("look up during the time you are lifting up both arms", "look up + lift up both arms"),
+            ("lean back and yawn all in one", "lean back + yawn"), ("lean forward and clap both at once", "lean forward + clap"),
+            ("kiss your left hand and blow the kiss to me", "blow a kiss with your left hand to me"),
+        ],
+    )  # fmt: skip
+    def test_is_taken_from_the_clause_before(self, text: str, commands: str) -> None:
+        assert said(text) == commands
+
+
+class TestDenials:
+    @pytest.mark.parametrize(
+        ("text", "commands", "denied"),
+        [
+            ("Shake your head and skip the bow this time.", "shake your head", ("the bow",)),
+            ("never mind clapping just shrug", "shrug", ("clapping",)), ("forget the bow, just nod", "nod", ("the bow",)),
+            ("Hammer with the left hand. Not saw. Hammer!", "hammer with the left hand", ("saw",)),
+            ("a hug? nah. wave.", "wave", ("hug",)), ("neither clap nor nod: bow", "bow", ("clap", "nod")),
+            ("neither clap nor nod", "", ("clap", "nod")), ("No more clapping, thank you very much.", "", ("clapping",)),
+            ("Don't cover your eyes, it's your ears I want covered.", "cover your ears", ("cover your eyes",)),
+            ("No, you're not allowed to clap yet, the glue isn't dry.", "", ("clap yet",)),
+            ("Raise your right arm and leave the left one hanging.", "raise your right arm", ("the left arm",)),
+        ],
+    )  # fmt: skip
+    def test_are_kept(self, text: str, commands: str, denied: tuple[str, ...]) -> None:
+        assert (said(text), read(text).denied) == (commands, denied)
+
+    @pytest.mark.parametrize("text", ["do not just nod, bow", "a wave? yes. wave.", "not bad, clap", "no problem, wave"])
+    def test_these_deny_nothing_else(self, text: str) -> None:
+        assert read(text).steps
+
+
+class TestManner:
+    @pytest.mark.parametrize(
+        ("text", "command"),
+        [
+            ("Nod ever so slowly.", "nod (0.55 times as fast)"), ("nod dead slow", "nod (0.55 times as fast)"),
+            ("Right arm up in one swift go", "raise your right hand (1.6 times as fast)"),
+            ("The tiniest of nods, if you please.", "a nod (0.56 times as large)"),
+            ("the slowest of waves", "a wave (0.5 times as fast)"),
+            ("shake your head, but so I can hardly see it", "shake your head (0.56 times as large)"),
+            ("bow so nobody notices", "bow (0.56 times as large)"),
+            ("stir the glue with teeny weeny movements", "stir the glue (0.56 times as large)"),
+            ("bow as far as the hinge goes", "bow (1.6 times as large)"),
+            ("Just the one nod.", "nod once"), ("You should be waving to Nana four times.", "wave to nana four times"),
+            ("Pump your fist in the air: one, two, three!", "pump your fist in the air three times"),
+            ("give me half a dozen claps", "give me six claps"), ("do a couple of nods", "do two nods"),
+            ("give a shake of the head", "shake your head"), ("nod: twice", "nod twice"),
+        ],
+    )  # fmt: skip
+    def test_is_read(self, text: str, command: str) -> None:
+        assert said(text) == command
+
+    @pytest.mark.parametrize(
+        "text", ["wave so I can see it", "wave so that we can see you", "one, two, three, clap", "lean back a couple of inches"]
+    )
+    def test_these_are_as_large_as_ever(self, text: str) -> None:
+        assert "as large" not in said(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "command"),
+    [
+        ("Throw a punch with yourleft arm.", "throw a punch with your left arm"), ("raisethe right hand", "raise the right hand"),
+        ("clapyour hands twice", "clap your hands twice"), ("have a look over youre right shoulder", "look back over your right shoulder"),
+        ("wave with your lefthand", "wave with your left hand"),
+    ],
+)  # fmt: skip
+def test_words_typed_together_are_parted(text: str, command: str) -> None:
+    assert said(text) == command
+
+
+@pytest.mark.parametrize("word", ["handsome", "toenail", "uphold", "armadillo", "thermal", "message", "mechanic", "headphones"])
+def test_words_that_only_look_glued_stay(word: str) -> None:
+    assert word in said(f"point at the {word}")
