@@ -44,9 +44,11 @@ _VERB_FIRST = re.compile(r"^(?:also )?(?!(?:left|right|both|your|the|one|hands?|
 _WHILE = re.compile(
     r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as|(?:during|for|all) (?:all |the (?:whole |entire )?)?time(?: that| in which)?|for as long as|as long as)\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*"
 )
-_AS_YOU = re.compile(r"\s*,?\s*\bas you(?: are)?\s+")
+_AS_YOU = re.compile(
+    rf"\s*,?\s*\bas (?:you(?: are)?\s+|(?=(?:your|the|both) (?:left |right )?(?:{_LIMB}|head|eyes|body|trunk)\b))"
+)
 _SAME_TIME = re.compile(
-    r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same (?:time|moment)|simultaneously|at once|together|(?:all )?in one(?: go| movement| motion)?(?=$|[,.])|all at once|concurrently|in parallel|meanwhile(?=$|[,.]))\b[,:]?\s*(?:and )?"
+    r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same (?:time|moment)|simultaneously|at once|together|(?:all )?in one(?: go| movement| motion)?(?=$|[,.])|all at once|concurrently|in parallel|in (?:unison|sync|tandem)(?=$|[,.])|meanwhile(?=$|[,.]))\b[,:]?\s*(?:and )?"
 )
 _LEADING = re.compile(
     r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$"
@@ -70,8 +72,16 @@ _ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
 _HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)\b.*\b(?:seconds?|secs?)\b")
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
 _IS = re.compile(
-    r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|stays?|remains?|goes|keeps?|rests?|sits?|lies|lays?|stands?)(?: being| held)? (?P<rest>.+)$"
+    r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|(?:should|must|can|will|ought to|has to|may) (?:be|stay|remain|rest)|stays?|remains?|goes|keeps?|rests?|sits?|lies|lays?|stands?)(?: being| held)? (?P<rest>.+)$"
 )
+
+
+_ACTS = re.compile(
+    r"^(?:(?:let|have|get|make|keep) )?(?:your |the )?(?:(?P<side>left|right) (?:hand|arm|fist)|(?P<head>head)) "
+    r"(?:(?P<ing>(?:wav|salut|point|beckon|knock|punch|cover|touch|shad|scratch|shak|nodd|turn|tilt|hold|conduct|rubb|patt|wip|hammer)ing)"
+    r"|(?P<verb>wave|salute|point|beckon|knock|punch|cover|touch|shade|scratch|shake|nod|turn|tilt|conduct|rub|pat|wipe|hammer)(?:e?s)?)\b(?P<rest>.*)$"
+)
+"""'Your left hand waves', 'have your head nod'."""
 
 
 def limbs_of(clause: str) -> frozenset[str]:
@@ -196,6 +206,11 @@ def _imperative(part: str) -> str:
     part = _FRONTED.sub(r"\2 with your \1 hand", part.strip(" ,."))
     while (shorter := _FILLER.sub("", part)) != part:
         part = shorter
+    if acts := _ACTS.match(part):
+        verb = base_of(acts["ing"]) if acts["ing"] else acts["verb"]
+        if acts["head"]:
+            return f"nod{acts['rest']}" if verb == "nod" else f"{verb} your head{acts['rest']}"
+        return f"{verb}{acts['rest']} with your {acts['side']} hand"
     if stays := _IS.match(part):
         part = f"{stays['limb']} {stays['rest']}"
     if m := _GERUND.match(part):

@@ -33,14 +33,21 @@ DONE = (
     + r"(?: with (?:that|this|it))?(?! \w+ing\b| with\b)"
 )
 """'Once that is done'."""
-BACK_UP = r"(?:once|when|as soon as) you(?:'re| are| stand| get| come)(?: back)?(?: up| upright| straight| there| in (?:place|position)| that far)(?: again)?"
+BACK_UP = (
+    r"(?:once|when|as soon as) you(?:'re| are| stand| get| come)(?: back)?"
+    r"(?: up| upright| straight| there| in (?:place|position)| that far)(?: again)?"
+)
 """'Once you're up again'."""
 NEXT = _any(
-    "then(?! some)", "(?:after|following) (?:all )?(?:that|this|which)", "afterwards?", "thereafter", "thereupon", "whereupon",
+    "(?:only |just )?then(?! some)",
+    "(?:(?:straight|right|directly|immediately|soon|shortly) )?(?:after|following) (?:all )?(?:that|this|which)",
+    "afterwards?", "thereafter", "thereupon", "whereupon",
     "subsequently", r"(?<!\bthe )next(?!\s+to\b)",
-    "later(?: on)?", "finally", "lastly", "at last", "last of all", "in the end", "to finish",
+    "later(?: on)?", "finally", "lastly", "at last", "last of all", "in the end", "to (?:finish|end|close|conclude)",
+    "next up(?! to)", "(?:once|when|as soon as) (?:done|finished|ready)",
     "(?:secondly|thirdly|fourthly)", r"(?<!one )(?<!1 )(?<!\ba )(?:second|third|fourth)(?! \w+)", "(?<!right )now(?! and then)",
-    "(?:then )?straight into", r"from there(?: on)?(?:,? (?:you )?(?:go|move|carry|pass|continue|proceed)(?: on)?(?: (?:to|with))?)?",
+    "(?:then )?straight into",
+    r"from there(?: on)?(?:,? (?:you )?(?:go|move|carry|pass|continue|proceed)(?: on)?(?: (?:to|with))?)?",
     r"(?:after|following) an? (?:short |brief |little |quick )?(?:beat|pause|moment|second|while|breath|bit|rest)", BACK_UP, DONE,
 )  # fmt: skip
 DIVIDES = _pattern(
@@ -48,6 +55,8 @@ DIVIDES = _pattern(
         rf"\s*[,;:.!]*\s*(?<!\w)(?<!\bnow )(?<!now and )(?:and\s+|but\s+)?{NEXT}(?!\w|\s+time)[,:]?\s*",
         r"\s*,?\s*(?:and\s+)?(?:(?:is|are|being)\s+)?(?:immediately\s+)?\bfollowed\s+(?:up\s+)?(?:by|with)\b[,:]?\s*",
         r"\s*,?\s*(?:and\s+)?\b(?:end|finish|move|wrap|(?:go|carry|proceed|continue)(?=\s+on\s+(?:to|with)\b))(?:\s+(?:off|up|on))?\s+(?:with|by|to|on)\b\s*",
+        r"\s*[,.]?\s*(?:and\s+)?\b(?:close|conclude|"
+        r"(?:round|top|finish)\s+(?:it |that |things )?off|(?:end|follow)\s+(?:it|that|this|things)(?:\s+up)?)\s+(?:with|by)\b\s*",
         r"\s*,?\s*(?:and\s+)?\bend\s+up\s+(?=\w+ing\b)",
         r"\s*;\s*|\s*[.!]+\s+|\s*->\s*",
         r"(?:^|[\s,;.])\s*\(?(?:[1-9][.)]|[a-d]\))\s*(?=[A-Za-z])",
@@ -97,8 +106,8 @@ OPENING = _pattern(
     r"^\W*(?:(?:"
     + _any(
         "and", "please", "ok(?:ay)?", "so", "now", "well", "alright", "(?:go|come) on(?=,|$)", "right(?=,)", "then",
-        "first(?:ly)?(?: of all| off)?", "to (?:begin|start)(?: with)?",
-        "(?:you )?(?:start|begin|finish|end|lead)(?: off| out| up| things off)? (?:by|with|on)", "let's have",
+        "first(?:ly)?(?: of all| off| up)?", "to (?:begin|start|open)(?: with)?",
+        "(?:you )?(?:start|begin|finish|end|lead|open|kick)(?: off| out| up| things off)? (?:by|with|on)", "let's have",
     )
     + r"\b|[1-9][.)]|[a-d]\))[,:]?\s*)+"
 )  # fmt: skip

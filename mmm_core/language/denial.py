@@ -142,7 +142,8 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 denied.append(what)
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
         if not re.fullmatch(
-            r"(?:the|use the|with the|use) other(?: one| hand| arm| way)?|instead|(?:and |but )?that is it|(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*", clause
+            r"(?:the|use the|with the|use) other(?: one| hand| arm| way)?|instead|(?:and |but )?that is it|(?:no|oh|hey|well|ok|please)(?:,? (?:no|please|sorry))*",
+            clause,
         ):
             rest.append(clause)
     rest = [clause for i, clause in enumerate(rest) if not (denied and _is_said_again(clause, rest[:i]))]

@@ -62,10 +62,13 @@ _ONE_OTHER = re.compile(
 )
 
 
+_THAT_WAY = re.compile(r"(?<=\w )(?:(?:in )?(?:that|the same) (?:way|direction)|over there)$")
 _OTHER_PART = re.compile(
     r"^(?:with |so )?(?:your|the) (?P<part>trunk|torso|upper body|body|waist|head|neck|shoulders|(?:left|right) (?:arm|hand)|arms)$"
 )
-_TURNED = re.compile(r"\b(?:your|the) (?:trunk|torso|upper body|body|waist|head|neck|shoulders|(?:left |right )?(?:arms?|hands?))\b")
+_TURNED = re.compile(
+    r"\b(?:your|the) (?:trunk|torso|upper body|body|waist|head|neck|shoulders|(?:left |right )?(?:arms?|hands?))\b"
+)
 
 
 def with_sides(text: str) -> str:
@@ -132,6 +135,10 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         return f"{before} with your {found['side']} hand"
     if (part := _OTHER_PART.match(clause)) and (limb := _TURNED.search(before)) and not limb.start() == 0:
         return f"{before[: limb.start()]}your {part['part']}{before[limb.end() :]}"
+    if (there := _THAT_WAY.search(clause)) and (
+        way := re.search(r"\b(?:to (?:the |your )?)?(?:left|right|up|down)\b(?! (?:hand|arm))", before)
+    ):
+        return f"{clause[: there.start()]}{way[0]}{clause[there.end() :]}"
     if _PLACE.match(clause) and _AT_PLACE.search(before):
         return _AT_PLACE.sub(clause, before)
     if _PLACE.match(clause) and (limb := _LIMB_SUBJECT.match(before)):

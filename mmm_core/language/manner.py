@@ -22,7 +22,9 @@ _GESTURES = (
 )
 """Nouns of gestures, which an adjective of size stands before."""
 _VERY = r"(?:(?:ever so|oh so|very|really|dead|proper|bloody|insanely|crazy|ridiculously|painfully|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|way) )*"
-_STRONG = re.compile(r"\b(?:ever so|very|really|dead|insanely|ridiculously|painfully|super|extremely|incredibly|ultra|extra|terribly|awfully|much|way|oh so)\b")
+_STRONG = re.compile(
+    r"\b(?:ever so|very|really|dead|insanely|ridiculously|painfully|super|extremely|incredibly|ultra|extra|terribly|awfully|much|way|oh so)\b"
+)
 _SECONDS = {**NUMBERS, "a": 1, "a couple of": 2, "a few": 3, "several": 4, "half a": 0.5}
 _NUMBER = (
     r"(a couple of|a few|several|half a|a|\d+(?:\.\d+)?|" + "|".join(word for word in NUMBERS if word.isalpha()) + ")"

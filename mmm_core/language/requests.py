@@ -16,9 +16,13 @@ _ACT = (
     r"extend|straighten|uncross|roll|bob|wag|tip|incline|motion|gesture|indicate|demonstrate|perform|imitate|mime|box|jab|row|saw|sow)\b"
 )
 _STORY = (
-    r"(?!(?:please |now |and |then |ok(?:ay)?,? |robot,? |first,? |@ACT)*(?:@ACT|hands?\b|arms?\b|head\b|(?:your|both|left|right|the (?:left|right))\b|"
-    r"(?:after|before|once|when|while|as|if|instead of|without|rather than|having)(?: you\b| \w+ing\b)|do not|never|not\b|no\b|stop|skip|forget|only (?!because|since)|neither))"
-).replace("|@ACT)*", ")*").replace("@ACT", _ACT)
+    (
+        r"(?!(?:please |now |and |then |ok(?:ay)?,? |robot,? |first,? |@ACT)*(?:@ACT|hands?\b|arms?\b|head\b|(?:your|both|left|right|the (?:left|right))\b|"
+        r"(?:after|before|once|when|while|as|if|instead of|without|rather than|having)(?: you\b| \w+ing\b)|do not|never|not\b|no\b|stop|skip|forget|only (?!because|since)|neither))"
+    )
+    .replace("|@ACT)*", ")*")
+    .replace("@ACT", _ACT)
+)
 """What a story before a request does not begin with: a command, an order of commands, a denial."""
 _ASKS = (
     r"(?:(?:can|could|would|will|might) you|(?:might|may|could|can|must|should|would) (?:i|we) (?:please |just |kindly |also )*(?:trouble|ask|beg|request|invite|persuade|bother|get|have) you to|"

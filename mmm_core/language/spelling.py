@@ -47,7 +47,9 @@ _NEIGHBOURS = {
 }
 """Keys beside, above and below each key."""
 _GLUES = frozenset(
-    ("your the both with left right hand hands arm arms head and then to me up down please twice times slowly fast").split()
+    (
+        "your the both with left right hand hands arm arms head and then to me up down please twice times slowly fast"
+    ).split()
 )
 """Words that are typed together with the next or the one before."""
 _COMMON = 0.72
