@@ -37,8 +37,11 @@ HALT_REPLY_S = 0.05
 """Longest wait of the reply to a stop or an e-stop for the bus cycle that takes it, and for the texts before it to be ended."""
 STATUS_PATIENCE_S = 30.0
 """The same of a `status`, which may be served late: the daemon starts, or its machine was held up."""
-MOST_READ = 4096
-"""Requests that are read ahead of their turn, to find an e-stop among them; more wait in the sockets of their senders."""
+AT_ONCE = 64
+"""Requests that a turn reads, to find an e-stop among them, before it serves them; more wait in the sockets of their senders."""
+PAUSE_S = 0.001
+"""Pause after a turn that has read `AT_ONCE` requests: this process goes before all others of the machine but the bus process,
+and under a flood of requests it would leave the processor to nobody, not even to the client that sends the e-stop."""
 MOST_OPEN = 4096
 """Replies that may be due, and messages to the front that may wait; beyond that the oldest are given up."""
 
@@ -108,16 +111,16 @@ class Taker:
         self._seq = itertools.count(1)
 
     def turn(self) -> None:
-        """Read what waits, serve one request, send the replies that have come due; waits `BEAT_MS` at most."""
+        """Read what waits, serve it, send the replies that have come due; waits `BEAT_MS` at most."""
         self._link.ctl_beats()
-        if not self._queue:
-            self._wait(LOOK_MS if self._due or self._owed else BEAT_MS)
-        self._read()
+        self._wait(LOOK_MS if self._due or self._owed else BEAT_MS)
+        is_flooded = self._read()
         self._hear_front()
-        if self._queue:
-            self._serve_one(self._queue.popleft())
+        self._serve_what_was_read()
         self._answer_what_is_due()
         self._tell_front()
+        if is_flooded:
+            time.sleep(PAUSE_S)
 
     def _wait(self, wait_ms: int) -> None:
         events = dict(self._poller.poll(wait_ms))
@@ -126,9 +129,11 @@ class Taker:
 
     # Requests.
 
-    def _read(self) -> None:
-        """Read what waits in the socket; an e-stop goes before all that was read already, overtakes it, and is served at once."""
-        while len(self._queue) < MOST_READ and (parts := self._message()) is not None:
+    def _read(self) -> bool:
+        """Read what waits in the socket, and whether there may be more; an e-stop overtakes all that was read already."""
+        for _ in range(AT_ONCE):
+            if (parts := self._message()) is None:
+                return False
             self._link.ctl_beats()
             route, payload = split_route(parts)
             waiting = _decoded(route, payload)
@@ -138,7 +143,8 @@ class Taker:
             for earlier in self._queue:
                 earlier.overtaken = True
             self._queue.appendleft(waiting)
-            return  # what a flood still holds is read after it
+            return False  # what a flood still holds is read after it
+        return True
 
     def _message(self) -> list[bytes] | None:
         """The next message that is there, as far as it is kept: the rest of a longer one is discarded, its sender cut off."""
@@ -157,13 +163,17 @@ class Taker:
         self._guard.received(connection)
         return parts
 
-    def _serve_one(self, waiting: _Waiting) -> None:
-        try:
-            self._serve(waiting)
-        except Exception as error:  # the process that can stop the robot must outlive every bug
-            log.exception("a ctl request failed")
-            event = Rejected(code="internal", asked="ctl", found=str(error), allowed="", do="see the daemon's log")
-            self._reply(waiting.route, event)
+    def _serve_what_was_read(self) -> None:
+        while self._queue:
+            self._link.ctl_beats()
+            waiting = self._queue.popleft()
+            try:
+                self._serve(waiting)
+            except Exception as error:  # the process that can stop the robot must outlive every bug
+                log.exception("a ctl request failed")
+                event = Rejected(code="internal", asked="ctl", found=str(error), allowed="", do="see the daemon's log")
+                self._reply(waiting.route, event)
+            self._tell_front()
 
     def _serve(self, waiting: _Waiting) -> None:
         request = waiting.request

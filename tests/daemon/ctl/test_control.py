@@ -11,7 +11,7 @@ import pytest
 import zmq
 
 from daemon.ctl.channel import Answered, Channel, Handed, Told, pair
-from daemon.ctl.taker import FRONT_ANSWERS_S, HALT_REPLY_S, Taker
+from daemon.ctl.taker import AT_ONCE, FRONT_ANSWERS_S, HALT_REPLY_S, Taker
 from daemon.network.connections import ConnectionGuard
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.shared_memory.request_words import Asker
@@ -99,9 +99,9 @@ def ctl():
 def test_an_estop_goes_before_what_waits(ctl):
     ctl.ask("stop", "status", "estop", "status")
     ctl.turn()
-    assert ctl.bus_takes() == [BusRequest.ESTOP] and ctl.verbs_handed() == ["estop"]
-    ctl.turn(3)
-    assert ctl.bus_takes() == [BusRequest.STOP] and ctl.verbs_handed() == ["estop", "stop", "status", "status"]
+    assert ctl.bus_takes() == [BusRequest.ESTOP, BusRequest.STOP]
+    ctl.turn()
+    assert ctl.verbs_handed() == ["estop", "stop", "status", "status"]
 
 
 def test_an_estop_does_not_wait_until_a_flood_is_read(ctl):
@@ -111,7 +111,7 @@ def test_an_estop_does_not_wait_until_a_flood_is_read(ctl):
         flood.send(b'{"type": "status"}')
     ctl.ask("estop")
     ctl.turn()
-    assert ctl.bus_takes() == [BusRequest.ESTOP] and ctl.verbs_handed() == ["estop"]
+    assert ctl.bus_takes() == [BusRequest.ESTOP] and ctl.verbs_handed()[0] == "estop"
     assert ctl.server.poll(0), "the flood was read first"
 
 
@@ -228,7 +228,7 @@ def test_a_bad_frame_is_answered_and_ends_nothing(ctl, frame):
     ctl.ask("stop", frame, "estop")
     replies = ctl.turn(3)
     assert any(isinstance(r, ev.ErrorEvent) for r in replies)
-    assert ctl.bus_takes() == [BusRequest.STOP] or ctl.verbs_handed() == ["estop", "stop"]
+    assert ctl.bus_takes() == [BusRequest.ESTOP, BusRequest.STOP] and ctl.verbs_handed() == ["estop", "stop"]
 
 
 def test_of_a_message_of_endlessly_many_parts_nothing_is_kept(ctl):
@@ -243,5 +243,6 @@ def test_it_beats_however_much_there_is_to_read(ctl, monkeypatch):
     beats = []
     monkeypatch.setattr(ctl.link, "ctl_beats", lambda: beats.append(time.monotonic()))
     ctl.ask(*["status"] * 300)
-    ctl.taker.turn()
-    assert len(beats) > 300
+    for n in range(1, 4):
+        ctl.taker.turn()
+        assert len(beats) >= 2 * n * AT_ONCE
