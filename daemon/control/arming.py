@@ -1,13 +1,14 @@
 """From limp to torque: everything is verified anew, joints stand still, goals are pinned to where they stand, torque on.
 
 A generator that gives the bus cycle back between its steps: records go on, and an e-stop, a stop or a front that has died
-counts at once, however long a bad wire or a swinging arm makes it. Torque comes on in the last step alone.
+counts at once, however long a bad wire or a swinging arm makes it. Torque comes on in the last step alone, servo by servo, and
+an e-stop that is asked meanwhile ends it.
 """
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,9 +43,12 @@ class Armed:
 
 
 def arm_in_steps(
-    robot: RobotModel, bus: ServoBus, clock: Clock, effort: float, turns: TurnWatch
+    robot: RobotModel, bus: ServoBus, clock: Clock, effort: float, turns: TurnWatch, estop_asked: Callable[[], bool]
 ) -> Generator[None, None, Armed]:
     """Arm a limp robot. Whoever breaks off, or catches an error, has to cut torque.
+
+    Each servo is told by itself and answers, which takes tens of milliseconds for all of them: a robot of sixteen kept its torque
+    for up to 85 ms after an e-stop that came then.
 
     Args:
         robot: the robot.
@@ -52,6 +56,7 @@ def arm_in_steps(
         clock: time of the cycles.
         effort: share of full torque that it begins with.
         turns: what is known of the servos' whole turns.
+        estop_asked: whether an e-stop waits for the next cycle; asked before each servo gets torque.
 
     Raises:
         BusMismatchError: servos or their settings are not what the robot file needs; they may have been changed since.
@@ -61,6 +66,8 @@ def arm_in_steps(
     bus.verify()
     yield
     bus.clear_watchdog()
+    yield
+    without = bus.arm_watchdog(WATCHDOG_UNITS)
     yield
     require_needed(check_servos(bus, robot))
     yield
@@ -74,8 +81,8 @@ def arm_in_steps(
     turns.update(reading, clock.now_s())
     turns.require_one_pose(reading.position_tick)
     present = yield from pin_where_they_stand(bus, clock, reading, effort)
-    bus.write_all("torque_enable", 1)
-    without = bus.arm_watchdog(WATCHDOG_UNITS)
+    while not bus.write_all("torque_enable", 1, unless=estop_asked):
+        yield
     if without:
         log.warning("no bus watchdog to rely on: servo %s", ", ".join(map(str, without)))
     return Armed(present, limits)

@@ -197,7 +197,10 @@ class ControlLoop:
             if self.state is BusState.LIMP:
                 self._link.drop_queued()
                 self._link.set_text("")
-                self._arming = arm_in_steps(self.robot, self._bus, self._clock, EFFORT_START, self._turns)
+                steps = arm_in_steps(
+                    self.robot, self._bus, self._clock, EFFORT_START, self._turns, lambda: self._link.estop_asked
+                )
+                self._arming = steps
                 self._enter(BusState.ARMING)
         else:
             self.stopping = True

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,13 +95,25 @@ class RegisterAccess:
                 raise ServoFaultError(servo_id, f"no '{name}' while it has an alarm", found)
         self.write_item(servo_id, name, value)
 
-    def write_all(self, name: str, value: int) -> None:
-        """Set one item of every servo, each confirmed; the first refusal is raised."""
+    def write_all(self, name: str, value: int, unless: Callable[[], bool] = lambda: False) -> bool:
+        """Set one item of every servo, each confirmed; the first refusal is raised.
+
+        Args:
+            name: the item.
+            value: its value.
+            unless: asked before each servo; true ends it.
+
+        Returns:
+            Whether every servo was set.
+        """
         write = self.write_unless_alarmed if name == "torque_enable" and value else self.write_item
         for servo_id in self._link.ids:
+            if unless():
+                return False
             write(servo_id, name, value)
         if name == "torque_enable":
             self._link.expect_torque(on=bool(value))
+        return True
 
     def send_all(self, name: str, value: int) -> None:
         """Set one item of every servo that has it, with packets that nobody answers."""

@@ -180,10 +180,9 @@ class ServoBus:
         """Set one item of one servo and wait for its answer; see `RegisterAccess.write_item`."""
         self.registers(servo_id).write_item(servo_id, name, value)
 
-    def write_all(self, name: str, value: int) -> None:
-        """Set one item of every servo, each confirmed; the first refusal is raised."""
-        for chain in self.chains:
-            chain.registers.write_all(name, value)
+    def write_all(self, name: str, value: int, unless: Callable[[], bool] = lambda: False) -> bool:
+        """Set one item of every servo; see `RegisterAccess.write_all`."""
+        return all(chain.registers.write_all(name, value, unless) for chain in self.chains)
 
     def send_torque_off(self) -> None:
         """Cut the torque of every servo with packets that nobody answers; a port that is lost keeps no other from it.

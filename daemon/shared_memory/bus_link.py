@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.dynamixel.health import HEALTH
-from daemon.shared_memory.request_words import HALTS, N_WORDS, Asked, Asker, BusRequest, RequestWords
+from daemon.shared_memory.request_words import ESTOPS, HALTS, N_WORDS, Asked, Asker, BusRequest, RequestWords
 
 Array = NDArray[np.float64]
 
@@ -350,6 +350,11 @@ class BusLink:
     def cut_asked(self) -> bool:
         """Whether an e-stop that cuts torque waits to be taken."""
         return self._requests.waits(BusRequest.ESTOP)
+
+    @property
+    def estop_asked(self) -> bool:
+        """Whether an e-stop of either kind waits to be taken."""
+        return any(self._requests.waits(kind) for kind in ESTOPS)
 
     def take_request(self) -> Asked | None:
         """The oldest request that is neither taken nor void; owed to who asked until it is `done`."""

@@ -42,6 +42,41 @@ def test_a_halt_between_any_two_steps_of_arming_leaves_the_robot_limp(halt):
         assert r.sim.audit.report()["violations"] == 0
 
 
+def torque_after_estop_s(robot: str, kind: BusRequest, n_torque: int) -> float:
+    """Seconds of the simulated wire for which any servo has torque after an e-stop that comes when so many have got it."""
+    with rig(robot) as r:
+        write, asked_s = r.port.write, []
+
+        def count_and_write(data: bytes) -> None:
+            if sum(r.torque) >= n_torque and not asked_s:
+                r.link.request(kind)
+                asked_s.append(r.clock.now_s())
+            write(data)
+
+        r.port.write = count_and_write
+        r.link.request(A)
+        off_s = 0.0
+        for _ in range(1000):
+            if asked_s and not any(r.torque):
+                break
+            r.streamer.cycle()
+            off_s = r.clock.now_s()
+            r.clock.sleep_until(off_s + r.robot.bus.period_s)
+        assert not any(r.torque), "it holds"
+        assert r.sim.audit.report()["violations"] == 0
+        return off_s - asked_s[0]
+
+
+@pytest.mark.parametrize("robot", ["reference", "op3", "poppy_torso"])
+@pytest.mark.parametrize("kind", [E, BusRequest.ESTOP_HOLD])
+def test_an_estop_while_torque_comes_on_is_carried_out_within_two_cycles(robot, kind):
+    """Torque comes on servo by servo: the e-stop waited until all had it and their watchdogs were set, up to 85 ms."""
+    with rig(robot) as r:
+        n_servos, period_s = len(r.torque), r.robot.bus.period_s
+    for n_torque in (1, n_servos // 2, n_servos - 2):
+        assert torque_after_estop_s(robot, kind, n_torque) < 2 * period_s
+
+
 def test_a_front_that_dies_while_it_arms_leaves_the_robot_limp(monkeypatch):
     with rig(watch_front=True) as r:
         monkeypatch.setattr(type(r.link), "heartbeat_age_s", property(lambda _: 0.0))
