@@ -34,6 +34,7 @@ from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.motion.counting import with_counts
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.performing import Stretch, performed
 from mmm_core.recognition.seen import Scene
@@ -186,8 +187,12 @@ class MotionGeneration:
     def _result_of(self, ids: Tensor, stretches: list[Stretch], n_frames: int | None, lap: str) -> GenerationResult:
         verdict, mirrored = self._verdict, self._mirrored
         ends = [stretch.end for stretch in stretches]
-        if any(not s.plain for s in stretches):
-            features, ends = performed(self._engine.model.tokenizer.decode(ids[None])[0].numpy(), stretches)
+        counts = self._counts if lap == "motion" else []
+        if any(counts) or any(not s.plain for s in stretches):
+            features = self._engine.model.tokenizer.decode(ids[None])[0].numpy()
+            if any(counts):
+                features, stretches = with_counts(features, stretches, counts, OPENING_TOKENS * FRAMES_PER_TOKEN)
+            features, ends = performed(features, stretches)
             motion = self._engine.motion_of(features, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
         else:
             motion = self._engine.motion(ids, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
