@@ -49,7 +49,7 @@ def too_late(entry: Entry, found: str) -> NotPlayableError:
 
 def generator_failed(error: GeneratorError, state: str) -> Failed:
     """The event of a command for which the generator, which is in `state`, gave no motion."""
-    found = f"{error.found} (generator: {state})"
+    found = error.found if state in error.found else f"{error.found} (generator: {state})"
     return Failed(code=error.code, asked=error.asked, found=found, allowed=error.allowed, do=error.do)
 
 

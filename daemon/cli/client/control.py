@@ -100,6 +100,9 @@ def torque(
         return _tell(robot, robot.arm() if which == "on" else robot.torque_off(), json)
 
 
+OWED = "not carried out yet; it is, as soon as the bus process runs"
+
+
 def _tell(robot: Client, ack: Ack, json: bool) -> int:
     """Print what the verb led to; 3 when the robot is in fault or a stop is not carried out yet, 1 when arming was broken off."""
     after = robot.status()
@@ -110,7 +113,7 @@ def _tell(robot: Client, ack: Ack, json: bool) -> int:
 
         sys.stdout.write(encode(after).decode() + "\n")
     else:
-        waits = f"not carried out yet, stays asked for until the bus process is back; {after.reason}" if owed else ""
+        waits = "; ".join(filter(None, (OWED, after.reason))) if owed else ""
         broken = "arming was broken off, see the daemon's log; `mmmd arm` again" if broken_off else ""
         reason, now = waits or after.reason or broken, in_words(after.state)
         told = (

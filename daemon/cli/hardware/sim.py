@@ -57,6 +57,7 @@ def sim(
     """
     from rich.console import Console
 
+    from daemon.host.realtime import BUS_PRIORITY, take_fifo
     from retarget.robot.loading import load_robot
     from sim.faults import FaultSchedule
     from sim.options import world_of
@@ -77,6 +78,8 @@ def sim(
             f"{len(server.bus.on_wire)} servos of '{model.name}' at {server.baud} baud on {where}", highlight=False
         )
     others = [threading.Thread(target=server.serve) for server in servers[1:]]
+    if not take_fifo(BUS_PRIORITY):  # real servos have processors of their own; the other threads inherit it
+        console.print("no real-time priority: on a busy machine the servos answer late (`mmmd doctor` has the remedy)")
     try:
         for thread in others:
             thread.start()
