@@ -8,7 +8,7 @@ everything else is scaled from where it was in the first frame.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,12 @@ _ARMS = (13, 14, 16, 17, 18, 19, 20, 21)
 MOST_ARM_RAD = 2.9
 """Greatest rotation of an arm joint from the first frame that a larger size leads to; 2.4 of the elbows."""
 _MOST = {18: 2.4, 19: 2.4, 13: 0.6, 14: 0.6}
-CYCLE_MISFIT = 0.35
-"""Largest misfit of a cycle whose strokes are scaled about their middle."""
+CYCLE_MISFIT = 0.7
+"""Largest misfit of a cycle whose strokes are scaled about their middle: waves and claps of the model have up to that."""
+ROUNDS = 3
+"""Times that the rotations of arms are scaled anew until the way of the wrist has the size that is asked for."""
+_MOST_FACTOR, _LEAST_WAY_M = 3.0, 0.04
+"""Greatest factor on rotations of arms, and least way of a wrist that is measured."""
 RAMP_FRAMES = 5
 """Frames over which size changes between two commands of a motion."""
 STILL_M_S = 0.2
@@ -74,9 +78,8 @@ def performed(features: NDArray[np.float32], stretches: Sequence[Stretch]) -> tu
     for stretch in stretches:
         motion = _motion(features[stretch.start : stretch.end])
         if stretch.size != 1.0:
-            weights = _weights(stretch, len(features))
             part = slice(stretch.start, stretch.end)
-            local[part] = _scaled(local[part], local[0], weights, strokes_of(motion))
+            local[part] = _sized(local[part], local[0], stretch, len(features), strokes_of(motion))
         places.append(stretch.start + _times(motion, stretch))
     where = np.clip(np.concatenate(places), 0, len(features) - 1)
     ends = np.cumsum([len(p) for p in places]).tolist()
@@ -115,20 +118,50 @@ def _features(yaw: Array, root: Array, local: Array, where: Array) -> NDArray[np
     return features_from_rotations(joints, mixed_yaw, rotations, HUMANML3D)
 
 
-def _scaled(local: Array, rest: Array, weights: Array, strokes: Strokes | None) -> Array:
-    """Rotations (T, 22, 3, 3) led away from their reference by (T,) weights."""
+def _sized(local: Array, rest: Array, stretch: Stretch, n_frames: int, strokes: Strokes | None) -> Array:
+    """Rotations (T, 22, 3, 3) in the size of a stretch.
+
+    A hand goes less far than the rotations of its arm are scaled, so that these are scaled until its way is as long as asked for,
+    or as near as the arm allows.
+    """
+    period = int(np.median(np.diff(strokes.frames))) if strokes is not None and is_cyclic(strokes) else 0
+    weights = _weights(stretch, n_frames)
+    way = _way_m(local, period)
+    found: list[tuple[float, Array]] = []
+    factor = stretch.size
+    for _ in range(ROUNDS):
+        arms = _weights(replace(stretch, size=factor), n_frames)
+        out = _scaled(local, rest, weights, arms, period)
+        if way < _LEAST_WAY_M:
+            return out
+        reached = _way_m(out, period) / way
+        found.append((abs(reached - stretch.size), out))
+        factor = float(np.clip(factor * stretch.size / max(reached, 0.05), 1 / _MOST_FACTOR, _MOST_FACTOR))
+    return min(found, key=lambda pair: pair[0])[1]
+
+
+def _way_m(local: Array, period: int) -> float:
+    """How far the hand that moves more goes, metres: from where it was, or with a period about the path of its strokes."""
+    joints, _ = forward_kinematics(local, np.zeros((len(local), 3)))
+    wrists = joints[:, 20:22]
+    if period:
+        away = wrists - uniform_filter1d(wrists, max(3, period), axis=0, mode="nearest")
+        return float(np.ptp(away, axis=0).max())
+    return float(np.linalg.norm(wrists - wrists[0], axis=-1).max())
+
+
+def _scaled(local: Array, rest: Array, weights: Array, arm_weights: Array, period: int) -> Array:
+    """Rotations (T, 22, 3, 3) led away from their reference by (T,) weights; with a period, arms about the path of the strokes."""
     out = local.copy()
-    cyclic = is_cyclic(strokes)
-    period = int(np.median(np.diff(strokes.frames))) if strokes is not None and cyclic else 0
     for joint in (*_TRUNK_HEAD, *_ARMS):
         reference = np.broadcast_to(rest[joint], local[:, joint].shape)
-        if cyclic and joint in _ARMS:
+        if period and joint in _ARMS:
             smooth = uniform_filter1d(six_d(local[:, joint]), max(3, period), axis=0, mode="nearest")
             reference = from_six_d(smooth)
         away = Rotation.from_matrix(np.swapaxes(reference, -1, -2) @ local[:, joint]).as_rotvec()
         angle = np.linalg.norm(away, axis=-1)
         most = np.maximum(angle, _MOST.get(joint, MOST_ARM_RAD))
-        factor = np.minimum(weights, most / np.maximum(angle, 1e-6))
+        factor = np.minimum(arm_weights if joint in _ARMS else weights, most / np.maximum(angle, 1e-6))
         out[:, joint] = reference @ Rotation.from_rotvec(away * factor[:, None]).as_matrix()
     return out
 
