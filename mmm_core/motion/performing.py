@@ -29,6 +29,8 @@ CYCLE_MISFIT = 0.7
 """Largest misfit of a cycle whose strokes are scaled about their middle: waves and claps of the model have up to that."""
 ROUNDS = 3
 """Times that the rotations of arms are scaled anew until the way of the wrist has the size that is asked for."""
+_PATH = 0.35
+"""Power of a small size by which the path of the strokes goes less far from rest: a small stroke is made a little lower."""
 _MOST_FACTOR, _LEAST_WAY_M = 3.0, 0.04
 """Greatest factor on rotations of arms, and least way of a wrist that is measured."""
 RAMP_FRAMES = 5
@@ -140,6 +142,12 @@ def _sized(local: Array, rest: Array, stretch: Stretch, n_frames: int, strokes: 
     return min(found, key=lambda pair: pair[0])[1]
 
 
+def _led(rotations: Array, rest: Array, factors: Array) -> Array:
+    """Rotations (T, 3, 3) led nearer to or farther from those at rest by (T,) factors."""
+    away = Rotation.from_matrix(rest.T @ rotations).as_rotvec()
+    return rest @ Rotation.from_rotvec(away * factors[:, None]).as_matrix()
+
+
 def _way_m(local: Array, period: int) -> float:
     """How far the hand that moves more goes, metres: from where it was, or with a period about the path of its strokes."""
     joints, _ = forward_kinematics(local, np.zeros((len(local), 3)))
@@ -157,7 +165,7 @@ def _scaled(local: Array, rest: Array, weights: Array, arm_weights: Array, perio
         reference = np.broadcast_to(rest[joint], local[:, joint].shape)
         if period and joint in _ARMS:
             smooth = uniform_filter1d(six_d(local[:, joint]), max(3, period), axis=0, mode="nearest")
-            reference = from_six_d(smooth)
+            reference = _led(from_six_d(smooth), rest[joint], np.minimum(weights, 1.0) ** _PATH)
         away = Rotation.from_matrix(np.swapaxes(reference, -1, -2) @ local[:, joint]).as_rotvec()
         angle = np.linalg.norm(away, axis=-1)
         most = np.maximum(angle, _MOST.get(joint, MOST_ARM_RAD))
