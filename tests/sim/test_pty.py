@@ -23,6 +23,7 @@ from daemon.dynamixel.ports.tty_speed import tty_speed
 from daemon.dynamixel.scan import scan
 from daemon.errors import CommandError, LinkLostError, PortBaudError
 from daemon.host.clock import RealClock
+from daemon.host.realtime import BUS_PRIORITY, may_fifo
 from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
@@ -212,6 +213,8 @@ def test_the_command_serves_two_ports_names_its_faults_and_audits(tmp_path: Path
         port.write(packet.write(3, 116, (4000).to_bytes(4, "little")))
         assert answered(port, 3)
         port.close()
+        # Each thread that serves a port, as servos have processors of their own; at normal priority they answered late.
+        policies = [os.sched_getscheduler(int(task.name)) for task in Path(f"/proc/{process.pid}/task").iterdir()]
         process.send_signal(signal.SIGTERM)
         out, err = process.communicate(timeout=20)
     finally:
@@ -221,6 +224,8 @@ def test_the_command_serves_two_ports_names_its_faults_and_audits(tmp_path: Path
     assert process.returncode == 1, "a goal beyond the robot's limits"
     assert report["violations_by_kind"]["position"] == 1 and report["faults"] == {"overload": 1}
     assert "8 servos of 'reference' at 1000000 baud on" in out and "fault overload servo 2" in err
+    may = may_fifo(BUS_PRIORITY)
+    assert (policies.count(os.SCHED_FIFO) >= len(links)) == may and ("no real-time priority" in out) != may
 
 
 def test_two_ports_cannot_come_back_under_one_link(tmp_path: Path, capsys) -> None:
