@@ -48,10 +48,21 @@ _NEIGHBOURS = {
 """Keys beside, above and below each key."""
 _GLUES = frozenset(
     (
-        "your the both with left right hand hands arm arms head and then to me up down please twice times slowly fast"
+        "your the both with left right forward back over out me hand hands arm arms head and then to me up down please twice times slowly fast"
     ).split()
 )
 """Words that are typed together with the next or the one before."""
+COMMONEST = 6000
+"""Words of English that stay in the place of a limb or a verb, "conduct your band"."""
+_LIMB_PLACE = re.compile(r"(\b(?:your|both) (?:left |right |both )?|\b(?:left|right) (?=\w+$))([a-z]{3,})\b")
+_LIMBS = ("hands", "hand", "arms", "arm", "head", "shoulders", "eyes", "ears", "hips", "chest", "heart", "fist", "face")
+_VERBS = tuple(
+    (
+        "wave nod bow clap shrug raise lift lower point look lean turn twist tilt shake cross salute punch beckon hug stretch cover rub "
+        "throw blow wipe scratch knock stir play drink flap put hold bend swing push pull touch dance cheer"
+    ).split()
+)
+_SHORT = frozenset("a i an the to of in on at by it is as or and up my me we us so no do go he be if am".split())
 _COMMON = 0.72
 """How rare the words may be of a command in which every word is a slip: among the commonest 540 of the corpus."""
 _RARE = 0.35
@@ -88,8 +99,58 @@ def mended(text: str) -> str:
     said = _FILLERS.sub("", said)
     said = _STUTTER.sub("", said)
     said = _homophones(said)
-    said = _slips(said)
+    said = _slips(_joined(_in_their_place(said)))
     return " ".join(_homophones(said).split())
+
+
+def _in_their_place(said: str) -> str:
+    """A text with slips mended by their place, where the words that can stand are few: a limb after "your", a verb at the start."""
+
+    def limb(found: re.Match[str]) -> str:
+        return found[1] + _one_slip_from(found[2], _LIMBS)
+
+    said = _LIMB_PLACE.sub(limb, said)
+    first = re.match(r"((?:please |now )?)([a-z]{3,})\b(?= )", said)
+    return f"{first[1]}{_one_slip_from(first[2], _VERBS)}{said[first.end() :]}" if first else said
+
+
+@cache
+def _one_slip_from(word: str, meant: tuple[str, ...]) -> str:
+    """The only one of some words that a rare word is one slip from; the word itself where it is common or none is near."""
+    if word in _meant() or word in _common():
+        return word
+    near = [w for w in meant if OSA.distance(word, w, score_cutoff=1) <= 1]
+    return (
+        min(near, key=lambda w: (sorted(w) != sorted(word), not set(word) <= set(w), _meant().get(w, 1.0)))
+        if near
+        else word
+    )
+
+
+@cache
+def _common() -> frozenset[str]:
+    """The commonest words of English, which stay wherever they stand."""
+    return frozenset(lines("english_words")[:COMMONEST])
+
+
+def _joined(said: str) -> str:
+    """A text in which a blank inside a word is taken out: "for ward" -> "forward", where one part is no common word of a command."""
+    words = said.split(" ")
+    whole: list[str] = []
+    for word in words:
+        before = whole[-1] if whole else ""
+        if before and _is_parted_word(before, word.rstrip(".,!?")):
+            whole[-1] = before + word
+        else:
+            whole.append(word)
+    return " ".join(whole)
+
+
+def _is_parted_word(a: str, b: str) -> bool:
+    """Whether two words are one that is common in commands, and not both are words of commands by themselves."""
+    if not (a + b).isalpha() or a in _SHORT or b in _SHORT or len(a + b) < 4 or _meant().get(a + b, 1.0) > _COMMON:
+        return False
+    return not all(len(part) > 2 and _meant().get(part, 1.0) < _COMMON for part in (a, b))
 
 
 def _slips(said: str) -> str:
@@ -144,6 +205,15 @@ def _is_right(word: str) -> bool:
         return True
     ending = _ENDINGS.search(word)
     stem = word[: ending.start()] if ending else ""
+    if ending is not None and ending[0] in ("s", "es") and stem[-1:] == "s":
+        return False
+    if (
+        ending is not None
+        and ending[0] == "es"
+        and not re.search(r"(?:[sxzo]|[cs]h)$", stem)
+        and f"{stem}e" not in _right()
+    ):
+        return False
     return len(stem) > 2 and (
         stem in _right()
         or f"{stem}e" in _right()
@@ -188,9 +258,14 @@ def _parted(word: str) -> str:
     """
     for i in range(2, len(word) - 1):
         a, b = word[:i], word[i:]
-        if (a in _GLUES and _meant().get(b, 1.0) < _COMMON) or (b in _GLUES and _meant().get(a, 1.0) < _COMMON):
+        if (a in _GLUES and _is_of_commands(b)) or (b in _GLUES and _is_of_commands(a)):
             return f"{a} {b}"
     return ""
+
+
+def _is_of_commands(word: str) -> bool:
+    """Whether a word is common in commands, or begins one."""
+    return word in _VERBS or _meant().get(word, 1.0) < _COMMON
 
 
 def _cost_of(word: str) -> float:

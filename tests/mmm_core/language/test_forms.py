@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mmm_core.language.reading import read
+from mmm_core.language.spelling import mended
 
 
 def said(text: str) -> str:
@@ -185,3 +186,31 @@ def test_words_typed_together_are_parted(text: str, command: str) -> None:
 )
 def test_words_that_only_look_glued_stay(word: str) -> None:
     assert word in said(f"point at the {word}")
+
+
+@pytest.mark.parametrize(
+    ("text", "command"),
+    [
+        ("cross your arns", "cross your arms"), ("salute with your right gand", "salute with your right hand"),
+        ("lena forward", "lean forward"), ("leann back", "lean back"), ("wtist to the right", "twist to the right"),
+        ("raise both armss", "raise both arms"), ("knock three timess", "knock three times"),
+        ("shrug your shouldes", "shrug your shoulders"),
+        ("leanforward", "lean forward"), ("coveryour eyes", "cover your eyes"), ("wave your left ha nd", "wave your left hand"),
+        ("nod slow ly", "nod (0.62 times as fast)"), ("lean for ward", "lean forward"), ("clap our hands", "clap your hands"),
+        ("twist ot the right", "twist to the right"), ("wave your let hand", "wave your left hand"),
+        ("turn your head to the lift", "turn your head to the left"),
+    ],
+)  # fmt: skip
+def test_a_slip_is_mended_by_its_place(text: str, command: str) -> None:
+    assert said(text) == command
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "conduct your band", "wave your flag", "show me your work", "raise your glass", "point at your land", "wave to the lift",
+        "let your hand sink", "look up right", "wave to lena", "take part in the dance", "hold your hat", "touch your nose",
+    ],
+)  # fmt: skip
+def test_words_that_look_like_slips_in_their_place_stay(text: str) -> None:
+    assert mended(text) == text
