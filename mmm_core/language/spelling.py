@@ -104,14 +104,12 @@ def mended(text: str) -> str:
 
 
 def _in_their_place(said: str) -> str:
-    """A text with slips mended by their place, where the words that can stand are few: a limb after "your", a verb at the start."""
-
-    def limb(found: re.Match[str]) -> str:
-        return found[1] + _one_slip_from(found[2], _LIMBS)
-
-    said = _LIMB_PLACE.sub(limb, said)
+    """A text with slips mended by their place, where few words can stand: a limb after "your", a verb before words spelt right."""
+    said = _LIMB_PLACE.sub(lambda found: found[1] + _one_slip_from(found[2], _LIMBS), said)
     first = re.match(r"((?:please |now )?)([a-z]{3,})\b(?= )", said)
-    return f"{first[1]}{_one_slip_from(first[2], _VERBS)}{said[first.end() :]}" if first else said
+    if first is None or not all(map(_is_right, _WORD.findall(said[first.end() :]))):
+        return said
+    return f"{first[1]}{_one_slip_from(first[2], _VERBS)}{said[first.end() :]}"
 
 
 @cache
