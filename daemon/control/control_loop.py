@@ -197,10 +197,9 @@ class ControlLoop:
             if self.state is BusState.LIMP:
                 self._link.drop_queued()
                 self._link.set_text("")
-                steps = arm_in_steps(
+                self._arming = arm_in_steps(
                     self.robot, self._bus, self._clock, EFFORT_START, self._turns, lambda: self._link.estop_asked
                 )
-                self._arming = steps
                 self._enter(BusState.ARMING)
         else:
             self.stopping = True

@@ -58,10 +58,9 @@ def main() -> int:
     link = BusLink.attach(Path(arguments.link), arguments.joints, arguments.servos, asker=Asker.CTL)
     channel = Channel(socket.socket(fileno=arguments.channel))
     context: zmq.Context[zmq.Socket[bytes]] = zmq.Context()
-    fifo = take_fifo(
-        CONTROL_PRIORITY
-    )  # before the other threads start, which inherit it: one that waits for a core while it
-    # has the interpreter would make the thread that takes e-stops wait, too
+    # The other threads start afterwards and inherit the priority: one of them that waited for a core while it holds the
+    # interpreter would make the thread that takes e-stops wait, too.
+    fifo = take_fifo(CONTROL_PRIORITY)
     if fifo:  # libzmq aborts where it is not permitted
         context.set(zmq.THREAD_SCHED_POLICY, SCHED_FIFO)
         context.set(zmq.THREAD_PRIORITY, CONTROL_PRIORITY)

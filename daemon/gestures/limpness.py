@@ -1,4 +1,4 @@
-"""What becomes of a robot's joints when their torque is cut, read off the robot file and its description.
+"""Sorts a robot's joints by the effect of a cut of the torque: they hang, fall, sink or stay. The robot file tells which.
 
 A joint of the trunk or head that does not turn about the vertical carries what is above it: without torque that falls to a stop.
 """
@@ -43,7 +43,7 @@ class Limpness:
 
 
 def limpness_of(kinematics: Kinematics) -> Limpness:
-    """What a cut of the torque does to each joint of a robot that stands upright."""
+    """Sort the joints of a robot that stands upright."""
     robot = kinematics.robot
     found: dict[str, list[str]] = {"arms": [], "falls": [], "sinks": [], "stays": []}
     for j, joint in enumerate(robot.joints):

@@ -33,7 +33,7 @@ _LOW_PASS: Any = scipy_signal.butter(_ORDER, CUTOFF_HZ, fs=FPS, output="sos")
 STILL_RAD = float(np.deg2rad(2.0))
 """An end in which no joint is further than this from its first or last angle counts as still."""
 KEPT_STILL_FRAMES = 4
-"""Of a still end 0.2 s are kept: a motion sets out from rest."""
+"""Frames that are left of a still end (0.2 s): a motion sets out from rest."""
 MOVED_RAD = float(np.deg2rad(5.0))
 """An arm of which a joint ranges over more than this was led."""
 _PLAY_DEG = 0.5
@@ -46,7 +46,7 @@ _LONGEST_GAP_S = 0.25
 
 @dataclass(frozen=True)
 class Taught:
-    """What was taught.
+    """A motion that a hand taught.
 
     Attributes:
         posture: its frames, on a person.

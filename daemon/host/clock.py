@@ -16,7 +16,7 @@ BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
 TIME_NAMESPACE = Path("/proc/self/ns/time")
 """A container may have a monotonic clock of its own (time_namespaces(7))."""
 TICK_S = 0.005
-"""How often code of an event loop looks whether something has come true."""
+"""Seconds between two looks of an event loop at a condition that it waits for."""
 
 
 @functools.cache

@@ -149,7 +149,7 @@ def _led(rotations: Array, rest: Array, factors: Array) -> Array:
 
 
 def _way_m(local: Array, period: int) -> float:
-    """How far the hand that moves more goes, metres: from where it was, or with a period about the path of its strokes."""
+    """Way in metres of the hand that moves more: from its first place, or with a period about the path of its strokes."""
     joints, _ = forward_kinematics(local, np.zeros((len(local), 3)))
     wrists = joints[:, 20:22]
     if period:

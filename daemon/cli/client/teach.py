@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from retarget.pipeline import Retargeter
 
 SLOW_TEMPO = 0.5
-"""Of what is played back after teaching."""
+"""Tempo at which a taught gesture is played back: half of its own."""
 MOST_SECONDS = 60.0
 """Longest recording: the longest gesture that is kept."""
 _SILENCE_S = 2.0

@@ -26,7 +26,7 @@ class TestStoriesAroundARequest:
             ("Sorry to bother you at work, but would you mind awfully turning your head to the right?",
              "turn your head to the right"),
             ("The visitors are coming up the drive, so if you could manage a proper salute, that'd make their day", "a salute"),
-            ("In this session we work on the back, and what I would like to see, if it doesn't hurt, is a rotation of the trunk "
+            ("In this lesson we work on the back, and what I would like to see, if it doesn't hurt, is a rotation of the trunk "
              "to the left", "turn your trunk to the left"),
             ("For the check we need one more measurement, so please be so kind as to extend your right arm forward",
              "extend your right arm forward"),
