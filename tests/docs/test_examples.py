@@ -72,6 +72,12 @@ def test_hello_in_c(port: str, tmp_path: Path) -> None:
     assert '"type":"accepted"' in accepted and '"verb":"stop"' in stopped
 
 
+def test_hello_in_rust(port: str, tmp_path: Path) -> None:
+    run("rustc", "--deny", "warnings", "-o", str(tmp_path / "hello"), str(EXAMPLES / "hello.rs"))
+    accepted, stopped = run(str(tmp_path / "hello"), f"127.0.0.1:{port}").splitlines()
+    assert '"type":"accepted"' in accepted and '"verb":"stop"' in stopped
+
+
 def test_an_assistant_is_interrupted_and_stopped_by_voice(daemon: RunningDaemon) -> None:
     with daemon.armed():
         said = run(sys.executable, str(EXAMPLES / "assistant.py"), str(EXAMPLES / "transcript.txt"), *daemon.at)
