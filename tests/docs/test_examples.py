@@ -79,12 +79,32 @@ def test_hello_in_rust(port: str, tmp_path: Path) -> None:
 
 
 def test_an_assistant_is_interrupted_and_stopped_by_voice(daemon: RunningDaemon) -> None:
+    """Four sentences of a recording: the second interrupts the first as soon as somebody speaks, the third is a stop."""
     with daemon.armed():
-        said = run(sys.executable, str(EXAMPLES / "assistant.py"), str(EXAMPLES / "transcript.txt"), *daemon.at)
+        heard = [str(EXAMPLES / name) for name in ("heard.wav", "transcript.txt")]
+        said = run(sys.executable, str(EXAMPLES / "assistant.py"), *heard, *daemon.at)
     told = dict(re.findall(r"'(.+?)': (.+)", said))
-    assert "was cancelled by" in told["wave with your right hand"]
+    assert list(told) == (EXAMPLES / "transcript.txt").read_text().splitlines()
+    assert [line[:5] for line in said.splitlines()[:3]] == ["(list", "(list", "'wave"] and said.count("(list") == len(
+        told
+    )
+    assert "was cancelled by cancel" in told["wave with your right hand"]
     assert told["please stop"] == "ack"
-    assert told["nod twice"] == "done"
+    assert "cancelled" not in told["nod twice"]
+
+
+def test_a_story_says_what_became_of_each_scene(daemon: RunningDaemon) -> None:
+    with daemon.armed():
+        lines = run(sys.executable, str(EXAMPLES / "story.py"), *daemon.at).splitlines()
+    assert [line[:2] for line in lines[:-1]] == ["1.", "2.", "3.", "4.", "5."]
+    assert "left out" in lines[2] and not any("left out" in line for line in lines[:2] + lines[3:])
+    assert lines[-1].startswith("the end")
+
+
+def test_poses_that_nobody_taught_are_named(daemon: RunningDaemon) -> None:
+    command = [sys.executable, str(EXAMPLES / "inbetween_taught.py"), "arm_out", "arm_up", *daemon.at]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
+    assert done.returncode == 1 and "arm_out" in done.stdout and "your own gestures: none" in done.stdout
 
 
 @pytest.fixture(scope="module")

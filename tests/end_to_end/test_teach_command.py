@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ from tests.support.harness import MMMD, RunningDaemon
 from tests.support.robot_states import ROBOT, within
 
 pytestmark = [pytest.mark.realtime, pytest.mark.timeout(180)]
+EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "inbetween_taught.py"
 RIGHT_ROLL, RIGHT_ELBOW = (ROBOT.joint_names.index(f"right_{part}") for part in ("shoulder_roll", "elbow"))
 
 
@@ -217,6 +220,34 @@ def test_a_pose_is_taught_and_gone_through(taught, servos, tmp_path):
             show()
             there = np.array(client.status().goal_rad)
             assert np.abs(there - raised(1.0))[[RIGHT_ROLL, RIGHT_ELBOW]].max() < np.deg2rad(5)
+
+
+def test_the_example_goes_from_one_taught_pose_to_another(taught, servos):
+    """docs/examples/inbetween_taught.py: at its end the robot is in the first pose again, and it has been in the second."""
+    daemon, begun = taught
+    for name, share in (("arm_low", 0.5), ("arm_high", 1.0)):
+        lead(daemon, servos, [raised(share)])
+        with begun(name, "--limp", "--yes", "--pose", "--seconds", "1") as teaching:
+            status, complaints = teaching.ended()
+        assert status == 0, complaints
+    with daemon.client() as client, daemon.client() as watcher:
+        client.arm()
+        client.wait_for("idle", timeout_s=20)
+        example = [sys.executable, str(EXAMPLE), "arm_low", "arm_high", *daemon.at]
+        process = subprocess.Popen(example, stdout=subprocess.PIPE, text=True)
+        goals = []
+        for _, state in watcher.watch("v1/state"):
+            goals.append(state.goal_rad)
+            if process.poll() is not None or len(goals) > 20 * 60:
+                break
+        said, _ = process.communicate(timeout=30)
+    assert process.returncode == 0 and said.startswith("arm_low, arm_high and arm_low again"), said
+    arm = np.array(goals)[:, [RIGHT_ROLL, RIGHT_ELBOW]]
+
+    def nearest_deg(share: float, rows: np.ndarray) -> float:
+        return np.rad2deg(np.abs(rows - raised(share)[[RIGHT_ROLL, RIGHT_ELBOW]]).max(1).min())
+
+    assert nearest_deg(1.0, arm) < 5 and nearest_deg(0.5, arm[-1:]) < 5
 
 
 def test_nothing_goes_limp_or_is_written_over_unasked(taught, servos, tmp_path):
