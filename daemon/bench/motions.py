@@ -22,11 +22,17 @@ def bench_motions(n: int | None, seed: int) -> tuple[str, list[Motion]]:
     Recordings are the held-out CMU clips of docs/DATA.md in `$MMMD_SHARED/data` or in `shared/data` beside the checkout:
     fast runs, dances and karate among them. Recordings show no head turning: it follows the body.
     """
-    folder = Path(os.environ["MMMD_SHARED"]) / "data" if "MMMD_SHARED" in os.environ else _BESIDE_CHECKOUT
-    if (folder / "clips.jsonl").is_file():
+    folder = recordings_folder()
+    if folder is not None:
         motions = _recorded(folder)
         return "held-out CMU recordings", motions[:: -(-len(motions) // n)] if n else motions
     return "synthesised gestures", _synthesised(n or 40, seed)
+
+
+def recordings_folder() -> Path | None:
+    """`$MMMD_SHARED/data`, else `shared/data` beside the checkout; None where it holds no recordings."""
+    folder = Path(os.environ["MMMD_SHARED"]) / "data" if "MMMD_SHARED" in os.environ else _BESIDE_CHECKOUT
+    return folder if (folder / "clips.jsonl").is_file() else None
 
 
 def _recorded(folder: Path) -> list[Motion]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import copy
 import statistics
 import time
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from daemon.bench.report import context
 
@@ -17,13 +18,13 @@ LENGTHS = range(1, N_TOKENS + 1)
 """Lengths in tokens at which the ids are compared."""
 
 
-def bench_official(seed: int = 0, lengths: Sequence[int] = LENGTHS) -> dict[str, Any]:
+def bench_official(n: int | None = None, seed: int = 0) -> dict[str, Any]:
     """`fp32_s`, `bf16_s`, `int8_s` (where the processor can), `reference_forward_ms`, `tokens_identical`, and ratios to one.
 
-    Random weights: speed does not depend on them. `tokens_identical` compares, at each of `lengths`, the packed fp32 model
-    and the fast decoder with the plain model and the released sampler written plainly (`mmm_core.model.released_sampler`): a whole
-    text, and an edit of its middle, by turns with arg-max and at temperature 1; `lengths_that_differ` names the others. The
-    steps are the released ten; the released code needs ten plain passes and more.
+    Random weights: speed does not depend on them. `tokens_identical` compares, at `n` lengths from 1 to 49 tokens (all when None),
+    the packed fp32 model and the fast decoder with the plain model and the released sampler written plainly
+    (`mmm_core.model.released_sampler`): a whole text, and an edit of its middle, by turns with arg-max and at temperature 1;
+    `lengths_that_differ` names the others. The steps are the released ten; the released code needs ten plain passes and more.
     """
     import torch
 
@@ -34,6 +35,7 @@ def bench_official(seed: int = 0, lengths: Sequence[int] = LENGTHS) -> dict[str,
     from mmm_core.model.transformer import OFFICIAL, MotionTransformer
     from mmm_core.model.vqvae import VqVae, VqVaeConfig
 
+    lengths = LENGTHS if n is None else sorted({round(float(x)) for x in np.linspace(N_TOKENS, 1, n)})
     torch.set_num_threads(1)
     torch.manual_seed(seed)  # pyright: ignore[reportUnknownMemberType]
     plain = MotionTransformer(OFFICIAL).eval()

@@ -20,7 +20,7 @@ _PACKAGES = ("mmmd", "torch", "numpy", "mujoco", "pyzmq")
 
 def context(seed: int, method: str) -> dict[str, Any]:
     """`machine`, `versions`, `seed` and `method`, to stand beside the figures."""
-    return {"machine": _machine(), "versions": _versions(), "seed": seed, "method": method}
+    return {"machine": machine(), "versions": _versions(), "seed": seed, "method": method}
 
 
 def percentiles_ms(seconds: Sequence[float]) -> dict[str, float]:
@@ -42,7 +42,8 @@ class HostShare:
         return {"host_took": round(statistics.fmean(shares), 3)} if shares else {}
 
 
-def _machine() -> str:
+def machine() -> str:
+    """Processor, cores, system and Python."""
     model = platform.processor() or platform.machine()
     info = Path("/proc/cpuinfo")
     if info.is_file():

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.bench.daemon_rig import percentile
+from daemon.bench.motions import recordings_folder
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
+from daemon.errors import CommandError
 from daemon.playback.chunk_maker import FADE_FRAMES
 from daemon.playback.sources.source_factory import PREFIX_FRAMES
 from daemon.poses.cycles import closed, find_loop
@@ -45,18 +47,21 @@ _METHOD = (
 )
 
 
-def bench_seams(n: int = 60, seed: int = 0, robot: str = "reference", data: str = "../shared/data") -> dict[str, Any]:
+def bench_seams(n: int = 60, seed: int = 0, robot: str = "reference") -> dict[str, Any]:
     """`peak_jerk_ratio` (the worst kind of seam), `velocity_step_share`, `loop_closure_deg`, and each kind's own."""
-    from pathlib import Path
-
     from mmm_core.generate.engine import Engine
 
+    folder = recordings_folder()
+    if folder is None:
+        raise CommandError(
+            "bench seams: it needs the recordings of docs/DATA.md, in $MMMD_SHARED/data or in ../shared/data"
+        )
     rng = np.random.default_rng(seed)
     engine = Engine.load(threads=1)
     motions = [engine.generate(t, seed=seed + i).motion for i, t in enumerate(draw_texts(2 * n, seed))]
     motions = [m for m in motions if len(m.joints_m) > 2 * WINDOW]
     clips = [posture_of(m) for m in motions]
-    real = _real_jerk(Path(data), rng)
+    real = _real_jerk(folder, rng)
     prompt, steps = _prompt_seams(clips, rng, Retargeter(load_robot(robot)))
     prefixed = _prefix_seams(engine, motions, np.random.default_rng(seed))
     idle = [_idle_seam(p, rng) for p in clips[:n]]
