@@ -12,6 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import matplotlib
+import matplotlib.pyplot
 import pytest
 from mcap.reader import make_reader
 
@@ -122,6 +124,28 @@ def test_figures_of_a_log(log: Path) -> None:
     assert table.startswith("reference, ") and table.count("\n") == 2 + 16
     right, left = (float(re.search(rf"{side}_elbow +([\d.]+)", table)[1]) for side in ("right", "left"))
     assert right > left
+
+
+def test_a_log_in_a_notebook(log: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its cells are run in turn, as a reader does; the file holds no outputs."""
+    notebook = json.loads((EXAMPLES / "log.ipynb").read_text())
+    assert notebook["nbformat"] == 4 and all(cell["id"] for cell in notebook["cells"])
+    cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    assert not any(cell["outputs"] or cell["execution_count"] for cell in cells)
+    monkeypatch.setenv("RUN", str(log))
+    names: dict[str, Any] = {}
+    matplotlib.use("Agg")
+    for cell in cells:
+        exec(compile("".join(cell["source"]), f"cell {cell['id']}", "exec"), names)
+    figure = names["fig"]
+    assert [len(axis.lines) for axis in figure.axes] == [2] * 4
+    matplotlib.pyplot.close(figure)
+    joints, texts = names["joints"], names["texts"]
+    assert joints.index[0].startswith("right_") and len(joints) == 16
+    assert joints["range_deg"]["right_elbow"] > joints["range_deg"]["left_elbow"]
+    assert joints["headroom"].between(0, 1).all() and joints["mean_error_deg"].max() < 20
+    assert "wave_right" in set(texts["text"]) and texts["seconds"].max() > 1
+    assert 0 < names["lag_ms"] <= 200 and "reference: " in capsys.readouterr().out
 
 
 def test_the_layout_for_foxglove_shows_what_a_log_holds(log: Path) -> None:
