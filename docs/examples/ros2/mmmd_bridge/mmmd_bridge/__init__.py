@@ -1,0 +1,1 @@
+"""A bridge from ROS 2 to mmmd."""
