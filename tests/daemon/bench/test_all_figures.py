@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import functools
 import json
+import signal
+import subprocess
+import sys
 import textwrap
+import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -105,6 +110,13 @@ def is_running(pid: int) -> bool:
     return stat.exists() and ") Z " not in stat.read_text()
 
 
+def eventually(condition: Callable[[], bool], within_s: float = 30.0) -> None:
+    end_s = time.monotonic() + within_s
+    while not condition():
+        assert time.monotonic() < end_s
+        time.sleep(0.02)
+
+
 def record(name: str, **values: object) -> Record:
     return Record(
         name=name, command=f"mmmd bench {name} --json", version="0.1.0", commit="abc", code="c0de", machine="a machine",
@@ -140,6 +152,24 @@ def test_a_second_run_makes_what_is_missing_alone(table: Path, tmp_path: Path) -
     assert not good and "last" in found, "the report has what was there; a failure is tried again and is a failure"
     bench_all(out, measure=False, table_file=table)
     assert not calls(tmp_path, "hangs")
+
+
+def test_an_interrupted_run_keeps_what_it_has_and_ends_what_it_runs(table: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    code = (
+        "from pathlib import Path; from daemon.bench.all_figures.run import bench_all; "
+        f"bench_all(Path({str(out)!r}), ['quick-one', 'hangs'], table_file=Path({str(table)!r}))"
+    )
+    table.write_text(table.read_text().replace("limit_s = 2", "limit_s = 200"))
+    with subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL) as run:
+        pid = tmp_path / "hangs.pid"
+        eventually(lambda: pid.exists() and pid.read_text() != "")
+        run.send_signal(signal.SIGINT)
+        assert run.wait(60) != 0
+    eventually(lambda: not is_running(int(pid.read_text())))
+    assert list(read_records(out, read_table(table))) == ["quick-one"]
+    bench_all(out, ["quick-one", "last"], table_file=table)
+    assert len(calls(tmp_path, "quick-one")) == 1 and len(calls(tmp_path, "last")) == 1
 
 
 def test_other_options_code_or_machine_are_measured_again(table: Path, tmp_path: Path) -> None:
