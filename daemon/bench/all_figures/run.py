@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import msgspec
 from rich.console import Console
+from rich.markup import escape
 
 from daemon.bench.all_figures.markdown import judged, report
 from daemon.bench.all_figures.process import run_command
 from daemon.bench.all_figures.records import ROOT, Here, Record, here, read_records, record_of, why_again, write_record
 from daemon.bench.all_figures.table import RECORDINGS, TABLE, Measurement, chosen, read_table, typed
 from daemon.bench.motions import recordings_folder
+from daemon.bench.report import context
 
 REPORT = "report.md"
+_METHOD = "each figure by its own command in a fresh process; its method stands with it"
 _WIDTH = 100
 """Characters of a command's last line that are shown while it runs."""
 
@@ -59,12 +62,12 @@ def bench_all(
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(report(table, records), "utf-8")
     console.print(f"report: {path}", markup=False, soft_wrap=True)
-    return _as_json(table, records), good
+    return {**_as_json(table, records), **context(seed, _METHOD)}, good
 
 
 def _measured(
     wanted: Sequence[Measurement], records: dict[str, Record], out: Path, quick: bool, seed: int, console: Console
-):
+) -> Iterator[Record]:
     """The records that had to be made, one after another, each written at once."""
     now, given = here(), {RECORDINGS: str(recordings_folder())}
     for i, m in enumerate(wanted):
@@ -86,8 +89,8 @@ def _one(
     m: Measurement, words: Sequence[str], command: str, now: Here, out: Path, quick: bool, console: Console
 ) -> Record:
     with console.status(m.name) as status:
-        outcome = run_command(words, m.limit_s, ROOT, lambda line: status.update(f"{m.name}: {line[:_WIDTH]}"))
-    record = record_of(m, command, outcome, now, datetime.now(UTC), quick=quick)
+        outcome = run_command(words, m.limit_s, ROOT, lambda line: status.update(escape(f"{m.name}: {line[:_WIDTH]}")))
+    record = record_of(m, command, outcome, now, datetime.now(UTC), quick=quick and m.quick is not None)
     write_record(out, record)
     others = "" if record.others_took is None else f", others took {100 * record.others_took:.0f} % of the processors"
     console.print(
