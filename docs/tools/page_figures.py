@@ -71,7 +71,7 @@ def _measured(browser: Browser, url: str, client: Client, picture: Path | None) 
         browser.wait(lambda: browser.js("mmmd.halt?.ackMs"), "the reply", 10)
         assert "carried out" in browser.text("#halted")
         stops_ms.append(browser.js("mmmd.halt.ackMs - mmmd.halt.pressedMs"))
-        client.wait_for("holding", timeout_s=10)
+        client.wait_for("holding", "idle", timeout_s=10)
         time.sleep(0.2)  # a command so soon after a stop would count as one from before it
     return {
         "first_paint_ms": round(paint_ms), "frames_per_s": round(rate_hz, 1), "stop_p50_ms": round(float(np.median(stops_ms)), 1),

@@ -20,7 +20,7 @@ from sim.steal_time import STAT, stolen_s
 
 GRACE_S = 30.0
 """Seconds that a command has to end its own processes before all of its session are killed."""
-LAST_LINES = 5
+LAST_LINES = 2
 """Lines of stderr that are kept of a command that failed."""
 _TICK_S = 1 / os.sysconf("SC_CLK_TCK")
 _THREADS = {"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}

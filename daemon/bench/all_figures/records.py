@@ -27,6 +27,8 @@ PACKAGES = ("mmm_core", "retarget", "daemon", "sim")
 _NOT_MEASURED = ("daemon/bench/all_figures/",)
 """What only makes the report: a change of it changes no figure."""
 DIGITS = 12
+MOST_CHARACTERS = 300
+"""Of what a failed command said last."""
 
 
 class Record(msgspec.Struct, frozen=True, kw_only=True):
@@ -142,7 +144,7 @@ def _values(measurement: Measurement, outcome: Outcome) -> tuple[dict[str, Any] 
     try:
         values = json.loads(outcome.said)
     except ValueError:
-        return None, f"status {outcome.status}: {outcome.last_lines or 'it printed no JSON'}"
+        return None, f"status {outcome.status}: {outcome.last_lines[-MOST_CHARACTERS:] or 'it printed no JSON'}"
     if not isinstance(values, dict):
         return None, f"status {outcome.status}: it printed no JSON object"
     return _without(values, measurement.leave_out), ""
