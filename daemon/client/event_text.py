@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import degrees
 
 from daemon.wire.events import Accepted, Ack, Cancelled, Done, Progress, Refusal
@@ -41,3 +42,31 @@ def describe(event: object) -> str:
     if isinstance(event, Refusal):
         return event.message
     return str(event)
+
+
+def repeatable(events: Iterable[object]) -> str:
+    """What a language model is told of a motion, without figures of joints: sentences that it can repeat to a person.
+
+    Args:
+        events: of a command that was accepted, up to its end or to its acceptance.
+    """
+    told, began = list[str](), ""
+    for event in events:
+        if isinstance(event, Accepted):
+            length = f", for {event.duration_s:.1f} s" if event.duration_s else ""
+            began = f"it begins: {event.understood or event.text}{length}"
+            told += [f"only in part: {event.reason}"] if event.reason else []
+            told += [f"this robot cannot show all of it: {event.lacks}"] if event.lacks else []
+            told += [f"left out as asked: {', '.join(event.denied)}"] if event.denied else []
+        elif isinstance(event, Progress) and event.scene is not None:
+            shown = f"left out, {event.reason}" if event.status == "rejected" else event.understood or event.status
+            told.append(f"scene {event.scene}, {event.text!r}: {shown}")
+        elif isinstance(event, Done):
+            seen = f"; seen on the robot: {event.seen}" if event.seen else ""
+            missing = f"; not seen on the robot: {event.missing}" if event.missing else ""
+            told.append(f"done after {event.duration_s:.1f} s{seen}{missing}")
+            began = ""
+        elif isinstance(event, Ack):
+            told.append("stopped" if event.verb == "stop" else f"{event.verb} was carried out")
+            began = ""
+    return "\n".join([*told, began] if began else told)

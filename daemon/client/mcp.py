@@ -18,7 +18,7 @@ from typing import IO, Any, cast
 
 from daemon.client.async_client import AsyncClient
 from daemon.client.errors import CancelledByError, Said
-from daemon.client.event_text import describe
+from daemon.client.event_text import repeatable
 from daemon.client.json_rpc import (
     BAD_PARAMETERS,
     INTERNAL,
@@ -229,7 +229,7 @@ class McpServer:
             async with self._turn:
                 if halts != self._halts:
                     raise CancelledByError(self._halted_by)
-                return _told((await ask()).events)
+                return repeatable((await ask()).events)
         finally:
             self._waiting -= 1
 
@@ -253,10 +253,6 @@ class McpServer:
         doing = f"playing {s.command.text!r}" if s.command else "playing nothing"
         needs = "; a person has to arm it first" if s.must_arm else ""
         return f"{s.robot} is {in_words(s.state)}{': ' + s.reason if s.reason else ''}, {doing}{needs}; generator {s.generator}"
-
-
-def _told(events: tuple[Any, ...]) -> str:
-    return "\n".join(describe(e) for e in events)
 
 
 def _text(text: str, *, failed: bool = False) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import re
 import shutil
@@ -101,6 +102,21 @@ def test_a_story_says_what_became_of_each_scene(daemon: RunningDaemon) -> None:
     assert [line[:2] for line in lines[:-1]] == ["1.", "2.", "3.", "4.", "5."]
     assert "left out" in lines[2] and not any("left out" in line for line in lines[:2] + lines[3:])
     assert lines[-1].startswith("the end")
+
+
+def test_a_language_model_moves_the_robot_and_a_person_stops_it(daemon: RunningDaemon) -> None:
+    """By the official SDK's client: tools, a result to repeat, a refusal with its reason, a stop that ends a motion under way."""
+    if importlib.util.find_spec("mcp") is None:
+        pytest.skip("the official SDK of MCP is not installed")
+    with daemon.armed() as robot:
+        lines = run(sys.executable, str(EXAMPLES / "language_model.py"), *daemon.at).splitlines()
+        assert robot.wait_for("holding", timeout_s=10).command is None
+    assert lines[0] == "tools: say, gesture, story, cancel, gestures, look, stop, estop, status"
+    told = dict(re.findall(r"^(\w+ (?:answers|refused)): (.+)", "\n".join(lines), re.MULTILINE))
+    assert re.fullmatch(r"done after [\d.]+ s; seen on the robot: .+", told["say answers"])
+    assert "needs the legs" in told["say refused"]
+    assert told["story answers"] == "the command was cancelled by stop" and "moving" in told["stop answers"]
+    assert lines.index("person: Stop!") < next(i for i, line in enumerate(lines) if line.startswith("story "))
 
 
 def test_poses_that_nobody_taught_are_named(daemon: RunningDaemon) -> None:
