@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections import OrderedDict, deque
 from collections.abc import Callable
+from functools import lru_cache
 
 import msgspec
 
@@ -43,7 +44,8 @@ class Conversations:
     def __init__(self, words_of: Callable[[str], str], now_s: Callable[[], float] = time.monotonic) -> None:
         self._words_of, self._now_s = words_of, now_s
         self._clients: OrderedDict[Client, deque[Entry]] = OrderedDict()
-        in_context("again", read("nod"))  # loads the tables of words
+        self._read = lru_cache(maxsize=KEPT)(read)
+        in_context("again", self._read("nod"))  # loads the tables of words
 
     def take(self, entry: Entry, client: Client) -> None:
         """Remember a new command of a client; a text that refers to the last one becomes what it means.
@@ -62,6 +64,10 @@ class Conversations:
         self._clients[client] = entries
         while len(self._clients) > KEPT:
             self._clients.popitem(last=False)
+
+    def read_ahead(self, entry: Entry) -> None:
+        """Read the words of a command before the next text may refer to it, so that the robot does not wait for that then."""
+        self._reading_of(entry)
 
     def _resolve(self, entry: Entry, request: Say, last: Entry | None) -> None:
         """What a text asks for after the last command.
@@ -93,9 +99,9 @@ class Conversations:
     def _reading_of(self, entry: Entry) -> Reading | None:
         """The words of a command as they are read; None of one that is no text."""
         if isinstance(entry.request, Say):
-            return read(entry.request.text)
+            return self._read(entry.request.text)
         words = self._words_of(entry.request.name) if isinstance(entry.request, Gesture) else ""
-        return read(words) if words else None
+        return self._read(words) if words else None
 
 
 def _played(request: Say, last: Entry, meant: InContext, text: str) -> Say:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import importlib.metadata
 from collections.abc import Callable
 
@@ -51,6 +52,8 @@ TOPICS = {
     "v1/event": "every event of every command",
     "v1/log": "the lines that the daemon's processes log",
 }
+READ_AHEAD_S = 0.5
+"""Seconds after a command, when its motion has been made, until its words are read for texts that may refer to it."""
 
 
 class RequestHandler:
@@ -104,6 +107,7 @@ class RequestHandler:
             self._ledger.emit(entry, error.event)
             return
         self._performer.play(entry)
+        asyncio.get_running_loop().call_later(READ_AHEAD_S, self._conversations.read_ahead, entry)
 
     def _words_of(self, gesture: str) -> str:
         try:

@@ -6,6 +6,7 @@ One thread, lower priority. It ends when the process that started it does, so no
 from __future__ import annotations
 
 import argparse
+import gc
 import importlib.metadata
 import logging
 import os
@@ -168,6 +169,8 @@ def run(
         bind_socket(socket, "bind", bind, folder, most_bytes=MOST_REQUEST_BYTES)
         guard = ConnectionGuard({"generator": (socket, Share(MOST_CONNECTIONS))}, most_growth_bytes=float("inf"))
         guard.start()
+        gc.collect()
+        gc.freeze()  # the collector does not go through the model and the tables of words while a motion is made
         log.info("generator ready on %s with checkpoint %s", bind, checkpoint_hash[:12])
         serve(socket, maker, checkpoint_hash, lambda: parent_pid is None or os.getppid() == parent_pid, guard.received)
     finally:

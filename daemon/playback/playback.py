@@ -7,18 +7,19 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable, Coroutine
+from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from daemon.host.background_tasks import BackgroundTasks
 from daemon.host.clock import REAL_CLOCK, LoopClock, sleep_while
 from daemon.playback.bus_follower import BusFollower
 from daemon.playback.chunk_maker import ChunkMaker
 from daemon.playback.motion_player import MotionPlayer, PlanStart
 from daemon.playback.setpoint_buffer import SetpointBuffer
-from daemon.playback.sources.showing import Verdict
+from daemon.playback.sources.showing import ShownCheck, Verdict
 from daemon.playback.sources.stream_source import StreamSource
 from daemon.playback.splicer import Splicer
 from daemon.playback.stream_player import StreamPlayer
@@ -46,9 +47,6 @@ IDLE_AFTER_S = 0.8
 """Seconds of stillness before idle movements begin."""
 GAZE_S, BRAKING_TIMEOUT_S = 0.8, 2.0
 
-ShownCheck = Callable[[Entry, NDArray[np.float64], float], Verdict]
-"""Whether goals (T, J) of so many a second have shown the motion of a command."""
-
 
 class Playback:
     """The command that is played, from its splice to its last event.
@@ -68,16 +66,16 @@ class Playback:
         self._plan_id = 0
         self._player: MotionPlayer | StreamPlayer | None = None
         self._lock = asyncio.Lock()
-        self._tasks: set[asyncio.Task[Any]] = set()
-        self._feeding = self._moving_reported = self._held = False
+        self._background = BackgroundTasks()
+        self._feeding = self._moving_reported = self._held = self._telling = False
         self._held_since_s: float | None = None
         self._still_since_s = clock.now_s()
 
     async def take_over(
         self, entry: Entry | None, source: MotionSource | StreamSource, plan_id: int, epoch: int,
-        alive: Callable[[], bool],
+        alive: Callable[[], bool], told: Callable[[], Awaitable[None]] | None = None,
     ) -> bool:  # fmt: skip
-        """Play a source from the state of the joints on; false when it was ended meanwhile.
+        """Play a source from the state of the joints on; false when it was ended meanwhile. `told` is awaited once it begins.
 
         Raises:
             RetargetError: its motion does not fit the robot; the motion being played goes on.
@@ -92,9 +90,15 @@ class Playback:
                 return False
             before, plan_id_before = self.entry, self._plan_id
             self._begin(entry, player, plan_id)
-            if before is not None and entry is not None:
-                by = f"{tag_of(entry.request)} {entry.id}"
-                self._ledger.emit(before, Cancelled(plan_id=plan_id_before, by=by))
+            self._telling = True
+            try:
+                if told is not None:
+                    await told()
+            finally:
+                self._telling = False
+                if before is not None and entry is not None:
+                    by = f"{tag_of(entry.request)} {entry.id}"
+                    self._ledger.emit(before, Cancelled(plan_id=plan_id_before, by=by))
             player.begun()
             return True
 
@@ -148,7 +152,7 @@ class Playback:
             is_to_last: no command is about to take over, so that a preview's motion is worth being put in its place.
         """
         player, plan, entry = self._player, self._buffer.current, self.entry
-        if player is None:
+        if player is None or self._telling:
             return
         if plan is None:
             if not self._lock.locked():  # the command that was to take over from one that ran dry has been called off
@@ -221,22 +225,14 @@ class Playback:
             await self._take_idle(HeldPose(held.at(np.zeros(round(GAZE_S * held.fps), np.intp))))
 
     def start(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run work that nobody waits for; its failure is logged."""
-        task = asyncio.create_task(work)
-        self._tasks.add(task)
-        task.add_done_callback(self._finished)
-
-    def _finished(self, task: asyncio.Task[Any]) -> None:
-        self._tasks.discard(task)
-        if not task.cancelled() and (error := task.exception()) is not None:
-            log.error("a chunk could not be made", exc_info=error)
+        """Run work that nobody waits for."""
+        self._background.start(work, "a chunk could not be made")
 
     def _begin(self, entry: Entry | None, player: MotionPlayer | StreamPlayer, plan_id: int) -> None:
         self.entry, self._player, self._plan_id = entry, player, plan_id
         self._moving_reported, self._held_since_s = False, None
         self._held = entry is not None and isinstance(entry.request, Play) and entry.request.hold
-        if entry is not None:
-            self._follower.stopped = False
+        self._follower.stopped &= entry is None
         self._follower.idling = entry is None
 
     def _forget(self) -> None:
@@ -246,8 +242,9 @@ class Playback:
     def _fail(self, entry: Entry | None, found: str, plan_id: int) -> None:
         self._forget()
         if entry is not None:
-            failure = failed("bus_dropped", found, "all of them", "see the daemon's log")
-            self._ledger.emit(entry, ending(plan_id, "", failure))
+            self._ledger.emit(
+                entry, ending(plan_id, "", failed("bus_dropped", found, "all of them", "see the daemon's log"))
+            )
 
     async def _take_idle(self, source: MotionSource) -> None:
         """Play idle movements, or the pose that is held with the gaze."""

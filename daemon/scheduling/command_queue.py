@@ -54,8 +54,8 @@ class QueuedCommand:
 
     @property
     def undecided(self) -> bool:
-        """Whether it is a `now` that is neither accepted nor refused yet."""
-        return self.when == "now" and not self.entry.accepted
+        """Whether it is a `now` of which is not known yet whether it is accepted or refused."""
+        return self.when == "now" and not (self.turn or self.entry.accepted)
 
 
 @dataclass(frozen=True)

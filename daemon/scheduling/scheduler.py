@@ -249,7 +249,8 @@ class Scheduler:
             self._check_deadline(entry)
             plan_id = self.planner.new_plan_id()
             self._sources.kept.number(entry.id, plan_id)
-            self._ledger.emit(entry, prepared.accepted(entry, plan_id))
+            if not self._begins_now(pending):
+                await self._accept(entry, prepared, plan_id)
             await self._turn(pending)
             arming = Progress(plan_id=plan_id, stage="arming")
             await until_armed(self.follower, self._link, lambda: self._ledger.emit(entry, arming), self._clock)
@@ -271,6 +272,15 @@ class Scheduler:
             self._ledger.emit(entry, failed("internal", str(error), "", "see the daemon's log"))
         finally:
             self._waiting.remove(pending)
+
+    def _begins_now(self, pending: QueuedCommand) -> bool:
+        """Whether the robot can set out for a command at once: what the motion shows is read after its first frames are made."""
+        is_now = pending.entry.request.when == "now" and not self._waiting.may_be_overtaken(pending)
+        return is_now and self.follower.can_take_over
+
+    async def _accept(self, entry: Entry, prepared: PreparedSource, plan_id: int) -> None:
+        if not (entry.accepted or entry.ended):
+            self._ledger.emit(entry, await prepared.accepted(entry, plan_id))
 
     def _check_deadline(self, entry: Entry) -> None:
         """Refuse at once what cannot begin in time.
@@ -318,7 +328,17 @@ class Scheduler:
         entry = pending.entry
         pending.committing = True
         alive: Callable[[], bool] = lambda: not pending.cancelled_by and pending.epoch == self.planner.epoch  # noqa: E731
-        if not await self._player.take_over(entry, prepared.score, plan_id, pending.epoch, alive):
+
+        async def told() -> None:
+            self._waiting.remove(pending)
+            await self._accept(entry, prepared, plan_id)
+
+        try:
+            begun = await self._player.take_over(entry, prepared.score, plan_id, pending.epoch, alive, told)
+        except RetargetError:
+            await told()
+            raise
+        if not begun:
             self._ledger.emit(entry, Cancelled(plan_id=plan_id, by=pending.cancelled_by or self.halts.by or "stop"))
 
 

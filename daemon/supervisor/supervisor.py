@@ -7,6 +7,7 @@ that dies is reported and the robot goes on.
 from __future__ import annotations
 
 import asyncio
+import gc
 import importlib.util
 import json
 import logging
@@ -135,6 +136,8 @@ class Supervisor:
             bus = self._bus
             self._children.append(bus)
             channel = await self._start_bus_and_ctl(bus)
+            gc.collect()
+            gc.freeze()  # a full collection of the tables of words would hold the front up for 36 ms
             front.start()
             front.ctl.attach(channel)
             self._watch(self._ctl.keep(front.ctl.attach))

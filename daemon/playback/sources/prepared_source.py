@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import asyncio
+import logging
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from daemon.generator.generated import Generated
@@ -17,12 +19,18 @@ from daemon.wire.requests import Command, Play, tag_of
 from mmm_core.motion.motion import Motion
 from mmm_core.recognition.seen import Scene
 
+log = logging.getLogger(__name__)
+
 OUT_OF_SCOPE_DO = "ask for gestures of head, arms and torso, in English, e.g. 'wave with your right hand'"
 
 
 @dataclass(frozen=True)
 class PreparedSource:
-    """A motion ready to be played, and what is told about it when it is accepted."""
+    """A motion ready to be played, and what is told about it when it is accepted.
+
+    Attributes:
+        shows: reads what the motion shows, which takes some milliseconds, in any thread; None where `understood` says it all.
+    """
 
     score: MotionSource | StreamSource
     duration_s: float
@@ -33,42 +41,52 @@ class PreparedSource:
     generate_ms: float = 0.0
     silence_s: float | None = None
     nearest: str = ""
-    lacks: str = ""
     commands: tuple[str, ...] = ()
     denied: tuple[str, ...] = ()
+    shows: Callable[[], Shows] | None = None
 
-    def accepted(self, entry: Entry, plan_id: int) -> Accepted:
-        """The event."""
+    async def accepted(self, entry: Entry, plan_id: int) -> Accepted:
+        """The event; it tells nothing of a motion that cannot be read."""
+        shows = Shows(self.understood, "")
+        if self.shows is not None:
+            try:
+                shows = await asyncio.to_thread(self.shows)
+            except Exception:  # the robot may be playing the motion already, which is sound
+                log.exception("what the motion of %r shows could not be read", entry.request.words)
         return Accepted(
             plan_id=plan_id,
             text=entry.asked.words,
             status=self.status,
-            understood=self.understood,
+            understood=shows.sentence,
             reason=self.reason,
             scope_score=round(self.scope_score, 4),
             duration_s=round(self.duration_s, 3),
             generate_ms=round(self.generate_ms, 2),
             silence_s=self.silence_s,
             nearest=self.nearest,
-            lacks=self.lacks,
+            lacks=shows.lacks,
             commands=self.commands,
             denied=self.denied,
             refers_to=entry.refers_to,
         )
 
 
-def prepared_source(generated: Generated, score: MotionSource, duration_s: float, shows: Shows) -> PreparedSource:
+def prepared_source(
+    generated: Generated, score: MotionSource, duration_s: float, shows: Callable[[], Shows]
+) -> PreparedSource:
     """With what the generator tells of a motion, and what the motion shows."""
     motion, made_ms = generated.motion, sum(generated.timings_ms.values())
-    how = (motion.status, shows.sentence, generated.reason, motion.scope_score, made_ms)
     return PreparedSource(
         score,
         duration_s,
-        *how,
+        motion.status,
+        reason=generated.reason,
+        scope_score=motion.scope_score,
+        generate_ms=made_ms,
         nearest=generated.understood,
-        lacks=shows.lacks,
         commands=generated.commands,
         denied=generated.denied,
+        shows=shows,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from daemon.playback.sources.lacking import instead, lacking
 from daemon.poses.pose_sequence import PoseSequence
+from daemon.state.ledger import Entry
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
 from mmm_core.recognition.checks import PALM_M
@@ -28,6 +29,10 @@ _TOUCHING_M, _LOOKED_AT = 0.03, 200
 """Metres between a robot's hands up to which they touch, and how many poses are looked at."""
 LONGEST_S = 15.0
 """Seconds of a motion that are judged; what comes later is not looked at."""
+
+
+ShownCheck = Callable[[Entry, Array, float], "Verdict"]
+"""Whether goals (T, J) of so many a second have shown the motion of a command."""
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Awaitable, Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Protocol, TypeVar
 
@@ -104,25 +105,13 @@ class SourceFactory:
             motion = await asyncio.to_thread(self._originals.motion, request)
             posture = await asyncio.to_thread(posture_of, motion)
             score, shows = await self._score(entry, posture, motion, words=motion.text)
-            return PreparedSource(
-                score,
-                performance_s(posture, request),
-                understood=shows.sentence,
-                nearest=motion.text,
-                lacks=shows.lacks,
-            )
+            return PreparedSource(score, performance_s(posture, request), nearest=motion.text, shows=shows)
         if isinstance(request, Gesture):
             clip = self._originals.clip(request.name)
             motion = clip.posture.motion(text=clip.name)
             score, shows = await self._score(entry, clip.posture, motion, marks=clip.marks, words=clip.text)
             nearest = f"{clip.text} (gesture {clip.name})"
-            return PreparedSource(
-                score,
-                performance_s(clip.posture, request),
-                understood=shows.sentence,
-                nearest=nearest,
-                lacks=shows.lacks,
-            )
+            return PreparedSource(score, performance_s(clip.posture, request), nearest=nearest, shows=shows)
         if isinstance(request, Lease):
             return await self._lease(request)
         raise TypeError(f"no source for {type(request).__name__}")
@@ -275,8 +264,8 @@ class SourceFactory:
     async def _score(
         self, entry: Entry, posture: PoseSequence, motion: Motion, scenes: Sequence[Scene] = (), *, words: str,
         marks: Marks | None = None, draft: bool = False,
-    ) -> tuple[MotionSource, Shows]:  # fmt: skip
-        """The score of a motion, and what it shows; it is kept under the command's id.
+    ) -> tuple[MotionSource, Callable[[], Shows]]:  # fmt: skip
+        """The score of a motion, and what reads what it shows; the motion is kept under the command's id.
 
         Args:
             entry: the command.
@@ -294,7 +283,7 @@ class SourceFactory:
         as_played = varied(posture, play)
         parts = at_tempo(scenes_or_whole(scenes, motion, words or play.words), play.tempo)
         self.kept.add(entry.id, KeptMotion(said, as_played, motion, parts))
-        shows = await asyncio.to_thread(self._showing.of, as_played, parts, draft=draft)
+        shows = partial(self._showing.of, as_played, parts, draft=draft)
         if play.loop or play.hold or play.repeat > 1:  # looking for the loop takes a while
             return await asyncio.to_thread(ClipSource, posture, play, marks), shows
         return ClipSource(posture, play, marks), shows

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import asyncio
+from functools import partial
+
 import numpy as np
 import pytest
 
 from daemon.playback.playback import IDLE_AFTER_S
 from daemon.playback.sources.clip_source import ClipSource
+from daemon.playback.sources.prepared_source import PreparedSource
+from daemon.playback.sources.showing import Shows
 from daemon.playback.sources.stream_source import StreamSource
 from daemon.poses.motion_source import MotionSource
 from daemon.poses.pose_sequence import PoseSequence, posture_of
 from daemon.shared_memory.bus_link import BusRequest
 from daemon.state.lease import LeaseClock
+from daemon.wire.events import Accepted
 from daemon.wire.requests import Gesture, Lease
 from retarget.errors import MotionError
 from retarget.path.safety_filter import SafetyFilter
 from tests.support.front_rig import FrontRig, front_rig
 from tests.support.kinematic import raised_arm
 
+ACCEPTED = partial(
+    Accepted, plan_id=1, text="", status="accepted", understood="", reason="", scope_score=1.0, duration_s=1.0, generate_ms=1.0
+)  # fmt: skip
 RIGHT = posture_of(raised_arm("right", 1.0, 1.0, "right"))
 LEFT = posture_of(raised_arm("left", 2.5, 0.9, "left"))
 
@@ -65,6 +74,39 @@ class NotHuman(MotionSource):
     def next(self) -> tuple[PoseSequence, bool]:
         first, self._first = self._first, False
         return (RIGHT, False) if first else (RIGHT[:0], True)
+
+
+def test_a_motion_is_under_way_when_it_is_told_of_and_reported_after():
+    with front_rig() as front:
+        moving: list[bool] = []
+
+        async def told() -> None:
+            await front.tick(20)
+            moving.append(front.moves and front.buffer.running)
+            front.ledger.emit(front.playback.entry, ACCEPTED())
+
+        async def work() -> None:
+            await play(front, "a", clip(RIGHT))
+            await front.tick(5)
+            entry = front.entry("b")
+            number = front.buffer.new_plan_id()
+            await front.playback.take_over(entry, clip(LEFT), number, front.buffer.epoch, lambda: True, told)
+            await front.until(lambda: front.playback.entry is None)
+
+        front.run(work)
+        assert moving == [True]
+        assert front.kinds == ["progress a", "accepted b", "cancelled a", "progress b", "done b"]
+
+
+def test_a_motion_that_cannot_be_read_is_accepted_without_a_word_of_it(caplog):
+    def unreadable() -> Shows:
+        raise ValueError("no sign fits")
+
+    with front_rig() as front:
+        entry = front.entry("wave")
+        event = asyncio.run(PreparedSource(clip(RIGHT), 2.0, shows=unreadable).accepted(entry, 3))
+    assert (event.text, event.plan_id, event.understood, event.lacks) == ("wave", 3, "", "")
+    assert "could not be read" in caplog.text
 
 
 def test_a_motion_is_played_to_its_end_and_reported():

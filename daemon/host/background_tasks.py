@@ -1,0 +1,28 @@
+"""Work of an event loop that nobody waits for."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Coroutine
+from typing import Any
+
+log = logging.getLogger(__name__)
+
+
+class BackgroundTasks:
+    """Runs coroutines, keeps them from being collected, and logs what they fail with."""
+
+    def __init__(self) -> None:
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def start(self, work: Coroutine[Any, Any, None], failure: str) -> None:
+        """Run a coroutine; `failure` is the line that is logged where it raises."""
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(lambda done: self._finished(done, failure))
+
+    def _finished(self, task: asyncio.Task[None], failure: str) -> None:
+        self._tasks.discard(task)
+        if not task.cancelled() and (error := task.exception()) is not None:
+            log.error("%s", failure, exc_info=error)
