@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations, pairwise, permutations
 from typing import Any
 
 import numpy as np
 
-from mmm_core.corpus.grammar import plain_phrases, times
 from mmm_core.corpus.heldout import Command, Probe, Sentence
+from mmm_core.evaluation.manner import judge_manner, plain_sentence
 from mmm_core.evaluation.probes import MIN_PART, judge
 from mmm_core.evaluation.robot_capability import showable as robot_showable
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import PostureFeatures, part, posture_features
-from mmm_core.motion.repetitions import body_path
 from mmm_core.motion.skeleton import standing_joints
 from mmm_core.recognition import checks
 from mmm_core.recognition.signs import shows
 
 Generate = Callable[[str, int], Motion]
-LEAST_CHANGE = 1.15
-"""Factor by which tempo or size must differ from the plain sentence's, the right way."""
-_MOVING = 0.2
-"""Share of the greatest speed above which a frame counts as moving."""
 _REST = 0.35
 """Share of the greatest distance from the first frame below which the body is at rest."""
 _PART_STEP = 4
@@ -33,7 +28,7 @@ _PART_STEP = 4
 
 
 def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool]:
-    """Which expectations of a sentence a motion meets; tempo and size are judged by `judge_manner`."""
+    """Which expectations of a sentence a motion meets; tempo and size are judged by `manner.judge_manner`."""
     verdict: dict[str, bool] = {}
     if sentence.nothing:
         return {"denial": checks.limb(shown) == ""}
@@ -50,35 +45,15 @@ def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool
     return verdict
 
 
-def judge_manner(command: Command, motion: Motion, plain: Motion) -> dict[str, bool]:
-    """Whether tempo and size of a motion differ from the plain sentence's the right way by at least `LEAST_CHANGE`."""
-    verdict: dict[str, bool] = {}
-    if command.tempo:
-        faster = _pace(motion, command) / max(_pace(plain, command), 1e-6)
-        verdict["tempo"] = faster >= LEAST_CHANGE if command.tempo == "fast" else faster <= 1 / LEAST_CHANGE
-    if command.size:
-        larger = _reach(motion, command) / max(_reach(plain, command), 1e-6)
-        verdict["size"] = larger >= LEAST_CHANGE if command.size == "large" else larger <= 1 / LEAST_CHANGE
-    return verdict
-
-
-def plain_sentence(command: Command) -> str:
-    """The corpus's first sentence for a command without its manner."""
-    row = {"": ("any", "none", "both"), "both": ("both",), "alternating": ("alternating",)}.get(command.side, ("one",))
-    said = plain_phrases(command.family, command.direction)
-    fitting = [p for r, p in said if r in row and "{N}" not in p and (command.count is None or "{n}" in p)]
-    phrase = (fitting or [p for _, p in said if "{N}" not in p])[0]
-    often = "" if command.count is None else times(command.count, np.random.default_rng(3))
-    filled = phrase.replace("{S}", command.side).replace("{D}", command.direction).replace("{n}", often)
-    return " ".join(filled.split())
-
-
 def seen_at_once(commands: Sequence[Command], shown: PostureFeatures) -> bool:
-    """Whether a motion shows several commands, each on its own limb; arms without a side act on different sides."""
+    """Whether a motion shows several commands, each on its own limb; arms without a side act on different sides.
+
+    Signs of head and trunk ask for other limbs to be still, so the limbs of the other commands are taken to be.
+    """
     arms = [c for c in commands if c.limb == "arm"]
     others = [c for c in commands if c.limb != "arm"]
-    armless = replace(shown, arms="")
-    if not all(_shows(c, armless) for c in others):
+    limbs = {c.limb for c in commands}
+    if not all(_shows(c, _still(shown, limbs - {c.limb})) for c in others):
         return False
     if len(arms) == 1 or all(c.side for c in arms):
         return all(_shows(c, shown) for c in arms)
@@ -187,6 +162,17 @@ def _probe(c: Command) -> Probe:
     return Probe("", c.family, c.limb, c.side, c.count, c.direction, c.hold_s)
 
 
+def _still(shown: PostureFeatures, limbs: Collection[str]) -> PostureFeatures:
+    """What a motion shows, with arms at rest and the angles of some limbs, "head" and "trunk", 0."""
+    nothing = np.zeros_like(shown.trunk_yaw_deg)
+    still = replace(shown, arms="")
+    if "head" in limbs:
+        still = replace(still, head_yaw_deg=nothing, head_pitch_deg=nothing, head_roll_deg=nothing)
+    if "trunk" in limbs:
+        still = replace(still, trunk_yaw_deg=nothing, trunk_pitch_deg=nothing, trunk_roll_deg=nothing)
+    return still
+
+
 def _shows(c: Command, shown: PostureFeatures) -> bool:
     if not shows(shown, c.family, c.side, c.direction):
         return False
@@ -259,36 +245,3 @@ def _step_seen(steps: Sequence[Sequence[Command]], i: int, shown: PostureFeature
     if c.direction and checks.direction(shown, c.family) != c.direction:
         return False
     return not alike or shows(shown, c.family, c.side, c.direction)
-
-
-def _pace(motion: Motion, command: Command) -> float:
-    """How fast a motion is: strokes a second, or where there are none, mean speed while moving as a share of its reach."""
-    s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
-    cycle = checks.cycle_s(s, command.family)
-    if cycle:
-        return 1 / cycle
-    path = _limb_path(motion, command)
-    speed = np.linalg.norm(np.diff(path, axis=0), axis=-1)
-    moving = speed[speed > _MOVING * speed.max()] if len(speed) and speed.max() > 0 else np.zeros(1)
-    return float(moving.mean()) * motion.fps / max(float(np.linalg.norm(path - path[0], axis=-1).max()), 1e-6)
-
-
-def _reach(motion: Motion, command: Command) -> float:
-    """How large a motion is: the range of its strokes, or where there are none, how far the limb goes from where it was."""
-    s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
-    signals = checks._stroke_signals(s, command.family)  # noqa: SLF001
-    ranges = [float(np.ptp(signal)) for signal, _ in signals if len(signal)]
-    if ranges and max(ranges) > 0:
-        return max(ranges)
-    path = _limb_path(motion, command)
-    return float(np.linalg.norm(path - path[0], axis=-1).max())
-
-
-def _limb_path(motion: Motion, command: Command) -> np.ndarray:
-    """(T, D) path of the limb that a command moves."""
-    path = body_path(motion)
-    columns = {"head": [6, 7, 8], "trunk": [9, 10, 11]}.get(command.limb)
-    if columns is None:
-        sides = {"left": [0, 1, 2], "right": [3, 4, 5]}
-        columns = sides.get(command.side, [0, 1, 2, 3, 4, 5])
-    return path[:, columns]

@@ -11,7 +11,7 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import GenerationError
-from mmm_core.generate.at_once import composed
+from mmm_core.generate.at_once import StepIds, composed, features_of
 from mmm_core.generate.editing import TOKEN_S
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.interpretation import interpret
@@ -63,32 +63,34 @@ def continue_motion(
     with torch.inference_mode():
         steps = steps_of(engine, read, n_frames)
         prefix = ids_before[len(ids_before) - min(n_prefix, MAX_TOKENS - steps[0].n_tokens) :]
-        rows = [
-            _row(engine, ids_before[:0] if i else prefix, step, (seed + i * COMMAND_STRIDE) % 2**31)
+        made = [
+            _step_ids(engine, ids_before[:0] if i else prefix, step, (seed + i * COMMAND_STRIDE) % 2**31)
             for i, step in enumerate(steps)
         ]
-        ids = joined(engine, steps, rows, seed)
+        ids = joined(engine, steps, [step.ids for step in made], seed)
         timer.lap("decode")
-        whole = engine.model.tokenizer.decode(torch.cat([ids_before, ids])[None])[0]
-        features = whole[len(ids_before) * FRAMES_PER_TOKEN :]
-        stretches = stretches_of(steps, [len(row) for row in rows])
+        n_before, stretches = len(ids_before), stretches_of(steps, [len(step.ids) for step in made])
+        begins = [n_before + s.end // FRAMES_PER_TOKEN - len(m.ids) for s, m in zip(stretches, made, strict=True)]
+        whole = features_of(engine, torch.cat([ids_before, ids]), list(zip(begins, made, strict=True)))
+        features = whole[n_before * FRAMES_PER_TOKEN :]
         if any(not s.plain for s in stretches):
-            features = performed(features.numpy(), stretches)[0]
+            features = performed(features, stretches)[0]
+        if any(not s.plain for s in stretches) or any(step.rows for step in made):
             motion = engine.motion_of(features, text, seed, verdict, n_frames)
         else:
-            motion = engine.motion_of_features(features[:n_frames].numpy(), ids, text, seed, verdict)
+            motion = engine.motion_of_features(features[:n_frames], ids, text, seed, verdict)
         timer.lap("motion")
     one = len(steps) == 1 and len(steps[0].commands) == 1
     several = understood_as(verdict) if one else ", then ".join(s.understood for s in steps)
     return GenerationResult(motion, several, verdict.reason, timer.laps_ms, read=read.reading)
 
 
-def _row(engine: Engine, prefix: Tensor, step: Step, seed: int) -> Tensor:
-    """(n_tokens, C) ids of a step, generated after the ids of the prefix."""
+def _step_ids(engine: Engine, prefix: Tensor, step: Step, seed: int) -> StepIds:
+    """The ids of a step, generated after the ids of the prefix."""
     transformer = engine.model.transformer
     rows: list[Tensor] = []
     for k, command in enumerate(step.commands):
         row = torch.cat([prefix, empty_row(transformer, step.tokens_of(k))])
         one = fill(transformer, command.states, [row], [(seed + k * TOGETHER_STRIDE) % 2**31], engine.settings)[0]
         rows.append(one[len(prefix) :])
-    return rows[0] if len(rows) == 1 else composed(engine, step.commands, rows)
+    return composed(engine, step.commands, rows)

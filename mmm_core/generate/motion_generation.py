@@ -15,7 +15,7 @@ from functools import cached_property
 import torch
 from torch import Tensor
 
-from mmm_core.generate.at_once import arms_of, composed, mirrored_ids
+from mmm_core.generate.at_once import StepIds, arms_of, composed, features_of, mirrored_ids
 from mmm_core.generate.interpretation import ReadCommand, interpret
 from mmm_core.generate.motion_model import MotionModel
 from mmm_core.generate.repetition_editing import ids_of_count
@@ -34,9 +34,10 @@ from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.motion.body_parts import BodyPart
 from mmm_core.motion.counting import with_counts
 from mmm_core.motion.motion import FPS
-from mmm_core.motion.performing import Stretch, performed
+from mmm_core.motion.performing import performed
 from mmm_core.recognition.seen import Scene
 
 OPENING_TOKENS = 2
@@ -90,10 +91,10 @@ class MotionGeneration:
         if not self._steps or not self._opens:
             return None
         with torch.inference_mode():
-            ids = self._preview_ids
+            first = self._preview_ids
             self._timer.lap("draft")
             n_frames = self._asked_frames if len(self._steps) == 1 else None
-            return self._result_of(ids, stretches_of(self._steps, [len(ids)]), n_frames, "draft motion")
+            return self._result_of(first.ids, [first], n_frames, "draft motion")
 
     def result(self) -> GenerationResult:
         """The motion, or an empty one and the reason where the text is rejected."""
@@ -104,12 +105,10 @@ class MotionGeneration:
                 nothing, understood, self._verdict.reason, self._timer.laps_ms, read=self._read.reading
             )
         with torch.inference_mode():
-            rows = [self._row(i, step) for i, step in enumerate(self._steps)]
-            ids = joined(self._engine, self._steps, rows, self._seed)
+            made = [self._step_ids(i, step) for i, step in enumerate(self._steps)]
+            ids = joined(self._engine, self._steps, [step.ids for step in made], self._seed)
             self._timer.lap("decode")
-            return self._result_of(
-                ids, stretches_of(self._steps, [len(row) for row in rows]), self._asked_frames, "motion"
-            )
+            return self._result_of(ids, made, self._asked_frames, "motion")
 
     @property
     def _opens(self) -> bool:
@@ -128,30 +127,28 @@ class MotionGeneration:
         ]
 
     @cached_property
-    def _preview_ids(self) -> Tensor:
-        """(n_tokens, C) ids of the first step after one decoding step."""
+    def _preview_ids(self) -> StepIds:
+        """The ids of the first step after one decoding step."""
         return self._together(self._steps[0], self._drafts)
 
     @cached_property
-    def _preview_arms(self) -> list[tuple[str, ...]]:
+    def _preview_arms(self) -> list[tuple[BodyPart, ...]]:
         """The arms of each command of the first step: those that its draft moves, where its words name none."""
         commands = self._steps[0].commands
         return arms_of(self._engine, commands, self._mirrored_where_asked(commands, self._drafts))
 
-    def _row(self, i: int, step: Step) -> Tensor:
-        """(L, C) ids of a step; the first one begins as its preview does."""
+    def _step_ids(self, i: int, step: Step) -> StepIds:
+        """The ids of a step; the first one begins as its preview does."""
         rows = [self._command_row(i, k, command, step.tokens_of(k)) for k, command in enumerate(step.commands)]
-        ids = self._together(step, rows)
+        made = self._together(step, rows)
         if i == 0 and self._opens:
-            ids[: self.settings.opening] = self._preview_ids[: self.settings.opening]
-        return ids
+            made.ids[: self.settings.opening] = self._preview_ids.ids[: self.settings.opening]
+        return made
 
-    def _together(self, step: Step, rows: Sequence[Tensor]) -> Tensor:
-        """(L, C) ids of a step's commands, done at once."""
+    def _together(self, step: Step, rows: Sequence[Tensor]) -> StepIds:
+        """The ids of a step's commands, done at once."""
         rows = self._mirrored_where_asked(step.commands, rows)
-        if len(rows) == 1:
-            return rows[0]
-        has_opening = step is self._steps[0] and self._opens
+        has_opening = len(rows) > 1 and step is self._steps[0] and self._opens
         return composed(self._engine, step.commands, rows, self._preview_arms if has_opening else None)
 
     def _mirrored_where_asked(self, commands: Sequence[ReadCommand], rows: Sequence[Tensor]) -> list[Tensor]:
@@ -184,15 +181,20 @@ class MotionGeneration:
         states = states if len(rows) == 1 else states.repeated(len(rows))
         return fill(self._engine.model.transformer, states, rows, seeds, settings)
 
-    def _result_of(self, ids: Tensor, stretches: list[Stretch], n_frames: int | None, lap: str) -> GenerationResult:
+    def _result_of(self, ids: Tensor, made: Sequence[StepIds], n_frames: int | None, lap: str) -> GenerationResult:
         verdict, mirrored = self._verdict, self._mirrored
+        stretches = stretches_of(self._steps, [len(step.ids) for step in made])
         ends = [stretch.end for stretch in stretches]
         counts = self._counts if lap == "motion" else []
-        if any(counts) or any(not s.plain for s in stretches):
-            features = self._engine.model.tokenizer.decode(ids[None])[0].numpy()
+        if any(counts) or any(not s.plain for s in stretches) or any(step.rows for step in made):
+            begins = [end // FRAMES_PER_TOKEN - len(step.ids) for end, step in zip(ends, made, strict=True)]
+            features = features_of(self._engine, ids, list(zip(begins, made, strict=True)))
             if any(counts):
                 features, stretches = with_counts(features, stretches, counts, OPENING_TOKENS * FRAMES_PER_TOKEN)
-            features, ends = performed(features, stretches)
+            if any(not s.plain for s in stretches):
+                features, ends = performed(features, stretches)
+            else:
+                ends = [stretch.end for stretch in stretches]
             motion = self._engine.motion_of(features, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)
         else:
             motion = self._engine.motion(ids, self._text, self._seed, verdict, n_frames, is_mirrored=mirrored)

@@ -215,7 +215,7 @@ def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> lis
 def _ids(engine: Engine, steps: list[Step], made: Iterator[Tensor], seed: int) -> Tensor:
     """(L, C) ids of a scene's steps in their manner, given the rows of all commands in order."""
     rows = [[next(made) for _ in step.commands] for step in steps]
-    whole = [r[0] if len(r) == 1 else composed(engine, s.commands, r) for s, r in zip(steps, rows, strict=True)]
+    whole = [composed(engine, s.commands, r).ids for s, r in zip(steps, rows, strict=True)]
     ids = joined(engine, steps, whole, seed)
     stretches = stretches_of(steps, [len(row) for row in whole])
     if all(s.plain for s in stretches):

@@ -2,17 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from mmm_core.corpus.heldout import Command
+from mmm_core.evaluation.sentences import seen_at_once
 from mmm_core.generate.motion_generation import OPENING_TOKENS
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
+from mmm_core.motion.posture_features import posture_features
 from tests.support.shipped import shipped_engine
 
 TEXTS = (
     "wave with your right hand", "wave with your left hand", "clap three times", "nod, then bow", "point up with your left hand",
     "wave and nod", "lean left with your arms up", "look left and bow",
 )  # fmt: skip
+LOOK, LEAN = Command("look", "head", direction="left"), Command("lean", "trunk", direction="right")
+SALUTE, HIP, HEART = (
+    Command("salute", "arm", "right"),
+    Command("hands_on_hips", "arm", "left"),
+    Command("heart", "arm", "left"),
+)
+AT_ONCE = (
+    ("lean to the right while looking to the left", (LEAN, LOOK)),
+    ("salute with your right hand and put your left hand on your hip", (SALUTE, HIP)),
+    ("bow while your left hand is on your heart", (Command("bow", "trunk"), HEART)),
+    ("nod while turning your body to the left", (Command("nod", "head"), Command("twist", "trunk", direction="left"))),
+)
 
 
 @pytest.mark.parametrize("text", TEXTS)
@@ -61,3 +78,11 @@ def test_what_is_rejected_has_no_draft() -> None:
     generation = shipped_engine().begin("do a backflip", seed=1)
     assert generation.preview() is None
     assert generation.result().status == "rejected" and generation.n_frames == 0
+
+
+@pytest.mark.parametrize(("text", "commands"), AT_ONCE)
+def test_each_of_two_commands_at_once_is_seen(text: str, commands: tuple[Command, Command]) -> None:
+    motion = shipped_engine().generate(text, seed=1).motion
+    shown = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    assert seen_at_once(commands, shown)
+    assert not seen_at_once((commands[0], replace(commands[1], side="right", direction="down")), shown)

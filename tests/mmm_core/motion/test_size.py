@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mmm_core.corpus.heldout import Command
-from mmm_core.evaluation.sentences import judge_manner
+from mmm_core.evaluation.manner import judge_manner
 from tests.support.shipped import shipped_engine
 
 

@@ -1,0 +1,73 @@
+"""Whether tempo and size of a motion are as a sentence asks for them, against the motion of the plain sentence."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mmm_core.corpus.grammar import plain_phrases, times
+from mmm_core.corpus.heldout import Command
+from mmm_core.motion.motion import Motion
+from mmm_core.motion.posture_features import posture_features
+from mmm_core.motion.repetitions import body_path
+from mmm_core.recognition import checks
+
+LEAST_CHANGE = 1.15
+"""Factor by which tempo or size must differ from the plain sentence's, the right way."""
+_MOVING = 0.2
+"""Share of the greatest speed above which a frame counts as moving."""
+
+
+def judge_manner(command: Command, motion: Motion, plain: Motion) -> dict[str, bool]:
+    """Whether tempo and size of a motion differ from the plain sentence's the right way by at least `LEAST_CHANGE`."""
+    verdict: dict[str, bool] = {}
+    if command.tempo:
+        faster = _pace(motion, command) / max(_pace(plain, command), 1e-6)
+        verdict["tempo"] = faster >= LEAST_CHANGE if command.tempo == "fast" else faster <= 1 / LEAST_CHANGE
+    if command.size:
+        larger = _reach(motion, command) / max(_reach(plain, command), 1e-6)
+        verdict["size"] = larger >= LEAST_CHANGE if command.size == "large" else larger <= 1 / LEAST_CHANGE
+    return verdict
+
+
+def plain_sentence(command: Command) -> str:
+    """The corpus's first sentence for a command without its manner."""
+    row = {"": ("any", "none", "both"), "both": ("both",), "alternating": ("alternating",)}.get(command.side, ("one",))
+    said = plain_phrases(command.family, command.direction)
+    fitting = [p for r, p in said if r in row and "{N}" not in p and (command.count is None or "{n}" in p)]
+    phrase = (fitting or [p for _, p in said if "{N}" not in p])[0]
+    often = "" if command.count is None else times(command.count, np.random.default_rng(3))
+    filled = phrase.replace("{S}", command.side).replace("{D}", command.direction).replace("{n}", often)
+    return " ".join(filled.split())
+
+
+def _pace(motion: Motion, command: Command) -> float:
+    """How fast a motion is: strokes a second, or where there are none, mean speed while moving as a share of its reach."""
+    s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    cycle = checks.cycle_s(s, command.family)
+    if cycle:
+        return 1 / cycle
+    path = _limb_path(motion, command)
+    speed = np.linalg.norm(np.diff(path, axis=0), axis=-1)
+    moving = speed[speed > _MOVING * speed.max()] if len(speed) and speed.max() > 0 else np.zeros(1)
+    return float(moving.mean()) * motion.fps / max(float(np.linalg.norm(path - path[0], axis=-1).max()), 1e-6)
+
+
+def _reach(motion: Motion, command: Command) -> float:
+    """How large a motion is: the range of its strokes, or where there are none, how far the limb goes from where it was."""
+    s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
+    signals = checks._stroke_signals(s, command.family)  # noqa: SLF001
+    ranges = [float(np.ptp(signal)) for signal, _ in signals if len(signal)]
+    if ranges and max(ranges) > 0:
+        return max(ranges)
+    path = _limb_path(motion, command)
+    return float(np.linalg.norm(path - path[0], axis=-1).max())
+
+
+def _limb_path(motion: Motion, command: Command) -> np.ndarray:
+    """(T, D) path of the limb that a command moves."""
+    path = body_path(motion)
+    columns = {"head": [6, 7, 8], "trunk": [9, 10, 11]}.get(command.limb)
+    if columns is None:
+        sides = {"left": [0, 1, 2], "right": [3, 4, 5]}
+        columns = sides.get(command.side, [0, 1, 2, 3, 4, 5])
+    return path[:, columns]
