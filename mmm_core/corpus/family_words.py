@@ -1,6 +1,6 @@
-"""The words by which phrases name each gesture family, and all words of the corpus: two tables.
+"""The words by which phrases name each gesture family, all words of the corpus, and the words that tell a limb: three tables.
 
-They are `mmm_core/recognition/family_words.txt` and `mmm_core/language/words/corpus_words.txt`.
+They are `mmm_core/recognition/family_words.txt`, and `corpus_words.txt` and `limb_words.txt` of `mmm_core/language/words`.
 
 Run `python -m mmm_core.corpus.family_words` after phrases have changed; a test says when that is needed.
 """
@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from pathlib import Path
 
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.grammar import manner_phrases, plain_phrases
 from mmm_core.language.inflection import NUMBERS
-from mmm_core.language.word_tables import CORPUS_WORDS_FILE
+from mmm_core.language.limbs import SAYS_NO_LIMB
+from mmm_core.language.word_tables import CORPUS_WORDS_FILE, LIMB_WORDS_FILE
 from mmm_core.language.word_tables import lines as table_lines
 from mmm_core.recognition.named import HIGHEST_LEVEL, WORDS_FILE, content_words
 
@@ -53,6 +54,31 @@ def corpus_words() -> str:
     return "".join(f"{word}\n" for word, _ in sorted(counts.items(), key=lambda item: (-item[1], item[0])))
 
 
+def limb_words() -> str:
+    """The content of `limb_words.txt`: verbs and nouns of gestures that nearly always move the same limb.
+
+    A verb is the first word of a phrase; a noun stands in a phrase that begins with an article or a verb that says nothing.
+    """
+    counts: dict[str, defaultdict[str, Counter[str]]] = {kind: defaultdict(Counter) for kind in ("verbs", "nouns")}
+    for family, phrases in family_phrases().items():
+        for phrase in phrases:
+            first, *others = re.findall(r"[a-z]+", phrase.lower())
+            if first in SAYS_NO_LIMB:
+                for word in set(others) - SAYS_NO_LIMB:
+                    counts["nouns"][word][FAMILIES[family].limb] += 1
+            else:
+                counts["verbs"][first][FAMILIES[family].limb] += 1
+    lines: list[str] = []
+    for kind, words in counts.items():
+        of_limb: defaultdict[str, list[str]] = defaultdict(list)
+        for word, limbs in words.items():
+            (limb, n), *_ = limbs.most_common(1)
+            if limb and n >= FEWEST_PHRASES and n >= SURE_SHARE * limbs.total():
+                of_limb[limb].append(word)
+        lines += [f"{kind} {limb} => {' '.join(sorted(of_limb[limb]))}\n" for limb in sorted(of_limb)]
+    return "".join(lines)
+
+
 def _words(phrase: str) -> set[str]:
     return set(re.findall(r"[a-z]{2,}", phrase.lower()))
 
@@ -65,6 +91,10 @@ _ALSO = (
 ).split()  # fmt: skip
 """Words of contrast, order, time and manner that requests have and phrases hardly."""
 
+FEWEST_PHRASES, SURE_SHARE = 4, 0.96
+"""Phrases that a word of `limb_words.txt` has at least, and the share of them that move the same limb."""
+
 if __name__ == "__main__":
     Path(str(WORDS_FILE)).write_text(family_words(), encoding="utf-8")
     Path(str(CORPUS_WORDS_FILE)).write_text(corpus_words(), encoding="utf-8")
+    Path(str(LIMB_WORDS_FILE)).write_text(limb_words(), encoding="utf-8")

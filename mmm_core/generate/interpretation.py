@@ -13,8 +13,9 @@ from itertools import islice
 
 from mmm_core.generate.motion_model import MotionModel, nothing_to_do
 from mmm_core.generate.result import understood_as
-from mmm_core.language.at_once import is_pose, limbs_of
+from mmm_core.language.at_once import is_pose
 from mmm_core.language.commands import Reading
+from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import Manner
 from mmm_core.language.mirroring import canonical, mirror_words
 from mmm_core.language.scope import ScopeVerdict, clauses_of, taken_clauses, with_clauses
@@ -30,7 +31,7 @@ class ReadCommand:
         states: the encoder's states of the words, or of their mirror image.
         is_mirrored: whether the states are those of the mirror image, so that the ids have to be mirrored.
         manner: tempo, size and hold.
-        limbs: as `mmm_core.language.at_once.limbs_of`.
+        limbs: as `mmm_core.language.limbs.limbs_of`.
         is_pose: whether it lasts as long as what is done beside it.
         understood: the nearest known command and its score; empty in a text of one command.
     """

@@ -5,38 +5,12 @@ from __future__ import annotations
 import re
 from functools import cache
 
+from mmm_core.language.limbs import ARMS, LIMB, SOME_ARM, limbs_named, limbs_of
 from mmm_core.language.word_tables import lines
 
-ARMS = frozenset({"left_arm", "right_arm"})
-HEAD, TRUNK = frozenset({"head"}), frozenset({"trunk"})
-SOME_ARM = frozenset({"some_arm"})
-"""One arm, whichever is free."""
-_LIMB = r"(?:hands?|arms?|fists?|palms?|fingers?|elbows?|forearms?|biceps|thumbs?)"
-_ARM_SIDE = re.compile(
-    rf"\b(left|right)[- ](?:handed\b|{_LIMB}\b|index finger)|\b(?:with|using|use|in) (?:your |the )?(left|right)\b(?! side)|^(?:your |the )?(left|right) (?:up|out|down|forward|on|to|behind|over)\b"
-)
-_BOTH = re.compile(
-    r"\bboth\b|\b(?:hands|arms|fists|palms|elbows|forearms|ears|eyes)\b|\b(?:clap|applaud|applause|shrug|hug|embrace|pray|cheer|flap|drum|juggle|zombie|cross your arms|guitar|piano|violin|flute|binoculars|hands on|T pose)"
-)
-_ARM = re.compile(
-    rf"\b{_LIMB}\b|\b(?:wav|clap|salut|point(?!less)|shrug|beckon|punch|scratch|pat\b|pats|patting|rub|cover|cross|hug|flex|applau|pray|throw|catch|knock|push|pull|"
-    r"stir|wip|shad|facepalm|blow|play|drum|conduct|cheer|reach|stretch|high five|toast|raise (?:a|your) glass|brush|eat|drink|yawn|hush|swim|row|climb|"
-    r"beat|bang|hold|carry|offer|touch|wring|clasp|steer|flap|jab|hammer|dab|dance|greet|signal|celebrat|victory)\w*"
-)
-_HEAD = re.compile(
-    r"\b(?:nod|nods|nodding|look|looks|looking|glanc|gaz|star(?:e|es|ing)|peek|peer|fac(?:e|ing) (?:left|right|up|down))\w*|"
-    r"^(?:\w+ )?(?:turn|shake|shaking|tilt|tilting|turning|move|moving|roll|rolling|wobble|bob|bobbing|raise|lift|lower|drop|bend|lean|tip|cock|rotate|wag|swivel|hang|throw) (?:your |the )?(?:head|chin|gaze|eyes|face|nose|neck)\b|"
-    r"^(?:your |the )?(?:head|chin|gaze|eyes|face)\b|\b(?:your|the) head (?:tilted|to|turned|up|down|bent|shak|nod)\w*"
-)
-_TRUNK = re.compile(
-    r"\b(?:bow|bows|bowing|lean|leans|leaning|bend|bends|bending|sway|sways|swaying|twist|twists|twisting|slump|slouch|curts)\w*\b|\b(?:torso|trunk|upper body|waist twist|body)\b"
-)
-_TRUNK_NOT = re.compile(
-    r"\b(?:bow and arrow|sway (?:your|both) arms|bend (?:your|the|one) (?:left |right )?(?:arm|elbow)|around your body)\b"
-)
 _POSE = re.compile(
     rf"^(?:(?:and|also|with|please) )*(?:rais|lift|hold|keep|put|stretch|cross|fold|cover|shad|rest|plac|lean|look|tilt|turn|twist|point|spread|extend|reach|leav|clasp|lay|have|"
-    rf"(?:your |the |both |one )?(?:left |right )?{_LIMB}\b|(?:your |the )?head|gaz|glanc|flex|touch)\w*"
+    rf"(?:your |the |both |one )?(?:left |right )?{LIMB}\b|(?:your |the )?head|gaz|glanc|flex|touch)\w*"
 )
 _ENDS = re.compile(r"\b(?:bow|bows|curtsy|salute|slump|celebrate)\b")
 """Verbs of gestures that are done by themselves: "clap and bow" is in turn."""
@@ -45,7 +19,7 @@ _WHILE = re.compile(
     r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as|(?:during|for|all) (?:all |the (?:whole |entire )?)?time(?: that| in which)?|for as long as|as long as)\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*"
 )
 _AS_YOU = re.compile(
-    rf"\s*,?\s*\bas (?:you(?: are)?\s+|(?=(?:your|the|both) (?:left |right )?(?:{_LIMB}|head|eyes|body|trunk)\b))"
+    rf"\s*,?\s*\bas (?:you(?: are)?\s+|(?=(?:your|the|both) (?:left |right )?(?:{LIMB}|head|eyes|body|trunk)\b))"
 )
 _SAME_TIME = re.compile(
     r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same (?:time|moment)|simultaneously|at once|together|(?:all )?in one(?: go| movement| motion)?(?=$|[,.])|all at once|concurrently|in parallel|in (?:unison|sync|tandem)(?=$|[,.])|meanwhile(?=$|[,.]))\b[,:]?\s*(?:and )?"
@@ -54,10 +28,10 @@ _LEADING = re.compile(
     r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$"
 )
 _WITH_LEADING = re.compile(
-    rf"^with (?P<first>(?:your |both |the )*(?:left |right )?{_LIMB} (?:crossed|folded|raised|stretched|spread|up|out|on|behind|over|wide|high)\b[^,]*),\s*(?P<second>\w.+)$"
+    rf"^with (?P<first>(?:your |both |the )*(?:left |right )?{LIMB} (?:crossed|folded|raised|stretched|spread|up|out|on|behind|over|wide|high)\b[^,]*),\s*(?P<second>\w.+)$"
 )
 _WITH_POSE = re.compile(
-    rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{_LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to (?:your |the )?(?:heart|chest|head|ears?|mouth|chin|face|forehead|temple|sides?|sky|ceiling|front|left|right|belly|shoulder)|at(?! the (?:very )?same)|in front|out|up|in|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
+    rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to (?:your |the )?(?:heart|chest|head|ears?|mouth|chin|face|forehead|temple|sides?|sky|ceiling|front|left|right|belly|shoulder)|at(?! the (?:very )?same)|in front|out|up|in|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
 )
 _AND = re.compile(r"\s*,\s*(?:and\s+|but\s+)?(?:also\s+)?|\s+(?:and|plus|but)\s+(?:also\s+)?")
 _FILLER = re.compile(
@@ -69,6 +43,8 @@ _FRONTED = re.compile(
 _RAISES = re.compile(r"^(?:raise|lift|put up|hold up) (?:your |the )?(?:left|right) (?:hand|arm)(?: up| high)?$")
 _ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
 """'Raise your left hand and wave' is one gesture."""
+_BARE_LIMB = re.compile(rf"^(?:with )?(?:your |the |both |left |right |other )*(?:{LIMB}|head|body|eyes|face)$")
+"""A limb of which nothing is said is no command."""
 _HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)\b.*\b(?:seconds?|secs?)\b")
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
 _IS = re.compile(
@@ -82,28 +58,6 @@ _ACTS = re.compile(
     r"|(?P<verb>wave|salute|point|beckon|knock|punch|cover|touch|shade|scratch|shake|nod|turn|tilt|conduct|rub|pat|wipe|hammer)(?:e?s)?)\b(?P<rest>.*)$"
 )
 """'Your left hand waves', 'have your head nod'."""
-
-
-def limbs_of(clause: str) -> frozenset[str]:
-    """Limbs that a clause moves: left_arm, right_arm, some_arm, head, trunk; empty where its words do not say.
-
-    >>> sorted(limbs_of("wave with your left hand")), sorted(limbs_of("scratch your head")), sorted(limbs_of("shake your head"))
-    (['left_arm'], ['some_arm'], ['head'])
-    """
-    if _HEAD.search(clause) and not re.search(rf"\b{_LIMB}\b", clause):
-        return HEAD
-    if (
-        _TRUNK.search(clause)
-        and not _TRUNK_NOT.search(clause)
-        and not re.search(rf"\b(?:left|right|your|both|the) {_LIMB}\b", clause)
-    ):
-        return TRUNK
-    if sided := _ARM_SIDE.search(clause):
-        sides = {s for m in _ARM_SIDE.finditer(clause) for s in m.groups() if s}
-        return frozenset(f"{side}_arm" for side in sides) if sided else SOME_ARM
-    if _BOTH.search(clause):
-        return ARMS
-    return SOME_ARM if _ARM.search(clause) else frozenset()
 
 
 def are_at_once(a: str, b: str, *, joined: bool = True) -> bool:
@@ -144,12 +98,16 @@ def divided(clause: str) -> list[str]:
         first, second = (_imperative(part) for part in pair)
         second = _with_verb(second, first)
         a, b = limbs_of(first), limbs_of(second)
+        if _BARE_LIMB.match(first) or _BARE_LIMB.match(second):
+            continue
         if _HOLDS.match(second) or (not asked and _RAISES.match(first) and _ONLY_WAVES.match(second)):
             continue
         if a == SOME_ARM == b and asked:
             return [_sided(first, "right"), _sided(second, "left")] if "hand" in clause else [first, second]
         if not _apart(a, b):
             continue
+        if not asked and a | b <= ARMS | SOME_ARM and not (limbs_named(first) and limbs_named(second)):
+            continue  # "lift your right hand and swear an oath" is one gesture
         if not asked and not are_at_once(first, second, joined="," not in clause[len(pair[0]) : len(pair[0]) + 2]):
             continue
         return [*divided(_freed(first, b)), *divided(_there(_freed(second, a), first))]
@@ -160,7 +118,7 @@ def same_limbs(clause: str) -> list[str]:
     """Two commands that a clause asks for at once of the same limbs, which can only follow each other; else the clause alone."""
     for pair, asked in _pairs(clause):
         first, second = (_imperative(part) for part in pair)
-        a, b = limbs_of(first), limbs_of(second)
+        a, b = limbs_named(first), limbs_named(second)
         if asked and a and b and (a & b or ARMS <= (a | b)) and not _apart(a, b):
             return [first, second]
     return [clause]
@@ -174,7 +132,7 @@ def _pairs(clause: str) -> list[tuple[tuple[str, str], bool]]:
     for pattern in (_WHILE, _AS_YOU):
         if (m := pattern.search(clause)) and m.start() > 0:
             found.append(((clause[: m.start()], clause[m.end() :]), True))
-    if m := _WITH_POSE.search(clause):
+    if (m := _WITH_POSE.search(clause)) and limbs_named(clause[: m.start()]):
         found.append(((clause[: m.start()], m["pose"]), True))
     same = _SAME_TIME.search(clause)
     if same and 0 < same.start() and same.end() < len(clause):

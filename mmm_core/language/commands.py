@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mmm_core.language.at_once import limbs_of
+from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import FASTEST, LARGEST, LONGEST_HOLD_S, Manner
 
 EXACTLY = "exactly:"

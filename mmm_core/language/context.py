@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from mmm_core.errors import MmmError
-from mmm_core.language.at_once import ARMS, SOME_ARM, is_pose, limbs_of
+from mmm_core.language.at_once import is_pose
 from mmm_core.language.commands import PlainCommand, Reading, Steps
 from mmm_core.language.count_words import ADVERBS, NUMBERS
 from mmm_core.language.ellipsis import OTHER, completed
 from mmm_core.language.inflection import singular
+from mmm_core.language.limbs import ARMS, SOME_ARM, limbs_of
 from mmm_core.language.manner import FASTEST, LARGEST, Manner
 from mmm_core.language.reading import read
 from mmm_core.language.requests import everyday

@@ -10,13 +10,14 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from mmm_core.language.at_once import SOME_ARM, base_of, divided, limbs_of, same_limbs
+from mmm_core.language.at_once import base_of, divided, same_limbs
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
 from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
 from mmm_core.language.corrections import corrected
 from mmm_core.language.denial import without_denial
 from mmm_core.language.ellipsis import with_sides
+from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
 from mmm_core.language.requests import everyday, restated, rewritten, without_request
 from mmm_core.language.spelling import mended, normalised

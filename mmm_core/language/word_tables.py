@@ -8,6 +8,7 @@ from importlib.resources import files
 
 _FOLDER = files("mmm_core.language").joinpath("words")
 CORPUS_WORDS_FILE = _FOLDER.joinpath("corpus_words.txt")
+LIMB_WORDS_FILE = _FOLDER.joinpath("limb_words.txt")
 
 WAY = "left|right|up|down|forwards?|backwards?|back"
 """Directions, for patterns of tables."""

@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mmm_core.corpus.family_words import corpus_words
-from mmm_core.language.at_once import divided, limbs_of
+from mmm_core.language.at_once import divided
 from mmm_core.language.denial import without_denial
 from mmm_core.language.ellipsis import completed
+from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import Manner, manner_of
 from mmm_core.language.reading import read
 from mmm_core.language.spelling import mended, mended_word
@@ -205,7 +206,7 @@ class TestAtOnce:
         ("clause", "limbs"),
         [
             ("wave with your left hand", {"left_arm"}), ("shake your head", {"head"}), ("scratch your head", {"some_arm"}),
-            ("bow", {"trunk"}), ("clap", {"left_arm", "right_arm"}), ("point to the left", {"some_arm"}), ("think hard", set()),
+            ("bow", {"trunk"}), ("clap", {"left_arm", "right_arm"}), ("point to the left", {"some_arm"}), ("think hard", {"some_arm"}), ("stay happy", set()),
         ],
     )  # fmt: skip
     def test_limbs(self, clause: str, limbs: set[str]) -> None:
