@@ -12,11 +12,11 @@ _POSE = re.compile(
     rf"^(?:(?:and|also|with|please) )*(?:rais|lift|hold|keep|put|stretch|cross|fold|cover|shad|rest|plac|lean|look|tilt|turn|twist|point|spread|extend|reach|leav|clasp|lay|have|"
     rf"(?:your |the |both |one )?(?:left |right )?{LIMB}\b|(?:your |the )?head|gaz|glanc|flex|touch)\w*"
 )
-_ENDS = re.compile(r"\b(?:bow|bows|curtsy|salute|slump|celebrate)\b")
+_ENDS = re.compile(r"\b(?:bow(?! your head)|bows|curtsy|salute|slump|celebrate)\b")
 """Verbs of gestures that are done by themselves: "clap and bow" is in turn."""
 _VERB_FIRST = re.compile(r"^(?:also )?(?!(?:left|right|both|your|the|one|hands?|arms?|head|eyes|a|an)\b)\w+")
 _WHILE = re.compile(
-    r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as|(?:during|for|all) (?:all |the (?:whole |entire )?)?time(?: that| in which)?|for as long as|as long as)\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*"
+    r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as|(?:during|for|all) (?:all |the (?:whole |entire )?)?time(?: that| in which)?|for as long as|as long as|as well as(?= \w+ing\b)|(?:in time|along|in step|in rhythm) (?:with|to)(?= (?:your |the )?\w+ing\b)|(?<=[a-z], )but (?:still )?keep(?: on)?(?= \w+ing\b))\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*"
 )
 _AS_YOU = re.compile(
     rf"\s*,?\s*\bas (?:you(?: are)?\s+|(?=(?:your|the|both) (?:left |right )?(?:{LIMB}|head|eyes|body|trunk)\b))"
@@ -35,7 +35,7 @@ _WITH_POSE = re.compile(
 )
 _AND = re.compile(r"\s*,\s*(?:and\s+|but\s+)?(?:also\s+)?|\s+(?:and|plus|but)\s+(?:also\s+)?")
 _FILLER = re.compile(
-    r"^(?:and|also|then|with|keep|keeping|while|please|still)\s+(?=\w+ing\b|your|the|both|left|right)|\s+(?:too|as well|also)$|^(?:also|and)\s+"
+    r"^(?:and|also|then|with|keep|keeping|while|please|still)\s+(?=\w+ing\b|your|the|both|left|right)|^(?:your|the)\s+(?=(?:clapp|nodd|wav|shak|bow|point|salut|drumm|conduct)ing\b)|\s+(?:too|as well|also)$|^(?:also|and)\s+"
 )
 _FRONTED = re.compile(
     r"^(?:(?:and|with|using) )+(?:your |the )?(left|right)(?: hand| arm)?,? (?!(?:hand|arm|on|up|to|out|over|behind|down|forward|raised|stretched)\b)(\w.+)$"

@@ -25,7 +25,7 @@ _ARM = re.compile(
 )
 _HEAD = re.compile(
     r"\b(?:nod|nods|nodding|look|looks|looking|glanc|gaz|star(?:e|es|ing)|peek|peer|fac(?:e|ing) (?:left|right|up|down))\w*|"
-    r"^(?:\w+ )?(?:turn|shake|shaking|tilt|tilting|turning|move|moving|roll|rolling|wobble|bob|bobbing|raise|lift|lower|drop|bend|lean|tip|cock|rotate|wag|swivel|hang|throw) (?:your |the )?(?:head|chin|gaze|eyes|face|nose|neck)\b|"
+    r"^(?:\w+ )?(?:turn|shake|shaking|tilt|tilting|turning|move|moving|roll|rolling|wobble|bob|bobbing|raise|lift|lower|drop|bend|lean|tip|cock|rotate|wag|swivel|hang|throw|bow|bowing) (?:your |the )?(?:head|chin|gaze|eyes|face|nose|neck)\b|"
     r"^(?:your |the )?(?:head|chin|gaze|eyes|face)\b|\b(?:your|the) head (?:tilted|to|turned|up|down|bent|shak|nod)\w*"
 )
 _TRUNK = re.compile(
