@@ -1,6 +1,6 @@
-"""The words by which phrases name each gesture family, all words of the corpus, and the words that tell a limb: three tables.
+"""The words by which phrases name each gesture family, all words of the corpus, the words that tell a limb, and the pairs of words.
 
-They are `mmm_core/recognition/family_words.txt`, and `corpus_words.txt` and `limb_words.txt` of `mmm_core/language/words`.
+They are `mmm_core/recognition/family_words.txt`, and `corpus_words.txt`, `limb_words.txt` and `word_pairs.txt` of `mmm_core/language/words`.
 
 Run `python -m mmm_core.corpus.family_words` after phrases have changed; a test says when that is needed.
 """
@@ -10,13 +10,17 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter, defaultdict
+from itertools import pairwise
 from pathlib import Path
+
+import numpy as np
 
 from mmm_core.corpus.families import FAMILIES
 from mmm_core.corpus.grammar import manner_phrases, plain_phrases
+from mmm_core.corpus.synthesis import draw_spec, words_for
 from mmm_core.language.inflection import NUMBERS
 from mmm_core.language.limbs import SAYS_NO_LIMB
-from mmm_core.language.word_tables import CORPUS_WORDS_FILE, LIMB_WORDS_FILE
+from mmm_core.language.word_tables import CORPUS_WORDS_FILE, LIMB_WORDS_FILE, WORD_PAIRS_FILE
 from mmm_core.language.word_tables import lines as table_lines
 from mmm_core.recognition.named import HIGHEST_LEVEL, WORDS_FILE, content_words
 
@@ -79,6 +83,21 @@ def limb_words() -> str:
     return "".join(lines)
 
 
+def word_pairs() -> str:
+    """The content of `word_pairs.txt`: for each word those that follow it in captions, "^" and "$" at the ends of one."""
+    known = set(table_lines("corpus_words")) | {"a", "i", "^", "$"}
+    counts: Counter[tuple[str, str]] = Counter()
+    rng = np.random.default_rng(CAPTION_SEED)
+    captions = [text for _ in range(N_CLIPS) for text in words_for(draw_spec(rng), rng)]
+    for text in captions:
+        counts.update(pairwise(["^", *re.findall(r"[a-z]+", text.lower()), "$"]))
+    following: defaultdict[str, list[str]] = defaultdict(list)
+    for (first, second), n in sorted(counts.items()):
+        if n >= FEWEST_CAPTIONS and {first, second} <= known:
+            following[first].append(second)
+    return "".join(f"{first} => {' '.join(words)}\n" for first, words in following.items())
+
+
 def _words(phrase: str) -> set[str]:
     return set(re.findall(r"[a-z]{2,}", phrase.lower()))
 
@@ -94,7 +113,11 @@ _ALSO = (
 FEWEST_PHRASES, SURE_SHARE = 4, 0.96
 """Phrases that a word of `limb_words.txt` has at least, and the share of them that move the same limb."""
 
+N_CLIPS, CAPTION_SEED, FEWEST_CAPTIONS = 20_000, 5, 5
+"""Clips whose captions are counted for `word_pairs.txt`, and captions that a pair of words stands in at least."""
+
 if __name__ == "__main__":
     Path(str(WORDS_FILE)).write_text(family_words(), encoding="utf-8")
     Path(str(CORPUS_WORDS_FILE)).write_text(corpus_words(), encoding="utf-8")
+    Path(str(WORD_PAIRS_FILE)).write_text(word_pairs(), encoding="utf-8")
     Path(str(LIMB_WORDS_FILE)).write_text(limb_words(), encoding="utf-8")

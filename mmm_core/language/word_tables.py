@@ -9,6 +9,7 @@ from importlib.resources import files
 _FOLDER = files("mmm_core.language").joinpath("words")
 CORPUS_WORDS_FILE = _FOLDER.joinpath("corpus_words.txt")
 LIMB_WORDS_FILE = _FOLDER.joinpath("limb_words.txt")
+WORD_PAIRS_FILE = _FOLDER.joinpath("word_pairs.txt")
 
 WAY = "left|right|up|down|forwards?|backwards?|back"
 """Directions, for patterns of tables."""

@@ -15,7 +15,8 @@ from mmm_core.language.ellipsis import completed
 from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import Manner, manner_of
 from mmm_core.language.reading import read
-from mmm_core.language.spelling import mended, mended_word
+from mmm_core.language.slips import mended_word
+from mmm_core.language.spelling import mended
 from mmm_core.language.word_tables import CORPUS_WORDS_FILE
 
 
