@@ -22,13 +22,13 @@ pytestmark = [
 
 
 def test_several_robots_share_a_generator() -> None:
-    """Two robots, one of them twice, show one text; all of them park at the end."""
-    names = ("reference", "op3", "reference")
+    """Two robots of different joints show one text; both park at the end."""
+    names = ("reference", "op3")
     command = [sys.executable, str(EXAMPLES / "several_robots.py"), *names]
     done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     shown = sorted(done.stdout.splitlines())
-    assert [line.partition(":")[0] for line in shown] == ["op3[1]", "reference[0]", "reference[2]"]
+    assert [line.partition(":")[0] for line in shown] == ["op3[1]", "reference[0]"]
     assert all("waves with the right hand" in line for line in shown)
     assert done.stderr.count("PARKING -> LIMP") == len(names)
 
