@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,16 @@ from daemon.generator.generated import arrays_of
 from daemon.generator.messages import EditMessage, GenerateMessage, UnfitRequestError
 from daemon.generator.service import EngineService
 from mmm_core.motion.motion import load_npz
-from tests.support.shipped import shipped_engine
+from tests.support.shipped import loaded_once, shipped_engine
 
 WRIST, SHOULDER = 20, 16
 """Joints of the left arm."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def one_engine() -> Iterator[None]:
+    with loaded_once():
+        yield
 
 
 @pytest.fixture(scope="module")

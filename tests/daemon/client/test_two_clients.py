@@ -11,6 +11,7 @@ import os
 import signal
 import subprocess
 import tempfile
+from collections.abc import Callable
 
 import pytest
 
@@ -81,55 +82,41 @@ def test_both_clients_have_the_same_calls():
     assert public_calls(Client) == public_calls(AsyncClient)
 
 
-@pytest.fixture
-def restarted():
-    """(start, endpoints): `start` begins a daemon at these endpoints, the one before having ended."""
+def test_both_clients_go_on_after_a_restart_and_say_nothing_late():
+    async def main(ends: Endpoints, start: Callable[[], RunningDaemon]) -> None:
+        first = start()
+        with Client(ends, timeout_s=1.0) as plain:
+            async with AsyncClient(ends, timeout_s=1.0) as robot:
+                assert plain.say("wave", seconds=0.8).done
+                assert (await robot.say("wave", seconds=0.8)).done
+                assert first.terminate() == 0
+                for ask in (plain.status, lambda: plain.say("wave", seconds=0.8, timeout_s=1.0)):
+                    with pytest.raises(NoAnswerError):
+                        ask()
+                for ask in (robot.status, lambda: robot.say("wave", seconds=0.8, timeout_s=1.0)):
+                    with pytest.raises(NoAnswerError):
+                        await ask()
+                await asyncio.to_thread(start)
+                assert (
+                    plain.wait_for("limp", timeout_s=10).command is None
+                )  # what nobody heard is not carried out later
+                assert (await robot.wait_for("limp", timeout_s=10)).command is None
+                assert plain.capabilities().robot == (await robot.capabilities()).robot == "reference"
+                assert plain.status().state == (await robot.status()).state == "limp"
+                assert plain.gesture("nod").done
+                assert (await robot.gesture("nod")).done
+
     with tempfile.TemporaryDirectory(prefix="mmmd-test-") as folder, contextlib.ExitStack() as daemons:
         ends = Endpoints(*(f"ipc://{folder}/{name}" for name in ("cmd", "ctl", "pub")))
 
         def start() -> RunningDaemon:
+            """A daemon at these endpoints, the one before having ended."""
             daemon = RunningDaemon("--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub)
             daemons.callback(daemon.close)
             daemon.endpoints = ends
             return daemon.until_ready()
 
-        yield start, ends
-
-
-def test_the_client_goes_on_after_a_restart_and_says_nothing_late(restarted):
-    start, ends = restarted
-    first = start()
-    with Client(ends, timeout_s=1.0) as robot:
-        assert robot.say("wave", seconds=0.8).done
-        assert first.terminate() == 0
-        for ask in (robot.status, lambda: robot.say("wave", seconds=0.8, timeout_s=1.0)):
-            with pytest.raises(NoAnswerError):
-                ask()
-        start()
-        assert robot.wait_for("limp", timeout_s=10).command is None  # what nobody heard is not carried out later
-        assert robot.capabilities().robot == "reference"
-        assert robot.status().state == "limp"
-        assert robot.gesture("nod").done
-
-
-def test_the_async_client_goes_on_after_a_restart_and_says_nothing_late(restarted):
-    start, ends = restarted
-
-    async def main() -> None:
-        first = start()
-        async with AsyncClient(ends, timeout_s=1.0) as robot:
-            assert (await robot.say("wave", seconds=0.8)).done
-            assert first.terminate() == 0
-            for ask in (robot.status, lambda: robot.say("wave", seconds=0.8, timeout_s=1.0)):
-                with pytest.raises(NoAnswerError):
-                    await ask()
-            await asyncio.to_thread(start)
-            assert (await robot.wait_for("limp", timeout_s=10)).command is None
-            assert (await robot.capabilities()).robot == "reference"
-            assert (await robot.status()).state == "limp"
-            assert (await robot.gesture("nod")).done
-
-    asyncio.run(main())
+        asyncio.run(main(ends, start))
 
 
 def result_of(answer: dict) -> str:

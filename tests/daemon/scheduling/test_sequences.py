@@ -216,7 +216,7 @@ class Sequence:
             time.sleep(0.02)
 
 
-@pytest.mark.parametrize("seed", [1, None], ids=["1", "fresh"])
+@pytest.mark.parametrize("seed", [1, pytest.param(None, id="fresh", marks=pytest.mark.soak)])
 def test_random_sequences_keep_to_the_model(seed, tmp_path):
     drawn = seed or random.SystemRandom().randrange(10**6)
     daemon = RunningDaemon("--gestures", str(tmp_path))

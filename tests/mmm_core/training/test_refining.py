@@ -86,7 +86,7 @@ def test_refining_leaves_the_model_it_begins_with(clips: list[Clip], tmp_path: P
     model = load_model()
     held = {name: t.clone() for name, t in model.tokenizer.state_dict().items()}
     schedule = Schedule(steps=2, learning_rate=1e-4, warmup_steps=1)
-    made = refined(model, clips[:20], model.tokenizer.config.n_codes + 8, schedule, Run(tmp_path), 0.0)
+    made = refined(model, clips[:8], model.tokenizer.config.n_codes + 8, schedule, Run(tmp_path), 0.0)
     assert all(torch.equal(t, held[name]) for name, t in model.tokenizer.state_dict().items())
     assert made.transformer.config == replace(model.transformer.config, n_codes=made.tokenizer.config.n_codes)
     assert (tmp_path / "refined.pt").is_file()

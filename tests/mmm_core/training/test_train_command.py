@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,8 +24,9 @@ from mmm_core.errors import CheckpointError, TrainingDataError
 from mmm_core.evaluation.extractors import load_evaluator
 from mmm_core.generate.engine import Engine
 from mmm_core.inference.checkpoint import load_model, load_text_encoder, save_model
-from mmm_core.model.text import TextEncoder
-from mmm_core.training import scope_training
+from mmm_core.model.text import MiniLm, TextEncoder
+from mmm_core.training import samples, scope_training
+from mmm_core.training.batches import CaptionStates
 from mmm_core.training.recipe import known_recipes, read_recipe
 from mmm_core.training.run import Run, Schedule
 from mmm_core.training.run import train as run_stage
@@ -74,21 +75,31 @@ INDEX_COMMANDS = sorted(known_commands(1))[::20]
 """The known commands in the index: reading all that ship have takes longer than the training here."""
 
 
-_READ: dict[str, torch.Tensor] = {}
+_VECTORS: dict[str, torch.Tensor] = {}
 """Vectors of the scope's sentences: most are the same in every training here, and reading them takes longer than it."""
+_STATES: dict[tuple[int, tuple[str, ...]], CaptionStates] = {}
+"""Caption states by the layers that the encoder leaves out: runs of one seed have the same captions."""
 
 
 @pytest.fixture(scope="module", autouse=True)
-def quick_scope() -> Iterator[None]:
-    read = scope_training.sentence_vectors
+def quick_parts() -> Iterator[None]:
+    vectors_of, states_of = scope_training.sentence_vectors, CaptionStates.encode
 
-    def read_once(texts: list[str], encoder: TextEncoder) -> torch.Tensor:
-        if new := [text for text in dict.fromkeys(texts) if text not in _READ]:
-            _READ.update(zip(new, read(new, encoder), strict=True))
-        return torch.stack([_READ[text] for text in texts])
+    def sentence_vectors(texts: list[str], encoder: TextEncoder) -> torch.Tensor:
+        if new := [text for text in dict.fromkeys(texts) if text not in _VECTORS]:
+            _VECTORS.update(zip(new, vectors_of(new, encoder), strict=True))
+        return torch.stack([_VECTORS[text] for text in texts])
+
+    def encode(captions: Sequence[str], encoder: MiniLm) -> CaptionStates:
+        key = encoder.n_left_out, tuple(captions)
+        if key not in _STATES:
+            _STATES[key] = states_of(captions, encoder)
+        return _STATES[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(scope_training, "sentence_vectors", read_once)
+        patch.setattr(scope_training, "sentence_vectors", sentence_vectors)
+        patch.setattr(CaptionStates, "encode", encode)
+        patch.setattr(samples, "INSTANTS", 2)  # most of the time of a picture is its axes
         patch.setattr(scope_training, "known_commands", lambda *_: set(INDEX_COMMANDS))
         patch.setattr(scope_training, "OUTSIDE", scope_training.OUTSIDE[::8])
         yield
@@ -130,7 +141,7 @@ def losses(path: Path) -> np.ndarray:
 @pytest.mark.parametrize("layout", ["parts", "whole", "halves"])
 def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path, layout: str) -> None:
     config, run, out = small(tmp_path / "small.toml", layout), tmp_path / "run", tmp_path / "model.safetensors"
-    command = ["train", "--config", str(config), "--run", str(run), "--out", str(out), "--sample-every", "4"]
+    command = ["train", "--config", str(config), "--run", str(run), "--out", str(out), "--sample-every", "8"]
     assert main(command) == 0
     model = load_model(out)
     assert model.provenance["seed"] == 3
@@ -355,27 +366,22 @@ def test_a_users_own_folder_trains(tmp_path: Path, kind: str) -> None:
 def test_a_killed_run_goes_on_with_the_same_weights(tmp_path: Path, times: int) -> None:
     """SIGKILL at a random moment, in the soak run again and again; then against a run that nobody cut."""
     config = small(tmp_path / "small.toml", steps=60)
-    command = [sys.executable, "-m", "daemon.cli", "train", "tokenizer", "--config", str(config), "--sample-every", "0"]
-    rng = np.random.default_rng()
-    killed = 0
-    for _ in range(20):
-        process = subprocess.Popen(
-            [*command, "--run", str(tmp_path / "cut")], env=environment(), stdout=subprocess.DEVNULL
-        )
-        state = tmp_path / "cut" / "tokenizer.pt"
+    train = ["train", "tokenizer", "--config", str(config), "--sample-every", "0", "--run"]
+    command = [sys.executable, "-m", "daemon.cli", *train, str(tmp_path / "cut")]
+    state, rng, killed = tmp_path / "cut" / "tokenizer.pt", np.random.default_rng(), 0
+    for _ in range(times):
         before = state.stat().st_mtime_ns if state.is_file() else 0
+        process = subprocess.Popen(command, env=environment(), stdout=subprocess.DEVNULL)
         deadline = time.monotonic() + 60
-        while process.poll() is None and time.monotonic() < deadline:
-            if killed < times and state.is_file() and state.stat().st_mtime_ns != before:
-                time.sleep(rng.uniform(0, 0.1))
-                process.send_signal(signal.SIGKILL)
-                killed += 1
-                break
+        while process.poll() is None and not (state.is_file() and state.stat().st_mtime_ns != before):
+            assert time.monotonic() < deadline, "it saves no state"
             time.sleep(0.005)
-        if process.wait() == 0:
-            break
+        time.sleep(rng.uniform(0, 0.1))
+        process.kill()
+        killed += process.wait() == -signal.SIGKILL
     assert killed
-    assert main([*command[3:], "--run", str(tmp_path / "whole")]) == 0
+    assert main([*train, str(tmp_path / "cut")]) == 0
+    assert main([*train, str(tmp_path / "whole")]) == 0
     cut, whole = (torch.load(tmp_path / r / "tokenizer.pt", weights_only=True) for r in ("cut", "whole"))
     assert cut["step"] == whole["step"] == 60
     for name, tensor in whole["module"].items():
