@@ -95,7 +95,10 @@ class CtlHandler:
         self._send_answers()
         for asked in self._link.unknown_halts:
             if time.monotonic_ns() - asked.number // 2 > 1e9 * UNTOLD_S:
-                log.warning("%s came without a word: the ctl process was lost or the front held up", asked.kind.name)
+                log.warning(
+                    "%s was asked for, and ctl sent no message of it: the ctl process was lost, or the front held up",
+                    asked.kind.name,
+                )
                 trigger = Trigger.STOP if asked.kind is BusRequest.STOP else Trigger.ESTOP
                 self._halted(trigger, asked, None)
 

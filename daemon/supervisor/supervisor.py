@@ -154,7 +154,9 @@ class Supervisor:
             await self._start_extras(front)
             if recorder is not None:  # a start that fails leaves no log
                 self._watch(self._watch_recorder(recorder, front))
-            log.info("ready: robot %s on %s", self._robot.name, self._config.bus)
+            texts = ": texts wait for it" if generator.state == "starting" else ""
+            told = (self._robot.name, self._config.bus, generator.state, texts)
+            log.info("ready: robot %s on %s; generator %s%s", *told)
             log.info("cmd %s, ctl %s, pub %s, stream %s", ends.cmd, ends.ctl, ends.pub, ends.stream)
             failure = asyncio.create_task(front.failure())
             asked = asyncio.create_task(self._asked_to_end.wait())
