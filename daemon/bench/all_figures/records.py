@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import importlib.metadata
 import json
@@ -77,7 +76,6 @@ class Here:
     machine: str
 
 
-@functools.cache
 def here(root: Path = ROOT) -> Here:
     """This installation on this machine."""
     return Here(importlib.metadata.version("mmmd"), _commit(root), _digest(root), machine())
@@ -127,8 +125,19 @@ def why_again(record: Record | None, command: str, now: Here) -> str:
 def record_of(
     measurement: Measurement, command: str, outcome: Outcome, now: Here, date: datetime, *, quick: bool
 ) -> Record:
-    """What is kept of a command's outcome: its JSON, or why there is none."""
+    """What is kept of a command's outcome: its JSON, or why there is none.
+
+    Args:
+        measurement: what was measured.
+        command: as typed.
+        outcome: of the command.
+        now: the code and the machine before the command ran; values of code that changed meanwhile are not kept.
+        date: of the end.
+        quick: whether small numbers were taken.
+    """
     values, error = _values(measurement, outcome)
+    if here().code != now.code:
+        values, error = None, "the code was changed while it ran"
     return Record(
         name=measurement.name, command=command, version=now.version, commit=now.commit, code=now.code, machine=now.machine,
         date=date.isoformat(timespec="seconds"), seconds=round(outcome.seconds, 1), quick=quick,

@@ -69,7 +69,7 @@ def _measured(
     wanted: Sequence[Measurement], records: dict[str, Record], out: Path, quick: bool, seed: int, console: Console
 ) -> Iterator[Record]:
     """The records that had to be made, one after another, each written at once."""
-    now, given = here(), {RECORDINGS: str(recordings_folder())}
+    given = {RECORDINGS: str(recordings_folder())}
     for i, m in enumerate(wanted):
         place = f"[{i + 1}/{len(wanted)}] {m.name}"
         if reason := m.without or _missing_need(m):
@@ -77,6 +77,7 @@ def _measured(
             continue
         words = m.words(seed, quick=quick)
         command = typed(words)
+        now = here()
         reason = why_again(records.get(m.name), command, now)
         if not reason:
             console.print(f"{place}: there already, {records[m.name].date}", markup=False, soft_wrap=True)

@@ -11,6 +11,7 @@ import textwrap
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import msgspec
@@ -18,7 +19,8 @@ import pytest
 import tyro
 
 from daemon.bench.all_figures.markdown import report
-from daemon.bench.all_figures.records import Record, here, read_records, why_again
+from daemon.bench.all_figures.process import Outcome
+from daemon.bench.all_figures.records import Record, here, read_records, record_of, why_again
 from daemon.bench.all_figures.run import bench_all
 from daemon.bench.all_figures.table import NOT_MEASURED, Figure, Measurement, read_table, rows_of
 from daemon.cli import bench as bench_command
@@ -189,6 +191,15 @@ def test_other_options_code_or_machine_are_measured_again(table: Path, tmp_path:
     assert "measured by" in why_again(kept, f"{kept.command} --quick", now)
     assert "failed" in why_again(msgspec.structs.replace(kept, error="status 1"), kept.command, now)
     assert why_again(None, "", now) == "missing"
+
+
+def test_a_figure_of_code_that_changed_while_it_ran_is_not_kept(table: Path) -> None:
+    """A checkout in the middle of a run had given figures of the new code under the old one's commit."""
+    one, said = read_table(table)[3], Outcome(0, '{"lost": 0}', "", 1.0, None, None)
+    now, date = here(), datetime(2026, 1, 2, tzinfo=UTC)
+    assert record_of(one, "x", said, now, date, quick=False).values == {"lost": 0}
+    other = record_of(one, "x", said, replace(now, code="before"), date, quick=False)
+    assert other.values is None and "changed" in other.error
 
 
 def test_a_file_that_is_no_record_and_a_wrong_name_are_refused(table: Path, tmp_path: Path) -> None:
