@@ -10,12 +10,14 @@ from daemon.bench.all_figures.table import NOT_MEASURED, Column, Measurement, Ro
 
 _HEAD = """\
 Made by `mmmd bench all` from one JSON file for each run, never by hand; `mmmd bench all --help` says how to make one for
-another machine. Machines that others use too are noisy: read ratios first. What stands behind the figures, and what was
-tried: model.md, evaluation.md, retargeting.md, bus.md, safety.md and decisions/."""
+another machine. Machines that others use too are noisy: where they took a tenth of the processors or more, the line says so,
+and its times and rates are no measure of what the code can do. What stands behind the figures, and what was tried: model.md,
+evaluation.md, retargeting.md, bus.md, safety.md and decisions/."""
 _QUICK = (
     "**Quick: runs marked so took small numbers of texts and trials. Their figures are no measurement of a release.**"
 )
-_PERCENT = "%"
+BUSY = 0.1
+"""Share of the processors' time that other processes took from which on the line of a figure says so."""
 
 
 def report(table: Sequence[Measurement], records: Mapping[str, Record]) -> str:
@@ -60,7 +62,10 @@ def _figures(table: Sequence[Measurement], records: Mapping[str, Record]) -> lis
 def _command(measurement: Measurement, record: Record | None) -> str:
     if measurement.without:
         return ""
-    return f"`{record.command if record else typed(measurement.words(0, quick=False))}`"
+    if record is None:
+        return f"`{typed(measurement.words(0, quick=False))}`"
+    busy = record.others_took is not None and record.others_took >= BUSY
+    return f"`{record.command}`" + (f"; **others took {_share(record.others_took)}**" if busy else "")
 
 
 def _runs(table: Sequence[Measurement], records: Mapping[str, Record]) -> list[str]:
@@ -141,7 +146,7 @@ def _cell(values: Any, column: Column, path: Any) -> str:
 
 
 def _share(share: float | None) -> str:
-    return "" if share is None else f"{100 * share:.0f} {_PERCENT}"
+    return "" if share is None else f"{100 * share:.0f} %"
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
