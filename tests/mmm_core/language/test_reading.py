@@ -258,3 +258,29 @@ def test_reading_takes_less_than_two_milliseconds() -> None:
 def test_the_words_of_the_corpus_are_those_of_its_phrases() -> None:
     """When this fails after phrases or everyday words were changed: `python -m mmm_core.corpus.family_words`."""
     assert CORPUS_WORDS_FILE.read_text(encoding="utf-8") == corpus_words()
+
+
+@pytest.mark.parametrize(
+    ("text", "command"),
+    [
+        ("peer down at your toes", "look down at your toes"), ("crane your neck to the left", "look to the left"),
+        ("stare straight up", "look up"), ("glance rightwards", "look to the right"), ("rock back", "lean back"),
+        ("tip your body backwards", "lean back"), ("incline your trunk to the right", "lean to the right"),
+        ("rotate your torso leftwards", "turn your upper body to the left"),
+        ("point your right finger forwards", "point forward with your right hand"),
+        ("point with your left hand down", "point down with your left hand"),
+    ],
+)  # fmt: skip
+def test_words_of_looking_leaning_and_pointing_are_those_of_the_model(text: str, command: str) -> None:
+    assert said(text) == [[command]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "point your left hand at the door", "rotate your left arm", "peer to the right of the box", "tilt your head to the left",
+        "rock the baby", "swing your right arm forward", "stare at the left door", "lean on your right hand",
+    ],
+)  # fmt: skip
+def test_likely_words_of_other_gestures_stay(text: str) -> None:
+    assert said(text) == [[text]]
