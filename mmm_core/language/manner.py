@@ -85,6 +85,8 @@ def manner_of(clause: str) -> tuple[str, Manner]:
 
 def _factor(clause: str, table: str, most: float) -> tuple[str, float]:
     factor = 1.0
+    if _any_of(table).search(clause) is None:
+        return clause, factor
     for worth, pattern in _patterns(table):
         found = pattern.search(clause)
         if found is None or not _is_manner(clause, found):
@@ -126,6 +128,12 @@ def _is_manner(clause: str, found: re.Match[str]) -> bool:
             )
         )
     return True
+
+
+@cache
+def _any_of(table: str) -> re.Pattern[str]:
+    """A pattern that is found wherever one of a table's is."""
+    return re.compile("|".join(f"(?:{pattern.pattern})" for _, pattern in _patterns(table)))
 
 
 @cache

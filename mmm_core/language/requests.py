@@ -7,7 +7,7 @@ from functools import cache
 
 from mmm_core.language.at_once import base_of
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
-from mmm_core.language.word_tables import WAY, lines, pairs, substitutions
+from mmm_core.language.word_tables import WAY, lines, pairs, replaced, substitutions
 
 _ACT = (
     r"(?:also |just |please |can you |could you )*(?:wave|nod|bow|clap|shrug|salute|point|punch|shake|cross|fold|raise|lift|look|lean|beckon|hug|stretch|twist|tilt|cheer|pray|scratch|rub|pat|"
@@ -111,13 +111,9 @@ def restated(said: str) -> str:
     >>> restated("look up and down"), restated("end with a bow but clap before that")
     ('look up, then down', 'clap, then end with a bow')
     """
-    for pattern, words in _sentences():
-        said = pattern.sub(words, said)
-    return said
+    return replaced(said, _sentences())
 
 
 def rewritten(clause: str) -> str:
     """A clause with words that the model knows in place of others that mean the same."""
-    for pattern, words in substitutions("rewrites"):
-        clause = pattern.sub(words, clause)
-    return clause
+    return replaced(clause, substitutions("rewrites"))

@@ -199,6 +199,12 @@ def _by_length() -> dict[int, list[str]]:
 
 
 @cache
+def _as_long(n: int, most: int) -> list[str]:
+    """Words that a slip of `n` letters may be mended to, at most `most` letters longer or shorter."""
+    return [word for length in range(n - most, n + most + 1) for word in _by_length().get(length, ())]
+
+
+@cache
 def mended_word(word: str) -> str:
     """The word, or the corpus word that it is a slip of.
 
@@ -244,8 +250,7 @@ def _nearest(word: str) -> tuple[float, str]:
 def _near(word: str) -> list[tuple[float, str]]:
     """Corpus words that may be meant by a slip, the nearest first, each with its weighted distance."""
     most = MOST_SLIPS.get(len(word), 2)
-    near = [w for n in range(len(word) - most, len(word) + most + 1) for w in _by_length().get(n, ())]
-    found = process.extract(word, near, scorer=OSA.distance, score_cutoff=most, limit=None)
+    found = process.extract(word, _as_long(len(word), most), scorer=OSA.distance, score_cutoff=most, limit=None)
     return sorted((_cost(word, str(meant), int(d)), str(meant)) for meant, d, _ in found)
 
 

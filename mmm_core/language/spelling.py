@@ -10,7 +10,7 @@ import unicodedata
 from functools import cache
 
 from mmm_core.language.slips import without_slips
-from mmm_core.language.word_tables import WAY, pairs, substitutions
+from mmm_core.language.word_tables import WAY, pairs, replaced, substitutions
 
 _FILLER = r"(?:u+h+m*|u+m+|e+r+m*|h+m+|ah+|eh+)"
 _RESTART = re.compile(
@@ -75,9 +75,7 @@ def _chat_word(token: str, words: dict[str, str]) -> str:
 
 def _taken_back(said: str) -> str:
     """A text without what it takes back in the same breath: "left, I mean right" -> "right"."""
-    for pattern, words in _corrections():
-        said = pattern.sub(words, said)
-    return said
+    return replaced(said, _corrections())
 
 
 @cache
@@ -86,6 +84,4 @@ def _corrections() -> tuple[tuple[re.Pattern[str], str], ...]:
 
 
 def _homophones(said: str) -> str:
-    for pattern, words in substitutions("homophones"):
-        said = pattern.sub(words, said)
-    return said
+    return replaced(said, substitutions("homophones"))

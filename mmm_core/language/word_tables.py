@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from functools import cache
 from importlib.resources import files
 
@@ -32,3 +33,14 @@ def pairs(name: str) -> tuple[tuple[str, str], ...]:
 def substitutions(name: str) -> tuple[tuple[re.Pattern[str], str], ...]:
     """The lines `pattern => words` of a table, compiled."""
     return tuple((re.compile(pattern), words) for pattern, words in pairs(name))
+
+
+def replaced(text: str, rules: Iterable[tuple[re.Pattern[str], str]]) -> str:
+    """A text in which each rule in turn puts its words in place of its pattern.
+
+    `sub` alone reads the words of a rule anew on every call, also where the pattern is not found.
+    """
+    for pattern, words in rules:
+        if pattern.search(text) is not None:
+            text = pattern.sub(words, text)
+    return text
