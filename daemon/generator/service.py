@@ -27,6 +27,10 @@ HALVES = {"upper": ("left_arm", "right_arm"), "lower": ("rest",)}
 """The halves of the body in a model without an upper and a lower codebook: both arms, and all the rest of it."""
 
 
+_FIRST = (("wave with your rihgt hand", None), ("nod and raise your left hand", LONGEST_S))
+"""Texts and seconds of the first motions, which allocate; the first slip and the first commands at once load tables of words."""
+
+
 class EngineService:
     """Answers requests with one engine."""
 
@@ -42,8 +46,8 @@ class EngineService:
             CheckpointError: a file is missing or does not fit.
         """
         maker = cls(Engine.load(model, threads=threads))
-        for seconds in (None, LONGEST_S):  # the first calls allocate
-            list(maker.generate(GenerateMessage(id=0, text="wave with your right hand", seconds=seconds, draft=True)))
+        for text, seconds in _FIRST:
+            list(maker.generate(GenerateMessage(id=0, text=text, seconds=seconds, draft=True)))
         return maker
 
     def generate(self, request: GenerateMessage) -> Iterator[Generated]:
