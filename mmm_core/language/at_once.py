@@ -54,8 +54,8 @@ _IS = re.compile(
 
 _ACTS = re.compile(
     r"^(?:(?:let|have|get|make|keep) )?(?:your |the )?(?:(?P<side>left|right) (?:hand|arm|fist)|(?P<head>head)) "
-    r"(?:(?P<ing>(?:wav|salut|point|beckon|knock|punch|cover|touch|shad|scratch|shak|nodd|turn|tilt|hold|conduct|rubb|patt|wip|hammer)ing)"
-    r"|(?P<verb>wave|salute|point|beckon|knock|punch|cover|touch|shade|scratch|shake|nod|turn|tilt|conduct|rub|pat|wipe|hammer)(?:e?s)?)\b(?P<rest>.*)$"
+    r"(?:(?P<ing>(?:wav|salut|point|beckon|knock|punch|cover|touch|shad|scratch|shak|nodd|turn|tilt|hold|conduct|rubb|patt|wip|hammer|look|clapp)ing)"
+    r"|(?P<verb>wave|salute|point|beckon|knock|punch|cover|touch|shade|scratch|shake|nod|turn|tilt|conduct|rub|pat|wipe|hammer|look)(?:e?s)?)\b(?P<rest>.*)$"
 )
 """'Your left hand waves', 'have your head nod'."""
 
@@ -108,7 +108,12 @@ def divided(clause: str) -> list[str]:
             continue
         if not asked and a | b <= ARMS | SOME_ARM and not (limbs_named(first) and limbs_named(second)):
             continue  # "lift your right hand and swear an oath" is one gesture
-        if not asked and not are_at_once(first, second, joined="," not in clause[len(pair[0]) : len(pair[0]) + 2]):
+        of_limbs = any(_ACTS.match(part.strip(" ,.")) for part in pair)  # "drum, your head nodding"
+        if (
+            not asked
+            and not of_limbs
+            and not are_at_once(first, second, joined="," not in clause[len(pair[0]) : len(pair[0]) + 2])
+        ):
             continue
         return [*divided(_freed(first, b)), *divided(_there(_freed(second, a), first))]
     return [clause]
@@ -167,7 +172,7 @@ def _imperative(part: str) -> str:
     if acts := _ACTS.match(part):
         verb = base_of(acts["ing"]) if acts["ing"] else acts["verb"]
         if acts["head"]:
-            return f"nod{acts['rest']}" if verb == "nod" else f"{verb} your head{acts['rest']}"
+            return f"{verb}{acts['rest']}" if verb in ("nod", "look") else f"{verb} your head{acts['rest']}"
         return f"{verb}{acts['rest']} with your {acts['side']} hand"
     if stays := _IS.match(part):
         part = f"{stays['limb']} {stays['rest']}"

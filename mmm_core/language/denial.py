@@ -47,7 +47,7 @@ _LEAVE = re.compile(
 )
 _KEEP_STILL = re.compile(
     r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?(?:head|arms|both arms|hands|both hands|body|trunk|torso|upper body|shoulders|rest of (?:you|your body)|legs|feet|everything else)\s+"
-    r"(?:still|down|at your sides?|by your sides?|straight|alone|out of it|quiet|upright|where it is|where they are),?\s*(?:and\s+)?"
+    r"(?:still|(?<!head )down|at your sides?|by your sides?|straight|alone|out of it|quiet|upright|where it is|where they are),?\s*(?:and\s+)?"
 )
 _DIRECTION_ONLY = re.compile(
     r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$"

@@ -72,8 +72,9 @@ def _kept(before: str, after: str) -> str:
 def _gerund_request(rest: str) -> str:
     """A request whose verb is a gerund as a command: "shaking your head" -> "shake your head"."""
     found = re.match(r"^(?:you )?(\w+ing)\b(?= (?:your|the|to|at|with|me|down|up|and|goodbye|a|an)\b|$)", rest)
-    if found is None or not SPEAKS_OF_AN_ACT.match(found[1]):
-        return rest
+    _, comma, after = rest.partition(", ")
+    if found is None or not SPEAKS_OF_AN_ACT.match(found[1]) or (comma and SPEAKS_OF_AN_ACT.match(after)):
+        return rest  # "looking left, wave" is at once
     return base_of(found[1]) + rest[found.end() :]
 
 

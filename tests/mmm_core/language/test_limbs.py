@@ -92,3 +92,29 @@ def test_words_of_the_table_are_done_at_once(text: str, together: list[str]) -> 
 )
 def test_what_is_one_gesture_stays_one(text: str) -> None:
     assert len(read(text).steps) == 1 and len(read(text).steps[0]) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "commands"),
+    [
+        ("drum with both hands, head nodding along", "drum with both hands + nod along"),
+        ("your left hand waves, your right hand salutes", "wave with your left hand + salute with your right hand"),
+        ("looking to the left, wave with your right hand", "wave with your right hand + look to the left"),
+        ("with a nod, wave your left hand", "wave your left hand + nod"),
+        ("in one go: look left, raise your right arm", "look to the left + raise your right arm"),
+        ("wave, your other hand on your heart", "wave with your right hand + put your left hand on your heart"),
+        ("raise ur left hand n look right", "raise your left hand + look to the right"),
+        (
+            "your left hand should cover your mouth while your head looks down",
+            "cover your mouth with your left hand + look down",
+        ),
+        ("keep your head down while you raise both arms", "look down + raise both arms"),
+        ("clap, then your head shakes", "clap; your head shakes"),
+        ("keep your arms down and nod", "nod"),
+        ("wave with the other hand", "wave with the other hand"),
+        ("looking good, robot", "looking good"),
+        ("in one corner: a lamp", "in one corner: a lamp"),
+    ],
+)
+def test_forms_of_at_once(text: str, commands: str) -> None:
+    assert "; ".join(read(text).sentences) == commands
