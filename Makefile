@@ -16,7 +16,7 @@ help:
 	@echo "make check   formatting, lint, types, import rules"
 	@echo "make docs    the pages of docs/ as a site, in out/site; a warning or a link that leads nowhere is an error"
 	@echo "make format  let ruff format the code"
-	@echo "make soak    hours of simulated faults (not part of make test)"
+	@echo "make soak    hours of simulated faults, properties on three times the examples (not part of make test)"
 	@echo "make clean   remove the virtual environment and what runs wrote"
 
 setup: $(VENV)/.ready
@@ -57,8 +57,9 @@ format: setup
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
+# Hours: tests marked `soak`, and every property on three times the examples of `make test`, drawn anew (tests/support/sizes.py).
 soak: setup
-	$(BIN)/python -m pytest -m soak --timeout 0 -s
+	$(BIN)/python -m pytest -m 'soak or hypothesis' --hypothesis-profile soak --timeout 0 -s
 
 clean:
 	rm -rf $(VENV) out .pytest_cache .ruff_cache .hypothesis

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from mmm_core.generate.engine import Engine
 
 # No timed assertions: machines are shared and noisy; speed lives in `mmmd bench`.
-settings.register_profile("mmmd", deadline=None)
+settings.register_profile("mmmd", deadline=None, max_examples=34, derandomize=True)
+settings.register_profile("soak", deadline=None, max_examples=100)
 settings.load_profile("mmmd")
 
 WATCH = pytest.StashKey[HostWatch]()

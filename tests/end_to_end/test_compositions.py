@@ -9,12 +9,14 @@ import time
 
 import pytest
 
+from daemon.cli import main
 from daemon.client import CancelledByError, RefusedError
 from daemon.wire import events as ev
 from daemon.wire.requests import KeyPoseOf, Say, SceneOf, Story
 from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.end_to_end.test_start_and_end import child_pid
-from tests.support.harness import RunningDaemon, mmmd, plays_well
+from tests.support.harness import RunningDaemon, plays_well
+from tests.support.shipped import loaded_once
 
 pytestmark = [
     pytest.mark.skipif(not MODEL_FILE.exists(), reason="no checkpoint in this checkout"),
@@ -153,8 +155,8 @@ def test_what_was_played_is_played_again_and_so_is_a_file(run):
         again = robot.replay(plan=first.events[0].plan_id)
         assert again.done is not None and again.done.frames == pytest.approx(first.done.frames, abs=30)
         assert robot.replay(command=first.id, tempo=2.0).done.frames < 0.7 * first.done.frames
-        made = mmmd("generate", "bow", "--seconds", "2", "--out", str(run.motions / "bow.npz"))
-        assert made.returncode == 0, made.stderr
+        with loaded_once():
+            assert main(["generate", "bow", "--seconds", "2", "--out", str(run.motions / "bow.npz")]) == 0
         assert robot.replay(file="bow.npz").done.frames == pytest.approx(200, abs=30)
         (run.motions / "broken.npz").write_bytes(b"no motion")
         for file in ("broken.npz", "../bow.npz", "nothing.npz"):

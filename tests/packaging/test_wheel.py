@@ -163,7 +163,7 @@ class Environment:
         clean = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "MMMD"))}
         return subprocess.run(
             [self.python, *arguments], cwd=self.home, capture_output=True, text=True, timeout=timeout_s, check=False,
-            env={**clean, "PYTHONDONTWRITEBYTECODE": "1", **environment},
+            env={**clean, **environment},
         )  # fmt: skip
 
     def mmmd(self, *arguments: str, timeout_s: float = 60.0) -> subprocess.CompletedProcess[str]:

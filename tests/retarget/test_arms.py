@@ -19,6 +19,7 @@ from retarget.human.poser import Poser
 from retarget.path.limits import JointLimits
 from retarget.pipeline import Retargeter
 from retarget.robot.kinematics import Kinematics
+from tests.support.sizes import examples
 
 REACHES_ALL = [name for name in FAMILIES if int(name[0]) >= 4]
 LEAST_ERROR = [name for name in FAMILIES if int(name[0]) < 4]
@@ -179,7 +180,7 @@ def test_an_arm_led_past_its_first_axis_comes_out_on_the_near_side(tmp_path):
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 def test_the_row_of_ways_is_the_cheapest_of_all_rows(seed):
     rng = np.random.default_rng(seed)
     G, T, C, n = 1, 4, 3, 2

@@ -14,6 +14,7 @@ from retarget.path.collision import KEPT, SelfContact
 from retarget.path.limits import JointLimits
 from retarget.path.rrt_connect import RrtConnect
 from retarget.robot.loading import list_robots, load_robot
+from tests.support.sizes import examples
 
 ROBOTS = {name: load_robot(name) for name in ("reference", "toddlerbot", "op2")}
 CONTACTS = {name: SelfContact(robot) for name, robot in ROBOTS.items()}
@@ -48,7 +49,7 @@ def searched(name: str, start: np.ndarray, goal: np.ndarray) -> RrtConnect:
     return search
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(names, seeds, st.booleans())
 @example("toddlerbot", 204342947, False)
 def test_on_no_way_to_park_or_rest_it_touches_itself(name, seed, parks):
@@ -130,7 +131,7 @@ def test_a_start_outside_the_limits_only_comes_back():
     assert (np.diff(dense(way)[:, 2]) <= 1e-12).all()
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(80), deadline=None)
 @given(names, seeds, st.integers(2, 6), st.floats(0.01, 1.0))
 def test_a_line_that_is_called_clear_keeps_its_share_everywhere(name, seed, n, reach):
     draw = np.random.default_rng(seed)

@@ -12,6 +12,7 @@ from retarget.path.limits import brake
 from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
+from tests.support.sizes import examples
 
 ROBOTS = {name: load_robot(name) for name in ("reference", "toddlerbot", "op2")}
 GUARDS = {name: SafetyFilter(robot) for name, robot in ROBOTS.items()}
@@ -41,7 +42,7 @@ def assert_kept(robot: RobotModel, guard: SafetyFilter, path: np.ndarray) -> Non
     assert BODIES[robot.name].clearance_m(between).min() > 0.0
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(name=st.sampled_from(sorted(ROBOTS)), commands=jumps)
 def test_no_targets_break_a_limit_or_touch(name, commands):
     """Random poses, jumps beyond every limit, single joints, targets that alternate within few steps, sudden ends."""

@@ -19,6 +19,7 @@ from retarget.pipeline import BLOCK_FRAMES, Retargeter
 from retarget.robot.loading import list_robots, load_robot
 from retarget.robot_to_human import joints_of_path
 from tests.retarget.test_pipeline import at_rest, check_bounds
+from tests.support.sizes import examples
 
 RETARGETERS = {name: Retargeter(load_robot(name)) for name in list_robots()}
 CHECKS = {name: ContactCheck(r.robot) for name, r in RETARGETERS.items()}
@@ -31,7 +32,7 @@ def end_of(path) -> JointState:
     return JointState(path.at(at)[0], path.velocity_at(at)[0])
 
 
-@settings(max_examples=14)
+@settings(max_examples=examples(14))
 @given(names, st.integers(0, 10_000), kinds)
 def test_chunks_join_keep_every_bound_and_touch_nothing(name: str, seed: int, kind: str) -> None:
     """As a stream comes: each chunk knows only itself, and may be the last; then the robot brakes."""
@@ -49,7 +50,7 @@ def test_chunks_join_keep_every_bound_and_touch_nothing(name: str, seed: int, ki
     assert not end_of(stopped).velocity_rad_s.any()
 
 
-@settings(max_examples=7)
+@settings(max_examples=examples(7))
 @given(names, st.integers(0, 10_000), kinds)
 def test_a_long_motion_keeps_every_bound_across_its_blocks(name: str, seed: int, kind: str) -> None:
     r = RETARGETERS[name]
@@ -97,7 +98,7 @@ def test_shifting_time_shifts_the_path_whatever_the_motion(name: str, at_least: 
     assert compared >= 3
 
 
-@settings(max_examples=6)
+@settings(max_examples=examples(6))
 @given(st.integers(0, 10_000), st.integers(1, 30))
 def test_a_gentle_motion_may_be_shifted_by_any_time(seed: int, shift: int) -> None:
     """Within the limits it does not matter where blocks begin: elbows, wrists and head are where they were, to half a mm."""

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from retarget.path.limit_path import limit_path
 from retarget.path.limits import JointLimits, brake, keeps, limit_step
 from retarget.robot.loading import load_robot
+from tests.support.sizes import examples
 
 LIMITS = JointLimits.of(load_robot("reference"))
 J = len(LIMITS.position_min_rad)
@@ -43,7 +44,7 @@ def follow(targets, position, velocity, period_s):
     return np.array(path)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(seeds, st.sampled_from(["noise", "teleport", "drift"]), st.sampled_from([0.05, 0.01, 0.008, 0.005]))
 def test_no_target_passes_a_bound(seed, kind, period_s):
     rng = np.random.default_rng(seed)
@@ -55,7 +56,7 @@ def test_no_target_passes_a_bound(seed, kind, period_s):
     np.testing.assert_array_equal(again, path, "what keeps the bounds must pass through bit for bit")
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(seeds, st.sampled_from(["noise", "teleport", "drift"]), st.integers(1, 130))
 def test_a_path_with_look_ahead_keeps_the_bounds(seed, kind, T):
     rng = np.random.default_rng(seed)
@@ -64,7 +65,7 @@ def test_a_path_with_look_ahead_keeps_the_bounds(seed, kind, T):
     check_bounds(path, position, np.zeros(J), 0.05)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(seeds, st.sampled_from([0.05, 0.01]))
 def test_what_keeps_the_limits_is_what_a_step_would_follow(seed, period_s):
     rng = np.random.default_rng(seed)
@@ -97,7 +98,7 @@ def test_look_ahead_is_nearer_than_a_causal_clamp():
     assert np.abs(ahead - reference).sum() < 0.75 * np.abs(causal - reference).sum()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(seeds)
 def test_a_start_outside_returns_inside_and_never_speeds_outwards(seed):
     rng = np.random.default_rng(seed)

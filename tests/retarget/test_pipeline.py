@@ -20,6 +20,7 @@ from retarget.path.paths import JointPath, JointState
 from retarget.pipeline import BLOCK_FRAMES, Retargeter
 from retarget.robot.kinematics import Kinematics
 from retarget.robot.loading import load_robot
+from tests.support.sizes import examples
 
 RETARGETERS = {name: Retargeter(load_robot(name)) for name in ("reference", "op3")}
 kinds = st.sampled_from(["noise", "teleport", "smooth"])
@@ -43,7 +44,7 @@ def at_rest(r: Retargeter) -> JointState:
     return JointState(r.robot.rest_rad, np.zeros(r.robot.n_joints))
 
 
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(robots, st.integers(0, 10_000), kinds, st.integers(1, 60))
 def test_no_bound_is_passed_at_any_rate_and_the_path_ends_at_rest(name: str, seed: int, kind: str, T: int) -> None:
     r = RETARGETERS[name]
@@ -53,7 +54,7 @@ def test_no_bound_is_passed_at_any_rate_and_the_path_ends_at_rest(name: str, see
     assert not path.velocity_at(np.array([path.duration_s])).any()
 
 
-@settings(max_examples=8)
+@settings(max_examples=examples(8))
 @given(robots, st.integers(0, 10_000), kinds)
 def test_the_daemons_gate_passes_the_path_bit_for_bit(name: str, seed: int, kind: str) -> None:
     r = RETARGETERS[name]
@@ -65,7 +66,7 @@ def test_the_daemons_gate_passes_the_path_bit_for_bit(name: str, seed: int, kind
         position, velocity = goal, (goal - position) / r.robot.bus.period_s
 
 
-@settings(max_examples=8)
+@settings(max_examples=examples(8))
 @given(robots, st.integers(0, 10_000), st.integers(1, 50))
 def test_a_take_over_joins_in_position_and_velocity(name: str, seed: int, at: int) -> None:
     r = RETARGETERS[name]
@@ -79,7 +80,7 @@ def test_a_take_over_joins_in_position_and_velocity(name: str, seed: int, at: in
         check_bounds(second, state, r, rate_hz)
 
 
-@settings(max_examples=6)
+@settings(max_examples=examples(6))
 @given(robots, st.integers(0, 10_000), kinds)
 def test_no_emitted_frame_touches_itself_by_mujocos_own_check(name: str, seed: int, kind: str) -> None:
     """MuJoCo's contacts on a model of its own; pairs two joints apart overlap by design and are left out."""
@@ -105,7 +106,7 @@ def test_no_emitted_frame_touches_itself_by_mujocos_own_check(name: str, seed: i
         assert touching(q) <= resting
 
 
-@settings(max_examples=6)
+@settings(max_examples=examples(6))
 @given(st.integers(0, 10_000))
 def test_the_mirrored_motion_gives_the_mirrored_path(seed: int) -> None:
     r = RETARGETERS["reference"]

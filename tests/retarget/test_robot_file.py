@@ -20,6 +20,7 @@ from retarget.pipeline import Retargeter
 from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
 from retarget.robot.ticks import JointServoMap
 from tests.retarget.robot_files import joint, write_robot
+from tests.support.sizes import examples
 
 
 def test_an_unknown_name_lists_the_known_ones() -> None:
@@ -121,7 +122,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 
 @given(data=st.data())
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=examples(200), deadline=None)
 def test_an_absurd_number_anywhere_is_refused_or_leaves_a_robot_whose_figures_are_sound(
     files: dict[str, Path], data: st.DataObject
 ) -> None:

@@ -17,6 +17,7 @@ from retarget.robot.loading import list_robots, load_robot
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap
 from tests.retarget.robot_files import joint, write_robot
+from tests.support.sizes import examples
 
 WAIST = (
     joint("waist_roll", "waist_roll", "[-30, 30]")
@@ -91,7 +92,7 @@ ROBOTS = {name: load_robot(name) for name in list_robots()} | {
 
 @pytest.mark.parametrize("name", ROBOTS)
 @given(data=st.data())
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 def test_nothing_is_off_by_more_than_half_a_tick_and_nothing_leaves_its_limits(name: str, data: st.DataObject) -> None:
     robot = ROBOTS[name]
     servo_map = JointServoMap(robot)
@@ -113,7 +114,7 @@ def test_nothing_is_off_by_more_than_half_a_tick_and_nothing_leaves_its_limits(n
 
 @pytest.mark.parametrize("name", ROBOTS)
 @given(data=st.data())
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 def test_a_path_within_the_joints_limits_keeps_every_servos(name: str, data: st.DataObject) -> None:
     """Servo space: three poses a tenth of a millisecond apart, at the joints' speed and acceleration limits."""
     robot = ROBOTS[name]

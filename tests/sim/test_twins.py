@@ -12,6 +12,7 @@ from daemon.dynamixel.codec.packet import PacketDecoder
 from sim.faults import Fault
 from sim.wire.wire import Wire, WireSettings
 from tests.support.servo_bench import Bench, spec
+from tests.support.sizes import examples
 
 THREE = ("XM430-W350",) * 3
 ROWS = [(2, 132, 4), (1, 132, 4), (3, 132, 4)]
@@ -49,7 +50,7 @@ def test_twins_that_say_the_same_are_heard_as_one(kind: str) -> None:
     assert both.bus.wire.collisions == 1 and both.t_s == pytest.approx(one.t_s)
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(tick=st.integers(0, 4095))
 @pytest.mark.parametrize("kind", [k for k in READS if "fast" not in k])
 def test_of_twins_that_differ_the_and_is_heard(kind: str, tick: int) -> None:
@@ -57,7 +58,7 @@ def test_of_twins_that_differ_the_and_is_heard(kind: str, tick: int) -> None:
     assert heard == bytes(x & y for x, y in zip(alone().send(READS[kind]), alone(tick).send(READS[kind]), strict=True))
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(tick=st.integers(0, 4095))
 @pytest.mark.parametrize("kind", ["fast sync", "fast bulk"])
 def test_in_a_fast_read_the_next_servo_goes_on_from_the_and(kind: str, tick: int) -> None:

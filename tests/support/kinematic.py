@@ -16,6 +16,7 @@ import zmq
 from daemon.generator.generated import Generated, motion_from
 from daemon.generator.messages import BetweenMessage, EditMessage, GenerateMessage, SceneMessage, UnfitRequestError
 from daemon.generator.process import serve
+from daemon.network.keys import Doorkeeper, KeyFolder, serve_curve
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS
 
@@ -130,12 +131,21 @@ class KinematicMaker:
 
 
 class KinematicGenerator:
-    """Serves `generate` at an endpoint, in a thread."""
+    """Serves `generate` at an endpoint, in a thread; behind CURVE where there are `keys`."""
 
-    def __init__(self, endpoint: str, answer: Callable[[str, int, float | None], Generated] = generate) -> None:
+    def __init__(
+        self,
+        endpoint: str,
+        answer: Callable[[str, int, float | None], Generated] = generate,
+        keys: KeyFolder | None = None,
+    ) -> None:
         self.endpoint = endpoint
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.ROUTER)
+        self._doorkeeper = None
+        if keys is not None:
+            self._doorkeeper = Doorkeeper(self._context, keys)
+            serve_curve(self._socket, keys)
         self._socket.bind(endpoint)
         self._stopping = threading.Event()
         self._thread = threading.Thread(
@@ -148,4 +158,6 @@ class KinematicGenerator:
     def close(self) -> None:
         self._stopping.set()
         self._thread.join(5)
+        if self._doorkeeper is not None:
+            self._doorkeeper.close()
         self._context.destroy(linger=0)

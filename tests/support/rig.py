@@ -16,6 +16,7 @@ from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
 from sim.port import SimPort
+from tests.support.robots import packaged
 
 
 class Rig:
@@ -94,7 +95,7 @@ class Rig:
 @contextmanager
 def rig(name: str = "reference", *faults: Fault, **options) -> Iterator[Rig]:
     """A rig whose shared memory is removed at the end."""
-    robot = load_robot(name)
+    robot = load_robot(name) if "/" in name else packaged(name)
     link = BusLink.create(robot.n_joints, robot.n_servos)
     try:
         yield Rig(robot, link, *faults, **options)

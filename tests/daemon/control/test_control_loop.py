@@ -10,6 +10,7 @@ from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.path.collision import SelfContact
 from retarget.robot.loading import list_robots, load_robot
 from tests.support.rig import assert_brakes_within_limits, rig, swing, with_known_turns
+from tests.support.sizes import examples
 
 ROBOTS = [
     name
@@ -134,7 +135,7 @@ actions = st.lists(
 )
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(actions, st.integers(0, 2**32 - 1))
 def test_no_order_of_requests_and_setpoints_breaks_a_limit(sequence, seed):
     random = np.random.default_rng(seed)

@@ -23,6 +23,7 @@ from retarget.robot.ticks import JointServoMap
 from sim.bus import SimBus
 from sim.port import SimPort
 from tests.support.rig import Rig, rig, swing
+from tests.support.sizes import examples
 
 PAIR = (
     'servo = { id = 8, model = "XM430-W350", direction = 1 }',
@@ -52,7 +53,7 @@ def parts(name: str) -> tuple[RobotModel, JointServoMap, TurnWatch, SafetyLimite
 
 @pytest.mark.parametrize("name", [*list_robots(), "paired"])
 @given(data=st.data())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 def test_from_every_readable_tick_the_first_goal_is_that_tick_or_arming_is_refused_by_name(
     name: str, paired: str, data: st.DataObject
 ) -> None:

@@ -15,19 +15,20 @@ from retarget.path.collision import SelfContact
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointState
 from retarget.pipeline import Retargeter
-from retarget.robot.loading import load_robot
 from tests.retarget.gestures import gesture
 from tests.support.rig import Rig, rig, with_known_turns
+from tests.support.robots import packaged
+from tests.support.sizes import examples
 
 ROBOTS = ("op2", "reference", "toddlerbot")
-BODIES = {name: SelfContact(load_robot(name), margin_m=0.0) for name in ROBOTS}
+BODIES = {name: SelfContact(packaged(name), margin_m=0.0) for name in ROBOTS}
 seeds = st.integers(0, 2**32 - 1)
 
 
 def drawn(name: str, draw: np.random.Generator) -> np.ndarray:
     """(J,) any pose inside the limits in which it can be armed."""
-    limits = JointLimits.of(load_robot(name))
-    return with_known_turns(load_robot(name), draw.uniform(limits.position_min_rad, limits.position_max_rad))
+    limits = JointLimits.of(packaged(name))
+    return with_known_turns(packaged(name), draw.uniform(limits.position_min_rad, limits.position_max_rad))
 
 
 def assert_never_in_itself(r: Rig) -> None:
@@ -53,7 +54,7 @@ def into_itself(name: str, seed: int = 0) -> np.ndarray:
     return poses[BODIES[name].clearance_m(poses).argmin()]
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=examples(10), deadline=None)
 @given(st.sampled_from(ROBOTS), seeds)
 def test_from_any_pose_it_arms_and_parks_off_itself(name, seed):
     """Where it stands in contact (led there by hand) the contact only grows shallower, or it holds, says so and goes limp."""
@@ -70,7 +71,7 @@ def test_from_any_pose_it_arms_and_parks_off_itself(name, seed):
         assert_never_in_itself(r)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=examples(10), deadline=None)
 @given(st.sampled_from(ROBOTS), seeds, st.lists(st.sampled_from(["jump", "noise", "stop", "wait", "park"]), max_size=6))
 def test_whatever_it_is_sent_it_is_led_to_park_off_itself(name, seed, actions):
     """Frames that no front would send: jumps into the body, noise; stops and parks at any instant."""
@@ -126,7 +127,7 @@ def test_after_a_plan_into_the_body_the_next_motion_is_played(name):
 
 def blocked(name: str) -> np.ndarray:
     """(J,) a clear pose from which the straight line to the park pose goes through the robot."""
-    park_rad, contact = load_robot(name).park_rad, SelfContact(load_robot(name))
+    park_rad, contact = packaged(name).park_rad, SelfContact(packaged(name))
     for seed in range(1000):
         start = drawn(name, np.random.default_rng(seed))
         if (contact.slack_m(start) > 0).all() and BODIES[name].clearance_m(

@@ -9,6 +9,7 @@ from daemon.control.ptp_trajectory import ACCELERATION_RAD_S2, SPEED_RAD_S, PtpT
 from daemon.control.safety_limiter import SafetyLimiter
 from retarget.path.limits import JointLimits
 from retarget.robot.loading import list_robots, load_robot
+from tests.support.sizes import examples
 
 ROBOT = load_robot("reference")
 LIMITS = JointLimits.of(ROBOT)
@@ -19,7 +20,7 @@ def path(way: PtpTrajectory) -> np.ndarray:
     return np.array([way.at(k * PERIOD_S) for k in range(int(way.duration_s / PERIOD_S) + 3)])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_it_is_slow_and_passes_the_gate_unchanged(seed):
     random = np.random.default_rng(seed)
@@ -64,7 +65,7 @@ def test_from_outside_its_range_a_joint_only_comes_back():
     assert (np.diff(q) <= 1e-9).all()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(2, 5))
 def test_it_goes_through_every_pose_of_a_way_on_straight_lines(seed, n):
     """What was proved free on lines between the poses is what the robot does; it stands at each corner."""

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from daemon.control.safety_limiter import SafetyLimiter
 from retarget.robot.loading import load_robot
+from tests.support.sizes import examples
 
 ROBOT = load_robot("reference")
 LOW, HIGH = SafetyLimiter(ROBOT).limits.position_min_rad, SafetyLimiter(ROBOT).limits.position_max_rad
@@ -26,7 +27,7 @@ def assert_within(goals: np.ndarray, start: np.ndarray) -> None:
     assert (bend <= ROBOT.acceleration_limit_rad_s2 * PERIOD_S**2 * (1 + 1e-6) + slack).all()
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(targets, st.integers(0, 2**32 - 1))
 def test_no_input_breaks_a_limit(commands, seed):
     """NaN, infinities, teleports, noise, brakes in any order: every goal is finite and inside every bound."""
@@ -49,7 +50,7 @@ def test_no_input_breaks_a_limit(commands, seed):
         assert_within(np.array(goals), start)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.floats(0.05, 1.0))
 def test_what_keeps_the_limits_passes_bit_for_bit(seed, share):
     """The gate's own output, fed to a second gate, comes back unchanged and is not called clipped."""

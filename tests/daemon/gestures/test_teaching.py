@@ -29,6 +29,7 @@ from daemon.gestures.teaching import (
 from mmm_core.motion.motion import FPS
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import list_robots, load_robot
+from tests.support.sizes import examples
 
 RETARGETERS = {name: Retargeter(load_robot(name)) for name in ("reference", "op3", "poppy_torso")}
 REFERENCE = RETARGETERS["reference"]
@@ -61,7 +62,7 @@ def may_be_shown(retargeter: Retargeter, taught: Taught) -> None:
     assert not retargeter.contact.along(path.control_rad).any()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(names, seeds, st.floats(0.3, 8.0))
 def test_whatever_a_hand_did_the_robot_may_show_it(name, seed, speed):
     """At any speed, through its own body and beyond its stops: within every limit, and clear of itself."""
@@ -70,7 +71,7 @@ def test_whatever_a_hand_did_the_robot_may_show_it(name, seed, speed):
     may_be_shown(retargeter, taught)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(names, seeds)
 def test_a_pose_may_be_shown_too(name, seed):
     retargeter = RETARGETERS[name]
@@ -81,7 +82,7 @@ def test_a_pose_may_be_shown_too(name, seed):
     may_be_shown(retargeter, taught)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(seeds, st.floats(0.3, 10.0))
 def test_slowing_keeps_the_way_and_the_speed_limit(seed, speed):
     _, q = led(REFERENCE, seed, speed)
@@ -99,7 +100,7 @@ def test_slowing_keeps_the_way_and_the_speed_limit(seed, speed):
     assert (slower >= low).all() and (slower <= high).all()
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(seeds, st.integers(0, 60), st.integers(0, 60))
 def test_still_ends_are_cut_however_long_they_are(seed, before, after):
     """What is cut is as still as its end, what moves stays, and more of the still ends changes nothing."""
@@ -114,7 +115,7 @@ def test_still_ends_are_cut_however_long_they_are(seed, before, after):
     assert np.array_equal(still_ends_cut(longer), cut)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(seeds, st.integers(2, 80))
 def test_smoothing_keeps_what_stands_and_takes_what_trembles(seed, frames):
     rng = np.random.default_rng(seed)
@@ -127,7 +128,7 @@ def test_smoothing_keeps_what_stands_and_takes_what_trembles(seed, frames):
     assert np.abs(smoothed(trembling) - slow)[middle].max() < np.deg2rad(0.3)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(names, seeds, st.sampled_from(["left", "right"]))
 def test_one_arm_is_found_and_nothing_else_is_taught(name, seed, side):
     """The other arm, the trunk and a hanging head stay at rest, wherever they were measured."""
@@ -142,7 +143,7 @@ def test_one_arm_is_found_and_nothing_else_is_taught(name, seed, side):
     assert taught_gesture(retargeter, t, q).sides == side
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(names, seeds)
 def test_an_arm_in_reach_comes_back_as_it_was_led(name, seed):
     """On a person and back on the robot: the arms point where they were led, where nothing is in the way."""

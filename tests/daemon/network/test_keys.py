@@ -24,7 +24,7 @@ from daemon.generator.generated import Generated
 from daemon.network.keys import ZAP, Doorkeeper, KeyFolder, as_hex, checked_key
 from daemon.settings.config import Endpoints
 from tests.support.harness import MMMD, RunningDaemon, mmmd
-from tests.support.kinematic import generate
+from tests.support.kinematic import KinematicGenerator, generate
 
 pytestmark = pytest.mark.realtime
 
@@ -267,11 +267,8 @@ def test_a_daemon_without_torch_uses_a_generator_over_curve_and_notices_its_loss
     server.allow("board", board.new().public.decode())
     board.trust("generator", server.new().public.decode())
     address = free_endpoints().cmd
-
-    def start_generator() -> subprocess.Popen[bytes]:
-        return subprocess.Popen([*MMMD, "generator", "--bind", address, "--keys", str(server.path)])
-
-    generator = start_generator()
+    generator = subprocess.Popen([*MMMD, "generator", "--bind", address, "--keys", str(server.path)])
+    another: KinematicGenerator | None = None
     paths = os.environ.get("PYTHONPATH", "")
     os.environ["PYTHONPATH"] = f"{without}{os.pathsep}{paths}"
     try:
@@ -291,7 +288,7 @@ def test_a_daemon_without_torch_uses_a_generator_over_curve_and_notices_its_loss
                 assert time.monotonic() < end_s
                 time.sleep(0.05)
             assert client.status().state == "moving"  # what is played goes on
-            generator = start_generator()
+            another = KinematicGenerator(address, keys=server)
             end_s = time.monotonic() + 60
             while not client.status().generator.startswith("ready"):
                 assert time.monotonic() < end_s
@@ -302,6 +299,8 @@ def test_a_daemon_without_torch_uses_a_generator_over_curve_and_notices_its_loss
         daemon.close()
         generator.kill()
         generator.wait(5)
+        if another is not None:
+            another.close()
 
 
 def test_another_checkpoint_than_agreed_is_not_used():

@@ -29,6 +29,7 @@ from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.port import SimPort
 from tests.support.kinematic import raised_arm
+from tests.support.sizes import examples
 
 ROBOT = load_robot("reference")
 RIGHT = raised_arm("right", 1.0, 1.0, "right")
@@ -182,7 +183,7 @@ def test_what_is_in_hand_is_taken_back_when_another_motion_takes_over(bench):
     assert not np.concatenate([r["clipped"] for r in bench.records]).any()
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(15), deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.lists(st.tuples(st.integers(1, 90), st.integers(0, 3)), min_size=1, max_size=4))
 def test_taking_over_at_any_instant_keeps_limits_and_the_gate_changes_nothing(instants):
     bench = Bench()

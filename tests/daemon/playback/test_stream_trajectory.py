@@ -23,6 +23,7 @@ from retarget.path.collision import SelfContact
 from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.loading import load_robot
 from tests.support.rig import Rig, rig
+from tests.support.sizes import examples
 
 BODIES = {name: SelfContact(load_robot(name), margin_m=0.0) for name in ("reference", "toddlerbot")}
 
@@ -105,7 +106,7 @@ actions = st.lists(
 )  # fmt: skip
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(name=st.sampled_from(["reference", "toddlerbot"]), actions=actions)
 def test_no_stream_breaks_a_limit_or_touches(name, actions):
     """Random, jumping, adversarial and interrupted streams, a front that stalls, stops in the middle, a slowed robot."""

@@ -23,6 +23,7 @@ from retarget.human.human import read_human
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import load_robot
 from tests.support.kinematic import motion_of, raised_arm
+from tests.support.sizes import examples
 
 RIGHT = raised_arm("right", 1.5, 1.3, "right")
 P = posture_of(RIGHT)
@@ -69,7 +70,7 @@ def test_tempo_keeps_the_poses_and_changes_the_length(tempo):
 
 
 @given(st.floats(0.3, 1.2))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 def test_amplitude_scales_how_far_the_arm_leaves_standing(amplitude):
     up = int(np.argmin(P.bones[:, 19, 1] * -1))
     before = distance_deg(standing(), P[up : up + 1])[0]
@@ -78,7 +79,7 @@ def test_amplitude_scales_how_far_the_arm_leaves_standing(amplitude):
 
 
 @given(st.integers(0, 25), st.floats(0, 1))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 def test_mixing_stays_on_the_sphere_and_meets_both_ends(frame, weight):
     a, b = P[frame : frame + 1], mirrored(P)[frame : frame + 1]
     m = mixed(a, b, np.array([weight]))

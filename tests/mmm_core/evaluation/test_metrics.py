@@ -14,6 +14,7 @@ from sklearn.metrics.pairwise import paired_euclidean_distances
 from mmm_core.errors import EvaluationError
 from mmm_core.evaluation import metrics
 from mmm_core.evaluation.metrics import Interval
+from tests.support.sizes import examples
 
 
 def rng(seed: int = 0) -> np.random.Generator:
@@ -82,7 +83,7 @@ class TestFrechetDistance:
         b = 3 + 2 * a
         assert metrics.frechet_distance(a[:, None], b[:, None]) == pytest.approx(10.0)
 
-    @settings(max_examples=20)
+    @settings(max_examples=examples(20))
     @given(st.integers(0, 99), st.integers(2, 12))
     def test_the_root_is_scipys(self, seed: int, width: int) -> None:
         a, b = (

@@ -21,6 +21,7 @@ from mmm_core.model.vqvae import VqVae, VqVaeConfig
 from mmm_core.motion.features import Root, joints_from_positions, recover, root_after
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.posture_features import part, posture_features
+from tests.support.sizes import examples
 
 
 def ids(engine: Engine, motion: object) -> torch.Tensor:
@@ -142,7 +143,7 @@ class TestExtend:
 
 
 class TestStreaming:
-    @settings(max_examples=15)
+    @settings(max_examples=examples(15))
     @given(st.lists(st.integers(1, 30), min_size=1, max_size=6), st.sampled_from(["parts", "whole", "halves"]))
     def test_pieces_of_any_size_give_what_one_pass_gives(self, engine: Engine, sizes: list[int], layout: str) -> None:
         torch.manual_seed(0)
