@@ -182,12 +182,11 @@ def _judged(figure: Figure, values: Mapping[str, Any]) -> Row:
     if not all(found) and (figure.has_mark or not any(found)):
         return Row(figure, NOT_MEASURED, to_reach, "", None)
     worst = [_worst(one, figure) for one in found if one]
-    words = " / ".join(
-        shown(value, figure.unit) + (f" ({name})" if name and len(one) > 1 else "")
-        for (name, value), one in zip(worst, (one for one in found if one), strict=True)
-    )
+    words = " / ".join(shown(value, figure.unit) for _, value in worst)
+    names = [name for (name, _), one in zip(worst, (one for one in found if one), strict=True) if name and len(one) > 1]
+    words = f"{words} {figure.unit}".strip() + (f" ({', '.join(names)})" if names else "")
     verdict, is_met = _verdict(figure, [value for _, value in worst])
-    return Row(figure, f"{words} {figure.unit}".strip(), to_reach, verdict, is_met)
+    return Row(figure, words, to_reach, verdict, is_met)
 
 
 def _worst(found: list[tuple[str, Any]], figure: Figure) -> tuple[str, Any]:

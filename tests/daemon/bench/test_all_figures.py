@@ -228,7 +228,7 @@ def test_a_file_that_is_no_record_and_a_wrong_name_are_refused(table: Path, tmp_
         (Figure("a", (("p",), ("q",)), "%", at_least=0.9), {"p": 0.95}, NOT_MEASURED, "≥ 90 %", "", None),
         (Figure("a", (("p",), ("q",)), "s"), {"p": 0.95}, "0.950 s", "", "", None),
         (Figure("a", ((("x", "y"), "ms"),), "ms", at_most=9), {"x": {"ms": 1}, "y": {"ms": 12}, "z": {"ms": 99}},
-         "12 (y) ms", "≤ 9 ms", "no: 33 % over", False),
+         "12 ms (y)", "≤ 9 ms", "no: 33 % over", False),
         (Figure("a", (("*", "ms"),), "ms", at_most=9), {"x": {"ms": None}, "n": 4}, NOT_MEASURED, "≤ 9 ms", "", None),
     ],
 )  # fmt: skip
