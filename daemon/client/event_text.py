@@ -45,7 +45,7 @@ def describe(event: object) -> str:
 
 
 def repeatable(events: Iterable[object]) -> str:
-    """What a language model is told of a motion, without figures of joints: sentences that it can repeat to a person.
+    """Sentences about a motion that a language model can repeat to a person; they name no figures of joints.
 
     Args:
         events: of a command that was accepted, up to its end or to its acceptance.

@@ -1,4 +1,4 @@
-"""What a newcomer waits for, as JSON: a fresh clone, set up and at its first gesture; with `--suite N` its tests, N times.
+"""Seconds that a newcomer waits, as JSON: from a fresh clone to its first gesture; with `--suite N` for N runs of its tests.
 
 `python -m docs.tools.clone_figures`: seconds of `make setup`, of `make demo` after it, and of both; megabytes on disk. What is
 downloaded comes from the index that pip is configured for, and from pip's cache. `--suite 3`: seconds of `make test`, the longest

@@ -163,7 +163,7 @@ def _probe(c: Command) -> Probe:
 
 
 def _still(shown: PostureFeatures, limbs: Collection[str]) -> PostureFeatures:
-    """What a motion shows, with arms at rest and the angles of some limbs, "head" and "trunk", 0."""
+    """The posture features of a motion with the arms at rest, and with the angles of the given limbs ("head", "trunk") set to 0."""
     nothing = np.zeros_like(shown.trunk_yaw_deg)
     still = replace(shown, arms="")
     if "head" in limbs:

@@ -29,7 +29,7 @@ pytestmark = [pytest.mark.realtime, pytest.mark.timeout(120)]
 
 
 def with_debian(module: str, code: str, *arguments: str) -> str:
-    """What a program prints that needs a Python package of Debian; skipped where that is not installed."""
+    """The output of a program that needs a Python package of Debian; the test is skipped where the package is not installed."""
     found = subprocess.run([SYSTEM_PYTHON, "-c", f"import {module}"], capture_output=True, check=False, timeout=30)
     if found.returncode:
         pytest.skip(f"Debian's Python has no {module} here")

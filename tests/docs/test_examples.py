@@ -143,7 +143,7 @@ def test_figures_of_a_log(log: Path) -> None:
 
 
 def test_a_log_in_a_notebook(log: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    """Its cells are run in turn, as a reader does; the file holds no outputs."""
+    """The test runs the cells in turn, as a reader does; the notebook is kept without outputs."""
     notebook = json.loads((EXAMPLES / "log.ipynb").read_text())
     assert notebook["nbformat"] == 4 and all(cell["id"] for cell in notebook["cells"])
     cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]

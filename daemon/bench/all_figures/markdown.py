@@ -69,7 +69,7 @@ def _command(measurement: Measurement, record: Record | None) -> str:
 
 
 def _runs(table: Sequence[Measurement], records: Mapping[str, Record]) -> list[str]:
-    """What each run took, on which machine, of which version."""
+    """A table of the runs: the time, the machine and the version of each."""
     cells = [
         (
             m.name + (" (quick)" if r.quick else ""), f"{r.seconds:,.0f} s", _share(r.others_took), _share(r.host_took),

@@ -24,12 +24,12 @@ LAST_LINES = 2
 """Lines of stderr that are kept of a command that failed."""
 _TICK_S = 1 / os.sysconf("SC_CLK_TCK")
 _THREADS = {"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
-"""As the Makefile sets them: threads that spin while they wait take the cores from what is measured."""
+"""Settings of the Makefile: worker threads that spin while they wait would take the cores from the measured command."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a command left.
+    """The outcome of a command.
 
     Attributes:
         status: exit status; None where it was ended for its time.

@@ -24,10 +24,10 @@ ROOT = Path(__file__).parents[3]
 """The clone, or the folder of installed packages."""
 PACKAGES = ("mmm_core", "retarget", "daemon", "sim")
 _NOT_MEASURED = ("daemon/bench/all_figures/",)
-"""What only makes the report: a change of it changes no figure."""
+"""Files that only make the report: a change of them changes no figure."""
 DIGITS = 12
 MOST_CHARACTERS = 300
-"""Of what a failed command said last."""
+"""Most characters that a record keeps of the last output of a failed command."""
 
 
 class Record(msgspec.Struct, frozen=True, kw_only=True):
@@ -68,7 +68,7 @@ class Record(msgspec.Struct, frozen=True, kw_only=True):
 
 @dataclass(frozen=True)
 class Here:
-    """What is measured: version, commit, digest of the code, and the machine."""
+    """The measured program and its machine: version, commit, digest of the code."""
 
     version: str
     commit: str
@@ -125,7 +125,7 @@ def why_again(record: Record | None, command: str, now: Here) -> str:
 def record_of(
     measurement: Measurement, command: str, outcome: Outcome, now: Here, date: datetime, *, quick: bool
 ) -> Record:
-    """What is kept of a command's outcome: its JSON, or why there is none.
+    """The record of a command's outcome: its JSON, or the reason why there is none.
 
     Args:
         measurement: what was measured.

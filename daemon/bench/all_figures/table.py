@@ -119,7 +119,7 @@ def read_table(path: Path = TABLE) -> tuple[Measurement, ...]:
 
 
 def chosen(table: Sequence[Measurement], names: Sequence[str]) -> tuple[Measurement, ...]:
-    """Those with the given names, in the table's order; all for none.
+    """The figures with the given names, in the table's order; all figures where no name is given.
 
     Raises:
         CommandError: a name is not in the table.

@@ -1,4 +1,4 @@
-"""What a language model is told of a motion: sentences, and no figures of joints."""
+"""A language model is told of a motion in sentences without figures of joints."""
 
 from __future__ import annotations
 
