@@ -85,13 +85,19 @@ def _in_their_place(said: str) -> str:
     first = re.match(r"((?:please |now )?)([a-z]{3,})\b(?= )", said)
     if first is None or not all(map(_is_right, _WORD.findall(said[first.end() :]))):
         return said
+    if _is_right(first[2]) and BEGINS_WITH_A_VERB.match(said[first.end() + 1 :]):
+        return said  # a name: "leah wave to us"
     return f"{first[1]}{_one_slip_from(first[2], _VERBS)}{said[first.end() :]}"
 
 
 @cache
 def _one_slip_from(word: str, meant: tuple[str, ...]) -> str:
-    """The only one of some words that a rare word is one slip from; the word itself where it is common or none is near."""
-    if word in _meant() or word in _common():
+    """The only one of some words that a rare word is one slip from; the word itself where it is common or none is near.
+
+    >>> _one_slip_from("lein", ("lean", "lower")), _one_slip_from("leap", ("lean", "lower"))
+    ('lean', 'leap')
+    """
+    if word in _meant() or word in _common() or word in _stays():
         return word
     near = [w for w in meant if OSA.distance(word, w, score_cutoff=1) <= 1]
     return (
@@ -105,6 +111,12 @@ def _one_slip_from(word: str, meant: tuple[str, ...]) -> str:
 def _common() -> frozenset[str]:
     """The commonest words of English, which stay wherever they stand."""
     return frozenset(lines("english_words")[:COMMONEST])
+
+
+@cache
+def _stays() -> frozenset[str]:
+    """Right words of English that look like slips of the verbs or limbs of gestures: "leap", "wand"."""
+    return frozenset(lines("stays"))
 
 
 @cache
