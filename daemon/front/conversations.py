@@ -19,6 +19,7 @@ from daemon.wire.requests import MAX_TEXT_CHARS, Gesture, Lease, Say, tag_of
 from mmm_core.language.commands import Reading, exactly
 from mmm_core.language.context import InContext, NothingToReferToError, in_context
 from mmm_core.language.reading import read
+from mmm_core.language.warming import warmed
 
 KEPT = 512
 """Clients that are remembered; the one that asked least recently is forgotten first."""
@@ -45,7 +46,8 @@ class Conversations:
         self._words_of, self._now_s = words_of, now_s
         self._clients: OrderedDict[Client, deque[Entry]] = OrderedDict()
         self._read = lru_cache(maxsize=KEPT)(read)
-        in_context("again", self._read("nod"))  # loads the tables of words
+        warmed()
+        in_context("again", self._read("nod"))  # loads the table of words that refer to the last command
 
     def take(self, entry: Entry, client: Client) -> None:
         """Remember a new command of a client; a text that refers to the last one becomes what it means.

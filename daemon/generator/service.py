@@ -20,6 +20,7 @@ from mmm_core.generate.keyframes import Keyframe, between, features_of
 from mmm_core.generate.result import GenerationResult, no_motion
 from mmm_core.generate.story import Scene, StoryState, continue_story
 from mmm_core.language.scope import ScopeVerdict
+from mmm_core.language.warming import warmed
 from mmm_core.motion.features import RestPose
 from mmm_core.motion.motion import Motion
 
@@ -27,8 +28,8 @@ HALVES = {"upper": ("left_arm", "right_arm"), "lower": ("rest",)}
 """The halves of the body in a model without an upper and a lower codebook: both arms, and all the rest of it."""
 
 
-_FIRST = (("wave with your rihgt hand", None), ("nod and raise your left hand", LONGEST_S))
-"""Texts and seconds of the first motions, which allocate; the first slip and the first commands at once load tables of words."""
+_FIRST = (("wave with your right hand", None), ("nod and raise your left hand", LONGEST_S))
+"""Texts and seconds of the first motions, which allocate."""
 
 
 class EngineService:
@@ -46,6 +47,7 @@ class EngineService:
             CheckpointError: a file is missing or does not fit.
         """
         maker = cls(Engine.load(model, threads=threads))
+        warmed()
         for text, seconds in _FIRST:
             list(maker.generate(GenerateMessage(id=0, text=text, seconds=seconds, draft=True)))
         return maker

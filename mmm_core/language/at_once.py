@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import cache, lru_cache
 
 from mmm_core.language.limbs import ARMS, LIMB, SOME_ARM, limbs_named, limbs_of
-from mmm_core.language.word_tables import lines
+from mmm_core.language.word_tables import REMEMBERED, lines
 
 _POSE = re.compile(
     rf"^(?:(?:and|also|with|please) )*(?:rais|lift|hold|keep|put|stretch|cross|fold|cover|shad|rest|plac|lean|look|tilt|turn|twist|point|spread|extend|reach|leav|clasp|lay|have|"
@@ -181,7 +181,7 @@ def _imperative(part: str) -> str:
     return part
 
 
-@cache
+@lru_cache(maxsize=REMEMBERED)
 def base_of(inflected: str) -> str:
     """The verb of a gerund or a past form: "waving" -> "wave", "clapped" -> "clap"; the word itself where there is none.
 

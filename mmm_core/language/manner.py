@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from mmm_core.language.count_words import NUMBERS
-from mmm_core.language.word_tables import lines
+from mmm_core.language.word_tables import Rule, RuleTable, lines
 
 STRONGER = 1.25
 """Factor, on the logarithm, of "very" and the like before a word of manner."""
@@ -38,6 +38,21 @@ _HOLD = re.compile(
 _ONLY_SECONDS = re.compile(
     rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
 )
+_SECOND = re.compile(r"\d ?s|sec")
+"""Letters that every hold has."""
+_BEFORE_MARK = re.compile(r"\s+([,.])")
+_AT_ENDS = re.compile(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+")
+_TWICE_AND = re.compile(r"\s+(?:and|but)(?=,? (?:and|but)\b)")
+_A_VOWEL = re.compile(r"\ba (?=[aeiou])(?!u\w*[aeiou])")
+_READS, _HIGH = re.compile(r"[a-z]{2,}"), re.compile(r"\b(?:up|high|in the air|overhead)\b")
+_WAVE_NEXT, _NEXT_WORD = re.compile(r"\s*waves?\b"), re.compile(r"\s+(\w+)")
+_ADJECTIVES = frozenset("fast quick slow gentle rapid brisk swift faster slower quicker".split())
+_AFTER_ADJECTIVE = re.compile(
+    _GESTURES
+    + "|and|with|to|at|for|then|now|please|on|in|twice|once|thrice|your|three|two|four|five|the|times|"
+    + "left|right|up|down|back|forward|from"
+)
+"""Words before which an adjective of tempo is one of manner."""
 _KEEPS = re.compile(r"^(?:hold|keep|leave) (?=(?:your|the|both) )")
 
 
@@ -74,30 +89,29 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     )  # "a slow deep bow": the noun stands beside "slow" now; "gently and slowly"
     tempo = max(tempo, again, key=lambda f: abs(f - 1))
     rest, hold_s = _hold(rest)
-    rest = re.sub(r"\s+([,.])", r"\1", " ".join(rest.split()))
-    rest = re.sub(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+", "", rest)
-    rest = re.sub(r"\s+(?:and|but)(?=,? (?:and|but)\b)", "", rest)
-    rest = re.sub(r"\ba (?=[aeiou])(?!u\w*[aeiou])", "an ", rest)
-    if not re.search(r"[a-z]{2,}", rest):
+    rest = _BEFORE_MARK.sub(r"\1", " ".join(rest.split()))
+    rest = _AT_ENDS.sub("", rest)
+    rest = _TWICE_AND.sub("", rest)
+    rest = _A_VOWEL.sub("an ", rest)
+    if not _READS.search(rest):
         return clause, Manner()
     return rest, Manner(tempo, size, hold_s)
 
 
 def _factor(clause: str, table: str, most: float) -> tuple[str, float]:
     factor = 1.0
-    if _any_of(table).search(clause) is None:
-        return clause, factor
-    for worth, pattern in _patterns(table):
+    rules = _rules(table)
+    for number in rules.possible(clause):
+        pattern, worth = rules.rules[number]
         found = pattern.search(clause)
         if found is None or not _is_manner(clause, found):
             continue
-        strength = worth ** (STRONGER if _STRONG.search(found[0]) else 1.0)
+        strength = float(worth) ** (STRONGER if _STRONG.search(found[0]) else 1.0)
         if abs(strength - 1) > abs(factor - 1) or factor == 1.0:
             factor = strength
-        if (
-            not re.match(r"\s*waves?\b", clause[found.end() :]) or factor < 1 or table == "tempo"
-        ):  # "a big wave" is a gesture of its own
-            clause = " ".join(f"{clause[: found.start()]} {clause[found.end() :]}".split())
+        after = clause[found.end() :]
+        if not _WAVE_NEXT.match(after) or factor < 1 or table == "tempo":  # "a big wave" is a gesture of its own
+            clause = " ".join(f"{clause[: found.start()]} {after}".split())
     return clause, min(most, max(1 / most, factor))
 
 
@@ -106,53 +120,30 @@ def _is_manner(clause: str, found: re.Match[str]) -> bool:
     word = found[0].strip()
     if clause.strip(" .,!") == word:
         return False
-    if word.split()[-1] in (
-        "fast",
-        "quick",
-        "slow",
-        "gentle",
-        "rapid",
-        "brisk",
-        "swift",
-        "faster",
-        "slower",
-        "quicker",
-    ):
-        following = re.match(r"\s+(\w+)", clause[found.end() :])
-        return not following or bool(
-            re.fullmatch(
-                _GESTURES
-                + "|and|with|to|at|for|then|now|please|on|in|twice|once|thrice|your|three|two|four|five|the|times|"
-                + "left|right|up|down|back|forward|from",
-                following[1],
-            )
-        )
+    if word.split()[-1] in _ADJECTIVES:
+        following = _NEXT_WORD.match(clause[found.end() :])
+        return not following or bool(_AFTER_ADJECTIVE.fullmatch(following[1]))
     return True
 
 
 @cache
-def _any_of(table: str) -> re.Pattern[str]:
-    """A pattern that is found wherever one of a table's is."""
-    return re.compile("|".join(f"(?:{pattern.pattern})" for _, pattern in _patterns(table)))
-
-
-@cache
-def _patterns(table: str) -> tuple[tuple[float, re.Pattern[str]], ...]:
+def _rules(table: str) -> RuleTable:
+    """The rules of a table; the words of each are its factor."""
     split = [line.partition(" ") for line in lines(table)]
-    return tuple(
-        (float(worth), re.compile(rf"\b{_VERY}(?:{pattern.replace('@NOUN', _GESTURES)})(?![\w-])"))
+    return RuleTable(
+        Rule(re.compile(rf"\b{_VERY}(?:{pattern.replace('@NOUN', _GESTURES)})(?![\w-])"), worth)
         for worth, _, pattern in split
     )
 
 
 def _hold(clause: str) -> tuple[str, float]:
-    found = _HOLD.search(clause)
+    found = _HOLD.search(clause) if _SECOND.search(clause) is not None else None
     if found is None:
         return clause, 0.0
-    if not re.search(r"[a-z]{2,}", clause[: found.start()] + clause[found.end() :]):
+    if not _READS.search(clause[: found.start()] + clause[found.end() :]):
         found = _ONLY_SECONDS.search(clause) or found
     number = found[1]
     seconds = float(_SECONDS[number]) if number in _SECONDS else float(number)
     rest = clause[: found.start()] + " " + clause[found.end() :]
-    rest = _KEEPS.sub("raise ", rest) if re.search(r"\b(?:up|high|in the air|overhead)\b", rest) else rest
+    rest = _KEEPS.sub("raise ", rest) if _HIGH.search(rest) else rest
     return rest, min(seconds, LONGEST_HOLD_S)

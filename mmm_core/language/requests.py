@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import cache, lru_cache
 
 from mmm_core.language.at_once import base_of
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
-from mmm_core.language.word_tables import WAY, lines, pairs, replaced, substitutions
+from mmm_core.language.word_tables import REMEMBERED, WAY, Rule, RuleTable, lines, pairs, replaced, substitutions
 
 _ACT = (
     r"(?:also |just |please |can you |could you )*(?:wave|nod|bow|clap|shrug|salute|point|punch|shake|cross|fold|raise|lift|look|lean|beckon|hug|stretch|twist|tilt|cheer|pray|scratch|rub|pat|"
@@ -33,52 +33,62 @@ _ASKS = (
     r"let (?:me|us) see you|the time has come (?:for you )?to|it is (?:now )?time (?:for you )?to|your (?:job|task|turn|part) (?:now )?is (?:simply |just )?to|what about|how about)[, ]+"
 )
 """Words that ask for something in the middle of a sentence."""
-_END = re.compile(r"[\s,.!?;:]+$")
+_END, _MARKS = re.compile(r"[\s,.!?;:]+$"), re.compile(r"\s*[,.!?;:]+\s*")
+_WORD = re.compile(r"[a-z]{2,}")
+_GERUND_FIRST = re.compile(r"^(?:you )?(\w+ing)\b(?= (?:your|the|to|at|with|me|down|up|and|goodbye|a|an)\b|$)")
 
 
 @cache
-def _frames() -> tuple[tuple[re.Pattern[str], ...], tuple[re.Pattern[str], ...]]:
+def _frames() -> tuple[RuleTable, RuleTable]:
     """Patterns at the front and at the end of a request."""
     patterns = [
         line.replace("@STORY", _STORY).replace("@ASKS", _ASKS).replace("@ACT", _ACT) for line in lines("frames")
     ]
-    front = tuple(re.compile(p) for p in patterns if p.startswith("^"))
-    return front, tuple(re.compile(p) for p in patterns if not p.startswith("^"))
+    front = RuleTable(Rule(re.compile(p)) for p in patterns if p.startswith("^"))
+    return front, RuleTable(Rule(re.compile(p)) for p in patterns if not p.startswith("^"))
 
 
-@cache
+@lru_cache(maxsize=REMEMBERED)
 def without_request(said: str) -> str:
     """A sentence in lower case without the words around what it asks for; the sentence itself where nothing would be left.
 
     >>> without_request("could you please wave for me"), without_request("i would love it if you could bow")
     ('wave', 'bow')
     """
-    front, back = _frames()
     rest, before = said.strip(), ""
     while rest != before:
         before = rest
-        for pattern in front:
-            rest = _kept(rest, pattern.sub("", rest, count=1))
-        for pattern in back:
-            rest = _kept(rest, pattern.sub("", rest, count=1))
+        for table in _frames():
+            rest = _without(rest, table)
     return _gerund_request(rest)
+
+
+def _without(rest: str, table: RuleTable) -> str:
+    """What the first match of each rule in turn leaves of a request."""
+    numbers = iter(table.possible(rest))
+    while (number := next(numbers, None)) is not None:
+        found = table.rules[number].pattern.search(rest)
+        if found is not None:
+            rest = _kept(rest, rest[: found.start()] + rest[found.end() :])
+            numbers = iter(table.possible(rest, number))
+    return rest
 
 
 def _kept(before: str, after: str) -> str:
     after = after.strip(" ,")
-    return after if re.search(r"[a-z]{2,}", after) else before
+    return after if _WORD.search(after) else before
 
 
 def _gerund_request(rest: str) -> str:
     """A request whose verb is a gerund as a command: "shaking your head" -> "shake your head"."""
-    found = re.match(r"^(?:you )?(\w+ing)\b(?= (?:your|the|to|at|with|me|down|up|and|goodbye|a|an)\b|$)", rest)
+    found = _GERUND_FIRST.match(rest)
     _, comma, after = rest.partition(", ")
     if found is None or not SPEAKS_OF_AN_ACT.match(found[1]) or (comma and SPEAKS_OF_AN_ACT.match(after)):
         return rest  # "looking left, wave" is at once
     return base_of(found[1]) + rest[found.end() :]
 
 
-@cache
+@lru_cache(maxsize=REMEMBERED)
 def everyday(said: str) -> str:
     """The plain command that an everyday phrase means, "" where it is none.
 
@@ -86,22 +96,16 @@ def everyday(said: str) -> str:
     ('wave your right hand', 'wave your right hand')
     """
     bare = _END.sub("", said).strip()
-    bare = re.sub(r"\s*[,.!?;:]+\s*", " ", bare) if not re.search(r",", bare) else bare
-    for pattern, words in _everyday():
-        if pattern.fullmatch(bare):
-            return words
-    return ""
+    bare = bare if "," in bare else _MARKS.sub(" ", bare)
+    table = substitutions("everyday")
+    possible = (table.rules[number] for number in table.possible(bare))
+    return next((rule.words for rule in possible if rule.pattern.fullmatch(bare)), "")
 
 
 @cache
-def _everyday() -> tuple[tuple[re.Pattern[str], str], ...]:
-    return substitutions("everyday")
-
-
-@cache
-def _sentences() -> tuple[tuple[re.Pattern[str], str], ...]:
-    return tuple(
-        (re.compile(pattern.replace("@ACT", _ACT).replace("@WAY", f"({WAY})")), words)
+def _sentences() -> RuleTable:
+    return RuleTable(
+        Rule(re.compile(pattern.replace("@ACT", _ACT).replace("@WAY", f"({WAY})")), words)
         for pattern, words in pairs("sentences")
     )
 

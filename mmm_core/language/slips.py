@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import math
 import re
-from functools import cache
+from functools import cache, lru_cache
 
+import numpy as np
+from numpy.typing import NDArray
 from rapidfuzz import process
 from rapidfuzz.distance import OSA
 
 from mmm_core.language.clause_patterns import BEGINS_WITH_A_VERB
 from mmm_core.language.slips_in_context import mended_in_context
-from mmm_core.language.word_tables import lines
+from mmm_core.language.word_tables import REMEMBERED, lines
 
 MOST_SLIPS = {3: 1, 4: 1, 5: 2}
 """Letters of a word: greatest distance to the word that was meant; longer words 2."""
@@ -30,6 +32,7 @@ _WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
 _FIRST_LETTER, _EXCHANGED, _OTHER_KEY = 0.35, 0.25, 0.35
 """Weights: another first letter; two letters that change places, which costs less than one lost or added; one letter for another
 that is neither a neighbour on the keyboard nor a vowel for a vowel."""
+_LETTERS = frozenset("abcdefghijklmnopqrstuvwxyz")
 _ENDINGS = re.compile(r"(?:ing|ed|er|es|s|ly)$")
 _DOUBLED = re.compile(r"[aeiou]([bdgklmnprt])\1$")
 _ROWS = ("qwertyuiop", "asdfghjkl", "zxcvbnm")
@@ -90,7 +93,7 @@ def _in_their_place(said: str) -> str:
     return f"{first[1]}{_one_slip_from(first[2], _VERBS)}{said[first.end() :]}"
 
 
-@cache
+@lru_cache(maxsize=REMEMBERED)
 def _one_slip_from(word: str, meant: tuple[str, ...]) -> str:
     """The only one of some words that a rare word is one slip from; the word itself where it is common or none is near.
 
@@ -119,7 +122,7 @@ def _stays() -> frozenset[str]:
     return frozenset(lines("stays"))
 
 
-@cache
+@lru_cache(maxsize=REMEMBERED)
 def _is_rare(word: str) -> bool:
     """Whether a word that is spelt right is very rare, in English and in the corpus."""
     return word in _very_rare() and _meant().get(word, 1.0) > _SELDOM
@@ -211,12 +214,38 @@ def _by_length() -> dict[int, list[str]]:
 
 
 @cache
-def _as_long(n: int, most: int) -> list[str]:
-    """Words that a slip of `n` letters may be mended to, at most `most` letters longer or shorter."""
-    return [word for length in range(n - most, n + most + 1) for word in _by_length().get(length, ())]
+def _as_long(n: int, most: int) -> tuple[list[str], NDArray[np.uint32]]:
+    """Words that a slip of `n` letters may be mended to, at most `most` letters longer or shorter, and the letters of each.
+
+    Words some slips apart differ by at most two letters for each slip, which rules out most words before they are compared.
+    """
+    lengths = range(n - most, n + most + 1)
+    words = [word for length in lengths for word in _by_length().get(length, ())]
+    return words, np.concatenate([_letters_by_length(length) for length in lengths])
 
 
 @cache
+def _letters_by_length(n: int) -> NDArray[np.uint32]:
+    """(N,) letters in each word of `n` letters."""
+    return np.array([_letters_in(word) for word in _by_length().get(n, ())], np.uint32)
+
+
+def _letters_in(word: str) -> int:
+    """One bit for each letter from a to z that a word has."""
+    bits = 0
+    for letter in set(word) & _LETTERS:
+        bits |= 1 << (ord(letter) - ord("a"))
+    return bits
+
+
+def loaded(longest: int) -> None:
+    """Loads what slips of up to `longest` letters are looked up in."""
+    _is_rare("")
+    for n in range(3, longest + 1):
+        _as_long(n, MOST_SLIPS.get(n, 2))
+
+
+@lru_cache(maxsize=REMEMBERED)
 def mended_word(word: str) -> str:
     """The word, or the corpus word that it is a slip of.
 
@@ -258,11 +287,14 @@ def _nearest(word: str) -> tuple[float, str]:
     return _near(word)[0] if _near(word) else (math.inf, word)
 
 
-@cache
+@lru_cache(maxsize=REMEMBERED)
 def _near(word: str) -> list[tuple[float, str]]:
     """Corpus words that may be meant by a slip, the nearest first, each with its weighted distance."""
     most = MOST_SLIPS.get(len(word), 2)
-    found = process.extract(word, _as_long(len(word), most), scorer=OSA.distance, score_cutoff=most, limit=None)
+    words, letters = _as_long(len(word), most)
+    alike = np.flatnonzero(np.bitwise_count(letters ^ _letters_in(word)) <= 2 * most)
+    chosen = [words[i] for i in alike.tolist()]
+    found = process.extract(word, chosen, scorer=OSA.distance, score_cutoff=most, limit=None)
     return sorted((_cost(word, str(meant), int(d)), str(meant)) for meant, d, _ in found)
 
 

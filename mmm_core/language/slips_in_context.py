@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 
-from mmm_core.language.word_tables import lines, pairs
+from mmm_core.language.word_tables import REMEMBERED, lines, pairs
 
 KEY_WORDS = 540
 """Commonest words of the corpus, for which other words of English are taken to be slips."""
@@ -106,7 +106,7 @@ def _shortened(word: str) -> set[str]:
     return {word, *(word[:i] + word[i + 1 :] for i in range(len(word)))}
 
 
-@cache
+@lru_cache(maxsize=REMEMBERED)
 def _key_words_near(word: str) -> list[tuple[float, str]]:
     """Key words one slip from a word: a letter lost, added, doubled, changed, or two that change places; the commonest first."""
     near = dict.fromkeys(key for short in _shortened(word) for key in _by_shortened().get(short, ()))

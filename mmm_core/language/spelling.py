@@ -8,15 +8,18 @@ from __future__ import annotations
 import re
 import unicodedata
 from functools import cache
+from itertools import pairwise
 
 from mmm_core.language.slips import without_slips
-from mmm_core.language.word_tables import WAY, pairs, replaced, substitutions
+from mmm_core.language.word_tables import WAY, Rule, RuleTable, pairs, replaced, substitutions
 
 _FILLER = r"(?:u+h+m*|u+m+|e+r+m*|h+m+|ah+|eh+)"
 _RESTART = re.compile(
     rf"\b(\w+(?: \w+){{0,2}}),? (?:{_FILLER}|i mean|sorry|no wait)(?:,|\.{{2,}})? (?=\1\b)", re.IGNORECASE
 )
 _STUTTER = re.compile(r"\b(the|your|to|with|a|and|then|left|right|hand|arm|raise|turn|look|wave|lift|put|clap|nod|bow|shrug|point)(?:,|\.{2,}|-)? (?=\1\b)(?!\1 (?:and|then) \1)", re.IGNORECASE)  # fmt: skip
+_PAUSES = re.compile(rf"\b(?:{_FILLER}|i mean|sorry|no wait)\b")
+"""Words that a restart has."""
 _FILLERS = re.compile(
     rf"(?:^|(?<=[\s,.]))(?:{_FILLER}|you know|i mean|kinda|sorta)(?:\s*,|\s*\.{{2,}})?(?:\s+|$)", re.IGNORECASE
 )
@@ -48,12 +51,20 @@ def mended(text: str) -> str:
     """
     said = normalised(text).lower()
     said = _taken_back(_chat(said))
-    said = _RESTART.sub("", said)
+    if _PAUSES.search(said) is not None:
+        said = _RESTART.sub("", said)
     said = _FILLERS.sub("", said)
-    said = _STUTTER.sub("", said)
+    if _repeats(said):
+        said = _STUTTER.sub("", said)
     said = _homophones(said)
     without = without_slips(said)
     return " ".join((said if without == said else _taken_back(_homophones(without))).split())
+
+
+def _repeats(said: str) -> bool:
+    """Whether a word may follow itself: two words in a row begin with the same two letters, or a hyphen stands between."""
+    begins = [word[:2] for word in said.split()]
+    return "-" in said or any(a == b for a, b in pairwise(begins)) or re.search(r"[,.]\S", said) is not None
 
 
 def _chat(said: str) -> str:
@@ -79,8 +90,9 @@ def _taken_back(said: str) -> str:
 
 
 @cache
-def _corrections() -> tuple[tuple[re.Pattern[str], str], ...]:
-    return tuple((re.compile(pattern.replace("@WAY", f"({WAY})")), words) for pattern, words in pairs("corrections"))
+def _corrections() -> RuleTable:
+    said = ((pattern.replace("@WAY", f"({WAY})"), words) for pattern, words in pairs("corrections"))
+    return RuleTable(Rule(re.compile(pattern), words) for pattern, words in said)
 
 
 def _homophones(said: str) -> str:

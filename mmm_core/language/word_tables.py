@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable
 from functools import cache
 from importlib.resources import files
+from typing import NamedTuple
+
+from mmm_core.language.needed_letters import letters_of, needed_letters
 
 _FOLDER = files("mmm_core.language").joinpath("words")
 CORPUS_WORDS_FILE = _FOLDER.joinpath("corpus_words.txt")
 LIMB_WORDS_FILE = _FOLDER.joinpath("limb_words.txt")
 WORD_PAIRS_FILE = _FOLDER.joinpath("word_pairs.txt")
 
+REMEMBERED = 2048
+"""Words or sentences whose readings are kept by a cache; the longest unused goes."""
 WAY = "left|right|up|down|forwards?|backwards?|back"
 """Directions, for patterns of tables."""
 
@@ -29,18 +35,54 @@ def pairs(name: str) -> tuple[tuple[str, str], ...]:
     return tuple((left.rstrip(), right.strip()) for left, _, right in (line.partition("=>") for line in lines(name)))
 
 
+class Rule(NamedTuple):
+    r"""A compiled pattern, in lower case, and the words that take its place, where `\1` stands for the first group."""
+
+    pattern: re.Pattern[str]
+    words: str = ""
+
+
+class RuleTable:
+    """Rules in order, of which only those are tried whose letters a text has (`needed_letters`).
+
+    Args:
+        rules: compiled, in the order in which they are tried.
+    """
+
+    def __init__(self, rules: Iterable[Rule]) -> None:
+        self.rules = tuple(rules)
+        self._always: list[int] = []
+        by_letters: defaultdict[str, list[int]] = defaultdict(list)
+        for number, rule in enumerate(self.rules):
+            needed = needed_letters(rule.pattern)
+            if not needed:
+                self._always.append(number)
+            for letters in needed:
+                by_letters[letters].append(number)
+        self._by_letters, self._letters = dict(by_letters), frozenset(by_letters)
+
+    def possible(self, text: str, after: int = -1) -> list[int]:
+        """Numbers of the rules after one that may be found in a text, in order."""
+        found = set(self._always)
+        found.update(*map(self._by_letters.__getitem__, self._letters & letters_of(text)))
+        return sorted(found) if after < 0 else sorted(number for number in found if number > after)
+
+
 @cache
-def substitutions(name: str) -> tuple[tuple[re.Pattern[str], str], ...]:
+def substitutions(name: str) -> RuleTable:
     """The lines `pattern => words` of a table, compiled."""
-    return tuple((re.compile(pattern), words) for pattern, words in pairs(name))
+    return RuleTable(Rule(re.compile(pattern), words) for pattern, words in pairs(name))
 
 
-def replaced(text: str, rules: Iterable[tuple[re.Pattern[str], str]]) -> str:
+def replaced(text: str, table: RuleTable) -> str:
     """A text in which each rule in turn puts its words in place of its pattern.
 
     `sub` alone reads the words of a rule anew on every call, also where the pattern is not found.
     """
-    for pattern, words in rules:
+    numbers = iter(table.possible(text))
+    while (number := next(numbers, None)) is not None:
+        pattern, words = table.rules[number]
         if pattern.search(text) is not None:
             text = pattern.sub(words, text)
+            numbers = iter(table.possible(text, number))
     return text

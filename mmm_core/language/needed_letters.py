@@ -1,0 +1,70 @@
+"""Letters without which a pattern is found in no text, so that most patterns of a table need not be tried.
+
+A pattern that says `(?:clap|wave) hands` is found only where "clap" or "wave" stands. Of each alternative the first three
+characters are kept, and a text is turned into the set of its trigrams; where the two sets share nothing the pattern cannot be
+found (Cox, "Regular Expression Matching with a Trigram Index", 2012).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from re import _constants as ops  # type: ignore[attr-defined]  # the parser of `re` has no public name since Python 3.11
+from re import _parser  # type: ignore[attr-defined]
+from typing import Any
+
+MOST_ALTERNATIVES = 120
+"""Alternatives of a pattern beyond which it is always tried."""
+_SHORTEST = 3
+
+
+@lru_cache(maxsize=64)
+def letters_of(text: str) -> frozenset[str]:
+    """The trigrams of a text: all threes of neighbouring characters."""
+    return frozenset(map("".join, zip(text, text[1:], text[2:], strict=False)))
+
+
+def needed_letters(pattern: re.Pattern[str]) -> frozenset[str]:
+    """Trigrams of which every text has at least one in which the pattern is found; empty where the pattern asks for none.
+
+    >>> sorted(needed_letters(re.compile("(?:clap|wave) your hands?")))
+    [' yo']
+    """
+    if pattern.flags & re.IGNORECASE:
+        return frozenset()
+    alternatives = _best(list(_needed(_parser.parse(pattern.pattern, pattern.flags & re.VERBOSE))))
+    return frozenset(text[:3] for text in alternatives)
+
+
+def _needed(parts: Iterable[Any]) -> Iterator[frozenset[str]]:
+    """For each part of a pattern that has to be found: texts of which one is found there."""
+    literal = ""
+    for op, value in parts:
+        if op is ops.LITERAL:
+            literal += chr(value)
+            continue
+        if op in (ops.AT, ops.ASSERT_NOT):
+            continue  # of no width, so that the letters around it are neighbours
+        yield frozenset({literal})
+        literal = ""
+        if op is ops.SUBPATTERN and not value[1]:  # a group with flags of its own may be of any case
+            yield from _needed(value[3])
+        elif op is ops.BRANCH:
+            each = [_best(list(_needed(branch))) for branch in value[1]]
+            yield frozenset().union(*each) if all(each) else frozenset()
+        elif op in (ops.MAX_REPEAT, ops.MIN_REPEAT, ops.POSSESSIVE_REPEAT) and value[0] > 0:
+            yield from _needed(value[2])
+        elif op is ops.ATOMIC_GROUP:
+            yield from _needed(value)
+        elif op is ops.ASSERT:
+            yield from _needed(value[1])
+    yield frozenset({literal})
+
+
+def _best(found: list[frozenset[str]]) -> frozenset[str]:
+    """Of several sets of alternatives, all of which are needed, the one that rules out most texts."""
+    usable = [
+        each for each in found if 0 < len(each) <= MOST_ALTERNATIVES and all(len(text) >= _SHORTEST for text in each)
+    ]
+    return min(usable, key=lambda each: (any(len(text) < 3 for text in each), len(each)), default=frozenset())

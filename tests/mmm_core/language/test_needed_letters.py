@@ -1,0 +1,57 @@
+"""A table of rules tries only the patterns whose letters a text has, and misses none."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from mmm_core.corpus.heldout import read_sentences
+from mmm_core.language.manner import _rules
+from mmm_core.language.needed_letters import letters_of, needed_letters
+from mmm_core.language.requests import _frames, _sentences
+from mmm_core.language.spelling import mended
+from mmm_core.language.word_tables import Rule, RuleTable, replaced, substitutions
+
+TABLES = {
+    "everyday": substitutions("everyday"), "rewrites": substitutions("rewrites"), "homophones": substitutions("homophones"),
+    "front": _frames()[0], "back": _frames()[1], "sentences": _sentences(), "tempo": _rules("tempo"), "size": _rules("size"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("table", TABLES.values(), ids=TABLES)
+def test_no_pattern_is_missed(table: RuleTable) -> None:
+    found = 0
+    for sentence in read_sentences("words_seen"):
+        said = mended(sentence.text)
+        matching = {i for i, rule in enumerate(table.rules) if rule.pattern.search(said)}
+        assert matching <= set(table.possible(said))
+        found += len(matching)
+    assert found
+
+
+@pytest.mark.parametrize(
+    ("pattern", "needed"),
+    [
+        ("(?:clap|wave) your hands?", {" yo"}), ("clap|wav(?:e|ing)", {"cla", "wav"}), (r"\bnod\b", {"nod"}),
+        (r"(?:please )?nod(?=ding)", {"nod"}), ("clap|up", set()), ("(?:clap)?", set()), ("[abc]+", set()),
+        ("(?!clap)wave", {"wav"}),
+        ("clap{2}", {"cla"}), ("(?:clap)*wave", {"wav"}), ("(?i:clap)|wave", set()),
+    ],
+)  # fmt: skip
+def test_the_letters_that_a_pattern_needs(pattern: str, needed: set[str]) -> None:
+    assert needed_letters(re.compile(pattern)) == needed
+
+
+def test_a_pattern_of_any_case_is_always_tried() -> None:
+    assert not needed_letters(re.compile("clap", re.IGNORECASE))
+    assert letters_of("nods") == {"nod", "ods"}
+
+
+def test_rules_follow_each_other_in_the_order_of_the_table() -> None:
+    """The words of one rule may be the pattern of a later one, and are not that of an earlier one."""
+    table = RuleTable(
+        [Rule(re.compile("nod"), "clap"), Rule(re.compile("wave"), "nod"), Rule(re.compile("nod"), "salute")]
+    )
+    assert replaced("wave", table) == "salute"
+    assert replaced("nod and wave", table) == "clap and salute"
