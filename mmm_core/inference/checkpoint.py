@@ -14,7 +14,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 from tokenizers import Tokenizer as WordPieces
@@ -153,23 +152,6 @@ def _tokenizer(config: dict[str, Any]) -> Tokenizer | VqVae:
         return VqVae(VqVaeConfig(**config))
     parts = tuple(PartConfig(p["name"], tuple(p["channels"]), p["width"]) for p in config.pop("parts"))
     return Tokenizer(TokenizerConfig(**config, parts=parts))
-
-
-def save_text_encoder(path: Path, encoder: MiniLm, source: str) -> None:
-    """Write the text encoder: half precision, word embeddings as bytes with one scale for each row."""
-    tensors = {name: tensor.half() for name, tensor in encoder.state_dict().items()}
-    embedding = encoder.word_embedding.weight.detach()
-    scale = embedding.abs().amax(1, keepdim=True).clamp_min(1e-8) / 127
-    del tensors["word_embedding.weight"]
-    tensors["word_embedding.bytes"] = (embedding / scale).round().to(torch.int8)
-    tensors["word_embedding.scale"] = scale
-    metadata = {
-        "format": str(FORMAT),
-        "kind": "mmmd-text",
-        "config": json.dumps(asdict(encoder.config)),
-        "source": source,
-    }
-    _save(path, tensors, metadata)
 
 
 def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None, n_left_out: int = 0) -> MiniLm:

@@ -155,34 +155,3 @@ class MiniLm(nn.Module):
         weights = mask[..., None].to(x.dtype)
         sentence = F.normalize((x * weights).sum(1) / weights.sum(1), dim=-1)
         return TextStates(words, mask, sentence)
-
-
-def minilm_from_bert(state: dict[str, Tensor]) -> dict[str, Tensor]:
-    """Rename the weights of a BERT checkpoint (`encoder.layer.0.attention.self.query.weight`, ...) to `MiniLm`'s.
-
-    Raises:
-        KeyError: a weight that the architecture needs is absent.
-    """
-    out = {
-        "word_embedding.weight": state["embeddings.word_embeddings.weight"],
-        "position_embedding.weight": state["embeddings.position_embeddings.weight"],
-        "type_embedding": state["embeddings.token_type_embeddings.weight"][0],
-        "embedding_norm.weight": state["embeddings.LayerNorm.weight"],
-        "embedding_norm.bias": state["embeddings.LayerNorm.bias"],
-    }
-    names = {
-        "attention_out": "attention.output.dense",
-        "attention_norm": "attention.output.LayerNorm",
-        "mlp_in": "intermediate.dense",
-        "mlp_out": "output.dense",
-        "mlp_norm": "output.LayerNorm",
-    }
-    n_layers = 1 + max(int(key.split(".")[2]) for key in state if key.startswith("encoder.layer."))
-    for i in range(n_layers):
-        source = f"encoder.layer.{i}."
-        for suffix in ("weight", "bias"):
-            qkv = [state[f"{source}attention.self.{part}.{suffix}"] for part in ("query", "key", "value")]
-            out[f"layers.{i}.qkv.{suffix}"] = torch.cat(qkv)
-            for ours, theirs in names.items():
-                out[f"layers.{i}.{ours}.{suffix}"] = state[f"{source}{theirs}.{suffix}"]
-    return out

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.robot_states import Servos
+from tests.support.robot_states import Servos, SharedDaemon
 
 
 @pytest.fixture
@@ -16,3 +16,18 @@ def servos(tmp_path: Path) -> Iterator[Servos]:
     made = Servos(tmp_path)
     yield made
     made.close()
+
+
+@pytest.fixture(scope="module")
+def module_daemon(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SharedDaemon]:
+    """A daemon on such servos, not yet started; a module that wants options or answers of its own has its own fixture."""
+    made = SharedDaemon(tmp_path_factory.mktemp("shared"))
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def shared(module_daemon: SharedDaemon) -> Iterator[SharedDaemon]:
+    """The module's daemon with a limp robot; every limit is kept at the end."""
+    yield module_daemon.ready()
+    module_daemon.servos.assert_kept()

@@ -12,32 +12,20 @@ import pytest
 
 from tests.end_to_end.test_start_and_end import child_pid
 from tests.support.harness import RunningDaemon
-from tests.support.robot_states import ALL_STATES, STAYS, Servos, daemon_on, gone, lead_to, within, working_daemon
+from tests.support.robot_states import (
+    ALL_STATES,
+    STAYS,
+    Servos,
+    SharedDaemon,
+    assert_works,
+    daemon_on,
+    gone,
+    lead_to,
+    within,
+)
 from tests.support.sizes import some_and_all
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
-
-
-@pytest.mark.parametrize("states", some_and_all(("arming", "moving", "parking", "estop"), ALL_STATES))
-def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands(servos, states):
-    """After 0.5 s the bus process brings to rest what moves; what is being parked is parked."""
-    with working_daemon(servos) as (daemon, client):
-        for state in states:
-            lead_to(client, servos, state)
-            had_torque = servos.torque
-            daemon.process.send_signal(signal.SIGSTOP)
-            try:
-                time.sleep(1.2)
-                assert state in ("arming", "parking", "fault") or servos.torque == had_torque, state
-                assert state == "parking" or not servos.moves, f"{state}: it moves and nobody leads it"
-            finally:
-                daemon.process.send_signal(signal.SIGCONT)
-            after = ("idle", "moving", "holding") if state in ("idle", "moving", "holding") else STAYS[state]
-            after = ("limp", "holding", "idle") if state == "arming" else after
-            assert client.wait_for(*after, timeout_s=5).state in after
-            servos.assert_kept()
-        client.reset()
-        client.wait_for("limp", timeout_s=5)
 
 
 @pytest.mark.parametrize(
@@ -71,3 +59,45 @@ def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_p
         for servos, daemon, _ in rigs:
             daemon.close()
             servos.close()
+
+
+@pytest.mark.parametrize("states", some_and_all(("arming", "moving", "parking", "estop"), ALL_STATES))
+def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands(shared: SharedDaemon, states):
+    """After 0.5 s the bus process brings to rest what moves; what is being parked is parked."""
+    daemon, servos = shared.daemon, shared.servos
+    with shared.client() as client:
+        for state in states:
+            lead_to(client, servos, state)
+            had_torque = servos.torque
+            daemon.process.send_signal(signal.SIGSTOP)
+            try:
+                time.sleep(1.2)
+                assert state in ("arming", "parking", "fault") or servos.torque == had_torque, state
+                assert state == "parking" or not servos.moves, f"{state}: it moves and nobody leads it"
+            finally:
+                daemon.process.send_signal(signal.SIGCONT)
+            after = ("idle", "moving", "holding") if state in ("idle", "moving", "holding") else STAYS[state]
+            after = ("limp", "holding", "idle") if state == "arming" else after
+            assert client.wait_for(*after, timeout_s=5).state in after
+            servos.assert_kept()
+        client.reset()
+        client.wait_for("limp", timeout_s=5)
+        assert_works(client)
+
+
+def test_a_frozen_front_means_hold_then_park_and_it_goes_on_when_it_is_back(shared: SharedDaemon):
+    daemon = shared.daemon
+    parked = daemon.said.count("PARKING -> LIMP")
+    with shared.client() as client:
+        client.arm()
+        client.say("wave", seconds=9.0, wait=False)
+        client.wait_for("moving", timeout_s=10)
+    daemon.process.send_signal(signal.SIGSTOP)
+    try:
+        within(15, "parked", lambda: daemon.said.count("PARKING -> LIMP") > parked)
+    finally:
+        daemon.process.send_signal(signal.SIGCONT)
+    with shared.client() as client:
+        client.wait_for("limp", timeout_s=5)
+        within(3, "the command has ended", lambda: client.status().command is None)
+        assert client.say("wave").done

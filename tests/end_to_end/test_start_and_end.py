@@ -165,16 +165,6 @@ def test_ctrl_c_during_a_motion_parks_too_and_the_command_is_cancelled():
         daemon.close()
 
 
-def test_a_latched_estop_at_the_end_is_status_3():
-    daemon = RunningDaemon()
-    try:
-        daemon.until_ready()
-        assert daemon.mmmd("estop").returncode == 0
-        assert daemon.terminate() == 3
-    finally:
-        daemon.close()
-
-
 def child_pid(daemon: RunningDaemon, module: str) -> int:
     """The daemon's child that runs `module`."""
     for path in Path("/proc").glob("[0-9]*/stat"):
@@ -186,20 +176,3 @@ def child_pid(daemon: RunningDaemon, module: str) -> int:
         if int(fields[1]) == daemon.process.pid and module in command:
             return int(path.parent.name)
     raise AssertionError(f"no child runs {module}")
-
-
-def test_a_bus_process_that_dies_is_a_fault_and_so_are_the_exit_statuses():
-    daemon = RunningDaemon()
-    try:
-        daemon.until_ready()
-        with daemon.client() as client:
-            client.arm()
-            os.kill(child_pid(daemon, "daemon.control.process"), signal.SIGKILL)
-            status = client.wait_for("fault", timeout_s=5)
-            assert "bus process" in status.reason
-        refused_say = daemon.mmmd("say", "wave")
-        assert refused_say.returncode == 1 and "fault" in refused_say.stderr
-        assert daemon.mmmd("status").returncode == 3
-        assert daemon.terminate() == 3
-    finally:
-        daemon.close()

@@ -21,7 +21,7 @@ from daemon.wire import events as ev
 from daemon.wire.requests import Estop
 from tests.end_to_end.test_start_and_end import child_pid
 from tests.support.harness import RunningDaemon
-from tests.support.robot_states import assert_works, bring_to, daemon_on, gone, lead_to, within, working_daemon
+from tests.support.robot_states import SharedDaemon, assert_works, bring_to, daemon_on, gone, lead_to, within
 from tests.support.sizes import some_and_all
 
 pytestmark = [pytest.mark.timeout(240), pytest.mark.realtime]
@@ -54,80 +54,80 @@ class Person:
         self._context.destroy(linger=0)
 
 
-@pytest.mark.parametrize("number", [signal.SIGSTOP, signal.SIGKILL], ids=["frozen", "killed"])
-def test_the_front_keeps_no_estop_from_the_bus_process(servos, number):
+def test_a_killed_front_keeps_no_estop_from_the_bus_process(servos):
     daemon = daemon_on(servos)
     person = Person(daemon)
     try:
         with daemon.client() as client:
             lead_to(client, servos, "moving")
         bus, ctl = child_pid(daemon, "daemon.control.process"), child_pid(daemon, "daemon.ctl.process")
-        daemon.process.send_signal(number)
-        ack = person.hears(ev.Ack, person.estop(), 5.0)
-        assert ack.carried_out
+        daemon.process.kill()
+        assert person.hears(ev.Ack, person.estop(), 5.0).carried_out
         within(1.0, "no torque", lambda: not servos.torque)
-        if number == signal.SIGSTOP:
-            daemon.process.send_signal(signal.SIGCONT)
-            with daemon.client() as client:
-                client.wait_for("estop", timeout_s=5)
-                within(3.0, "its command ends", lambda: client.status().command is None)
-                client.reset()
-                client.wait_for("limp", timeout_s=5)
-                assert_works(client)
-            assert daemon.terminate() == 0
-        else:
-            daemon.process.wait(5)
+        daemon.process.wait(5)
         within(40.0, "no process is left", lambda: gone(bus) and gone(ctl))
         servos.assert_kept()
     finally:
-        daemon.process.send_signal(signal.SIGCONT) if daemon.process.poll() is None else None
         person.close()
         daemon.close()
 
 
-def test_a_flood_of_subscriptions_keeps_no_estop_from_the_robot(servos):
-    """One such subscriber kept an e-stop from the robot for 12 s and more."""
-    daemon = daemon_on(servos)
-    person = Person(daemon)
+def test_a_frozen_front_keeps_no_estop_from_the_bus_process(shared: SharedDaemon):
+    daemon, person = shared.daemon, Person(shared.daemon)
     try:
-        with daemon.client() as client:
-            lead_to(client, servos, "moving")
-        with flooded("pub", daemon.endpoints.pub):
+        with shared.client() as client:
+            lead_to(client, shared.servos, "moving")
+        daemon.process.send_signal(signal.SIGSTOP)
+        assert person.hears(ev.Ack, person.estop(), 5.0).carried_out
+        within(1.0, "no torque", lambda: not shared.servos.torque)
+        daemon.process.send_signal(signal.SIGCONT)
+        with shared.client() as client:
+            client.wait_for("estop", timeout_s=5)
+            within(3.0, "its command ends", lambda: client.status().command is None)
+            client.reset()
+            client.wait_for("limp", timeout_s=5)
+            assert_works(client)
+    finally:
+        daemon.process.send_signal(signal.SIGCONT)
+        person.close()
+
+
+def test_a_flood_of_subscriptions_keeps_no_estop_from_the_robot(shared: SharedDaemon):
+    """One such subscriber kept an e-stop from the robot for 12 s and more."""
+    person = Person(shared.daemon)
+    try:
+        with shared.client() as client:
+            lead_to(client, shared.servos, "moving")
+        with flooded("pub", shared.daemon.endpoints.pub):
             time.sleep(1.0)
             assert person.hears(ev.Ack, person.estop(), 5.0).carried_out
-            within(1.0, "no torque", lambda: not servos.torque)
-        servos.assert_kept()
+            within(1.0, "no torque", lambda: not shared.servos.torque)
     finally:
         person.close()
-        daemon.close()
 
 
 @pytest.mark.skipif(not may_fifo(CONTROL_PRIORITY), reason="this user may not have FIFO priority")
-def test_no_thread_of_ctl_waits_for_a_core_while_it_has_the_interpreter():
+def test_no_thread_of_ctl_waits_for_a_core_while_it_has_the_interpreter(shared: SharedDaemon):
     """The thread that watches connections had normal priority: on a busy machine ctl fell silent with it, an e-stop."""
-    daemon = RunningDaemon()
-    try:
-        daemon.until_ready()
-        threads = os.listdir(f"/proc/{child_pid(daemon, 'daemon.ctl.process')}/task")
-        assert len(threads) > 2
-        assert {os.sched_getparam(int(thread)).sched_priority for thread in threads} == {CONTROL_PRIORITY}
-    finally:
-        daemon.close()
+    threads = os.listdir(f"/proc/{child_pid(shared.daemon, 'daemon.ctl.process')}/task")
+    assert len(threads) > 2
+    assert {os.sched_getparam(int(thread)).sched_priority for thread in threads} == {CONTROL_PRIORITY}
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 @pytest.mark.parametrize("states", some_and_all(("moving",), ("moving", "limp")))
-def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(servos, number, states):
-    with working_daemon(servos) as (daemon, client):
+def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(shared: SharedDaemon, number, states):
+    with shared.client() as client:
         for state in states:
             bring_to(client, state)
-            os.kill(child_pid(daemon, "daemon.ctl.process"), number)
-            within(1.0, "no torque", lambda: not servos.torque)
+            os.kill(child_pid(shared.daemon, "daemon.ctl.process"), number)
+            within(1.0, "no torque", lambda: not shared.servos.torque)
             within(BACK_WITHIN_S, "estop", lambda: _state(client) == "estop")
             assert "nobody took e-stops" in client.status().reason
             client.reset()
             client.wait_for("limp", timeout_s=5)
-            servos.assert_kept()
+            shared.servos.assert_kept()
+        assert_works(client)
 
 
 @pytest.mark.parametrize(
@@ -139,29 +139,33 @@ def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(servo
         pytest.param(signal.SIGSTOP, 0.6, marks=pytest.mark.soak),
     ],
 )
-def test_an_estop_without_a_bus_process_is_told_as_owed_and_carried_out_by_the_next_one(servos, number, after_s):
+def test_an_estop_without_a_bus_process_is_told_as_owed_and_carried_out_by_the_next_one(
+    shared: SharedDaemon, number, after_s
+):
     """Of nine e-stops given so all nine were acknowledged, and none was carried out."""
-    daemon = daemon_on(servos)
-    person = Person(daemon)
+    person = Person(shared.daemon)
     try:
-        with daemon.client() as client:
-            lead_to(client, servos, "moving")
-            os.kill(child_pid(daemon, "daemon.control.process"), number)
+        with shared.client() as client:
+            lead_to(client, shared.servos, "moving")
+            os.kill(child_pid(shared.daemon, "daemon.control.process"), number)
             time.sleep(after_s)
             name = person.estop()
             assert person.hears(ev.Ack, name, 5.0).carried_out is False
-            assert servos.torque, "nobody is there to cut it"
+            assert shared.servos.torque, "nobody is there to cut it"
             done = person.hears(ev.CarriedOut, name, BACK_WITHIN_S)
-            assert done.verb == "estop" and not servos.torque
+            assert done.verb == "estop" and not shared.servos.torque
             client.wait_for("estop", timeout_s=5)
             client.reset()
             client.wait_for("limp", timeout_s=5)
             assert_works(client)
-        assert daemon.terminate() == 0
-        servos.assert_kept()
     finally:
         person.close()
-        daemon.close()
+
+
+def test_a_latched_estop_at_the_end_is_status_3(shared: SharedDaemon):
+    """Last of the module: ends the daemon."""
+    assert shared.daemon.mmmd("estop").returncode == 0
+    assert shared.daemon.terminate() == 3
 
 
 def _state(client) -> str:
