@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -55,3 +57,19 @@ def test_rules_follow_each_other_in_the_order_of_the_table() -> None:
     )
     assert replaced("wave", table) == "salute"
     assert replaced("nod and wave", table) == "clap and salute"
+
+
+def test_all_tables_are_loaded_before_the_first_sentence() -> None:
+    """A table of rare words was read from disk within the first sentence that had an unlikely word, for 8 ms."""
+    code = (
+        "from mmm_core.language import limbs, slips, slips_in_context as near, spelling, word_tables as tables, warming\n"
+        "warming.warmed()\n"
+        "loaded = (slips._very_rare, slips._common, slips._stays, near._by_shortened, near._following, limbs._limb_words,\n"
+        "          spelling._chat_words, spelling._corrections)\n"
+        "before = tables.lines.cache_info().misses\n"
+        "assert all(table.cache_info().currsize for table in loaded)\n"
+        "from mmm_core.language.reading import read\n"
+        "read('gour hovercraft swims teeny weeny circles, shrugg twice as fast')\n"
+        "assert tables.lines.cache_info().misses == before\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
