@@ -31,7 +31,7 @@ from mmm_core.generate.sequence import (
 )
 from mmm_core.language.count_words import count_asked
 from mmm_core.language.mirroring import mirror_words
-from mmm_core.model.sampling import SamplingSettings, empty_row, fill, pseudo_log_likelihood
+from mmm_core.model.sampling import FirstStep, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from mmm_core.motion.body_parts import BodyPart
@@ -66,6 +66,7 @@ class MotionGeneration:
             self._text = self._read.reading.text
             self._steps = steps_of(engine, self._read, n_frames) if self._read.steps else []
         self._verdict, self._mirrored = self._read.verdict, self._read.is_mirrored
+        self._first_steps = [FirstStep() for _ in self._steps[0].commands] if self._steps else []
         self._candidates, self._counts = candidates or 1, [None] * len(self._steps)
         if candidates != 1 and n_frames is None and engine.model.is_ours:
             self._counts = [count_asked(s.commands[0].text) if len(s.commands) == 1 else None for s in self._steps]
@@ -122,7 +123,7 @@ class MotionGeneration:
         step, one_step = self._steps[0], replace(self.settings, steps=1)
         rows = [empty_row(self._engine.model.transformer, step.tokens_of(k)) for k in range(len(step.commands))]
         return [
-            self._fill(command.states, [row], [self._seed_of(0, k)], one_step)[0]
+            self._fill(command.states, [row], [self._seed_of(0, k)], one_step, self._first_steps[k])[0]
             for k, (command, row) in enumerate(zip(step.commands, rows, strict=True))
         ]
 
@@ -162,7 +163,8 @@ class MotionGeneration:
         row = empty_row(self._engine.model.transformer, n_tokens)
         if n > 1 and i == 0 and self._opens:  # all candidates begin as the preview does
             row[: settings.opening] = self._drafts[k][: settings.opening]
-        candidates = self._fill(command.states, [row] * n, seeds, settings)
+        first = self._first_steps[k] if i == 0 and n == 1 else None
+        candidates = self._fill(command.states, [row] * n, seeds, settings, first)
         if count is not None:
             return ids_of_count(self._engine, command.states, candidates, count, self._seed)
         return candidates[0] if n == 1 else self._likeliest(command.states, candidates)
@@ -176,10 +178,11 @@ class MotionGeneration:
         return candidates[int(likely.argmax())]
 
     def _fill(
-        self, states: TextStates, rows: Sequence[Tensor], seeds: Sequence[int], settings: SamplingSettings
-    ) -> list[Tensor]:
+        self, states: TextStates, rows: Sequence[Tensor], seeds: Sequence[int], settings: SamplingSettings,
+        first: FirstStep | None = None,
+    ) -> list[Tensor]:  # fmt: skip
         states = states if len(rows) == 1 else states.repeated(len(rows))
-        return fill(self._engine.model.transformer, states, rows, seeds, settings)
+        return fill(self._engine.model.transformer, states, rows, seeds, settings, first=first)
 
     def _result_of(self, ids: Tensor, made: Sequence[StepIds], n_frames: int | None, lap: str) -> GenerationResult:
         verdict, mirrored = self._verdict, self._mirrored

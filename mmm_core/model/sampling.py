@@ -14,7 +14,7 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from mmm_core.errors import GenerationError
-from mmm_core.model.decode import DecodeSettings, NoiseFn, decode
+from mmm_core.model.decode import DecodeSettings, LogitsFn, NoiseFn, decode
 from mmm_core.model.schedule import Schedule, masked_counts, official_counts
 from mmm_core.model.text import TextStates
 from mmm_core.model.transformer import MotionTransformer, StepMemory
@@ -48,6 +48,28 @@ OFFICIAL_UPPER_BODY = SamplingSettings(steps=20, temperature=1.0, official=True)
 """The released upper-body editor: twenty steps at temperature 1."""
 
 
+@dataclass
+class FirstStep:
+    """The logits of a row's first decoding step, kept for a second decoding of the same row and text in another number of steps."""
+
+    logits: Tensor | None = None
+
+    def reused(self, logits_fn: LogitsFn) -> LogitsFn:
+        """`logits_fn` for one decoding, whose first call computes the logits only where they are not kept yet."""
+        begun = False
+
+        def answer(tokens: Tensor, asked: Tensor) -> Tensor:
+            nonlocal begun
+            if begun:
+                return logits_fn(tokens, asked)
+            begun = True
+            if self.logits is None:
+                self.logits = logits_fn(tokens, asked)
+            return self.logits
+
+        return answer
+
+
 def empty_row(transformer: MotionTransformer, n_tokens: int) -> Tensor:
     """(n_tokens, C) ids, all [MASK]."""
     return torch.full((n_tokens, transformer.config.n_codebooks), transformer.ids.mask)
@@ -60,6 +82,7 @@ def fill(
     seeds: Sequence[int],
     settings: SamplingSettings,
     noise: NoiseFn | None = None,
+    first: FirstStep | None = None,
 ) -> list[Tensor]:
     """Fill the holes of `rows`, all at once.
 
@@ -70,6 +93,7 @@ def fill(
         seeds: one for each row; a row's result does not depend on its neighbours.
         settings: steps, temperature, guidance.
         noise: where the randomness comes from; None draws it from `seeds`.
+        first: the first step of the same rows, where they are filled twice.
 
     Returns:
         B rows (L_i, C).
@@ -106,7 +130,8 @@ def fill(
     counts = [_counts(n, len(row), settings, early_exit=len(rows) == 1 and n_predicted == transformer.config.n_codebooks)
               for n, row in zip(n_open, rows, strict=True)]  # fmt: skip
     how = DecodeSettings(settings.steps, settings.schedule, settings.temperature, settings.opening)
-    filled = decode(batch, logits_fn, ids.mask, how, list(seeds), n_predicted=n_predicted, counts=counts, noise=noise)
+    answer = logits_fn if first is None else first.reused(logits_fn)
+    filled = decode(batch, answer, ids.mask, how, list(seeds), n_predicted=n_predicted, counts=counts, noise=noise)
     return [filled[i, : len(row)] for i, row in enumerate(rows)]
 
 
