@@ -170,3 +170,8 @@ LIMB_FIRST = _pattern(
     r"^(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head|chin|eyes|gaze|shoulders|body|upper body)\s"
 )
 """'Head up', a command without a verb."""
+LIMB_AND_WAY = _pattern(
+    r"^(?:your |the )?(?:(?:left |right )?(?:arm|hand|fist)|arms|hands|head|chin|eyes|gaze) "
+    r"(?:up|down|left|right|forward|back|out)$"
+)
+"""'Head left' in "head left, right, left"."""

@@ -91,6 +91,7 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
     verbs = [
         words.BEGINS_WITH_A_VERB.match(part)
         or _is_of_the_same_limb(parts, i)
+        or (i == 0 and len(parts) > 1 and words.LIMB_AND_WAY.match(part) and completed(parts[1], part))
         or (i and "," in text[spans[i - 1].end : spans[i].start] and completed(part, parts[i - 1]))
         for i, part in enumerate(parts)
     ]

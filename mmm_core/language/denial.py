@@ -17,7 +17,7 @@ _NOT = (
     r"(?:please )?(?:never ?mind (?:about )?|do not (?:you )?(?:dare (?:to )?|ever |even |think of |try to )?|never(?: ever)? |no more |no |not |you (?:must|should|may|can|shall|need|do) not (?:have to |need to )?|"
     r"i (?:do not|would not) (?:want|like|need)(?: (?:you|to see you|to see))?(?: to)? |without |forget (?:about |the idea of )?|stop |quit |"
     r"avoid |refrain from |skip |leave out |abstain from |there is no (?:need|reason|point|call) (?:to|for you to|in) |no need to |(?:nobody|no one|none of us) (?:needs|wants|asked|asks|expects|likes)(?: you)?(?: to)? |i would (?:rather|prefer it if) you did not |you are not (?:to|allowed to|supposed to|meant to) |let us not |it is not necessary to |instead of |rather than |"
-    r"(?:any|every)thing (?:but|except(?: for)?|other than) |do (?:anything|everything|whatever you (?:like|want)) (?:but|except(?: for)?|other than) |"
+    r"(?:any|every)thing (?:but|except(?: for)?|other than) |(?:do|give (?:me|us)|show (?:me|us)) (?:anything|everything|whatever you (?:like|want)) (?:but|except(?: for)?|other than) |"
     r"(?:just |only )?not |in no case |under no circumstances |on no account |by no means |hold off on |no,? not )"
 )
 _DENIES = re.compile(

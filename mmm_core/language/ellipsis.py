@@ -21,7 +21,7 @@ _DIRECTION = re.compile(
     rf"^(?!(?:come|go|get|move|step) back)(?:one |another )?{_AFTER_VERB}(?P<way>(?:(?:up |down )?(?:to|towards?|at|on) )?(?:the |your )?(?P<side>left|right)(?: side| one| again)?|{_WAYS}|(?:up|down|back|over) (?:to|at|towards|into|on) (?:the |your |my )?\w+)$"
 )
 _SIDED = re.compile(rf"\b(left|right)\b(?= {_LIMB}\b)|\b(?:the|your) (left|right)\b")
-_THE_SAME = r"(?:also |and |now )?(?:(?:do )?(?:the same|it|that|so|likewise)(?: thing)?(?: again)? )?"
+_THE_SAME = r"(?:also |and |now )?(?:(?:do )?(?:the same|same|it|that|so|likewise|again)(?: thing)?(?: again)? )?"
 _ONLY_SIDE = re.compile(
     rf"^{_THE_SAME}(?:with|using|on|for|by|use)? ?(?:the |your )?(?P<side>left|right)(?: (?P<limb>{_LIMB}))?(?: (?:too|as well|again|instead))?$"
 )
@@ -35,6 +35,11 @@ _ONLY_BOTH = re.compile(
     r"^(?:(?:with|using|use) )?(?:your )?both(?: of them)?(?: (?:hands|arms))?(?: together| at once| at the same time)?$"
 )
 _ONE_ARM = re.compile(r"\b(?:(?:your|the|a|one) )?(?:left|right) (?P<limb>hand|arm|fist)\b")
+_ONE_LIMB = re.compile(r"\b(?:one|a|your) (?P<limb>hand|arm|fist)\b")
+_FLOOR, _CEILING = (
+    re.compile(r"^at (?:the|your) (?:floor|ground|feet|toes)$"),
+    re.compile(r"^at the (?:ceiling|sky|roof|stars|moon)$"),
+)
 _BOTH_ARMS = re.compile(r"\bboth (?:your )?(?P<limb>hand|arm|fist)s\b")
 _ONLY_TIMES = re.compile(
     r"^(?P<times>once|twice|thrice|\w+ times)(?: more| again)?$|^(?P<number>\w+) (?:more|further)(?: times?)?$"
@@ -112,6 +117,7 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
     ).strip()
     if not clause:
         return None
+    clause = _CEILING.sub("up", _FLOOR.sub("down", clause))
     if (counted := _COUNTED.match(clause)) and (
         whole := completed(counted["rest"], _SAID_TIMES.sub("", before).strip())
     ):
@@ -155,6 +161,8 @@ def _other_way(before: str) -> str:
     """The command before, to the other side; without a side, with the left hand."""
     if re.search(r"\b(?:left|right)\b", before):
         return re.sub(r"\b(left|right)\b", lambda m: OTHER[m[1]], before)
+    if found := _ONE_LIMB.search(before):
+        return f"{before[: found.start()]}your left {found['limb']}{before[found.end() :]}"
     for way, other in OTHER.items():
         if re.search(rf"\b{way}\b", before):
             return re.sub(rf"\b{way}\b", other, before)

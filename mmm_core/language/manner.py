@@ -21,7 +21,7 @@ _GESTURES = (
     "glances?|looks?|rolls?|presses|press|push(?:es)?|pulls?|raises?|lifts?)"
 )
 """Nouns of gestures, which an adjective of size stands before."""
-_VERY = r"(?:(?:ever so|oh so|very|really|dead|proper|bloody|insanely|crazy|ridiculously|painfully|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|way) )*"
+_VERY = r"(?:(?:ever so|oh so|very|really|real|dead|proper|bloody|insanely|crazy|ridiculously|painfully|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|way) )*"
 _STRONG = re.compile(
     r"\b(?:ever so|very|really|dead|insanely|ridiculously|painfully|super|extremely|incredibly|ultra|extra|terribly|awfully|much|way|oh so)\b"
 )
@@ -35,6 +35,11 @@ _HOLD = re.compile(
     r"(?:your|the) (?:left |right )?(?:hand|arm|head)s?))*\s+)?"
     rf"(?:(?:for|about|exactly|at least|around|all of|a full|another) )*{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
 )
+_COUNT_OF = re.compile(
+    r",?\s*(?:(?:and |then )?(?:hold|holding|keep|keeping)(?: (?:it|them|that|this|there))*\s+)?"
+    rf"for (?:a |the )?count of {_NUMBER}\b|,?\s*\bfor {_NUMBER} (?:counts|beats)\b"
+)
+"""A hold of as many seconds as are counted."""
 _ONLY_SECONDS = re.compile(
     rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
 )
@@ -139,10 +144,12 @@ def _rules(table: str) -> RuleTable:
 def _hold(clause: str) -> tuple[str, float]:
     found = _HOLD.search(clause) if _SECOND.search(clause) is not None else None
     if found is None:
+        found = _COUNT_OF.search(clause)
+    if found is None:
         return clause, 0.0
     if not _READS.search(clause[: found.start()] + clause[found.end() :]):
         found = _ONLY_SECONDS.search(clause) or found
-    number = found[1]
+    number = next(group for group in found.groups() if group)
     seconds = float(_SECONDS[number]) if number in _SECONDS else float(number)
     rest = clause[: found.start()] + " " + clause[found.end() :]
     rest = _KEEPS.sub("raise ", rest) if _HIGH.search(rest) else rest

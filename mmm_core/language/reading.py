@@ -101,7 +101,9 @@ def _hand_first(said: str) -> tuple[str, str]:
             return ", ".join(f"{m[1]} {limb} {m[2]}" for m in sided if m), ""
         return ", then ".join(f"{listed['limb']} {part}" for part in parts if part), ""
     found = re.match(
-        r"(?:with|using|use) (?:your |the )?(left|right) (?:hand|arm)[:,]? (?:first |to )?(?P<rest>.+)$", said
+        r"(?:with|using|use) (?:your |the )?(left|right) (?:hand|arm)[:,]? (?:first |to )?"
+        r"(?!(?:stretched|raised|held|extended|crossed|folded|lifted|placed|bent|straight|out|up|on|over|behind|against|in|at|down)\b)(?P<rest>.+)$",
+        said,
     )
     rest = found["rest"] if found else ""
     if (

@@ -95,7 +95,7 @@ class TestWhatIsLeftOut:
             ("jabs. right. left.", "jabs with your right hand; jabs with your left hand"),
             ("lean: left, then right", "lean to the left; lean to the right"),
             ("arms: left up, right down", "raise your left hand + lower your right arm"),
-            ("Look up at the lamp, next down at the floor.", "look up at the lamp; look down at the floor"),
+            ("Look up at the lamp, next down at the floor.", "look up; look down"),
             ("I need a peek down to the left, followed by one down to the right", "look down to the left; look down to the right"),
             ("turn your head to the right, then your trunk", "turn your head to the right; turn your trunk to the right"),
             ("Salute with your right hand while the left sits on your hip.",

@@ -1,0 +1,78 @@
+"""What is said beside a command: targets, ways back, measures, stories with "so"; and what looks like these and is none."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmm_core.language.reading import read
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("nod twice, then shake it once", "nod twice; shake your head once"),
+        ("lean left, lean right, then back to the middle", "lean to the left; lean to the right"),
+        ("lean over to your right side and then come back and lean to the left", "lean to the right; lean to the left"),
+        ("point up, then straight ahead, then at the floor", "point up; point ahead; point down"),
+        ("wave with your right, and again with your left", "wave with your right hand; wave with your left hand"),
+        ("put your left hand on your hip. Same with the right.", "put your left hand on your hip; put your right hand on your hip"),
+        ("head left, right, left", "look to the left; look to the right; look to the left"),
+        ("raise one hand, then swap", "raise your right hand; raise your left hand"),
+        ("left arm up. Now the right. And both down.", "raise your left hand; raise your right hand; lower both arms"),
+        ("with your left arm stretched out, wave with your right", "wave with your right hand + your left arm stretched out"),
+        ("when the music starts I want you to clap, and when it stops I want you to bow", "clap; bow"),
+        ("look up at the shelf", "look up"), ("look down at the sawdust twice", "look down twice"),
+        ("stand up straight", "stand upright"),
+        ("conduct the radio with your right arm", "conduct the orchestra with your right arm"),
+        # and what looks like it
+        ("look down at your watch", "look down at your watch"),
+        ("look left at a snail's pace", "look to the left (0.5 times as fast)"),
+        ("look up and clap", "look up + clap"), ("look over your left shoulder", "look back over your left shoulder"),
+        ("conduct with your left arm", "conduct with your left arm"), ("conduct the choir", "conduct the choir"),
+        ("pull your right hand back to your chest", "pull your right hand back to your chest"), ("lean back", "lean back"),
+        ("shake it", "shake it"), ("the left arm at right angles to your body, to the front",
+         "the left arm at right angles to your body, to the front"),
+        ("stand up", "stand up"),
+    ],
+)  # fmt: skip
+def test_what_is_read(text: str, read_as: str) -> None:
+    assert "; ".join(read(text).sentences) == read_as
+
+
+@pytest.mark.parametrize(
+    ("text", "tempo", "size", "hold_s"),
+    [
+        ("slow down and bow", 0.62, 1.0, 0), ("bow, but hurry", 1.6, 1.0, 0), ("take it slow and shake your head", 0.62, 1.0, 0),
+        ("clap as quietly and slowly as you can", 0.5, 1.0, 0), ("nod your head real quick", 1.6, 1.0, 0),
+        ("nod vigorously", 1.6, 1.0, 0), ("wave like you mean it, nice and big", 1.0, 1.45, 0),
+        ("hold your arms out for a count of four", 1.0, 1.0, 4.0), ("raise your hand for three beats", 1.0, 1.0, 3.0),
+        # and what looks like it
+        ("lower your arm", 1.0, 1.0, 0), ("count to four", 1.0, 1.0, 0), ("a big wave", 1.0, 1.45, 0),
+        ("wave to the real madrid fans", 1.0, 1.0, 0),
+        ("beat the drum four times", 1.0, 1.0, 0),
+    ],
+)  # fmt: skip
+def test_manner(text: str, tempo: float, size: float, hold_s: float) -> None:
+    manner = read(text).steps[0][0].manner
+    assert (manner.tempo, manner.size, manner.hold_s) == pytest.approx((tempo, size, hold_s), abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as", "denied"),
+    [
+        ("She is leaving now so wave goodbye to her with your right hand", "wave goodbye with your right hand", ()),
+        ("My daughter likes it when you wave to her with your left hand, so would you?", "wave to her with your left hand", ()),
+        ("The doctor says I should see if you can tilt your head to the right without it hurting",
+         "tilt your head to the right", ()),
+        ("could you maybe, if it isn't too weird, put both of your hands on your head for me", "put both hands on your head", ()),
+        ("I was told this robot can salute, is that true? show me", "salute", ()),
+        ("Before you go, one last thing: thumbs up", "thumbs up", ()),
+        ("whatever you do, do not clap", "", ("clap",)), ("give me anything except a wave", "clap your hands", ("a wave",)),
+        ("anything except clapping is fine, so bow", "bow", ("clapping",)),
+        # and what looks like it
+        ("lean so far that you nearly fall", "lean so far that you nearly fall", ()), ("tell me so", "tell me so", ()),
+    ],
+)  # fmt: skip
+def test_words_around_a_request(text: str, read_as: str, denied: tuple[str, ...]) -> None:
+    reading = read(text)
+    assert ("; ".join(reading.sentences), reading.denied) == (read_as, denied)
