@@ -15,7 +15,7 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import GenerationError
-from mmm_core.generate.at_once import composed
+from mmm_core.generate.at_once import composed, features_of
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.interpretation import ReadCommand, interpret_all
 from mmm_core.generate.motion_model import check_seed
@@ -213,15 +213,21 @@ def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> lis
 
 
 def _ids(engine: Engine, steps: list[Step], made: Iterator[Tensor], seed: int) -> Tensor:
-    """(L, C) ids of a scene's steps in their manner, given the rows of all commands in order."""
+    """(L, C) ids of a scene's steps in their manner, given the rows of all commands in order.
+
+    Commands at once are put together as body parts of a motion, which is encoded again: the decoder of a story is given ids alone.
+    """
     rows = [[next(made) for _ in step.commands] for step in steps]
-    whole = [composed(engine, s.commands, r).ids for s, r in zip(steps, rows, strict=True)]
-    ids = joined(engine, steps, whole, seed)
-    stretches = stretches_of(steps, [len(row) for row in whole])
-    if all(s.plain for s in stretches):
-        return ids
     with torch.inference_mode():
-        features, _ = performed(engine.model.tokenizer.decode(ids[None])[0].numpy(), stretches)
+        whole = [composed(engine, s.commands, r) for s, r in zip(steps, rows, strict=True)]
+        ids = joined(engine, steps, [step.ids for step in whole], seed)
+        stretches = stretches_of(steps, [len(step.ids) for step in whole])
+        if all(s.plain for s in stretches) and not any(step.rows for step in whole):
+            return ids
+        begins = [s.end // FRAMES_PER_TOKEN - len(step.ids) for s, step in zip(stretches, whole, strict=True)]
+        features = features_of(engine, ids, list(zip(begins, whole, strict=True)))
+        if any(not s.plain for s in stretches):
+            features, _ = performed(features, stretches)
         n_frames = len(features) // FRAMES_PER_TOKEN * FRAMES_PER_TOKEN
         return engine.model.tokenizer.encode(torch.from_numpy(features[None, :n_frames]))[0]
 

@@ -6,10 +6,13 @@ import msgspec
 import numpy as np
 import pytest
 
+from mmm_core.corpus.heldout import Command
 from mmm_core.errors import GenerationError
+from mmm_core.evaluation.sentences import seen_at_once
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.keyframes import Keyframe, between
 from mmm_core.generate.story import Scene, StoryState, continue_story, generate_story
+from mmm_core.motion.posture_features import posture_features
 
 SCENES = [
     Scene("wave with your right hand", 2.0),
@@ -39,6 +42,20 @@ def test_a_story_can_be_ended_after_its_last_scene(engine: Engine) -> None:
     first, told, _ = continue_story(engine, SCENES[0], StoryState(), seed=4)
     rest, _, _ = continue_story(engine, None, told, seed=4, last=True)
     np.testing.assert_array_equal(np.concatenate([first.features, rest.features]), whole)
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_scene_shows_both_of_two_commands_at_once(engine: Engine, seed: int) -> None:
+    """A story joined the ids of both commands, and the decoder, which reads all parts, lost the nod."""
+    pieces = [
+        p for p in generate_story(engine, [Scene("clap and nod along to the beat")], seed=seed) if len(p.joints_m)
+    ]
+    joints_m, head_wxyz, twist_rad = (
+        np.concatenate([getattr(p, name) for p in pieces])
+        for name in ("joints_m", "head_quat_wxyz", "forearm_twist_rad")
+    )
+    shown = posture_features(joints_m, head_wxyz, twist_rad)
+    assert seen_at_once((Command("clap", "arm", "both"), Command("nod", "head")), shown)
 
 
 @pytest.mark.parametrize("row", [[1, 2], [0, 0, 100_000], [0, -1, 0]])
