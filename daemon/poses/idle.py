@@ -1,4 +1,4 @@
-"""Small movements of a robot that has nothing to do: breath in chest and shoulders, a wandering gaze.
+"""Small movements of a robot that has nothing to do: breath in chest and shoulders, weight that shifts, a wandering gaze.
 
 Made as a posture like any motion, so that limits and self-contact are kept where they always are. It begins from the
 standing person and never strays far from there: amplitudes are a few degrees.
@@ -27,6 +27,9 @@ _SHOULDERS = [JOINT_NAMES.index(name) for name in ("left_shoulder", "right_shoul
 _ELBOWS = [JOINT_NAMES.index(name) for name in ("left_elbow", "right_elbow")]
 _GAZE_HZ = ((0.043, 0.071, 0.113), (0.037, 0.083, 0.101))
 """Slow frequencies without a common period, for yaw and pitch: the gaze wanders and does not repeat."""
+_WEIGHT_HZ = (0.021, 0.047, 0.061)
+_WEIGHT_HELD = 4.0
+"""How steeply the weight goes over: it rests on one leg for some seconds and then on the other, as a person's does."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ class IdleStyle:
     sway_deg: float
 
 
-STYLES = {"calm": IdleStyle(1.5, 6.0, 2.5, 0.6), "lively": IdleStyle(2.5, 16.0, 6.0, 1.8)}
+STYLES = {"calm": IdleStyle(1.5, 6.0, 2.5, 1.0), "lively": IdleStyle(2.5, 16.0, 6.0, 2.2)}
 
 
 class IdleSource(MotionSource):
@@ -71,10 +74,9 @@ class IdleSource(MotionSource):
         style = self._style
         stand = standing().at(np.zeros(len(t_s), np.intp))
         breath = np.deg2rad(style.breath_deg) * rise * (1 - np.cos(2 * np.pi * _BREATH_HZ * t_s)) / 2
-        yaw, pitch, sway = (
-            np.deg2rad(deg) * rise * self._wander(t_s, k)
-            for k, deg in enumerate((style.gaze_yaw_deg, style.gaze_pitch_deg, style.sway_deg))
-        )
+        yaw = np.deg2rad(style.gaze_yaw_deg) * rise * self._wander(t_s, 0, _GAZE_HZ[0])
+        pitch = np.deg2rad(style.gaze_pitch_deg) * rise * self._wander(t_s, 1, _GAZE_HZ[1])
+        sway = np.deg2rad(style.sway_deg) * rise * np.tanh(_WEIGHT_HELD * self._wander(t_s, 2, _WEIGHT_HZ))
         bones = stand.bones.copy()
         bones[:, _SPINE, 2] -= breath[:, None]
         bones[:, _SPINE, 0] += sway[:, None]
@@ -82,9 +84,9 @@ class IdleSource(MotionSource):
         bones[:, _ELBOWS, 0] += breath[:, None] * np.array([0.6, -0.6])
         return replace(stand, bones=normalise(bones), head_quat_wxyz=head_wxyz(yaw, pitch))
 
-    def _wander(self, t_s: Array, k: int) -> Array:
+    def _wander(self, t_s: Array, k: int, hz: tuple[float, float, float]) -> Array:
         """Within -1 and 1, from 0 at the start."""
-        w = 2 * np.pi * np.array(_GAZE_HZ[min(k, 1)])
+        w = 2 * np.pi * np.array(hz)
         return (np.sin(np.outer(t_s, w) + self._phase[k]) - np.sin(self._phase[k])).sum(1) / 6
 
 

@@ -140,6 +140,7 @@ class DaemonConfig:
         auto_arm: whether the first text may arm the robot.
         estop: what an e-stop does: `cut` torque, or brake within the limits and `hold` (a second one then cuts).
         idle: style of the movements while there is nothing to play: off, calm or lively.
+        alive: whether trunk and head go along with generated gestures (`mmm_core/motion/life.py`).
         gestures: folder of the user's own gestures; None takes the user's data folder.
         motions: folder in which `edit` looks for files; None takes the folder the daemon was started in.
         model_hash: beginning of the checkpoint's hash that the generator must have; empty takes any.
@@ -167,6 +168,7 @@ class DaemonConfig:
     auto_arm: bool = True
     estop: str = "cut"
     idle: str = "off"
+    alive: bool = True
     gestures: Path | None = None
     motions: Path | None = None
     model_hash: str = ""

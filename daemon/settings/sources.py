@@ -20,7 +20,7 @@ _CONFIG = DaemonConfig("reference", "sim://")
 DEFAULTS: dict[str, Any] = {
     "robot": "reference", "bus": "sim://", "log": None, "log_size_mb": _CONFIG.log_size_mb,
     "log_total_mb": _CONFIG.log_total_mb, "generator": None, "model": None, "model_hash": "", "auto_arm": True,
-    "estop": _CONFIG.estop, "idle": "off", "gestures": None, "motions": None,
+    "estop": _CONFIG.estop, "idle": "off", "alive": True, "gestures": None, "motions": None,
     "cmd": _ENDPOINTS.cmd, "ctl": _ENDPOINTS.ctl, "pub": _ENDPOINTS.pub, "stream": "", "keys": None,
     "metrics": "", "http": "", "view": False, "queue_s": _CONFIG.queue_s, "state_rate_hz": _CONFIG.state_rate_hz,
     "generate_timeout_s": _CONFIG.generate_timeout_s, "park_timeout_s": _CONFIG.park_timeout_s, "lease_s": _CONFIG.lease_s,

@@ -23,6 +23,7 @@ def run(
     auto_arm: bool = True,
     estop: Literal["cut", "hold"] | None = None,
     idle: Literal["off", "calm", "lively"] | None = None,
+    alive: bool = True,
     gestures: Path | None = None,
     motions: Path | None = None,
     cmd: str | None = None,
@@ -62,6 +63,7 @@ def run(
         auto_arm: the first text arms the robot; --no-auto-arm waits for `mmmd arm`.
         estop: what `mmmd estop` does: cut torque (when it is not given), or brake within the limits and hold; a second one cuts.
         idle: small movements while there is nothing to play.
+        alive: trunk and head go along with generated gestures, by a few degrees; --no-alive plays them as they were generated.
         gestures: folder of your own gestures; your data folder when it is not given.
         motions: folder in which `edit` looks for files; the current one when it is not given.
         cmd: endpoint of requests.
@@ -140,6 +142,7 @@ def _flags(given: dict[str, Any]) -> dict[str, Any]:
     """What was given on the command line; a switch that stands as it is by default was not."""
     flags = {key: value for key, value in given.items() if key not in ("config", "quiet")}
     flags["auto_arm"] = None if given["auto_arm"] else False
+    flags["alive"] = None if given["alive"] else False
     flags["log_json"] = True if given["log_json"] else None
     flags["view"] = True if given["view"] else None
     return flags

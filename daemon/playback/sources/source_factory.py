@@ -35,6 +35,7 @@ from daemon.playback.sources.preview_source import PreviewSource
 from daemon.playback.sources.showing import Showing, Shows, Verdict, at_tempo
 from daemon.playback.sources.story_source import SceneNews, StorySource
 from daemon.playback.sources.stream_source import StreamSource
+from daemon.poses.aliveness import Aliveness
 from daemon.poses.cycles import Marks
 from daemon.poses.key_poses import KeyPose, led_through
 from daemon.poses.motion_source import MotionSource
@@ -81,6 +82,7 @@ class SourceFactory:
     ) -> None:
         self._config, self._generator, self.library = config, generator, library
         self.kept = KeptMotions()
+        self._aliveness = Aliveness(config.alive)
         self._showing = Showing(robot)
         self._robot = robot
         self._make_s = FIRST_MAKE_S
@@ -137,8 +139,10 @@ class SourceFactory:
         """What the generator makes of one request, led through `keys`."""
         generated = await self._asked(entry, ask)
         check_in_scope(entry, generated)
-        motion = generated.motion
-        posture = posture_of(motion)
+        motion, play = generated.motion, entry.request
+        assert isinstance(play, Play), "only motions are generated"
+        goes_round = play.loop or play.hold or play.repeat > 1  # a sway has another period than the strokes
+        posture = posture_of(motion) if goes_round else self._aliveness.posture_of(motion)
         if keys:
             posture = led_through(posture, keys)
             motion = posture.motion(motion)
@@ -161,7 +165,7 @@ class SourceFactory:
         ask = self._generator.draft
         first, whole = await self._asked(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
         check_in_scope(entry, first)
-        draft = posture_of(first.motion)
+        draft = self._aliveness.posture_of(first.motion)
         score, shows = await self._score(
             entry, draft, first.motion, first.scenes, words=words_of(first), draft=whole is not None
         )
@@ -169,7 +173,7 @@ class SourceFactory:
             return prepared_source(first, score, performance_s(draft, request), shows)
 
         def posture(generated: Generated) -> PoseSequence:
-            return varied(posture_of(generated.motion), request)
+            return varied(self._aliveness.posture_of(generated.motion), request)
 
         def keep(done: asyncio.Task[Generated]) -> None:
             if not done.cancelled() and done.exception() is None:
@@ -205,7 +209,7 @@ class SourceFactory:
         return PreparedSource(score, 0.0, understood=understood, silence_s=silence_s)
 
     async def _story(self, entry: Entry, request: Story) -> PreparedSource:
-        score = StorySource(request, self._generator, self._config.generate_timeout_s)
+        score = StorySource(request, self._generator, self._config.generate_timeout_s, self._aliveness)
 
         async def begin(timeout_s: float) -> list[SceneNews]:
             async with asyncio.timeout(timeout_s):

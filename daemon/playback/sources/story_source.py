@@ -17,8 +17,9 @@ import numpy as np
 
 from daemon.generator.client import GeneratorClient
 from daemon.generator.generated import Generated, GeneratorError
+from daemon.poses.aliveness import Aliveness
 from daemon.poses.motion_source import MotionSource
-from daemon.poses.pose_sequence import PoseSequence, at_steps, joined, mirrored, posture_of, scaled, standing
+from daemon.poses.pose_sequence import PoseSequence, at_steps, joined, mirrored, scaled, standing
 from daemon.state.replies import NotPlayableError, generator_failed
 from daemon.wire.events import Progress
 from daemon.wire.requests import Story
@@ -69,8 +70,11 @@ class _Piece:
 class StorySource(MotionSource):
     """A story as the options of `Play` want it."""
 
-    def __init__(self, request: Story, generator: GeneratorClient, timeout_s: float) -> None:
+    def __init__(
+        self, request: Story, generator: GeneratorClient, timeout_s: float, aliveness: Aliveness | None = None
+    ) -> None:
         self._request, self._generator, self._timeout_s = request, generator, timeout_s
+        self._aliveness = aliveness or Aliveness(on=False)
         n_scenes = len(request.scenes)
         self._n_all = None if request.loop else n_scenes * request.repeat
         self._n_asked = self._n_barren = 0
@@ -165,7 +169,7 @@ class StorySource(MotionSource):
         while not self._complete and sum(map(len, self._parts)) < SHORTEST_FRAMES:
             generated = await self._ask()
             if len(generated.motion.joints_m):
-                self._parts.append(self._varied(posture_of(generated.motion)))
+                self._parts.append(self._varied(self._aliveness.posture_of(generated.motion, self._n_asked)))
             self._n_barren = 0 if generated.motion.status != "rejected" else self._n_barren + 1
             if self._n_barren >= len(self._request.scenes):
                 self._complete = True  # a whole round of what cannot be done

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from daemon.poses.aliveness import Aliveness
 from daemon.poses.pose_sequence import (
     at_tempo,
     distance_deg,
@@ -108,3 +109,15 @@ def test_the_standing_person_is_near_the_rest_of_the_robots_and_clear(name):
     robot = load_robot(name)
     path = Retargeter(robot).retarget(standing().at(np.zeros(20, np.intp)).motion())
     assert path.report.interventions == 0
+
+
+def test_a_generated_motion_is_alive_unless_it_is_switched_off() -> None:
+    """The mirror image of a text gives the mirrored poses; without the setting the poses are the motion's."""
+    right = raised_arm("raise your right arm", 2.0, 1.3, "right")
+    left = raised_arm("raise your left arm", 2.0, 1.3, "left")
+    plain, on = Aliveness(on=False).posture_of(right), Aliveness(on=True).posture_of(right)
+    assert np.array_equal(plain.bones, posture_of(right).bones)
+    assert 0.5 < float(distance_deg(plain, on).max()) < 30.0
+    image = mirrored(Aliveness(on=True).posture_of(left))
+    assert float(distance_deg(image, on).max()) < 1e-3
+    assert not np.array_equal(on.bones, Aliveness(on=True).posture_of(right, piece=1).bones), "scenes sway alike"
