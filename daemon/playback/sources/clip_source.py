@@ -16,11 +16,15 @@ LOOP_STRETCH_S = 1.5
 
 
 class ClipSource(MotionSource):
-    """A clip as the options of `Play` want it."""
+    """A clip as the options of `Play` want it.
+
+    Attributes:
+        marks: loop and hold of the clip.
+    """
 
     def __init__(self, posture: PoseSequence, play: Play, marks: Marks | None = None) -> None:
         needed = play.loop or play.hold or play.repeat > 1
-        self._marks = marks or (marks_of(posture) if needed else Marks(None, len(posture) - 1))
+        self.marks = marks or (marks_of(posture) if needed else Marks(None, len(posture) - 1))
         self._posture, self._play = posture, play
         self._rounds_left = -1 if play.loop else play.repeat - 1
         self._begun = False
@@ -34,9 +38,9 @@ class ClipSource(MotionSource):
         self._rounds_left = 0
 
     def _next(self) -> tuple[PoseSequence, bool]:
-        p, loop = self._posture, self._marks.loop
+        p, loop = self._posture, self.marks.loop
         begun, self._begun = self._begun, True
-        end = self._marks.hold + 1 if self._play.hold else len(p)
+        end = self.marks.hold + 1 if self._play.hold else len(p)
         if not self._rounds_left:
             if not begun or loop is None:
                 return (p[:end] if not begun else self._again(end)), True
@@ -60,12 +64,12 @@ class ClipSource(MotionSource):
         return rounds
 
     def _last_rounds(self) -> tuple[PoseSequence, bool]:
-        loop = self._marks.loop
+        loop = self.marks.loop
         assert loop is not None, "asked only of a clip that goes round"
         tail = after_loop(self._posture, loop)
         if self._play.hold:  # held in the loop or on the way out: one more round up to the frame that says most
             a, b = loop
-            hold = self._marks.hold
+            hold = self.marks.hold
             tail = closed(self._posture, loop)[: hold - a + 1] if a <= hold < b else tail[: max(1, hold - b + 1)]
         if not len(tail):
             tail = closed(self._posture, loop)
@@ -74,6 +78,20 @@ class ClipSource(MotionSource):
     def _again(self, end: int) -> PoseSequence:
         p = self._posture
         return faded_in(p[:end], p[len(p) - 1 :], AGAIN_FADE_FRAMES)
+
+
+def in_full(posture: PoseSequence, play: Play, marks: Marks, longest_s: float) -> PoseSequence | None:
+    """All that a clip plays with its repetitions, as `play` wants it; None where that is endless or longer than `longest_s`."""
+    if play.loop or play.repeat * len(posture) > 4 * longest_s * posture.fps:
+        return None
+    source = ClipSource(posture, play, marks)
+    stretches: list[PoseSequence] = []
+    last = False
+    while not last:
+        stretch, last = source.next()
+        stretches.append(stretch)
+    whole = joined(stretches)
+    return whole if len(whole) <= longest_s * posture.fps else None
 
 
 def varied(p: PoseSequence, play: Play) -> PoseSequence:

@@ -23,6 +23,7 @@ class KeptMotion:
         motion: as it was made.
         scenes: parts of `posture` and the words that each was made for.
         plan_id: number of its plan; 0 before it has one.
+        in_full: `posture` with all its repetitions; None where it is played once, has several parts or is too long to be judged.
     """
 
     words: str
@@ -30,6 +31,14 @@ class KeptMotion:
     motion: Motion
     scenes: Sequence[Scene] = ()
     plan_id: int = 0
+    in_full: PoseSequence | None = None
+
+    @property
+    def judged(self) -> tuple[PoseSequence, Sequence[Scene]]:
+        """The poses by which a performance is judged, and their parts."""
+        if self.in_full is None:
+            return self.posture, self.scenes
+        return self.in_full, [replace(self.scenes[0], end_s=len(self.in_full) / self.in_full.fps)]
 
 
 class KeptMotions:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Protocol, TypeVar
@@ -19,7 +20,7 @@ from daemon.errors import ClipError
 from daemon.generator.client import GeneratorClient, no_answer
 from daemon.generator.generated import Generated, GeneratorError
 from daemon.gestures.library import GestureLibrary
-from daemon.playback.sources.clip_source import ClipSource, varied
+from daemon.playback.sources.clip_source import ClipSource, in_full, varied
 from daemon.playback.sources.kept_motions import KeptMotion, KeptMotions
 from daemon.playback.sources.originals import Originals
 from daemon.playback.sources.prepared_source import (
@@ -32,7 +33,7 @@ from daemon.playback.sources.prepared_source import (
     words_of,
 )
 from daemon.playback.sources.preview_source import PreviewSource
-from daemon.playback.sources.showing import Showing, Shows, Verdict, at_tempo
+from daemon.playback.sources.showing import LONGEST_S, Showing, Shows, Verdict, at_tempo
 from daemon.playback.sources.story_source import SceneNews, StorySource
 from daemon.playback.sources.stream_source import StreamSource
 from daemon.poses.aliveness import Aliveness
@@ -158,7 +159,7 @@ class SourceFactory:
             fps: how many of them a second.
         """
         kept = self.kept.of_command(entry.id)
-        return Verdict() if kept is None else self._showing.verdict(kept.posture, kept.scenes, q_rad, fps)
+        return Verdict() if kept is None else self._showing.verdict(*kept.judged, q_rad, fps)
 
     async def _drafted(self, entry: Entry, request: Say) -> PreparedSource:
         """What can be played at once of a text, while the generator goes on with it."""
@@ -286,8 +287,14 @@ class SourceFactory:
         said = mirror_words(said) if play.mirror else said
         as_played = varied(posture, play)
         parts = at_tempo(scenes_or_whole(scenes, motion, words or play.words), play.tempo)
-        self.kept.add(entry.id, KeptMotion(said, as_played, motion, parts))
-        shows = partial(self._showing.of, as_played, parts, draft=draft)
-        if play.loop or play.hold or play.repeat > 1:  # looking for the loop takes a while
-            return await asyncio.to_thread(ClipSource, posture, play, marks), shows
-        return ClipSource(posture, play, marks), shows
+        kept = KeptMotion(said, as_played, motion, parts)
+        if not (play.loop or play.hold or play.repeat > 1):
+            self.kept.add(entry.id, kept)
+            return ClipSource(posture, play, marks), partial(self._showing.of, as_played, parts, draft=draft)
+        score = await asyncio.to_thread(ClipSource, posture, play, marks)  # looking for the loop takes a while
+        if play.repeat > 1 and len(parts) == 1:
+            whole = await asyncio.to_thread(in_full, posture, play, score.marks, LONGEST_S)
+            kept = replace(kept, in_full=whole)
+        self.kept.add(entry.id, kept)
+        uncounted = draft or (play.repeat > 1 and kept.in_full is None)
+        return score, partial(self._showing.of, *kept.judged, draft=uncounted)

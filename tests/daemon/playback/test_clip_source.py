@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from daemon.playback.sources.clip_source import ClipSource
+from daemon.playback.sources.clip_source import ClipSource, in_full
 from daemon.poses.cycles import Marks, after_loop, closed, find_hold, find_loop, marks_of
 from daemon.poses.idle import STYLES, IdleSource, looking
 from daemon.poses.pose_sequence import PoseSequence, distance_deg, joined, posture_of, standing
 from daemon.wire.requests import Say
 from mmm_core.motion.motion import FPS
+from mmm_core.motion.posture_features import posture_features
+from mmm_core.recognition.seen import seen
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import load_robot
 from tests.support.kinematic import DOWN, motion_of, raised_arm
@@ -100,6 +102,30 @@ def test_repeats_are_counted(repeat):
     n = sum(map(len, stretches))
     assert n == len(WAVE) + (repeat - 1) * (loop[1] - loop[0])
     assert steps_deg(joined(stretches)).max() <= steps_deg(WAVE).max() * 1.3 + 1.0
+
+
+@pytest.mark.parametrize("repeat", [2, 3])
+def test_what_is_told_counts_the_strokes_of_all_rounds(repeat):
+    """`say wave --repeat 3` told the strokes of the first round alone."""
+    play = Say(text="wave", repeat=repeat)
+    whole = in_full(WAVE, play, marks_of(WAVE), 60.0)
+    stretches, _ = played(ClipSource(WAVE, play))
+    assert whole is not None and len(whole) == sum(map(len, stretches))
+    once, all_rounds = (seen(posture_features_of(p), "wave")[0].count for p in (WAVE, whole))
+    loop = find_loop(WAVE)
+    n_in_a_round = round((loop[1] - loop[0]) / (0.8 * FPS))
+    assert once and all_rounds == once + (repeat - 1) * n_in_a_round
+
+
+def test_what_is_longer_than_one_looks_at_is_not_counted():
+    marks = marks_of(WAVE)
+    assert in_full(WAVE, Say(text="wave", repeat=1000), marks, 15.0) is None
+    assert in_full(WAVE, Say(text="wave", loop=True), marks, 15.0) is None
+
+
+def posture_features_of(p: PoseSequence):
+    motion = p.motion()
+    return posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
 
 
 def test_a_motion_without_loop_is_done_again_as_a_whole():
