@@ -77,8 +77,10 @@ class RunningDaemon:
             self.endpoints.stream,
             *options,
         ]
+        # A daemon draws nothing, and MuJoCo would load GLFW in two of its processes.
+        environment = {**os.environ, "MUJOCO_GL": "disable"}
         with self.output.open("wb") as out:
-            self.process = subprocess.Popen(command, stdout=out, stderr=out)
+            self.process = subprocess.Popen(command, stdout=out, stderr=out, env=environment)
 
     @property
     def at(self) -> list[str]:
