@@ -11,9 +11,12 @@ from daemon.dynamixel.codec.packet import BROADCAST_ID, Packet
 from daemon.dynamixel.events import BusEventKind
 from daemon.dynamixel.feedback import FastSyncStep, Protocol1Step, Step, is_status, steps_for
 from daemon.dynamixel.health_probe import HealthProbe
-from daemon.dynamixel.reading import NEVER_CYCLES
 from daemon.dynamixel.register_access import RegisterAccess
 from daemon.dynamixel.servo_link import ServoLink
+
+TWICE_CYCLES = 3
+"""Cycles in a row in which a servo answers twice before two servos are taken to have its id. A second answer now and then is that
+of an earlier cycle, come late; two servos both answer every time."""
 
 
 class FeedbackCycle:
@@ -33,6 +36,8 @@ class FeedbackCycle:
         self.steps: list[Step] = []
         self._begun: tuple[float, int] | None = None
         self._raw = bytearray()
+        self._twice = np.zeros(len(link.ids), np.bool_)
+        self._cycles_twice = np.zeros(len(link.ids), np.int64)
         self.build_steps()
 
     def begin(self, goal_ticks: NDArray[np.int32] | None) -> None:
@@ -135,17 +140,26 @@ class FeedbackCycle:
         elif row is None or row not in step.rows:
             text = f"an answer of servo {answer.servo_id}, which was not asked; another controller, or a servo too many"
             self._link.events.add(BusEventKind.FOREIGN_PACKET, now_s, text)
-        elif valid[row] and 0 < self._link.reading.age_cycles[row] < NEVER_CYCLES:
-            step.store(row, answer, self._link.reading)  # the first was the last cycle's, come late
-            self._link.health.came_late(row)
         elif valid[row]:
-            text = f"servo {answer.servo_id} answered twice: two servos have this id; change one (mmmd servo id)"
-            self._link.events.add(BusEventKind.DUPLICATE_ID, now_s, text, answer.servo_id)
+            step.store(row, answer, self._link.reading)  # the first was an earlier cycle's, come late
+            self._link.health.came_late(row)
+            self._twice[row] = True
         elif step.store(row, answer, self._link.reading):
             valid[row] = True
 
+    def _name_duplicates(self) -> None:
+        """Tell of servos that have answered twice in each of the last cycles."""
+        self._cycles_twice = np.where(self._twice, self._cycles_twice + 1, 0)
+        self._twice[:] = False
+        for row in np.flatnonzero(self._cycles_twice == TWICE_CYCLES):
+            servo_id = self._link.ids[row]
+            text = f"servo {servo_id} answers twice: two servos have this id; change one (mmmd servo id)"
+            self._link.events.add(BusEventKind.DUPLICATE_ID, self._link.clock.now_s(), text, servo_id)
+
     def _judge(self, valid: NDArray[np.bool_]) -> None:
-        """Ages, health, quarantine."""
+        """Ages, health, quarantine, servos with one id."""
+        if self._twice.any() or self._cycles_twice.any():
+            self._name_duplicates()
         link, reading = self._link, self._link.reading
         health, now_s = link.health, link.clock.now_s()
         broke_at, self._broke_at = self._broke_at, None

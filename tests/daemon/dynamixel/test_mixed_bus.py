@@ -9,6 +9,7 @@ import pytest
 
 from daemon.dynamixel.codec.packet import Instruction, Part, fast_status, ping, status, sync_read
 from daemon.dynamixel.events import BusEventKind
+from daemon.dynamixel.feedback_cycle import TWICE_CYCLES
 from daemon.dynamixel.health import Health
 from daemon.dynamixel.registers.models import MODELS
 from daemon.dynamixel.servo_bus import ServoBus
@@ -237,7 +238,11 @@ def test_a_foreign_packet_is_named_and_costs_nobody_his_answer(stranger: bytes, 
 def test_two_servos_with_one_id_are_named() -> None:
     bus, far, _ = bus_of(*("2XL430-W250",) * 4)
     far.servos[2].doubled = True
-    bus.exchange(None)
+    for _ in range(TWICE_CYCLES - 1):
+        bus.exchange(None)
+    assert BusEventKind.DUPLICATE_ID not in kinds(bus)
+    for _ in range(4):
+        bus.exchange(None)
     (event,) = [e for e in bus.chains[0].link.events.take() if e.kind is BusEventKind.DUPLICATE_ID]
     assert event.servo_id == 2 and "mmmd servo" in event.text
 
@@ -253,6 +258,17 @@ def test_an_answer_of_the_last_cycle_that_comes_during_this_one_is_late_not_a_se
     reading = bus.exchange(None)
     assert reading.valid.all() and reading.position_tick[1] == 1002, "the newer one counts"
     assert BusEventKind.DUPLICATE_ID not in kinds(bus) and bus.chains[0].link.health.counters.late[1] == 1
+
+
+def test_an_answer_that_took_the_place_of_a_later_one_is_late_not_a_second_servo() -> None:
+    """The late answer of one cycle was taken for the next one's, whose own came in the cycle after that, beside a third."""
+    bus, far, _ = bus_of(*("2XL430-W250",) * 3)
+    for n_late in (0, 1, 1, 0, 1):
+        put(far)
+        far.before = n_late * status(2, 0, bytes(10))
+        reading = bus.exchange(None)
+        assert reading.valid.all() and reading.position_tick[1] == 1002, "the newer one counts"
+    assert BusEventKind.DUPLICATE_ID not in kinds(bus) and bus.chains[0].link.health.counters.late[1] == 3
 
 
 def test_noise_before_the_answers_costs_nothing_but_time() -> None:
