@@ -6,7 +6,8 @@ human -> waist -> neck -> arms -> unseen joints rest -> limits -> self-contact -
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +17,9 @@ from retarget.human.arm_chain import ArmChain
 from retarget.human.hand_contacts import Hands, HumanContacts, read_contacts
 from retarget.human.human import HumanMotion, HumanPose, read_human
 from retarget.human.poser import ArmsFollow, Poser, Poses
-from retarget.path.avoidance import STRENGTHS, Avoidance, stretches
-from retarget.path.collision import Allowed, SelfContact
-from retarget.path.control_points import braking, controls_near, held, hits_of_frames, joined
-from retarget.path.limit_path import Objective
+from retarget.path.avoidance import Avoidance
+from retarget.path.blocks import BlockPlanner
+from retarget.path.collision import SelfContact
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointPath, JointState
 from retarget.path.report import BONES, Comparison
@@ -27,12 +27,6 @@ from retarget.robot.kinematics import Kinematics
 from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
-_SETTLE_FRAMES = 16
-"""Time given to reach the last pose; what then still moves, brakes."""
-_AWAY_FRAMES = 8
-"""Time given to leave a pose within a margin where the way to the motion from there touches."""
-_STILL_RAD = 5e-4
-"""Less in a frame is the end of settling: a third of a tick of 4,096."""
 _MOST_FPS = 1000
 BLOCK_FRAMES, _AHEAD_FRAMES = 24, 8
 """A long motion is made into a path in blocks of so many frames, each with 0.4 s after it in view."""
@@ -40,6 +34,25 @@ _STRETCHES = (1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 """How many times slower is tried, one after another, to keep an error asked for."""
 _WORTH = 0.97
 """Going slower counts as of use when it leaves at most this share of the error."""
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """What a motion wants of a robot.
+
+    Attributes:
+        poses: its poses, and the directions of the person's bones.
+        aims: the same poses, with the bones' own directions where hands are drawn to what they touch.
+        contacts: what its hands touch.
+    """
+
+    poses: Poses
+    aims: Poses
+    contacts: HumanContacts
+
+    def stretched(self, times: float) -> _Wanted:
+        """The same, so many times slower."""
+        return replace(self, poses=self.poses.stretched(times), aims=self.aims.stretched(times))
 
 
 class Retargeter:
@@ -75,6 +88,8 @@ class Retargeter:
         self.contact = contact or SelfContact(robot)
         self._hands = Hands(self.kinematics, self.contact, self.limits) if keep_contacts else None
         self._avoidance = Avoidance(robot, self.contact, self.limits, self._poser.stiffness)
+        in_arms = [int(j) for arm in self.arms for j in arm.joints]
+        self._planner = BlockPlanner(self.contact, self.limits, self._avoidance, self._poser.objective, in_arms)
 
     def retarget(
         self,
@@ -96,12 +111,12 @@ class Retargeter:
         Raises:
             MotionError: the motion is empty or has bones that no human has.
         """
-        poses, contacts = self._wanted(motion, start)
-        path = self._path(poses, contacts, motion.fps, start, settle, 1.0)
+        wanted = self._wanted(motion, start)
+        path = self._path(wanted, motion.fps, start, settle, 1.0)
         for stretch in _STRETCHES:
             if most_error_deg is None or path.report.direction_mean_deg <= most_error_deg:
                 break
-            slower = self._path(poses.stretched(stretch), contacts, motion.fps, start, settle, stretch)
+            slower = self._path(wanted.stretched(stretch), motion.fps, start, settle, stretch)
             if slower.report.direction_mean_deg > _WORTH * path.report.direction_mean_deg:
                 break
             path = slower
@@ -118,29 +133,33 @@ class Retargeter:
         Raises:
             MotionError: as in `retarget`.
         """
-        (poses, _), first = self._wanted(motion, start), 0
-        for block, n, changes in self._blocks(poses.q_rad, self._begin(poses.q_rad, start), 1.0 / motion.fps, settle):
+        wanted, first = self._wanted(motion, start), 0
+        poses, begin = wanted.poses, self._begin(wanted.poses.q_rad, start)
+        for block, n, changes in self._blocks(wanted.aims, begin, 1.0 / motion.fps, settle):
             part = poses.part(slice(first, first + n))
             yield self._joint_path(block, part, HumanContacts({}), motion.fps, changes, 1.0), n
             first += n
 
-    def _wanted(self, motion: HumanMotion, start: JointState | None) -> tuple[Poses, HumanContacts]:
-        """The poses that a motion wants, and what its hands touch."""
+    def _wanted(self, motion: HumanMotion, start: JointState | None) -> _Wanted:
         if not 1 <= motion.fps <= _MOST_FPS:
             raise MotionError("fps", str(motion.fps), f"1 to {_MOST_FPS} frames per second")
         poses = self.poses(read_human(motion), start)
         contacts = read_contacts(motion) if self._hands else HumanContacts({})
-        if self._hands and contacts.any:
-            poses = replace(poses, q_rad=self._hands.keep(poses.q_rad, contacts))
-        return poses, contacts
+        if self._hands is None or not contacts.any:
+            return _Wanted(poses, poses, contacts)
+        drawn = replace(poses, q_rad=self._hands.keep(poses.q_rad, contacts))
+        moved = (drawn.q_rad != poses.q_rad).any(1)[:, None]
+        own = self._poser.directions(drawn.q_rad)
+        upper, fore = (np.where(moved, d, of) for d, of in zip(own, (poses.upper, poses.fore), strict=True))
+        return _Wanted(drawn, replace(drawn, upper=upper, fore=fore), contacts)
 
-    def _path(
-        self, poses: Poses, contacts: HumanContacts, fps: float, start: JointState | None, settle: bool, stretch: float
-    ) -> JointPath:
+    def _path(self, wanted: _Wanted, fps: float, start: JointState | None, settle: bool, stretch: float) -> JointPath:
         """The path of poses that keeps every limit and touches nothing."""
-        blocks = list(self._blocks(poses.q_rad, self._begin(poses.q_rad, start), 1.0 / fps, settle))
+        blocks = list(self._blocks(wanted.aims, self._begin(wanted.poses.q_rad, start), 1.0 / fps, settle))
         path = np.concatenate([block if i == 0 else block[2:] for i, (block, _, _) in enumerate(blocks)])
-        return self._joint_path(path, poses, contacts, fps, sum(changes for _, _, changes in blocks), stretch)
+        return self._joint_path(
+            path, wanted.poses, wanted.contacts, fps, sum(changes for _, _, changes in blocks), stretch
+        )
 
     def _joint_path(
         self, path: Array, poses: Poses, contacts: HumanContacts, fps: float, interventions: int, stretch: float
@@ -149,48 +168,24 @@ class Retargeter:
         comparison = self._compare(poses, contacts, path, fps, interventions, stretch)
         return JointPath(path, self.robot.joint_names, fps, comparison, ends)
 
-    def _blocks(self, posed: Array, begin: JointState, period: float, settle: bool) -> Iterator[tuple[Array, int, int]]:
-        """Control points for poses (T, J), block by block, how many frames each is, and times it was changed.
+    def _blocks(self, poses: Poses, begin: JointState, period: float, settle: bool) -> Iterator[tuple[Array, int, int]]:
+        """Control points for poses, block by block, how many frames each is, and times it was changed.
 
         The first two of a block are the last two of the one before.
         """
-        T, first = len(posed), 0
+        posed, T, first = poses.q_rad, len(poses.q_rad), 0
         while first < T:
             # A block is solved with some frames after it in view; a rest that is hardly longer is part of it.
             is_last = first + BLOCK_FRAMES + _AHEAD_FRAMES >= T
             last = T if is_last else first + BLOCK_FRAMES + _AHEAD_FRAMES
             keep = last - first if is_last else BLOCK_FRAMES
             view = posed[max(first - 1, 0) : last]
-            block, changes = self._block(view, begin, period, keep, settle and is_last, first > 0)
+            shown = partial(self._poser.shown, poses.part(slice(first, last)))
+            block, changes = self._planner.plan(view, shown, begin, period, keep, settle and is_last, first > 0)
             block = block if is_last else block[: keep + 2]
             yield block, keep, changes
             begin = JointState((block[-2] + block[-1]) / 2, (block[-1] - block[-2]) / period)
             first += keep
-
-    def _block(
-        self, posed: Array, begin: JointState, period: float, keep: int, settle: bool, continued: bool
-    ) -> tuple[Array, int]:
-        """Control points for poses (T, J), safe to cut off and brake after `keep` frames; times they were changed.
-
-        When `continued`, the first pose is the one before the block.
-        """
-        before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
-        eased, interventions = self._avoidance.push_out(posed, begin.position_rad)
-        allowed = self.contact.allowed_from(begin.position_rad)
-        path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
-        for strength in STRENGTHS:
-            if not hit.any():
-                break
-            interventions += stretches(hit)
-            eased = self._avoidance.push(eased, path, hits_of_frames(hit, len(path)), strength)
-            path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
-        if hit.any() and allowed is not None:  # it begins too near itself to turn to the motion: away from there first
-            eased = eased.copy()
-            eased[:_AWAY_FRAMES] = self._avoidance.push_out(begin.position_rad[None], begin.position_rad)[0]
-            path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
-        if hit.any():
-            path = self._stop_before_contact(path, hit, period, allowed)
-        return path, interventions
 
     def poses(self, human: HumanPose, start: JointState | None = None) -> Poses:
         """The poses for each frame within the position limits, before limits in time and contacts."""
@@ -231,61 +226,6 @@ class Retargeter:
             return start
         first, _ = self._avoidance.push_out(wanted[:1], self.robot.rest_rad)
         return JointState(first[0], np.zeros(self.robot.n_joints))
-
-    def _stop_before_contact(
-        self, path: Array, hit: NDArray[np.bool_], period: float, allowed: Allowed | None
-    ) -> Array:
-        """The path up to where it can brake before it first touches, then held; the last resort."""
-        first = int(hit.argmax())
-        back = 1
-        while True:
-            kept = max(2, min(first + 2 - back, len(path)))
-            stopped = held(path[:kept], period, len(path), self.limits)
-            if kept == 2 or not self.contact.along(stopped, allowed).any():
-                return stopped
-            back *= 2
-
-    def _limited(
-        self,
-        eased: Array,
-        posed: Array,
-        pose_before: Array,
-        start: JointState,
-        period: float,
-        keep: int,
-        settle: bool,
-        allowed: Allowed | None,
-    ) -> tuple[Array, NDArray[np.bool_]]:
-        """Control points of a path near `eased` (T, J) that keeps every limit, and which segments touch.
-
-        What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
-        touches when the path brakes after `keep` frames or at its end counts too.
-        """
-        wanted, shown, led = controls_near(eased, pose_before), eased, eased - posed
-        half = start.velocity_rad_s * (period / 2)
-        before, position = start.position_rad - half, start.position_rad + half
-        if settle:
-            every = (wanted, shown, led)
-            wanted, shown, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in every)
-
-        def objective_from(k: int) -> Objective:
-            return self._poser.objective(shown[k:], led[k:])
-
-        points = np.concatenate([[before], joined(wanted, before, position, period, self.limits, objective_from)])
-        if settle:
-            n = len(points)
-            moves = np.abs(np.diff(points[n - _SETTLE_FRAMES - 1 :], axis=0)).max(1) > _STILL_RAD
-            still = np.flatnonzero(~moves)
-            last = n - _SETTLE_FRAMES + (int(still[0]) if len(still) else len(moves))  # where it first stands
-            points = held(points[:last], period, last + 1, self.limits)
-            return points, self.contact.along(points, allowed)
-        hit = self.contact.along(np.concatenate([points, braking(points, period, self.limits)]), allowed)
-        if keep < len(eased):
-            cut = points[: keep + 2]
-            hit[keep - 1] |= self.contact.along(
-                np.concatenate([cut[-2:], braking(cut, period, self.limits)]), allowed
-            ).any()
-        return points, hit
 
     def _compare(
         self, poses: Poses, contacts: HumanContacts, path: Array, rate_hz: float, interventions: int, stretch: float

@@ -55,7 +55,7 @@ class Avoidance:
             clear[some], free = self._pushed_out(clear[some], _AIM_M)
             lost = some[~free]
             if len(lost):  # too deep to see the way out: come from between the clear poses before and after
-                clear[lost] = self._come_near(wanted_rad[lost], _between(clear, lost, before_rad))
+                clear[lost] = self._from_between(wanted_rad[lost], _between(clear, lost, before_rad))
         return clear, stretches(touching)
 
     def push(self, eased_rad: Array, path_rad: Array, hit: NDArray[np.bool_], strength: float) -> Array:
@@ -83,6 +83,16 @@ class Avoidance:
         changed = eased_rad + spread
         changed = changed + strength * near * (self._rest_rad - changed)
         return np.clip(changed, self._low, self._high)
+
+    def _from_between(self, wanted_rad: Array, between_rad: Array) -> Array:
+        """Poses (n, J) near the wanted ones: head and waist from between clear poses, where that is enough, else all joints.
+
+        A head turned against a shoulder would otherwise hold both arms up, which have no part in it.
+        """
+        q, free = self._pushed_out(np.where(self._mobility > 0, wanted_rad, between_rad), _AIM_M)
+        if not free.all():
+            q[~free] = self._come_near(wanted_rad[~free], between_rad[~free])
+        return q
 
     def _come_near(self, wanted_rad: Array, from_rad: Array) -> Array:
         """Poses (n, J) as near the wanted ones as steps from others lead, pushed out of contact after each step."""

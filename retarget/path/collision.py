@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.path.continuous_bounds import Known, Spans
-from retarget.path.distances import MARGIN_M, MEASURED_M, Array, Indices, PairDistances
+from retarget.path.distances import MARGIN_M, MEASURED_M, Array, Indices, PairDistances, Placed
 from retarget.robot.description import mujoco
 from retarget.robot.kinematics import cross
 from retarget.robot.robot import RobotModel
@@ -76,21 +76,43 @@ class SelfContact(PairDistances):
         distance, s, t = self._distances(q_rad, placed, of)
         beyond = distance - self._margin_m[of]
         rows, worst = np.arange(len(q_rad)), beyond.argmin(1)
-        pair = of[worst]
+        return beyond.min(1), self._ways(q_rad, placed, rows, of[worst], beyond[rows, worst], (s, t), worst)
+
+    def near(self, q_rad: Array, within_m: float) -> tuple[Indices, Array, Array]:
+        """Pairs with less than `within_m` beyond their margin in poses (T, J).
+
+        Returns:
+            Of each the pose (R,), what lies beyond the margin (R,), and how that grows with each joint (R, J).
+        """
+        placed = self._placed(q_rad, with_joints=True)
+        distance, s, t = self._distances(q_rad, placed, self._every)
+        beyond = distance - self._margin_m
+        rows, pair = np.nonzero(beyond < within_m)
+        return rows, beyond[rows, pair], self._ways(q_rad, placed, rows, pair, beyond[rows, pair], (s, t), pair)
+
+    def _ways(
+        self, q_rad: Array, placed: Placed, rows: Indices, pair: Indices, beyond_m: Array,
+        along: tuple[Array, Array], column: Indices,
+    ) -> Array:  # fmt: skip
+        """(R, J) how the distances of R pairs, each in the pose of its row, grow with each joint.
+
+        `along` is where on each axis they are taken, (T, n), with R columns of them.
+        """
+        s, t = (x[rows, column, None] for x in along)
         a, b = self._pairs[pair].T
-        point1 = placed.centre[rows, a] + s[rows, worst, None] * placed.axis[rows, a]
-        point2 = placed.centre[rows, b] + t[rows, worst, None] * placed.axis[rows, b]
+        point1 = placed.centre[rows, a] + s * placed.axis[rows, a]
+        point2 = placed.centre[rows, b] + t * placed.axis[rows, b]
         apart = point2 - point1  # of segments, which have a direction even where capsules overlap
-        for i in np.flatnonzero(~self._exact[pair] & (beyond[rows, worst] < MEASURED_M)):
-            self._place(q_rad[i])
+        for i in np.flatnonzero(~self._exact[pair] & (beyond_m < MEASURED_M)):
+            self._place(q_rad[rows[i]])
             overlap = self._measured(int(pair[i])) < 0
             point1[i], point2[i] = self._points[:3], self._points[3:]
             apart[i] = (point1[i] - point2[i]) if overlap else (point2[i] - point1[i])
         normal = apart / np.maximum(np.linalg.norm(apart, axis=1, keepdims=True), 1e-9)
-        lever = ((point1 + point2) / 2)[:, None] - placed.anchor
-        turned = np.einsum("tji,ti->tj", cross(placed.joint_axis, lever), normal)
+        lever = ((point1 + point2) / 2)[:, None] - placed.anchor[rows]
+        turned = np.einsum("tji,ti->tj", cross(placed.joint_axis[rows], lever), normal)
         body = self._model.geom_bodyid
-        return beyond.min(1), turned * (self._above[body[b]] - self._above[body[a]])
+        return turned * (self._above[body[b]] - self._above[body[a]])
 
     def pairs_between(self, some: Indices, others: Indices) -> Indices:
         """Which pairs have one shape of `some` and one of `others`."""

@@ -29,7 +29,7 @@ _CAPSULE_TYPES = (2, 3)  # mjGEOM_SPHERE, mjGEOM_CAPSULE
 
 
 @dataclass(frozen=True)
-class _Placed:
+class Placed:
     """Shapes, (T, geoms, 3) centres and axes of their capsules, (T, geoms, 9) rotations, in T poses.
 
     Where asked for also joints, (T, J, 3) axes and anchors.
@@ -65,7 +65,7 @@ class PairDistances:
         """(T, P) distance of each pair in each pose (T, J): exact where small, else not more than the true one."""
         return self._distances(q_rad, self._placed(q_rad, with_joints=False), self._every)[0]
 
-    def _distances(self, q_rad: Array, placed: _Placed, of: Indices) -> tuple[Array, Array, Array]:
+    def _distances(self, q_rad: Array, placed: Placed, of: Indices) -> tuple[Array, Array, Array]:
         """Distances (T, n) of n pairs, and for capsules where along each axis they are taken."""
         # All inner products of centres and axes by one multiplication, then those of each pair.
         vectors = np.concatenate([placed.centre, placed.axis], 1)
@@ -79,7 +79,7 @@ class PairDistances:
             self._measure(q_rad, placed, of, distance)
         return distance, s, t
 
-    def _measure(self, q_rad: Array, placed: _Placed, of: Indices, distance: Array) -> None:
+    def _measure(self, q_rad: Array, placed: Placed, of: Indices, distance: Array) -> None:
         """Make distances (T, n) of pairs that are no capsules exact where they are small."""
         small_m = self._margin_m[of] + MEASURED_M
         t, p = np.nonzero((distance < small_m) & ~self._exact[of])
@@ -101,7 +101,7 @@ class PairDistances:
                 at = i
             distance[i, k] = self._measured(g)
 
-    def _bound_boxes(self, placed: _Placed, t: Indices, p: Indices, pair: Indices, distance: Array) -> None:
+    def _bound_boxes(self, placed: Placed, t: Indices, p: Indices, pair: Indices, distance: Array) -> None:
         """Write nearer bounds of the distances of boxes to boxes, `pair` (n,) in poses `t`, into `distance` at (t, p)."""
         a, b = self._pairs[pair].T
         turn_a, turn_b = (placed.turn[t, g].reshape(-1, 3, 3) for g in (a, b))
@@ -110,7 +110,7 @@ class PairDistances:
         distance[t, p] = np.where(apart > 0, np.maximum(distance[t, p], apart), distance[t, p])
 
     def _beside_boxes(
-        self, placed: _Placed, t: Indices, p: Indices, pair: Indices, distance: Array
+        self, placed: Placed, t: Indices, p: Indices, pair: Indices, distance: Array
     ) -> NDArray[np.bool_]:
         """Write distances of capsules to boxes, as `_bound_boxes`; (n,) whether MuJoCo still knows better.
 
@@ -124,7 +124,7 @@ class PairDistances:
         distance[t, p] = np.maximum(distance[t, p], apart - self._radius_m[other])
         return ~self._exact_geom[other] | (apart <= 0)
 
-    def _placed(self, q_rad: Array, *, with_joints: bool) -> _Placed:
+    def _placed(self, q_rad: Array, *, with_joints: bool) -> Placed:
         """Capsules, and joints where asked for, in poses (T, J)."""
         model, data = self._model, self._data
         T = len(q_rad)
@@ -140,7 +140,7 @@ class PairDistances:
             if with_joints:
                 axis[i], anchor[i] = xaxis, xanchor
         ids = self._joint_ids
-        return _Placed(place, turn[:, self._axis_rows, self._axis_columns], turn, axis[:, ids], anchor[:, ids])
+        return Placed(place, turn[:, self._axis_rows, self._axis_columns], turn, axis[:, ids], anchor[:, ids])
 
     def _place(self, q_rad: Array) -> None:
         self._data.qpos[self._address] = q_rad

@@ -82,8 +82,8 @@ def limit_path(
     """
     T, J = reference_rad.shape
     path = np.minimum(np.maximum(reference_rad, limits.position_min_rad), limits.position_max_rad)
-    kept = _kept(path, position_rad, velocity_rad_s, limits, period_s)
-    if kept.all():
+    follows = kept(path, position_rad, velocity_rad_s, limits, period_s)
+    if follows.all():
         return path
     objective = (
         make_objective()
@@ -95,10 +95,10 @@ def limit_path(
         n = min(_WINDOW_FRAMES, T - k)
         part = path[k : k + n + _AHEAD_FRAMES]
         if k or len(part) < T:
-            kept = _kept(part, position, velocity, limits, period_s)
-        if not kept.all():
+            follows = kept(part, position, velocity, limits, period_s)
+        if not follows.all():
             near = reference_rad[k : k + n + _AHEAD_FRAMES]
-            _solve(objective, k, near, kept, part, position, velocity, limits, period_s)
+            _solve(objective, k, near, follows, part, position, velocity, limits, period_s)
             np.clip(part[:n], limits.position_min_rad, limits.position_max_rad, out=part[:n])
             part[:n] = _follow(part[:n], position, velocity, limits, period_s)
         before = path[k + n - 2] if n > 1 else position
@@ -154,7 +154,7 @@ def _held(x: Array, n: int) -> Array:
     return np.concatenate([x, np.repeat(x[:, -1:], n, 1)], 1)
 
 
-def _kept(path: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> NDArray[np.bool_]:
+def kept(path: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> NDArray[np.bool_]:
     """(J,) whether each joint may follow `path` (T, J) from a state as it is."""
     before = np.concatenate([position[None], path])
     speed = (path - before[:-1]) / period_s
@@ -164,7 +164,7 @@ def _kept(path: Array, position: Array, velocity: Array, limits: JointLimits, pe
 
 def _follow(reference: Array, position: Array, velocity: Array, limits: JointLimits, period_s: float) -> Array:
     """Causal following of `reference`, each step knowing the velocity of the reference after it."""
-    if _kept(reference, position, velocity, limits, period_s).all():
+    if kept(reference, position, velocity, limits, period_s).all():
         return reference
     ahead = np.diff(reference, axis=0, append=2 * reference[-1:] - reference[-2:-1]) / period_s
     path = np.empty_like(reference)

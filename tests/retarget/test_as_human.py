@@ -39,7 +39,10 @@ def test_arms_of_the_path_point_where_the_robots_arms_point(robot: str) -> None:
 
 
 def test_reading_it_again_gives_the_path_again() -> None:
-    """Retargeting what a path shows gives directions that differ little from the path's own."""
+    """Retargeting what a path shows gives directions that differ little from the path's own.
+
+    But for few frames: a path may end on a joint's limit, where rounding makes the way that it came by one beyond the limit.
+    """
     retargeter = Retargeter(load_robot("reference"))
     path = retargeter.retarget(random_motion(3, 60, "smooth"))
     joints, head = joints_of_path(retargeter.kinematics, path.q_rad)
@@ -53,7 +56,9 @@ def test_reading_it_again_gives_the_path_again() -> None:
     for a, b in ((16, 18), (18, 20), (17, 19), (19, 21)):
         first, second = joints[:, b] - joints[:, a], joints_again[:, b] - joints_again[:, a]
         cosine = (first * second).sum(-1) / np.linalg.norm(first, axis=-1) / np.linalg.norm(second, axis=-1)
-        assert np.rad2deg(np.arccos(np.clip(cosine, -1, 1))).mean() < 2.0
+        apart_deg = np.rad2deg(np.arccos(np.clip(cosine, -1, 1)))
+        assert np.percentile(apart_deg, 90) < 1.0
+        assert apart_deg.mean() < 3.0
     trunk = trunk_joints(retargeter)
     np.testing.assert_allclose(np.rad2deg(again[:, trunk]), np.rad2deg(path.q_rad[:, trunk]), atol=0.5)
 

@@ -1,0 +1,252 @@
+"""The best change of all arms' control points at once, where distances couple the joints.
+
+A quadratic program in a change d (N, n) of N control points of n joints: the linearised costs of the frames half way between
+control points, little movement and bend, under boxes on positions, first and second differences, and with soft rows that keep
+distances. A primal-dual interior-point method solves it (Mehrotra's predictor and corrector; Nocedal, Wright 2006, algorithm
+16.4); each step factorises one banded matrix, since no row couples points more than two apart.
+"""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_lapack: Any = importlib.import_module("scipy.linalg.lapack")  # has no types
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+_MOST_STEPS = 25
+_GAP, _RESIDUAL = 3e-6, 1e-7
+"""Mean complementarity, and what a row may be passed by, at which a solution counts as found."""
+_START = 1e-2
+"""Slacks and multipliers begin at this or more."""
+_TO_BORDER = 0.99
+"""Share of the way to the nearest bound that a step goes."""
+
+
+@dataclass(frozen=True)
+class Frames:
+    """What a change of frames, half way between control points, costs: e' H e / 2 - f' e.
+
+    Attributes:
+        hessian: (N, n, n) H.
+        fall: (N, n) f, how fast the cost falls with each joint.
+    """
+
+    hessian: Array
+    fall: Array
+
+
+@dataclass(frozen=True)
+class Rooms:
+    """Distances that are to be kept: a pair has room to come nearer by `room_m`, and more as joints change.
+
+    Attributes:
+        point: (R,) index of a control point, in rising order.
+        share: (R, 2) how far a pose goes along with the point before and with this one: 1/2, 1/2 in a frame.
+        grows: (R, n) metres that the room grows by per radian of each joint.
+        room_m: (R,) metres.
+        stiffness: weight of half the squared metres that are lacking.
+    """
+
+    point: Indices
+    share: Array
+    grows: Array
+    room_m: Array
+    stiffness: float
+
+
+@dataclass(frozen=True)
+class Steady:
+    """Weights of squared first and second differences."""
+
+    step: float
+    bend: float
+
+
+class ArmProgram:
+    """The program of control points after two known ones.
+
+    Args:
+        upper: (3, N, n) upper bounds of positions, first and second differences.
+        lower: (3, N, n) lower bounds.
+        before: (2, n) the two control points before the first.
+    """
+
+    def __init__(self, upper: Array, lower: Array, before: Array) -> None:
+        self._upper, self._lower, self._before = upper, lower, before
+
+    def change(self, points: Array, frames: Frames, rooms: Rooms, steady: Steady, most_rad: float) -> Array | None:
+        """(N, n) the best change of `points` (N, n), no element larger than `most_rad`; None where none was found."""
+        N, n = points.shape
+        at = _differences(points)
+        at[1, 0] -= self._before[1]
+        at[2, 0] += self._before[0] - 2 * self._before[1]
+        at[2, 1:2] += self._before[1]
+        upper, lower = self._upper - at, at - self._lower
+        np.minimum(upper[0], most_rad, out=upper[0])
+        np.minimum(lower[0], most_rad, out=lower[0])
+        weights = np.zeros((3, N, n))
+        weights[1], weights[2] = steady.step, steady.bend
+        gradient = _summed(weights * at) - _halves_summed(frames.fall)
+        bound = np.concatenate([upper.ravel(), lower.ravel(), rooms.room_m])
+        soft = np.zeros(len(bound))
+        soft[2 * upper.size :] = 1 / rooms.stiffness
+        return _Solver(frames.hessian, weights, gradient, bound, soft, rooms).solve()
+
+
+class _Solver:
+    """One run of the method."""
+
+    def __init__(
+        self, hessian: Array, weights: Array, gradient: Array, bound: Array, soft: Array, rooms: Rooms
+    ) -> None:
+        self._gradient = gradient
+        self._bound, self._soft, self._rooms = bound, soft, rooms
+        self._shape, self._n_boxes = gradient.shape, 3 * gradient.size
+        self._outer = rooms.grows[:, :, None] * rooms.grows[:, None]
+        self._points, self._first_of = np.unique(rooms.point, return_index=True)
+        self._fixed = _banded_boxes(weights)
+        quarter = hessian / 4
+        own = quarter.copy()
+        own[:-1] += quarter[1:]
+        _add_blocks(self._fixed, own, quarter)
+
+    def solve(self) -> Array | None:
+        b, soft = self._bound, self._soft
+        x: Array = np.zeros(self._shape)
+        s: Array = np.maximum(b, _START)
+        z: Array = np.full(len(b), _START)
+        scale = 1 + float(np.abs(self._gradient).max())
+        dual = self._gradient + self._back(z)
+        primal = s - b - soft * z
+        for _ in range(_MOST_STEPS):
+            gap = float(s @ z) / len(b)
+            if gap < _GAP and np.abs(primal).max() < _RESIDUAL and np.abs(dual).max() < _GAP * scale:
+                return x
+            weight = 1 / (s / z + soft)
+            factor, info = _lapack.dpbtrf(self._normal(weight).T, lower=1, overwrite_ab=1)
+            if info:
+                return None
+            ds, dz = self._step(0.0, s, z, dual, primal, weight, factor)[1:]
+            length = min(_longest(s, ds), _longest(z, dz))
+            centring = (float((s + length * ds) @ (z + length * dz)) / len(b) / gap) ** 3
+            dx, ds, dz = self._step(centring * gap - ds * dz, s, z, dual, primal, weight, factor)
+            length = _TO_BORDER * min(_longest(s, ds), _longest(z, dz))
+            x, s, z = x + length * dx, s + length * ds, z + length * dz
+            # Residuals are linear: a step of this length leaves the rest of them.
+            dual, primal = (1 - length) * dual, (1 - length) * primal
+        return None
+
+    def _step(
+        self, aim: Array | float, s: Array, z: Array, dual: Array, primal: Array, weight: Array, factor: Array
+    ) -> tuple[Array, Array, Array]:
+        """Changes of x, s, z that bring s z to `aim` and the residuals to 0, to first order."""
+        left = primal - s + aim / z
+        right = -(dual + self._back(weight * left))
+        dx: Array = _lapack.dpbtrs(factor, right.ravel(), lower=1)[0].reshape(self._shape)
+        dz: Array = weight * (self._along(dx) + left)
+        return dx, (aim - s * dz) / z - s, dz
+
+    def _along(self, x: Array) -> Array:
+        """The rows' values: differences, the same negated, and the loss of room."""
+        boxes = _differences(x).ravel()
+        point, (before, here) = self._rooms.point, self._rooms.share.T
+        moved = here[:, None] * x[point] + before[:, None] * x[point - 1]
+        room = -np.vecdot(self._rooms.grows, moved)
+        return np.concatenate([boxes, -boxes, room])
+
+    def _back(self, y: Array) -> Array:
+        """The rows' transpose."""
+        m = self._n_boxes
+        x = _summed((y[:m] - y[m : 2 * m]).reshape(3, *self._shape))
+        if len(self._rooms.point):
+            moved = y[2 * m :, None] * self._rooms.grows
+            x -= self._at_points(self._rooms.share[:, 1, None] * moved)
+            x[:-1] -= self._at_points(self._rooms.share[:, 0, None] * moved)[1:]
+        return x
+
+    def _normal(self, weight: Array) -> Array:
+        """(N n, 2 n + 1) rows of the lower band."""
+        m = self._n_boxes
+        boxes = (weight[:m] + weight[m : 2 * m]).reshape(3, *self._shape)
+        band = self._fixed + _banded_boxes(boxes)
+        if len(self._rooms.point):
+            before, here = self._rooms.share.T
+            each = weight[2 * m :, None, None] * self._outer
+            own = self._at_points(here[:, None, None] ** 2 * each)
+            own[:-1] += self._at_points(before[:, None, None] ** 2 * each)[1:]
+            _add_blocks(band, own, self._at_points((before * here)[:, None, None] * each))
+        return band.reshape(-1, band.shape[-1])
+
+    def _at_points(self, each: Array) -> Array:
+        """(N, ...) the sums of (R, ...) at the control points that they are of."""
+        every = np.zeros((self._shape[0], *each.shape[1:]))
+        every[self._points] = np.add.reduceat(each, self._first_of)
+        return every
+
+
+def _differences(x: Array) -> Array:
+    """(3, N, n) control points (N, n), their first and second differences, after two that are 0."""
+    every = np.empty((3, *x.shape))
+    every[0] = every[1] = x
+    every[1, 1:] -= x[:-1]
+    every[2] = every[1]
+    every[2, 1:] -= every[1, :-1]
+    return every
+
+
+def _summed(y: Array) -> Array:
+    """(N, n) the transpose of `_differences`."""
+    steps = y[2].copy()
+    steps[:-1] -= y[2, 1:]
+    steps += y[1]
+    every = y[0] + steps
+    every[:-1] -= steps[1:]
+    return every
+
+
+def _halves_summed(frames: Array) -> Array:
+    """(N, n) what costs of frames (N, n), half way between control points, are for the control points."""
+    every = frames / 2
+    every[:-1] += frames[1:] / 2
+    return every
+
+
+def _add_blocks(band: Array, own: Array, before: Array) -> None:
+    """Add to a lower band (N, n, 2 n + 1) what control points have with themselves and with the one before, (N, n, n)."""
+    n = own.shape[-1]
+    column, row, across, along = _places(n)
+    band[:, column, row - column] += own[:, row, column]
+    band[:-1, along, n + across - along] += before[1:, across, along]
+
+
+def _banded_boxes(weights: Array) -> Array:
+    """(N, n, 2 n + 1) lower band, row by row, of weights of squared differences (3, N, n)."""
+    _, N, n = weights.shape
+    band = np.zeros((N, n, 2 * n + 1))
+    own, first, second = weights
+    band[..., 0] = own + first + second
+    band[:-1, :, 0] += first[1:] + 4 * second[1:]
+    band[:-2, :, 0] += second[2:]
+    band[:-1, :, n] = -first[1:] - 2 * second[1:]
+    band[:-2, :, n] -= 2 * second[2:]
+    band[:-2, :, 2 * n] = second[2:]
+    return band
+
+
+@lru_cache(maxsize=16)
+def _places(n: int) -> tuple[Indices, Indices, Indices, Indices]:
+    """Columns and rows of the lower triangle of (n, n), and rows and columns of the whole."""
+    row, column = np.tril_indices(n)
+    across, along = (x.ravel() for x in np.indices((n, n)))
+    return column, row, across, along
+
+
+def _longest(v: Array, change: Array) -> float:
+    """The largest share, 1 at most, of a change that leaves every element of `v` positive."""
+    return 1.0 / max(1.0, float((-change / v).max()))

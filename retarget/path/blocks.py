@@ -1,0 +1,173 @@
+"""One block of a long motion made into a path: inside every limit, off the robot itself, and safe to cut off and brake.
+
+Poses that touch are led out of contact, the limiter makes a path of them, and where a contact was near `refining` makes it better
+with the distances among its bounds. What still touches then is pushed, drawn towards the rest pose, and held, in this order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from retarget.path.avoidance import STRENGTHS, Avoidance, stretches
+from retarget.path.collision import Allowed, SelfContact
+from retarget.path.control_points import braking, controls_near, held, hits_of_frames, joined
+from retarget.path.limit_path import Objective, kept
+from retarget.path.limits import JointLimits
+from retarget.path.paths import JointState
+from retarget.path.refining import Refiner, Shown
+
+Array = NDArray[np.float64]
+_SETTLE_FRAMES = 16
+"""Time given to reach the last pose; what then still moves, brakes."""
+_AWAY_FRAMES = 8
+"""Time given to leave a pose within a margin where the way to the motion from there touches."""
+_STILL_RAD = 5e-4
+"""Less in a frame is the end of settling: a third of a tick of 4,096."""
+_AROUND_CUT = 3
+"""Frames on both sides of the end of a block that give way where braking from there touches."""
+
+
+class BlockPlanner:
+    """Makes the blocks of one robot.
+
+    Args:
+        contact: the robot's distances to itself.
+        limits: its bounds.
+        avoidance: what leads it round itself.
+        objective: the objective of poses (T, J) that were led round contacts by (T, J), for the limiter.
+        arms: joints of all arms.
+    """
+
+    def __init__(
+        self, contact: SelfContact, limits: JointLimits, avoidance: Avoidance,
+        objective: Callable[[Array, Array], Objective], arms: Sequence[int],
+    ) -> None:  # fmt: skip
+        self._contact, self._limits, self._avoidance, self._objective = contact, limits, avoidance, objective
+        self._arms = np.array(sorted(arms), np.int64)
+        self._refiner = Refiner(contact, limits, self._arms) if len(arms) else None
+
+    def plan(
+        self, posed: Array, shown: Shown, begin: JointState, period: float, keep: int, settle: bool, continued: bool
+    ) -> tuple[Array, int]:
+        """Control points for poses (T, J), safe to cut off and brake after `keep` frames; times they were changed.
+
+        When `continued`, the first pose is the one before the block. `shown` is the cost of its frames.
+        """
+        before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
+        eased, interventions = self._avoidance.push_out(posed, begin.position_rad)
+        allowed = self._contact.allowed_from(begin.position_rad)
+        path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
+        if self._refiner and (interventions or hit.any()):
+            better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed)
+            if better is not None:
+                return better, interventions + (stretches(hit) if hit.any() else 0)
+        for strength in STRENGTHS:
+            if not hit.any():
+                break
+            interventions += stretches(hit)
+            eased = self._avoidance.push(eased, path, hits_of_frames(hit, len(path)), strength)
+            path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
+        if hit.any() and allowed is not None:  # it begins too near itself to turn to the motion: away from there first
+            eased = eased.copy()
+            eased[:_AWAY_FRAMES] = self._avoidance.push_out(begin.position_rad[None], begin.position_rad)[0]
+            path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
+        if hit.any():
+            path = self._stop_before_contact(path, hit, period, allowed)
+        return path, interventions
+
+    def _refined(
+        self, refiner: Refiner, path: Array, shown: Shown, n_frames: int, period: float, keep: int, settle: bool,
+        allowed: Allowed | None,
+    ) -> Array | None:  # fmt: skip
+        """A path that shows more and touches nothing, from one of the limiter; None where none was found."""
+        stop = braking(path, period, self._limits)
+        tail = max(len(stop), _SETTLE_FRAMES if settle else self._braking_frames(period))
+        end = stop[-1:] if len(stop) else path[-1:]
+        start = np.concatenate([path, stop, np.repeat(end, tail - len(stop), 0)])
+
+        def cut(control: Array) -> Array:
+            return self._settled(control, n_frames + 2, period) if settle else control[: n_frames + 2]
+
+        def touching(control: Array) -> NDArray[np.bool_]:
+            found, hit = cut(control), np.zeros(len(control) - 2, bool)
+            if settle:
+                of_path = self._contact.along(found, allowed)
+            else:
+                of_path = self._cut_hits(found, period, keep, n_frames, allowed)
+                if keep < n_frames and of_path[keep - 1]:
+                    hit[max(keep - _AROUND_CUT, 0) : keep + _AROUND_CUT] = True
+            n = min(len(hit), len(of_path))
+            hit[:n] |= of_path[:n]
+            hit[n - 1] |= of_path[n:].any()
+            return hit
+
+        control = refiner.refine(start, shown, n_frames, period, touching)
+        if control is None:
+            return None
+        inside = kept(control[2:], control[1], (control[1] - control[0]) / period, self._limits, period)
+        return cut(control) if inside[self._arms].all() else None
+
+    def _braking_frames(self, period: float) -> int:
+        """Frames in which every joint comes to rest from any speed, and one more."""
+        limits = self._limits
+        return int(np.ceil((limits.velocity_rad_s / (limits.acceleration_rad_s2 * period)).max())) + 1
+
+    def _cut_hits(
+        self, points: Array, period: float, keep: int, n_frames: int, allowed: Allowed | None
+    ) -> NDArray[np.bool_]:
+        """Which segments touch when the path brakes at its end, or after `keep` frames."""
+        hit = self._contact.along(np.concatenate([points, braking(points, period, self._limits)]), allowed)
+        if keep < n_frames:
+            cut = points[: keep + 2]
+            hit[keep - 1] |= self._contact.along(
+                np.concatenate([cut[-2:], braking(cut, period, self._limits)]), allowed
+            ).any()
+        return hit
+
+    def _settled(self, points: Array, least: int, period: float) -> Array:
+        """Control points (N, J) up to where the robot first stands after `least` of them, at rest at their end."""
+        moves = np.abs(np.diff(points[least - 1 :], axis=0)).max(1) > _STILL_RAD
+        still = np.flatnonzero(~moves)
+        last = least + (int(still[0]) if len(still) else len(moves))
+        return held(points[:last], period, last + 1, self._limits)
+
+    def _stop_before_contact(
+        self, path: Array, hit: NDArray[np.bool_], period: float, allowed: Allowed | None
+    ) -> Array:
+        """The path up to where it can brake before it first touches, then held; the last resort."""
+        first = int(hit.argmax())
+        back = 1
+        while True:
+            n_kept = max(2, min(first + 2 - back, len(path)))
+            stopped = held(path[:n_kept], period, len(path), self._limits)
+            if n_kept == 2 or not self._contact.along(stopped, allowed).any():
+                return stopped
+            back *= 2
+
+    def _limited(
+        self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, keep: int, settle: bool,
+        allowed: Allowed | None,
+    ) -> tuple[Array, NDArray[np.bool_]]:  # fmt: skip
+        """Control points of a path near `eased` (T, J) that keeps every limit, and which segments touch.
+
+        What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
+        touches when the path brakes after `keep` frames or at its end counts too.
+        """
+        wanted, shown, led = controls_near(eased, pose_before), eased, eased - posed
+        half = start.velocity_rad_s * (period / 2)
+        before, position = start.position_rad - half, start.position_rad + half
+        if settle:
+            every = (wanted, shown, led)
+            wanted, shown, led = (np.concatenate([x, np.repeat(x[-1:], _SETTLE_FRAMES, 0)]) for x in every)
+
+        def objective_from(k: int) -> Objective:
+            return self._objective(shown[k:], led[k:])
+
+        points = np.concatenate([[before], joined(wanted, before, position, period, self._limits, objective_from)])
+        if settle:
+            points = self._settled(points, len(points) - _SETTLE_FRAMES, period)
+            return points, self._contact.along(points, allowed)
+        return points, self._cut_hits(points, period, keep, len(eased), allowed)

@@ -1,0 +1,138 @@
+"""A path made better where contacts are near: all arms at once, with the distances among the bounds.
+
+The errors of bone directions and the distances are linearised at the path, the program of `arm_program` is solved, and both are
+linearised again where it led, until nothing touches (sequential quadratic programming within a trust region; Nocedal, Wright
+2006, section 18.5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from retarget.path.arm_program import ArmProgram, Frames, Rooms, Steady
+from retarget.path.collision import KEPT, SelfContact
+from retarget.path.limits import JointLimits
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Hits = NDArray[np.bool_]
+Shown = Callable[[Array], tuple[Array, Array]]
+"""Half the squared error of frames (T, J) linearised: hessian (T, J, J) and how fast it falls (T, J)."""
+_TRUST_RAD = (0.4, 0.2, 0.1, 0.1, 0.1)
+"""Radians that a control point may move in each round."""
+_NEAR_M = 0.03
+"""Metres beyond its margin within which a pair is part of the program."""
+_MOST_PAIRS = 4
+"""Pairs of each pose that are part of it, the nearest."""
+_AIM_M = 0.001
+"""Metres more than the margin that poses keep, for what the linearisation leaves out."""
+_MORE_M = 0.0015
+"""Metres more that poses keep where the last round touched."""
+_BETWEEN_M = (1 - KEPT) * 0.010
+"""Metres of the margin that poses between frames may lack."""
+_STIFFNESS = 4e4
+"""Weight of a squared metre that a pair comes too near: a millimetre costs as much as 11 degrees in one frame."""
+_STEADY = Steady(1e-3, 1e-2)
+"""Weights of squared steps and of their changes: between frames a path must not zigzag unseen."""
+_LEAST = 1e-4
+"""Weight of squared angles against squared direction errors, so that joints whose turning cannot be seen stay."""
+_TAIL_WEIGHT = 1e-3
+"""Weight of the frames in which the joints come to rest."""
+_TIGHTENED, _INWARD_RAD, _LAST_STEP = 1e-4, 4e-6, 0.02
+"""As in `lookahead_qp`: shares of the bounds and radians kept free, and the last step as a share of a step of braking."""
+
+
+class Refiner:
+    """Makes paths of one robot's arms better.
+
+    Args:
+        contact: its distances to itself.
+        limits: its bounds.
+        joints: (n,) those of all arms.
+    """
+
+    def __init__(self, contact: SelfContact, limits: JointLimits, joints: Indices) -> None:
+        self._contact, self._limits, self._joints = contact, limits, joints
+
+    def refine(
+        self, control_rad: Array, shown: Shown, n_frames: int, period_s: float, touching: Callable[[Array], Hits]
+    ) -> Array | None:
+        """Control points that show more than the given ones and touch nothing; None where none were found.
+
+        Args:
+            control_rad: (N, J) where to begin; the first two stay, and joints of no arm. At the end the arms come to rest.
+            shown: the cost of frames (T, J).
+            n_frames: T; frames after them have hardly any weight.
+            period_s: between control points.
+            touching: which of the N - 2 segments of such control points touch.
+        """
+        control, joints, N = control_rad.copy(), self._joints, len(control_rad) - 2
+        program = self._program(control, period_s)
+        more_m = np.full(N, _AIM_M)
+        for k in range(len(_TRUST_RAD) + 1):
+            frames = (control[1:-1] + control[2:]) / 2
+            between = (control[:-2] + 6 * control[1:-1] + control[2:]) / 8
+            pose, room_m, grows = self._contact.near(np.concatenate([frames, between]), _NEAR_M)
+            if k:
+                lacks = pose[room_m < np.where(pose < N, 0.0, -_BETWEEN_M)]
+                hit = np.isin(np.arange(N), lacks % N) if len(lacks) else touching(control)
+                if not hit.any():
+                    return control
+                more_m[hit] += _MORE_M
+                more_m[:-1][hit[1:] & ~hit[:-1]] += _MORE_M
+                more_m[1:][hit[:-1] & ~hit[1:]] += _MORE_M
+            if k == len(_TRUST_RAD):
+                break
+            rooms = self._rooms(pose, room_m, grows, more_m)
+            change = program.change(
+                control[2:, joints], self._costs(shown, frames, n_frames), rooms, _STEADY, _TRUST_RAD[k]
+            )
+            if change is None:
+                break
+            control[2:, joints] += change
+        return None
+
+    def _program(self, control: Array, period_s: float) -> ArmProgram:
+        limits, joints = self._limits, self._joints
+        step, bend = limits.velocity_rad_s[joints] * period_s, limits.acceleration_rad_s2[joints] * period_s**2
+        upper = np.empty((3, len(control) - 2, len(joints)))
+        upper[1], upper[2] = (1 - _TIGHTENED) * step, (1 - _TIGHTENED) * bend
+        upper[1, -1] = np.minimum(upper[1, -1], _LAST_STEP * bend)
+        lower = -upper
+        upper[0], lower[0] = (
+            limits.position_max_rad[joints] - _INWARD_RAD,
+            limits.position_min_rad[joints] + _INWARD_RAD,
+        )
+        return ArmProgram(upper, lower, control[:2, joints])
+
+    def _costs(self, shown: Shown, frames: Array, n_frames: int) -> Frames:
+        """The costs of N frames, of which the last ones are to stay where they are."""
+        N, joints = len(frames), self._joints
+        n = len(joints)
+        hessian, fall = np.zeros((N, n, n)), np.zeros((N, n))
+        every, falls = shown(frames[:n_frames])
+        hessian[:n_frames], fall[:n_frames] = every[:, joints[:, None], joints], falls[:, joints]
+        hessian[n_frames:] = _TAIL_WEIGHT * hessian[n_frames - 1]
+        hessian[:, range(n), range(n)] += _LEAST
+        return Frames(hessian, fall)
+
+    def _rooms(self, pose: Indices, room_m: Array, grows: Array, more_m: Array) -> Rooms:
+        """The rows of N frames and of the N poses between them, which count as their control points."""
+        N = len(more_m)
+        some = np.flatnonzero(((pose < N) | (room_m < _NEAR_M / 3)) & (_rank(pose, room_m) < _MOST_PAIRS))
+        some = some[np.argsort(pose[some] % N, kind="stable")]
+        point, is_frame = pose[some] % N, pose[some] < N
+        share = np.where(is_frame[:, None], 0.5, (0.0, 1.0))
+        share[point == 0, 0] = 0.0  # what comes before it is known
+        return Rooms(point, share, grows[some][:, self._joints], room_m[some] - more_m[point], _STIFFNESS)
+
+
+def _rank(pose: Indices, room_m: Array) -> Indices:
+    """(R,) how many rows of the same pose have less room."""
+    order = np.lexsort((room_m, pose))
+    rank = np.empty(len(pose), np.int64)
+    rank[order] = np.arange(len(pose)) - np.searchsorted(pose[order], pose[order])
+    return rank
