@@ -65,6 +65,7 @@ class ServoMotor:
         self._turn_tick = 0.0
         self._sign, self._homing_tick, self._threshold_tick_s = 1, 0, 0.0
         self._profile_type = 0
+        self._top_tick_s = self._bend_tick_s2 = math.inf
         self._now_s = 0.0
         self._set("model_number", number)
         self._set("firmware_version", self.firmware)
@@ -149,7 +150,7 @@ class ServoMotor:
             d.goal_a[i], d.limit_a[i] = self._sign * goal * ampere, most * ampere
         d.goal_tick_s[i] = self._sign * get("goal_velocity") * self._tick_s_per_unit
         self._set_gains()
-        d.profile_tick_s[i], d.profile_tick_s2[i] = self._profile()
+        self._top_tick_s, self._bend_tick_s2 = d.profile_tick_s[i], d.profile_tick_s2[i] = self._profile()
         self.baud = self.model.baud_of_code(get("baud_rate")) or 0
         watchdog = get("bus_watchdog")
         has = watchdog > 0 and self.model.has_watchdog(self.firmware)
@@ -186,7 +187,8 @@ class ServoMotor:
 
     def _type_of_profile(self) -> int:
         """What a goal position makes of the profile; from rest, as the manual assumes."""
-        top, bend = self._profile()
+        in_time = self.memory.get("drive_mode") & 4  # its speed depends on the way to go
+        top, bend = self._profile() if in_time else (self._top_tick_s, self._bend_tick_s2)
         way = abs(float(self.drives.goal_tick[self.index] - self.drives.path_tick[self.index]))
         if math.isinf(top):
             return 0

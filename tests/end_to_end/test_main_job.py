@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
-import signal
 import socket
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -16,7 +13,6 @@ from daemon.client import RefusedError
 from daemon.wire.events import Accepted, Ack, Cancelled, Done, Progress
 from daemon.wire.requests import Say
 from mmm_core.inference.checkpoint import MODEL_FILE
-from tests.end_to_end.test_start_and_end import child_pid
 from tests.support.harness import RunningDaemon, mmmd
 
 pytestmark = [
@@ -74,22 +70,6 @@ def test_out_of_scope_is_rejected_with_a_reason_and_a_score(run):
     result = run.mmmd("say", "walk to the window", "--json")
     event = json.loads(result.stdout)
     assert result.returncode == 1 and event["code"] == "out_of_scope" and event["found"] and event["scope_score"] < 1
-
-
-def test_a_killed_generator_is_started_again_while_the_robot_holds(run):
-    with run.client() as robot:
-        robot.arm()
-        os.kill(child_pid(run, "daemon.generator.process"), signal.SIGKILL)
-        end_s = time.monotonic() + 5
-        while robot.status().generator.startswith("ready"):
-            assert time.monotonic() < end_s
-            time.sleep(0.02)
-        assert robot.status().state in ("idle", "holding")
-        end_s = time.monotonic() + 60
-        while not robot.status().generator.startswith("ready"):
-            assert time.monotonic() < end_s, robot.status().generator
-            time.sleep(0.1)
-        assert robot.say("bow").done
 
 
 def test_three_lines_of_any_language(run):

@@ -6,6 +6,7 @@ import pytest
 
 from daemon.bench.disturbances import ALIVE_BOUND_S, DISTURBANCES, RESTART_BOUND_S, Disturbance
 from daemon.bench.estop_disturbed import Outcome, measure_disturbed, summary
+from tests.support.sizes import some_and_all
 
 FIGURES = {"lost", "untold", "n", "bound_s", "p50_ms", "p99_ms", "worst_ms"}
 TIMES = {"p50_ms", "p99_ms", "worst_ms"}
@@ -32,8 +33,10 @@ def test_a_lost_estop_is_counted_and_its_time_is_none_of_the_figures():
 
 @pytest.mark.timeout(240)
 @pytest.mark.realtime
-def test_disturbed_daemons_give_every_figure_and_lose_no_estop():
-    names = ("flood_pub", "front_killed", "bus_killed")
+@pytest.mark.parametrize(
+    "names", some_and_all(("front_killed", "bus_killed"), ("flood_pub", "front_killed", "bus_killed"))
+)
+def test_disturbed_daemons_give_every_figure_and_lose_no_estop(names):
     disturbances, violations = measure_disturbed(1, 0, "reference", names)
     assert tuple(disturbances) == names and violations == 0
     for name, figures in disturbances.items():

@@ -407,7 +407,7 @@ def test_two_processes_have_the_loss_of_one_with_the_whole_batch(tmp_path: Path)
 
 def test_bf16_trains_too(tmp_path: Path) -> None:
     config = small(tmp_path / "small.toml")
-    options = ["train", "--config", str(config), "--run", str(tmp_path / "run"), "--precision", "bf16"]
+    options = ["train", "transformer", "--config", str(config), "--run", str(tmp_path / "run"), "--precision", "bf16"]
     assert main([*options, "--sample-every", "0"]) == 0
     weights = torch.load(tmp_path / "run" / "transformer.pt", weights_only=True)["module"]
     assert all(torch.isfinite(w).all() for w in weights.values())
