@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import signal
 import subprocess
@@ -11,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from daemon.bench.tty_servos import go_first, go_last
+from daemon.cli import main
 from daemon.supervisor.supervisor import log_file, log_path_error
 from tests.support.harness import MMMD, RunningDaemon, mmmd
 
@@ -56,27 +59,37 @@ def baud_of(robot: str) -> int:
     return load_robot(robot).bus.baud
 
 
-def refused(*options: str) -> str:
-    """What `mmmd run` says when it does not start: one message, no traceback, nothing left running."""
+def refused(*options: str, here: bool = False) -> str:
+    """What `mmmd run` says when it does not start: one message, no traceback, nothing left running.
+
+    `here`: in this process, for what is refused before any other is started.
+    """
     folder_options = []
     for name in ("cmd", "ctl", "pub"):
         folder_options += [f"--{name}", f"ipc:///tmp/mmmd-refused-{os.getpid()}-{name}"]
-    result = mmmd("run", "--quiet", "--generator", "ipc:///tmp/mmmd-none", *folder_options, *options, timeout_s=60)
-    assert result.returncode in (1, 2), result.stderr
-    assert "Traceback" not in result.stderr
-    assert result.stderr.count("mmmd: ") == 1, result.stderr
-    return result.stderr
+    words = ["run", "--quiet", "--generator", "ipc:///tmp/mmmd-none", *folder_options, *options]
+    if here:
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            status, message = main(words), said.getvalue()
+    else:
+        result = mmmd(*words, timeout_s=60)
+        status, message = result.returncode, result.stderr
+    assert status in (1, 2), message
+    assert "Traceback" not in message
+    assert message.count("mmmd: ") == 1, message
+    return message
 
 
 def test_an_unknown_robot_names_the_known_ones():
-    message = refused("--robot", "asimo")
+    message = refused("--robot", "asimo", here=True)
     assert "asimo" in message and "reference" in message and "op3" in message
 
 
 def test_a_robot_file_with_a_wrong_key_names_file_key_and_allowed(tmp_path):
     path = tmp_path / "robot.toml"
     path.write_text('format = 1\nname = "x"\ncolour = "red"\n', "utf-8")
-    message = refused("--robot", str(path))
+    message = refused("--robot", str(path), here=True)
     assert str(path) in message and "colour" in message and "allowed" in message
 
 
@@ -93,16 +106,16 @@ def test_a_bus_that_is_none():
 def test_a_log_that_exists_is_not_overwritten(tmp_path):
     path = tmp_path / "run.mcap"
     path.write_text("dear old log")
-    assert "exists" in refused("--log", str(path))
+    assert "exists" in refused("--log", str(path), here=True)
     named = log_file(tmp_path)
     assert named.parent == tmp_path and named.suffix == ".mcap" and log_path_error(named) is None
     assert log_file(path) == path
     assert path.read_text() == "dear old log"
-    assert "no folder" in refused("--log", str(tmp_path / "none" / "run.mcap"))
+    assert "no folder" in refused("--log", str(tmp_path / "none" / "run.mcap"), here=True)
 
 
 def test_an_endpoint_that_others_could_reach():
-    message = refused("--cmd", "tcp://0.0.0.0:5871")
+    message = refused("--cmd", "tcp://0.0.0.0:5871", here=True)
     assert "0.0.0.0" in message and "CURVE" in message and "ssh" in message
 
 
