@@ -69,6 +69,11 @@ def bench_first_motion(n: int = 50, seed: int = 0, robot: str = "reference") -> 
     }
 
 
+def from_rest(client: Client, texts: list[str], seed: int, name: str) -> dict[str, Any]:
+    """`p50_ms`, `p95_ms` and `n` of texts that are said while the robot stands still."""
+    return _times(client, texts, seed, name)
+
+
 def _times(
     client: Client,
     texts: list[str],

@@ -318,7 +318,7 @@ class _Published(_Socket):
     async def _hand_on(self, reader: Reader) -> None:
         with contextlib.suppress(WebSocketClosedError):
             while True:
-                await self.write_message((await reader.take()).decode())
+                await self.write_message(await reader.take())  # bytes go as text, as they are
 
 
 class _Targets(_Socket):

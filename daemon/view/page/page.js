@@ -137,7 +137,7 @@ function heardState(s) {
   if (again) cmd.send({ type: "capabilities", id: newId() });
   view.history.add(s.t_mono, { goal: s.goal_rad, present: s.present_rad, effort: s.effort });
   if (!$("lost").hidden) { lost(""); if (!view.capable) cmd.send({ type: "capabilities", id: newId() }); }
-  if (scene) scene.dirty = true;
+  if (scene) { scene.dirty = true; scene.arrived++; }
   head(s); queue(s);
 }
 function head(s) {
@@ -220,6 +220,7 @@ function plots() {
     plot($("plot-effort"), { title: unit === "mA" ? "current" : "load", unit, rows, series: [{ name: hot === null ? "" : `${hot} °C`, colour: "#b35c00", of: (r) => r.effort[servo] }], end });
   }
 }
+Object.assign(view, { heard: heardPub, paint, plots }); // a test plays an hour of messages in a minute
 setInterval(paint, 33);
 setInterval(plots, 200);
 setInterval(() => {

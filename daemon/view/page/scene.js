@@ -1,17 +1,22 @@
 // Robot, ghost and person, drawn by WebGL 2 without a library: triangles with one light from above, and nothing else.
-import { identity, multiply } from "./kinematics.js";
+import { multiply } from "./kinematics.js";
 
+const MOST_PARTS = 200; // 16,000 bytes of the 16,384 that a uniform block may have everywhere
+// Every vertex names its part; where the parts are and their colours come in one block, so that a body of many parts is one draw.
 const VERTEX = `#version 300 es
-in vec3 place; in vec3 normal; uniform mat4 view, model; out vec3 n, p;
-void main() { vec4 w = model * vec4(place, 1.0); p = w.xyz; n = mat3(model) * normal; gl_Position = view * w; }`;
+in vec3 place; in vec3 normal; in float part; uniform mat4 view; uniform int base; out vec3 n, p; flat out vec3 colour;
+layout(std140) uniform Parts { mat4 models[${MOST_PARTS}]; vec4 colours[${MOST_PARTS}]; };
+void main() {
+  int k = int(part) - base; mat4 model = models[k];
+  vec4 w = model * vec4(place, 1.0); p = w.xyz; n = mat3(model) * normal; colour = colours[k].rgb; gl_Position = view * w;
+}`;
 const FRAGMENT = `#version 300 es
-precision highp float; in vec3 n, p; uniform vec4 colour; uniform vec3 eye; uniform float plain; out vec4 seen;
+precision highp float; in vec3 n, p; flat in vec3 colour; uniform vec3 eye; uniform float opacity; out vec4 seen;
 void main() {
   vec3 flatN = cross(dFdx(p), dFdy(p));
   vec3 m = dot(n, n) > 1e-8 ? normalize(n) : normalize(flatN);
   if (dot(m, eye - p) < 0.0) m = -m;
-  float light = 0.62 + 0.16 * m.z + 0.34 * max(0.0, dot(m, normalize(vec3(0.6, 0.35, 0.75))));
-  seen = vec4(colour.rgb * mix(light, 1.0, plain), colour.a);
+  seen = vec4(colour * (0.62 + 0.16 * m.z + 0.34 * max(0.0, dot(m, normalize(vec3(0.6, 0.35, 0.75))))), opacity);
 }`;
 const BACK = [0.914, 0.929, 0.949];
 
@@ -25,25 +30,34 @@ export class Scene {
       const shader = gl.createShader(kind);
       gl.shaderSource(shader, source); gl.compileShader(shader); gl.attachShader(program, shader);
     }
-    gl.bindAttribLocation(program, 0, "place"); gl.bindAttribLocation(program, 1, "normal");
+    ["place", "normal", "part"].forEach((name, k) => gl.bindAttribLocation(program, k, name));
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error("the shaders of the 3D view do not link");
     gl.useProgram(program);
     gl.enable(gl.DEPTH_TEST); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    this.at = Object.fromEntries(["view", "model", "colour", "eye", "plain"].map((name) => [name, gl.getUniformLocation(program, name)]));
-    this.ball = this.mesh(...sphere()); this.rod = this.mesh(...cylinder());
-    this.dense = Math.min(1.5, devicePixelRatio || 1); this.lateMs = 0; this.drawnMs = 0;
+    this.at = Object.fromEntries(["view", "base", "eye", "opacity"].map((name) => [name, gl.getUniformLocation(program, name)]));
+    this.block = new Float32Array(20 * MOST_PARTS);
+    gl.uniformBlockBinding(program, gl.getUniformBlockIndex(program, "Parts"), 0);
+    gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, gl.createBuffer()); gl.bufferData(gl.UNIFORM_BUFFER, this.block.byteLength, gl.DYNAMIC_DRAW);
+    this.dense = Math.min(1.5, devicePixelRatio || 1); this.arrived = 0; this.missed = 0; this.drawnMs = 0;
     this.reset(); this.listen();
   }
-  mesh(vertices, indices) {
+  mesh(vertices, indices, parts) {
     const gl = this.gl, array = gl.createVertexArray();
     gl.bindVertexArray(array);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer()); gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.STATIC_DRAW);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer()); gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
     for (const k of [0, 1]) { gl.enableVertexAttribArray(k); gl.vertexAttribPointer(k, 3, gl.FLOAT, false, 24, 12 * k); }
-    return { array, count: indices.length };
+    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer()); gl.bufferData(gl.ARRAY_BUFFER, parts, gl.STATIC_DRAW);
+    gl.enableVertexAttribArray(2); gl.vertexAttribPointer(2, 1, gl.FLOAT, false, 4, 0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer()); gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
+    return array;
   }
-  show(robot) { this.robot = robot; this.body = this.mesh(robot.vertices, robot.indices); this.reset(); }
+  show(robot) {
+    const parts = new Float32Array(robot.vertices.length / 6);
+    robot.bodies.forEach((body, k) => { for (let i = body.first; i < body.first + body.count; i++) parts[robot.indices[i]] = k; });
+    this.robot = robot; this.body = this.mesh(robot.vertices, robot.indices, parts);
+    this.solids = null; this.reset();
+  }
   reset() { this.azimuth = -0.2; this.elevation = 0.12; this.zoom = 1; this.dirty = true; }
   listen() {
     const fingers = new Map(), c = this.canvas;
@@ -96,10 +110,11 @@ export class Scene {
     if (!this.robot || !width || !height) return;
     const [view, eye] = this.camera(person);
     gl.uniformMatrix4fv(this.at.view, false, view); gl.uniform3fv(this.at.eye, eye);
-    this.ground();
-    const places = this.robot.places(q);
-    this.bodies(places, 1);
-    if (person) this.person(person, faces);
+    const solids = new Solids();
+    this.ground(solids);
+    if (person) this.person(solids, person, faces);
+    this.solid(solids);
+    this.bodies(this.robot.places(q), 1);
     if (goal?.some((g, k) => Math.abs(g - q[k]) > 0.01)) { // first its depth alone, then only its nearest surface, so that no inner parts shine through
       const ghost = this.robot.places(goal);
       gl.enable(gl.POLYGON_OFFSET_FILL); gl.polygonOffset(4, 256); // behind the measured robot where both are in one place
@@ -107,62 +122,77 @@ export class Scene {
       gl.enable(gl.BLEND); gl.depthFunc(gl.EQUAL); this.bodies(ghost, 0.35); gl.depthFunc(gl.LESS); gl.disable(gl.BLEND); gl.disable(gl.POLYGON_OFFSET_FILL);
     }
   }
-  // Where frames come late, on a computer that draws without a GPU, fewer pixels are drawn.
+  // Where states come faster than they are drawn, on a computer that draws without a GPU, fewer pixels are drawn.
   keepUp() {
-    const now = performance.now(), gap = now - this.drawnMs;
-    this.drawnMs = now;
+    const now = performance.now(), gap = now - this.drawnMs, missed = Math.max(0, this.arrived - 1);
+    this.drawnMs = now; this.arrived = 0;
     if (gap > 1000) return; // nothing had changed, or the page was hidden
-    this.lateMs = Math.max(0, 0.95 * this.lateMs + (gap - 60));
-    if (this.lateMs > 600 && this.dense > 0.5) { this.dense *= 0.8; this.lateMs = 0; }
+    this.missed = 0.95 * this.missed + missed;
+    if (this.missed > 2 && this.dense > 0.4) { this.dense *= 0.8; this.missed = 0; } // one state in ten
+  }
+  parts(from, models, colours) {
+    models.forEach((m, k) => { this.block.set(m, 16 * k); this.block.set(colours[k], 16 * MOST_PARTS + 4 * k); });
+    this.gl.uniform1i(this.at.base, from);
+    this.gl.bufferSubData(this.gl.UNIFORM_BUFFER, 0, this.block);
   }
   bodies(places, opacity) {
-    const gl = this.gl;
-    gl.bindVertexArray(this.body.array);
-    this.robot.bodies.forEach((body, k) => {
-      if (!body.count) return;
-      gl.uniformMatrix4fv(this.at.model, false, places[k]); gl.uniform4f(this.at.colour, ...body.colour, opacity); gl.uniform1f(this.at.plain, 0);
-      gl.drawElements(gl.TRIANGLES, body.count, gl.UNSIGNED_INT, 4 * body.first);
+    const gl = this.gl, all = this.robot.bodies;
+    gl.bindVertexArray(this.body); gl.uniform1f(this.at.opacity, opacity);
+    for (let from = 0; from < all.length; from += MOST_PARTS) {
+      const some = all.slice(from, from + MOST_PARTS), first = some[0].first, last = some[some.length - 1];
+      this.parts(from, places.slice(from, from + MOST_PARTS), some.map((body) => body.colour));
+      gl.drawElements(gl.TRIANGLES, last.first + last.count - first, gl.UNSIGNED_INT, 4 * first);
+    }
+  }
+  solid({ kinds, models, colours }) {
+    const gl = this.gl, key = kinds.join("");
+    if (this.solids?.key !== key) this.solids = { key, ...this.joined(kinds) }; // with and without a person
+    gl.bindVertexArray(this.solids.array); gl.uniform1f(this.at.opacity, 1);
+    this.parts(0, models, colours);
+    gl.drawElements(gl.TRIANGLES, this.solids.count, gl.UNSIGNED_INT, 0);
+  }
+  joined(kinds) {
+    const vertices = [], indices = [], parts = [];
+    kinds.forEach((kind, k) => {
+      const [v, i] = kind === "rod" ? ROD : BALL, start = vertices.length / 6;
+      vertices.push(...v); indices.push(...i.map((index) => index + start)); parts.push(...Array(v.length / 6).fill(k));
     });
+    return { array: this.mesh(new Float32Array(vertices), new Uint32Array(indices), new Float32Array(parts)), count: indices.length };
   }
-  ground() {
+  ground(solids) {
     const r = this.robot, floor = r.floor_m, arm = r.arm_m;
-    this.capsule([0, 0, floor - 0.02 * arm], [0, 0, floor], 6 * arm, [0.86, 0.88, 0.90], false);
-    if (r.stand_m > floor) this.capsule([0, 0, floor], [0, 0, r.stand_m], 0.18 * arm, [0.78, 0.80, 0.83], false);
+    solids.rod([0, 0, floor - 0.02 * arm], [0, 0, floor], 6 * arm, [0.86, 0.88, 0.90]);
+    if (r.stand_m > floor) solids.rod([0, 0, floor], [0, 0, r.stand_m], 0.18 * arm, [0.78, 0.80, 0.83]);
   }
-  person(joints, faces) {
+  person(solids, joints, faces) {
     const p = this.robot.person, scale = p.scale, at = [], radius = p.radii_m.limb * scale;
     const height = (joints[3 * 16 + 1] + joints[3 * 17 + 1]) / 2; // x left, y up, z forward: to the robot's axes
     for (let j = 0; j < 22; j++) at.push([
       (joints[3 * j + 2] - joints[2]) * scale + p.shoulder_m[0], (joints[3 * j] - joints[0]) * scale + p.shoulder_m[1],
       (joints[3 * j + 1] - height) * scale + p.shoulder_m[2]]);
     const colour = (limb) => p.colours[limb] ?? p.colours[""];
-    p.parents.forEach((parent, j) => { if (parent >= 0) this.capsule(at[parent], at[j], radius, colour(p.limbs[j])); });
+    p.parents.forEach((parent, j) => { if (parent >= 0) solids.capsule(at[parent], at[j], radius, colour(p.limbs[j])); });
     for (const [elbow, wrist, side] of [[18, 20, "left"], [19, 21, "right"]]) {
       const hand = at[wrist].map((v, k) => v + p.hand_share * (v - at[elbow][k]));
-      this.capsule(at[wrist], hand, p.radii_m.hand * scale, colour(side));
+      solids.capsule(at[wrist], hand, p.radii_m.hand * scale, colour(side));
     }
     const up = unit(at[15].map((v, k) => v - at[12][k])), skull = p.radii_m.skull * scale, face = [faces[2], faces[0], faces[1]];
     const head = at[15].map((v, k) => v + 0.07 * scale * up[k]);
-    this.capsule(head, head, skull, colour(""));
-    this.capsule(head.map((v, k) => v + 0.9 * skull * face[k]), head.map((v, k) => v + 1.3 * skull * face[k]), 0.22 * skull, p.colours.nose);
+    solids.ball(head, skull, colour(""));
+    solids.capsule(head.map((v, k) => v + 0.9 * skull * face[k]), head.map((v, k) => v + 1.3 * skull * face[k]), 0.22 * skull, p.colours.nose);
   }
-  capsule(a, b, radius, colour, round = true) {
-    const gl = this.gl, along = b.map((v, k) => v - a[k]), length = Math.hypot(...along);
-    gl.uniform4f(this.at.colour, ...colour, 1); gl.uniform1f(this.at.plain, 0);
-    const draw = (mesh, m) => {
-      gl.uniformMatrix4fv(this.at.model, false, m); gl.bindVertexArray(mesh.array);
-      gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
-    };
-    if (length > 1e-9) {
-      const z = along.map((v) => v / length), x = unit(cross(Math.abs(z[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], z)), y = cross(z, x);
-      draw(this.rod, new Float32Array([...x.map((v) => v * radius), 0, ...y.map((v) => v * radius), 0, ...along, 0, ...a, 1]));
-    }
-    if (round) { // one bone's start is another's end
-      const m = identity();
-      m[0] = m[5] = m[10] = radius; m.set(b, 12);
-      draw(this.ball, m);
-    }
+}
+
+class Solids { // rods and balls of one frame: their kinds, places and colours
+  kinds = []; models = []; colours = [];
+  rod(a, b, radius, colour) {
+    const along = b.map((v, k) => v - a[k]), length = Math.hypot(...along) || 1e-9;
+    const z = along.map((v) => v / length), x = unit(cross(Math.abs(z[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], z)), y = cross(z, x);
+    this.#add("rod", [...x.map((v) => v * radius), 0, ...y.map((v) => v * radius), 0, ...along, 0, ...a, 1], colour);
   }
+  ball([x, y, z], radius, colour) { this.#add("ball", [radius, 0, 0, 0, 0, radius, 0, 0, 0, 0, radius, 0, x, y, z, 1], colour); }
+  capsule(a, b, radius, colour) { this.rod(a, b, radius, colour); this.ball(b, radius, colour); } // one bone's start is another's end
+  #add(kind, model, colour) { this.kinds.push(kind); this.models.push(model); this.colours.push(colour); }
 }
 
 function hasGpu() {
@@ -183,7 +213,7 @@ function grid(rows, columns, point) {
     const k = r * columns + c;
     indices.push(k, k + 1, k + columns + 1, k, k + columns + 1, k + columns);
   }
-  return [new Float32Array(vertices), new Uint32Array(indices)];
+  return [vertices, indices];
 }
 function sphere() {
   return grid(7, 13, (v, turn) => {
@@ -198,3 +228,4 @@ function cylinder() { // of height and radius 1, closed at both ends
     return [radius * x, radius * y, z, ...(end ? [0, 0, end] : [x, y, 0])];
   });
 }
+const BALL = sphere(), ROD = cylinder();
