@@ -26,72 +26,6 @@ def said(text: str) -> list[list[str]]:
 
 
 @pytest.mark.parametrize(
-    ("text", "steps"),
-    [
-        ("turn your head left, then right", [["turn your head left"], ["turn your head right"]]),
-        ("arms up, then down", [["raise both hands up"], ["lower both arms"]]),
-        ("tilt one way, then the other", [["tilt to the left"], ["tilt to the right"]]),
-        ("left hand on your heart and salute with the right",
-         [["put your left hand on your heart", "salute with your right hand"]]),
-        ("arms wide and nod", [["hold your arms out to the sides", "nod"]]),
-        ("left fist up, right palm forward", [["raise your left hand", "hold up your right hand to say stop"]]),
-        ("bwo deeply", [["bow deeply"]]), ("shurg your shoulders", [["shrug your shoulders"]]),
-        ("nod plz", [["nod"]]), ("clap ur hnads", [["clap your hands"]]),
-        ("clap, but do not bow", [["clap"]]), ("not that arm, the other one: raise your left", [["raise your left hand"]]),
-        ("wave without your left hand", [["wave with your right hand"]]), ("do not bow", []),
-        ("lift your left hand, turn it over, let it sink",
-         [["lift your left hand"], ["turn your left palm up and down"], ["lower your left hand"]]),
-        ("Point first to the door on your left, then to the window on your right",
-         [["point first to the door on your left"], ["point to the window on your right"]]),
-        ("lift both arms, clap above your head and lower them",
-         [["lift both arms"], ["clap above your head"], ["lower both arms"]]),
-        ("keep your arms down and look left", [["look to the left"]]),
-        ("don't use your right hand to wave", [["wave with your left hand"]]),
-        ("skip the wave and go straight to the bow", [["the bow"]]), ("with arms crossed, nod",
-         [["cross your arms in front of your chest", "nod"]]),
-        ("say hello", [["wave your right hand"]]), ("hands up!", [["raise both hands up"]]),
-        ("I'd love it if you could show the kids at the back how you bow", [["bow"]]),
-    ],
-)  # fmt: skip
-def test_what_is_read(text: str, steps: list[list[str]]) -> None:
-    assert said(text) == steps
-
-
-@pytest.mark.parametrize(
-    ("text", "steps"),
-    [
-        ("look up and down", [["look up"], ["look down"]]), ("end with a bow but clap before that", [["clap"], ["a bow"]]),
-        ("shake your head, pause, nod", [["shake your head"], ["nod"]]),
-        ("only after you have bowed may you raise your right hand", [["bow"], ["raise your right hand"]]),
-        ("first shrug, second nod, third clap", [["shrug"], ["nod"], ["clap"]]),
-        ("wave twice with the left and once with the right",
-         [["wave twice with your left hand"], ["wave once with your right hand"]]),
-        ("head up, head down, head to the left", [["look up"], ["look down"], ["look to the left"]]),
-        ("left arm: up, out to the side, and down",
-         [["raise your left hand"], ["raise your left arm to the side"], ["lower your left arm"]]),
-        ("with your right arm first point up, then forward",
-         [["point up with your right hand"], ["point forward with your right hand"]]),
-        ("nod once and then three times more", [["nod once"], ["nod three times"]]),
-        ("wave with your right hand, then both", [["wave with your right hand"], ["wave with both hands"]]),
-        ("put your right hand on your heart and, while you do that, nod", [["put your right hand on your heart", "nod"]]),
-        ("nod during the clapping", [["nod", "clap"]]), ("lean to the left and hold it for five seconds", [["lean to the left"]]),
-        ("raise your left arm. No, not that arm, the other one.", [["raise your right arm"]]),
-        ("Raise both arms. Hmm, actually just the left.", [["raise your left arm"]]),
-        ("left, i mean right, arm up", [["raise your right hand"]]),
-        ("lean forward, actually no, backwards", [["lean back"]]), ("don't point just wave", [["wave"]]),
-        ("wave with the hand that isn't your right", [["wave with the left hand"]]), ("nobody needs you to applaud now", []),
-        ("wave a couple of times", [["wave twice"]]), ("clap 3x", [["clap 3 times"]]), ("lok dwon", [["look down"]]),
-        ("there's something on your left, would you turn your head that way", [["turn your head to the left"]]),
-        ("my sister bets that you can't clap four times, so please do it", [["clap four times"]]),
-        ("I'd be really grateful if you just shook your head", [["shake your head"]]),
-        ("punch with your left, and with your right too", [["punch with your left hand"], ["punch with your right hand"]]),
-    ],
-)  # fmt: skip
-def test_orders_lists_and_corrections_of_the_tables(text: str, steps: list[list[str]]) -> None:
-    assert said(text) == steps
-
-
-@pytest.mark.parametrize(
     "text",
     [
         "turn your head right and back", "lean back", "do not move until I tell you", "a left wave", "lopen dansen", "mira arriba",
@@ -258,21 +192,6 @@ def test_reading_takes_less_than_two_milliseconds() -> None:
 def test_the_words_of_the_corpus_are_those_of_its_phrases() -> None:
     """When this fails after phrases or everyday words were changed: `python -m mmm_core.corpus.family_words`."""
     assert CORPUS_WORDS_FILE.read_text(encoding="utf-8") == corpus_words()
-
-
-@pytest.mark.parametrize(
-    ("text", "command"),
-    [
-        ("peer down at your toes", "look down at your toes"), ("crane your neck to the left", "look to the left"),
-        ("stare straight up", "look up"), ("glance rightwards", "look to the right"), ("rock back", "lean back"),
-        ("tip your body backwards", "lean back"), ("incline your trunk to the right", "lean to the right"),
-        ("rotate your torso leftwards", "turn your upper body to the left"),
-        ("point your right finger forwards", "point forward with your right hand"),
-        ("point with your left hand down", "point down with your left hand"),
-    ],
-)  # fmt: skip
-def test_words_of_looking_leaning_and_pointing_are_those_of_the_model(text: str, command: str) -> None:
-    assert said(text) == [[command]]
 
 
 @pytest.mark.parametrize(

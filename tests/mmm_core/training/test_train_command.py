@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import functools
 import os
 import resource
 import shutil
@@ -71,8 +72,10 @@ outside = 100
 """
 
 
-INDEX_COMMANDS = sorted(known_commands(1))[::20]
-"""The known commands in the index: reading all that ship have takes longer than the training here."""
+@functools.cache
+def index_commands() -> list[str]:
+    """The known commands in the index: reading all that ship have takes longer than the training here."""
+    return sorted(known_commands(1))[::20]
 
 
 _VECTORS: dict[str, torch.Tensor] = {}
@@ -100,7 +103,7 @@ def quick_parts() -> Iterator[None]:
         patch.setattr(scope_training, "sentence_vectors", sentence_vectors)
         patch.setattr(CaptionStates, "encode", encode)
         patch.setattr(samples, "INSTANTS", 2)  # most of the time of a picture is its axes
-        patch.setattr(scope_training, "known_commands", lambda *_: set(INDEX_COMMANDS))
+        patch.setattr(scope_training, "known_commands", lambda *_: set(index_commands()))
         patch.setattr(scope_training, "OUTSIDE", scope_training.OUTSIDE[::8])
         yield
 
@@ -333,7 +336,7 @@ def test_the_scope_of_a_finished_run_is_built_again(tmp_path: Path, capsys: pyte
     assert main(["train", "scope", "--config", str(config), "--run", str(run), "--out", str(out)]) == 0
     model = load_model(out)
     assert model.scope is not None and model.scope.classifier is not None
-    assert model.scope.commands[: model.scope.n_known] == INDEX_COMMANDS
+    assert model.scope.commands[: model.scope.n_known] == index_commands()
     assert torch.equal(model.transformer.head.weight, old.transformer.head.weight)
     old.scope = None
     save_model(run / "model.safetensors", old)
