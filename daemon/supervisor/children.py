@@ -41,7 +41,8 @@ class Child:
         self._module, self._arguments = module, list(arguments)
         self._process: asyncio.subprocess.Process | None = None
         self._forward: asyncio.Task[None] | None = None
-        self._started_s = time.monotonic()
+        self._started_s = self._still_since_s = time.monotonic()
+        self._cpu_s = 0.0
         self.said: deque[str] = deque(maxlen=5)
 
     @property
@@ -65,6 +66,18 @@ class Child:
         """Seconds since it was started last."""
         return time.monotonic() - self._started_s
 
+    def stands_still_s(self) -> float:
+        """Seconds for which it has used no processor time, as often as this is called: it is frozen, or waits for a device.
+
+        0 where the processor time of other processes cannot be read (clock_getcpuclockid(3) is Linux's).
+        """
+        now_s, cpu_s = time.monotonic(), 0.0
+        with contextlib.suppress(OSError):
+            cpu_s = time.clock_gettime((~self.pid << 3) | 2)
+        if cpu_s != self._cpu_s or not cpu_s:
+            self._cpu_s, self._still_since_s = cpu_s, now_s
+        return now_s - self._still_since_s
+
     def add_argument(self, argument: str) -> None:
         """Give it one more argument at its next start."""
         if argument not in self._arguments:
@@ -75,7 +88,7 @@ class Child:
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", **self._environment}
         environment[PARENT_VARIABLE] = str(os.getpid())
         self.said.clear()
-        self._started_s = time.monotonic()
+        self._started_s = self._still_since_s = time.monotonic()
         with on_all_cores():
             self._process = await asyncio.create_subprocess_exec(
                 sys.executable, "-m", self._module, *self._arguments,

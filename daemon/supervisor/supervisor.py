@@ -240,6 +240,11 @@ class Supervisor:
                 raise BusStartError("ended while the bus was being opened")
             self._link.heartbeat()
             await asyncio.sleep(0.01)
+            frozen_s = self._frozen_s
+            if bus.stands_still_s() > frozen_s:
+                bus.kill()
+                await bus.ended()
+                raise BusStartError(f"the bus process stood still for {frozen_s:g} s while it started, and was killed")
         if self._link.readiness is Readiness.READY:
             return
         if self._link.readiness is Readiness.REFUSED:
@@ -284,13 +289,17 @@ class Supervisor:
                 return
             await asyncio.sleep(0.02)
 
+    @property
+    def _frozen_s(self) -> float:
+        """Seconds of silence after which the bus process is taken to be frozen."""
+        return BUS_FROZEN_IN_AN_ESTOP_S if self._link.owes(*ESTOPS) else BUS_FROZEN_S
+
     async def _lost_bus(self, front: Front, bus: Child) -> int:
         """Wait for the end of the bus process, which a frozen one is brought to; its status."""
         ended = asyncio.create_task(bus.ended())
         while not ended.done():
             await asyncio.wait({ended}, timeout=0.2)
-            frozen_s = BUS_FROZEN_IN_AN_ESTOP_S if self._link.owes(*ESTOPS) else BUS_FROZEN_S
-            if front.view.silent_s > frozen_s and not ended.done():
+            if front.view.silent_s > self._frozen_s and not ended.done():
                 log.error("the bus process has been silent for %.1f s and is killed", front.view.silent_s)
                 bus.kill()
         return ended.result()

@@ -5,6 +5,7 @@ The servos are behind a real tty and outlive the daemon's processes; their audit
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import time
@@ -89,6 +90,35 @@ def test_a_frozen_front_keeps_no_estop_from_the_bus_process(shared: SharedDaemon
             assert_works(client)
     finally:
         daemon.process.send_signal(signal.SIGCONT)
+        person.close()
+
+
+def test_a_bus_process_frozen_in_its_start_is_killed_and_the_estop_carried_out(shared: SharedDaemon):
+    """It was given up after 20 s, in which the servos kept their torque."""
+    daemon, person = shared.daemon, Person(shared.daemon)
+    try:
+        with shared.client() as client:
+            lead_to(client, shared.servos, "moving")
+        lost, frozen = child_pid(daemon, "daemon.control.process"), list[int]()
+        os.kill(lost, signal.SIGKILL)
+
+        def is_frozen_in_its_start() -> bool:
+            with contextlib.suppress(AssertionError):  # none runs yet
+                frozen.append(child_pid(daemon, "daemon.control.process"))
+                os.kill(frozen[-1], signal.SIGSTOP)
+            return bool(frozen) and frozen[-1] != lost
+
+        within(BACK_WITHIN_S, "it starts again", is_frozen_in_its_start)
+        name = person.estop()
+        within(BACK_WITHIN_S, "it is killed", lambda: gone(frozen[-1]))
+        assert "stood still" in daemon.said
+        assert person.hears(ev.CarriedOut, name, BACK_WITHIN_S)
+        within(1.0, "no torque", lambda: not shared.servos.torque)
+        with shared.client() as client:
+            client.reset()
+            client.wait_for("limp", timeout_s=5)
+            assert_works(client)
+    finally:
         person.close()
 
 
