@@ -21,7 +21,7 @@ _DIRECTION = re.compile(
     rf"^(?!(?:come|go|get|move|step) back)(?:one |another )?{_AFTER_VERB}(?P<way>(?:(?:up |down )?(?:to|towards?|at|on) )?(?:the |your )?(?P<side>left|right)(?: side| one| again)?|{_WAYS}|(?:up|down|back|over) (?:to|at|towards|into|on) (?:the |your |my )?\w+)$"
 )
 _SIDED = re.compile(rf"\b(left|right)\b(?= {_LIMB}\b)|\b(?:the|your) (left|right)\b")
-_THE_SAME = r"(?:also |and |now )?(?:(?:do )?(?:the same|same|it|that|so|likewise|again)(?: thing)?(?: again)? )?"
+_THE_SAME = r"(?:also |and |now )?(?:(?:do )?(?:the same|same|it|that|so|likewise|again|another|one|another one)(?: thing)?(?: again)? )?"
 _ONLY_SIDE = re.compile(
     rf"^{_THE_SAME}(?:with|using|on|for|by|use)? ?(?:the |your )?(?P<side>left|right)(?: (?P<limb>{_LIMB}))?(?: (?:too|as well|again|instead))?$"
 )
@@ -71,6 +71,12 @@ _THAT_WAY = re.compile(r"(?<=\w )(?:(?:in )?(?:that|the same) (?:way|direction)|
 _OTHER_PART = re.compile(
     r"^(?:with |so )?(?:your|the) (?P<part>trunk|torso|upper body|body|waist|head|neck|shoulders|(?:left|right) (?:arm|hand)|arms)$"
 )
+_PART = "head|hair|forehead|ears?|eyes|nose|mouth|chin|cheeks?|face|neck|shoulders?|chest|heart|belly|stomach|tummy|hips?|back|knees?|thighs?|arms?"
+_ONLY_PART = re.compile(rf"^(?:your|the) (?P<part>(?:(?:left|right) )?(?:{_PART}))$")
+_RUBS = re.compile(
+    rf"^(?P<verb>(?:rub|scratch|pat|touch|tap|cover|wipe|hold|brush|stroke)) (?:your|the) (?:(?:left|right) )?(?:{_PART})\b"
+)
+"""'Rub your belly', and what else may be rubbed: "then your head"."""
 _TURNED = re.compile(
     r"\b(?:your|the) (?:trunk|torso|upper body|body|waist|head|neck|shoulders|(?:left |right )?(?:arms?|hands?))\b"
 )
@@ -113,7 +119,9 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         said, n = _SAID_TIMES.subn(times, before, count=1)
         return said if n else None
     clause = re.sub(
-        r"^(?:and |then |now |next |finally |again )+|(?: again| too| as well| instead)+$", "", clause.strip(" ,.!")
+        r"^(?:and |then |now |next |finally |again )+|(?: again| too| as well| instead)+$",
+        "",
+        clause.strip(" ,.!"),
     ).strip()
     if not clause:
         return None
@@ -141,6 +149,8 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         return f"{before} with your {found['side']} hand"
     if (part := _OTHER_PART.match(clause)) and (limb := _TURNED.search(before)) and not limb.start() == 0:
         return f"{before[: limb.start()]}your {part['part']}{before[limb.end() :]}"
+    if (part := _ONLY_PART.match(clause)) and (rubbed := _RUBS.match(before)):
+        return f"{rubbed['verb']} your {part['part']}{before[rubbed.end() :]}"
     if (there := _THAT_WAY.search(clause)) and (
         way := re.search(r"\b(?:to (?:the |your )?)?(?:left|right|up|down)\b(?! (?:hand|arm))", before)
     ):

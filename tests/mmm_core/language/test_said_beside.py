@@ -24,7 +24,13 @@ from mmm_core.language.reading import read
         ("look up at the shelf", "look up"), ("look down at the sawdust twice", "look down twice"),
         ("stand up straight", "stand upright"),
         ("conduct the radio with your right arm", "conduct the orchestra with your right arm"),
+        ("a wave with the left and then one with the right", "a wave with your left hand; a wave with your right hand"),
+        ("rub your belly, then your head", "rub your belly; rub your head"),
+        ("your right arm waves, your left arm is behind your back",
+         "wave with your right hand + put your left hand behind your back"),
+        ("clap, head bobbing", "clap + nod"),
         # and what looks like it
+        ("rub your belly, then shake your head", "rub your belly; shake your head"),
         ("look down at your watch", "look down at your watch"),
         ("look left at a snail's pace", "look to the left (0.5 times as fast)"),
         ("look up and clap", "look up + clap"), ("look over your left shoulder", "look back over your left shoulder"),
