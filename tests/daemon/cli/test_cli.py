@@ -129,44 +129,6 @@ def test_stop_loads_nothing_heavy():
     assert result.stdout.strip() == "[]"
 
 
-@pytest.fixture(scope="module")
-def running():
-    daemon = RunningDaemon()
-    try:
-        yield daemon.until_ready()
-    finally:
-        daemon.close()
-
-
-def test_the_session_of_the_readme(running):
-    said = running.mmmd("say", "wave with your right hand")
-    assert said.returncode == 0
-    assert said.stdout.splitlines()[0].startswith("accepted: moves the right hand to the side")
-    assert said.stdout.splitlines()[-1].startswith("done: shown: moves the right hand to the side")
-    assert "reference on sim://" in running.mmmd("status").stdout
-    for verb, after in (("stop", "idle"), ("estop", "in e-stop"), ("reset", "limp"), ("arm", "idle"), ("park", "limp")):
-        result = running.mmmd(verb)
-        assert result.returncode == 0, result.stderr
-        assert f"is {after}" in result.stdout, result.stdout
-
-
-def test_json_of_the_commands(running):
-    status = json.loads(running.mmmd("status", "--json").stdout)
-    assert status["type"] == "state" and status["v"] == 1 and status["robot"] == "reference"
-    lines = [json.loads(line) for line in running.mmmd("say", "left wave", "--json").stdout.splitlines()]
-    assert lines[0]["type"] == "accepted" and lines[-1]["type"] == "done"
-    watched = running.mmmd("watch", "--json", "--n", "3")
-    assert watched.returncode == 0 and len([json.loads(line) for line in watched.stdout.splitlines()]) == 3
-
-
-def test_a_refused_text_is_one_message_and_status_1(running):
-    result = running.mmmd("say", "do a somersault")
-    assert result.returncode == 1 and result.stdout == ""
-    assert "legs" in result.stderr and result.stderr.count("\n") == 1
-    event = json.loads(running.mmmd("say", "do a somersault", "--json").stdout)
-    assert event["type"] == "rejected" and event["code"] == "out_of_scope"
-
-
 @needs_model
 def test_generate_writes_what_the_design_names(tmp_path):
     npz, bvh = tmp_path / "wave.npz", tmp_path / "wave.bvh"
@@ -227,3 +189,44 @@ def _started_by(pid: int, command: str) -> int:
                 return int(child)
         time.sleep(0.05)
     raise AssertionError(f"process {pid} started no {command}")
+
+
+# Last of the module: this daemon would run while the other tests take their time.
+
+
+@pytest.fixture(scope="module")
+def running():
+    daemon = RunningDaemon()
+    try:
+        yield daemon.until_ready()
+    finally:
+        daemon.close()
+
+
+def test_the_session_of_the_readme(running):
+    said = running.mmmd("say", "wave with your right hand")
+    assert said.returncode == 0
+    assert said.stdout.splitlines()[0].startswith("accepted: moves the right hand to the side")
+    assert said.stdout.splitlines()[-1].startswith("done: shown: moves the right hand to the side")
+    assert "reference on sim://" in running.mmmd("status").stdout
+    for verb, after in (("stop", "idle"), ("estop", "in e-stop"), ("reset", "limp"), ("arm", "idle"), ("park", "limp")):
+        result = running.mmmd(verb)
+        assert result.returncode == 0, result.stderr
+        assert f"is {after}" in result.stdout, result.stdout
+
+
+def test_json_of_the_commands(running):
+    status = json.loads(running.mmmd("status", "--json").stdout)
+    assert status["type"] == "state" and status["v"] == 1 and status["robot"] == "reference"
+    lines = [json.loads(line) for line in running.mmmd("say", "left wave", "--json").stdout.splitlines()]
+    assert lines[0]["type"] == "accepted" and lines[-1]["type"] == "done"
+    watched = running.mmmd("watch", "--json", "--n", "3")
+    assert watched.returncode == 0 and len([json.loads(line) for line in watched.stdout.splitlines()]) == 3
+
+
+def test_a_refused_text_is_one_message_and_status_1(running):
+    result = running.mmmd("say", "do a somersault")
+    assert result.returncode == 1 and result.stdout == ""
+    assert "legs" in result.stderr and result.stderr.count("\n") == 1
+    event = json.loads(running.mmmd("say", "do a somersault", "--json").stdout)
+    assert event["type"] == "rejected" and event["code"] == "out_of_scope"
