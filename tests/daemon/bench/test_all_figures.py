@@ -262,7 +262,7 @@ def test_the_report_of_given_files() -> None:
         | text to first moving servo frame from rest, p95 | 95 ms | ≤ 90 ms | **no: 5.6 % over** |  |
         | text to first moving servo frame out of idle movements, p50 | 61.5 ms | ≤ 60 ms | **no: 2.5 % over** |  |
         | codec: goals built, 20 answers parsed and stored | 13.40 us | ≤ 20 us | yes | `mmmd bench bus --json` |
-        | first motion while the page is open, against without | not measured here | ≤ 1.05 |  |  |
+        | first motion while the page is open, against without | not measured here | ≤ 1.05 |  | `python -m docs.tools.page_open` |
         - a machine: first-motion, official, bus
         - mmmd 0.1.0
         | run | took | others | host | n | seed | commit | end, UTC |
