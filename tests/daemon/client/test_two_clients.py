@@ -33,35 +33,6 @@ def running(tmp_path_factory):
         daemon.close()
 
 
-def test_the_async_client_says_stops_and_watches_at_once(running):
-    async def main() -> None:
-        async with AsyncClient(running.endpoints) as robot:
-            await robot.arm()
-            assert (await robot.say("wave", seconds=0.8)).done
-            await robot.wait_for("idle", timeout_s=3)
-            saying = asyncio.create_task(robot.say("wave", seconds=6.0))
-            await robot.wait_for("moving", timeout_s=5)
-            assert (await robot.status()).command is not None  # while the other call waits
-            await robot.stop()
-            with pytest.raises(CancelledByError, match="stop"):
-                await saying
-            async with contextlib.aclosing(robot.watch("v1/state")) as states:
-                async for topic, state in states:
-                    assert topic == "v1/state"
-                    if state.state == "holding":
-                        break
-            with pytest.raises(RefusedError, match="legs"):
-                await robot.say("do a somersault")
-            assert (await robot.gesture("nod", tempo=2.0, command_id="mine")).id == "mine"
-            assert "async_nod" in (await robot.record("async_nod", "mine")).note
-            assert (await robot.gesture("async_nod")).done
-            assert len((await robot.capabilities()).gestures) >= 60
-            assert (await robot.look(10)).verb == "look" and (await robot.look()).note == ""
-            assert (await robot.idle(False)).verb == "idle"
-
-    asyncio.run(main())
-
-
 def test_the_async_client_gives_up_in_time_where_nobody_is(tmp_path):
     async def main() -> None:
         ends = Endpoints(*(f"ipc://{tmp_path}/{n}" for n in ("a", "b", "c")))
@@ -117,6 +88,35 @@ def test_both_clients_go_on_after_a_restart_and_say_nothing_late():
             return daemon.until_ready()
 
         asyncio.run(main(ends, start))
+
+
+def test_the_async_client_says_stops_and_watches_at_once(running):
+    async def main() -> None:
+        async with AsyncClient(running.endpoints) as robot:
+            await robot.arm()
+            assert (await robot.say("wave", seconds=0.8)).done
+            await robot.wait_for("idle", timeout_s=3)
+            saying = asyncio.create_task(robot.say("wave", seconds=6.0))
+            await robot.wait_for("moving", timeout_s=5)
+            assert (await robot.status()).command is not None  # while the other call waits
+            await robot.stop()
+            with pytest.raises(CancelledByError, match="stop"):
+                await saying
+            async with contextlib.aclosing(robot.watch("v1/state")) as states:
+                async for topic, state in states:
+                    assert topic == "v1/state"
+                    if state.state == "holding":
+                        break
+            with pytest.raises(RefusedError, match="legs"):
+                await robot.say("do a somersault")
+            assert (await robot.gesture("nod", tempo=2.0, command_id="mine")).id == "mine"
+            assert "async_nod" in (await robot.record("async_nod", "mine")).note
+            assert (await robot.gesture("async_nod")).done
+            assert len((await robot.capabilities()).gestures) >= 60
+            assert (await robot.look(10)).verb == "look" and (await robot.look()).note == ""
+            assert (await robot.idle(False)).verb == "idle"
+
+    asyncio.run(main())
 
 
 def result_of(answer: dict) -> str:
