@@ -19,7 +19,7 @@ _WHILE = re.compile(
     r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as|(?:during|for|all) (?:all |the (?:whole |entire )?)?time(?: that| in which)?|for as long as|as long as|as well as(?= \w+ing\b)|(?:in time|along|in step|in rhythm) (?:with|to)(?= (?:your |the )?\w+ing\b)|(?<=[a-z], )but (?:still )?keep(?: on)?(?= \w+ing\b))\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*"
 )
 _AS_YOU = re.compile(
-    rf"\s*,?\s*\bas (?:you(?: are)?\s+|(?=(?:your|the|both) (?:left |right )?(?:{LIMB}|head|eyes|body|trunk)\b))"
+    rf"\s*,?\s*\bas (?:you(?! (?:can|could|like|wish|want|please|would|did|do)\b)(?: are)?\s+|(?=(?:your|the|both) (?:left |right )?(?:{LIMB}|head|eyes|body|trunk)\b))"
 )
 _SAME_TIME = re.compile(
     r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same (?:time|moment)|simultaneously|at once|together|(?:all )?in one(?: go| movement| motion)?(?=$|[,.])|all at once|concurrently|in parallel|in (?:unison|sync|tandem)(?=$|[,.])|meanwhile(?=$|[,.]))\b[,:]?\s*(?:and )?"
@@ -31,7 +31,7 @@ _WITH_LEADING = re.compile(
     rf"^with (?P<first>(?:your |both |the )*(?:left |right )?{LIMB} (?:crossed|folded|raised|stretched|spread|up|out|on|behind|over|wide|high)\b[^,]*),\s*(?P<second>\w.+)$"
 )
 _WITH_POSE = re.compile(
-    rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to (?:your |the )?(?:heart|chest|head|ears?|mouth|chin|face|forehead|temple|sides?|sky|ceiling|front|left|right|belly|shoulder)|at(?! the (?:very )?same)|in front|out|up|in|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
+    rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to (?:your |the )?(?:heart|chest|head|ears?|mouth|chin|face|forehead|temple|sides?|sky|ceiling|front|left|right|belly|shoulder)|at(?= (?:your |the |its )?(?:sides?|hips?|chest|heart|head|ears?|mouth|chin|shoulders?|waist|belly|brow|temples?|forehead|face|(?:shoulder|hip|chest|head|eye|waist) (?:height|level))\b)|in front|out|up|in(?= (?:the air|your (?:lap|pocket)|fists?)\b)|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
 )
 _AND = re.compile(r"\s*,\s*(?:and\s+|but\s+)?(?:also\s+)?|\s+(?:and|plus|but)\s+(?:also\s+)?")
 _FILLER = re.compile(
@@ -45,7 +45,7 @@ _ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
 """'Raise your left hand and wave' is one gesture."""
 _BARE_LIMB = re.compile(rf"^(?:with )?(?:your |the |both |left |right |other )*(?:{LIMB}|head|body|eyes|face)$")
 """A limb of which nothing is said is no command."""
-_HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)\b.*\b(?:seconds?|secs?)\b")
+_HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)s?\b.*\b(?:seconds?|secs?)\b")
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
 _IS = re.compile(
     r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|(?:should|must|can|will|ought to|has to|may) (?:be|stay|remain|rest)|stays?|remains?|goes|keeps?|rests?|sits?|lies|lays?|stands?)(?: being| held)? (?P<rest>.+)$"
@@ -58,6 +58,16 @@ _ACTS = re.compile(
     r"|(?P<verb>wave|salute|point|beckon|knock|punch|cover|touch|shade|scratch|shake|nod|turn|tilt|conduct|rub|pat|wipe|hammer|look)(?:e?s)?)\b(?P<rest>.*)$"
 )
 """'Your left hand waves', 'have your head nod'."""
+
+
+_WAY = r"(?:up|down|back(?:wards?)?|forth|forwards?|over|in|out|left|right|high|low|sideways|to|fro)"
+_WAY_LAST = re.compile(rf"\b{_WAY}$")
+_WAY_FIRST = re.compile(rf"^{_WAY}\b(?! (?:hands?|arms?|fists?|palms?|one|elbow)\b)")
+"""'Up and down' and 'back and forth' belong to one command."""
+_RAISED_WITH = re.compile(
+    r" with (?:your |the )?(?P<side>(?:left|right) )?(?:hand|arm|fist) (?:(?:held|raised|stretched|straight|lifted) )*(?:up|out|high|overhead|raised|over|above|in)\b"
+)
+"""'Signal with your left arm overhead' says where the arm is that signals."""
 
 
 def are_at_once(a: str, b: str, *, joined: bool = True) -> bool:
@@ -137,14 +147,26 @@ def _pairs(clause: str) -> list[tuple[tuple[str, str], bool]]:
     for pattern in (_WHILE, _AS_YOU):
         if (m := pattern.search(clause)) and m.start() > 0:
             found.append(((clause[: m.start()], clause[m.end() :]), True))
-    if (m := _WITH_POSE.search(clause)) and limbs_named(clause[: m.start()]):
+    if (m := _WITH_POSE.search(clause)) and limbs_named(clause[: m.start()]) and not _is_its_own_arm(clause, m.start()):
         found.append(((clause[: m.start()], m["pose"]), True))
     same = _SAME_TIME.search(clause)
     if same and 0 < same.start() and same.end() < len(clause):
         found.append(((clause[: same.start()], clause[same.end() :]), True))
     rest = _SAME_TIME.sub(" ", clause).strip(" ,") if same else clause
-    found += [((rest[: m.start()], rest[m.end() :]), bool(same)) for m in _AND.finditer(rest)]
+    found += [
+        ((rest[: m.start()], rest[m.end() :]), bool(same))
+        for m in _AND.finditer(rest)
+        if not (_WAY_LAST.search(rest[: m.start()]) and _WAY_FIRST.match(rest[m.end() :]))
+    ]
     return [(pair, asked) for pair, asked in found if all(len(p.strip()) > 2 for p in pair)]
+
+
+def _is_its_own_arm(clause: str, start: int) -> bool:
+    """Whether the arm in "... with your left arm overhead" is the one that the words before move: they name no other."""
+    raised, moved = _RAISED_WITH.match(clause, start), limbs_of(clause[:start])
+    if raised is None or not moved & (ARMS | SOME_ARM):
+        return False
+    return moved == SOME_ARM or not raised["side"] or f"{raised['side'].strip()}_arm" in moved
 
 
 def _with_verb(second: str, first: str) -> str:

@@ -45,6 +45,11 @@ _LEAVE = re.compile(
     r"(?:,?\s*(?:and|but|while)\s+)?\b(?:leave|keep|leaving|keeping|let)\s+(?:your |the )?(?P<side>left|right) (?:hand|arm|one)\s+"
     r"(?:alone|out of it|out|still|down|hanging|at rest|where it is|at your side|rest|hang|by your side|in your pocket)\b,?\s*(?:and\s+)?"
 )
+_RESTS = re.compile(
+    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:your |the )(?P<side>left|right) (?:hand|arm) (?:rests|hangs(?: down)?|(?:stays|remains) (?:still|down|where it is|out of it))"
+    r"(?=\s*(?:$|,|;|and\b|while\b)),?\s*(?:(?:and|while)\s+)?"
+)
+"""'The left hand rests, wave with the right.'"""
 _KEEP_STILL = re.compile(
     r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?(?:head|arms|both arms|hands|both hands|body|trunk|torso|upper body|shoulders|rest of (?:you|your body)|legs|feet|everything else)\s+"
     r"(?:still|(?<!head )down|at your sides?|by your sides?|straight|alone|out of it|quiet|upright|where it is|where they are),?\s*(?:and\s+)?"
@@ -58,7 +63,7 @@ _WAVED_ASIDE = re.compile(
 )
 _NO_DENIAL = re.compile(
     r"^\W*(?:do not (?:stop|forget to|hesitate to|be (?:shy|afraid))|never (?:stop|give up)|not only\b|no (?:idea|clue|problem|thanks|way|matter|doubt|one)\b|"
-    r"stop (?:sign|gesture|me\b|us\b|the traffic|traffic|them\b|him\b|her\b|here|there|signal|with)|no[, ]+no\b|not (?:bad|sure|yet|until|before))"
+    r"stop (?:your ears|sign|gesture|me\b|us\b|the traffic|traffic|them\b|him\b|her\b|here|there|signal|with)|no[, ]+no\b|not (?:bad|sure|yet|until|before))"
 )
 _KEEP_DOING = re.compile(
     r"^\W*(?:please )?(?:do not|never) stop (?P<rest>\w.+)$|^\W*(?:please )?do not (?:forget|hesitate) to (?P<other>.+)$"
@@ -72,6 +77,10 @@ _NOT_USING = re.compile(
 _GO_ON = re.compile(
     r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
 )
+_STOP_AND = re.compile(
+    r"^(\W*(?:please )?(?:stop|quit) \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
+)
+"""'Stop waving and clap your hands' asks for the second; 'stop waving and clapping' for neither."""
 _HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
 
 
@@ -102,11 +111,11 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
     if other := _NOT_USING.match(text):
         return Denial(_with_side(other["rest"], OTHER[other["side"]]), (f"use the {other['side']} hand",))
     denied: list[str] = []
-    side = ""
-    text = _GO_ON.sub(r"\1, ", text)
-    text, leaves = _LEAVE.subn(lambda m: _note(denied, f"the {m['side']} arm") + ", ", text)
-    if leaves:
-        side = "left" if "left" in denied[-1] else "right"
+    text = _STOP_AND.sub(r"\1, ", _GO_ON.sub(r"\1, ", text))
+    for pattern in (_LEAVE, _RESTS):
+        text = pattern.sub(lambda m: _note(denied, f"the {m['side']} arm") + ", ", text)
+    leaves = len(denied)
+    side = "" if not leaves else "left" if "left" in denied[-1] else "right"
     text = _KEEP_STILL.sub(" ", text).strip(" ,")
     for pattern in (_GERUND_FIRST, _NOT_A_BUT_B):
         found = pattern.match(text)
