@@ -10,6 +10,7 @@ import sys
 import time
 from collections import deque
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from daemon.host.cores import on_all_cores
 from daemon.host.parent import PARENT_VARIABLE
@@ -41,8 +42,7 @@ class Child:
         self._module, self._arguments = module, list(arguments)
         self._process: asyncio.subprocess.Process | None = None
         self._forward: asyncio.Task[None] | None = None
-        self._started_s = self._still_since_s = time.monotonic()
-        self._cpu_s = 0.0
+        self._started_s = self._ran_s = time.monotonic()
         self.said: deque[str] = deque(maxlen=5)
 
     @property
@@ -66,17 +66,17 @@ class Child:
         """Seconds since it was started last."""
         return time.monotonic() - self._started_s
 
-    def stands_still_s(self) -> float:
-        """Seconds for which it has used no processor time, as often as this is called: it is frozen, or waits for a device.
+    def stopped_s(self) -> float:
+        """Seconds for which it has been stopped by a signal, as often as this is called; 0 where there is no /proc.
 
-        0 where the processor time of other processes cannot be read (clock_getcpuclockid(3) is Linux's).
+        A process that starves on a busy machine is none: it waits for a processor, and is to be waited for.
         """
-        now_s, cpu_s = time.monotonic(), 0.0
-        with contextlib.suppress(OSError):
-            cpu_s = time.clock_gettime((~self.pid << 3) | 2)
-        if cpu_s != self._cpu_s or not cpu_s:
-            self._cpu_s, self._still_since_s = cpu_s, now_s
-        return now_s - self._still_since_s
+        now_s, state = time.monotonic(), ""
+        with contextlib.suppress(OSError, IndexError):
+            state = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()[0]
+        if state not in ("T", "t"):
+            self._ran_s = now_s
+        return now_s - self._ran_s
 
     def add_argument(self, argument: str) -> None:
         """Give it one more argument at its next start."""
@@ -88,7 +88,7 @@ class Child:
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", **self._environment}
         environment[PARENT_VARIABLE] = str(os.getpid())
         self.said.clear()
-        self._started_s = self._still_since_s = time.monotonic()
+        self._started_s = self._ran_s = time.monotonic()
         with on_all_cores():
             self._process = await asyncio.create_subprocess_exec(
                 sys.executable, "-m", self._module, *self._arguments,

@@ -241,10 +241,10 @@ class Supervisor:
             self._link.heartbeat()
             await asyncio.sleep(0.01)
             frozen_s = self._frozen_s
-            if bus.stands_still_s() > frozen_s:
+            if bus.stopped_s() > frozen_s:
                 bus.kill()
                 await bus.ended()
-                raise BusStartError(f"the bus process stood still for {frozen_s:g} s while it started, and was killed")
+                raise BusStartError(f"the bus process was frozen for {frozen_s:g} s while it started, and is killed")
         if self._link.readiness is Readiness.READY:
             return
         if self._link.readiness is Readiness.REFUSED:

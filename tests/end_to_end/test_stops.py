@@ -111,7 +111,7 @@ def test_a_bus_process_frozen_in_its_start_is_killed_and_the_estop_carried_out(s
         within(BACK_WITHIN_S, "it starts again", is_frozen_in_its_start)
         name = person.estop()
         within(BACK_WITHIN_S, "it is killed", lambda: gone(frozen[-1]))
-        assert "stood still" in daemon.said
+        assert "frozen for" in daemon.said
         assert person.hears(ev.CarriedOut, name, BACK_WITHIN_S)
         within(1.0, "no torque", lambda: not shared.servos.torque)
         with shared.client() as client:

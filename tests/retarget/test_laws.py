@@ -61,6 +61,10 @@ def test_a_long_motion_keeps_every_bound_across_its_blocks(name: str, seed: int,
     assert CHECKS[name].frames(path.at_rate(100.0)[::4]) == 0
 
 
+NEARLY_RAD, TICK_THIRD_RAD = 1e-4, 5e-4
+"""How near to one place a hold brings a robot whose path keeps clear of itself step by step, and how near its paths then stay."""
+
+
 def held_before(motion: Motion, n: int) -> Motion:
     """The motion after `n` frames in which its first frame is held."""
     fields = {f: getattr(motion, f) for f in motion.__dataclass_fields__}
@@ -90,10 +94,11 @@ def test_shifting_time_shifts_the_path_whatever_the_motion(name: str, at_least: 
             wanted, wanted_late = (r.poses(read_human(m)).q_rad[BLOCK_FRAMES:] for m in (before, after))
             early, late = r.retarget(before).q_rad, r.retarget(after).q_rad[BLOCK_FRAMES:]
             arrived = slice(BLOCK_FRAMES - 2, BLOCK_FRAMES)
-            same_start = np.abs(late[arrived] - early[arrived]).max() < 1e-9
-            if same_start and np.abs(wanted_late[BLOCK_FRAMES:] - wanted).max() < 1e-7:
+            start_off_rad = np.abs(late[arrived] - early[arrived]).max()
+            if start_off_rad < NEARLY_RAD and np.abs(wanted_late[BLOCK_FRAMES:] - wanted).max() < 1e-7:
                 path = slice(BLOCK_FRAMES, BLOCK_FRAMES + 50)
-                np.testing.assert_allclose(late[path], early[path], atol=1e-5)
+                most_rad = 1e-5 if start_off_rad < 1e-9 else TICK_THIRD_RAD
+                np.testing.assert_allclose(late[path], early[path], atol=most_rad)
                 compared += 1
     assert compared >= 3
 
