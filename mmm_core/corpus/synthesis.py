@@ -172,9 +172,14 @@ def synthesise(
             return clip
 
 
-def synthesise_spec(spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.0) -> SynthClip | None:
-    """A clip that shows `spec`; None when it would be longer than 9.8 s. With a beat it is clean: see `beat.py`."""
-    score = score_of(spec, rng, beat_s)
+def synthesise_spec(
+    spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.0, *, deterministic: bool = False
+) -> SynthClip | None:
+    """A clip that shows `spec`; None when it would be longer than 9.8 s. With a beat it is clean: see `beat.py`.
+
+    A `deterministic` clip has no chance in its pauses either: the same gesture is always the same motion.
+    """
+    score = score_of(spec, rng, beat_s, deterministic=deterministic)
     n_tokens = int(np.ceil(score.time_s * FPS / FRAMES_PER_TOKEN - 1e-6))
     if n_tokens > MAX_TOKENS:
         return None
@@ -184,9 +189,9 @@ def synthesise_spec(spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.
     return SynthClip(body.features(), words_for(spec, rng), spec, body)
 
 
-def score_of(spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.0) -> Score:
+def score_of(spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.0, *, deterministic: bool = False) -> Score:
     """What the body does to show `spec`: as a person does it, or on a beat."""
-    return _on_beat(spec, rng, beat_s) if beat_s else _freely(spec, rng)
+    return _on_beat(spec, rng, beat_s, deterministic) if beat_s else _freely(spec, rng)
 
 
 def words_for(spec: ClipSpec, rng: np.random.Generator) -> list[str]:
@@ -207,15 +212,17 @@ def _freely(spec: ClipSpec, rng: np.random.Generator) -> Score:
     return score
 
 
-def _on_beat(spec: ClipSpec, rng: np.random.Generator, beat_s: float) -> Score:
-    """Begins at once, and only pauses are longer or shorter by chance."""
+def _on_beat(spec: ClipSpec, rng: np.random.Generator, beat_s: float, deterministic: bool) -> Score:
+    """Begins at once, and only pauses are longer or shorter by chance, or nothing where it is `deterministic`."""
     score = Score(rng, rest_pose(Calm(rng)), follow_through=0.02, beat_s=beat_s)
+    if deterministic:
+        score.chance = score.rng
     _write(score, spec)
     last = FAMILIES[spec.gestures[-1].family]
-    if spec.gestures[-1].hold_s > 0 or not last.holds or rng.random() < 0.75:
+    if deterministic or spec.gestures[-1].hold_s > 0 or not last.holds or rng.random() < 0.75:
         score.to_beat()
         score.relax(0.8)
-    score.hold(beat_s if rng.random() < 0.5 else beat_s * rng.integers(2, 11))
+    score.hold(beat_s if deterministic or rng.random() < 0.5 else beat_s * rng.integers(2, 11))
     return score
 
 

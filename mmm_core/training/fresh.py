@@ -19,8 +19,9 @@ from torch import Tensor
 
 from mmm_core import distributed
 from mmm_core.corpus.beat import BEAT_S
+from mmm_core.corpus.deterministic import synthesise_deterministic
 from mmm_core.corpus.families import FAMILIES
-from mmm_core.corpus.synthesis import SINGLE_SHARE, synthesise, usual_weight
+from mmm_core.corpus.synthesis import SINGLE_SHARE, SynthClip, synthesise, usual_weight
 from mmm_core.corpus.takeover import synthesise_takeover
 from mmm_core.errors import TrainingDataError
 from mmm_core.language.mirroring import canonical
@@ -53,6 +54,7 @@ class FreshRecipe:
         canonical_share: share of clips whose sentence is the one of it and its mirror image that the engine reads.
         single_share: share of clips that show one gesture; the others show two at once, or two or three in turn.
         takeover_share: share of clips that begin in the middle of another gesture, whose tokens are given and not learnt.
+        deterministic_share: share of clips that show one gesture without any chance (`mmm_core.corpus.deterministic`).
     """
 
     clips: int = 0
@@ -64,6 +66,7 @@ class FreshRecipe:
     canonical_share: float = 0.8
     single_share: float = SINGLE_SHARE
     takeover_share: float = 0.0
+    deterministic_share: float = 0.0
 
 
 def usual_weights() -> dict[str, float]:
@@ -110,17 +113,24 @@ def make_round(how: FreshRecipe, seed: int, k: int, weights: Mapping[str, float]
 
 
 def _make(how: FreshRecipe, rng: np.random.Generator, weights: Mapping[str, float]) -> Clip:
+    if how.deterministic_share and rng.random() < how.deterministic_share:
+        clip = synthesise_deterministic(rng, weights)
+        return _read_from_one_side(clip, how.captions, 0)
     beat_s = 0.0 if rng.random() < how.free_share else BEAT_S
     if how.takeover_share and rng.random() < how.takeover_share:
         made, n_seen = synthesise_takeover(rng, beat_s, weights, how.single_share)
     else:
         made, n_seen = synthesise(rng, beat_s, weights, how.single_share), 0
-    n = how.captions
     if rng.random() >= how.canonical_share:
-        return Clip(made.features, made.captions[:n], False, n_seen)
+        return Clip(made.features, made.captions[: how.captions], False, n_seen)
+    return _read_from_one_side(made, how.captions, n_seen)
+
+
+def _read_from_one_side(made: SynthClip, n_captions: int, n_seen: int) -> Clip:
+    """The clip whose sentence the engine reads: this one or its mirror image."""
     read = [canonical(c) for c in made.captions]
     turned = read[0][1]  # the others only where they are read from the same side
-    captions = [text for text, is_image in read if is_image == turned][:n]
+    captions = [text for text, is_image in read if is_image == turned][:n_captions]
     return Clip(mirror(made.features) if turned else made.features, captions, False, n_seen)
 
 
