@@ -67,9 +67,9 @@ class Child:
         return time.monotonic() - self._started_s
 
     def stopped_s(self) -> float:
-        """Seconds for which it has been stopped by a signal, as often as this is called; 0 where there is no /proc.
+        """Seconds since a call of this method first found it stopped by a signal; 0 where there is no /proc.
 
-        A process that starves on a busy machine is none: it waits for a processor, and is to be waited for.
+        A process that starves on a busy machine does not count: it waits for a processor.
         """
         now_s, state = time.monotonic(), ""
         with contextlib.suppress(OSError, IndexError):

@@ -243,7 +243,6 @@ class Supervisor:
             frozen_s = self._frozen_s
             if bus.stopped_s() > frozen_s:
                 bus.kill()
-                await bus.ended()
                 raise BusStartError(f"the bus process was frozen for {frozen_s:g} s while it started, and is killed")
         if self._link.readiness is Readiness.READY:
             return

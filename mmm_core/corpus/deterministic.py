@@ -37,7 +37,7 @@ def synthesise_deterministic(rng: np.random.Generator, weights: Mapping[str, flo
 
 
 def words_given(caption: str, gesture: Gesture) -> str | None:
-    """What the engine gives the model for a sentence.
+    """The words that the engine gives the model for a sentence.
 
     None where it reads several commands in it, or where no number is named and the gesture has not the usual number of strokes.
     """

@@ -194,7 +194,7 @@ def _angle_deg(v: Array) -> Array:
 
 
 def _face(quat: Array) -> tuple[Array, Array, Array]:
-    """Where a head of orientation (4, T) looks."""
+    """The direction that a head of orientation (4, T) faces."""
     w, x, y, z = quat
     return 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
 

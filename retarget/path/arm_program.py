@@ -30,7 +30,7 @@ _TO_BORDER = 0.99
 
 @dataclass(frozen=True)
 class Frames:
-    """What a change of frames, half way between control points, costs: e' H e / 2 - f' e.
+    """The cost of a change of frames, half way between control points: e' H e / 2 - f' e.
 
     Attributes:
         hessian: (N, n, n) H.

@@ -109,7 +109,7 @@ class Refiner:
         return ArmProgram(upper, lower, control[:2, joints])
 
     def _costs(self, shown: Shown, frames: Array, n_frames: int) -> Frames:
-        """The costs of N frames, of which the last ones are to stay where they are."""
+        """The costs of N frames; those after the motion are lightly held where they are."""
         N, joints = len(frames), self._joints
         n = len(joints)
         hessian, fall = np.zeros((N, n, n)), np.zeros((N, n))

@@ -93,8 +93,8 @@ def test_a_frozen_front_keeps_no_estop_from_the_bus_process(shared: SharedDaemon
         person.close()
 
 
-def test_a_bus_process_frozen_in_its_start_is_killed_and_the_estop_carried_out(shared: SharedDaemon):
-    """It was given up after 20 s, in which the servos kept their torque."""
+def test_a_bus_process_frozen_in_its_start_keeps_no_estop_undone(shared: SharedDaemon):
+    """The daemon once gave such a process up after 20 s, in which the servos kept their torque."""
     daemon, person = shared.daemon, Person(shared.daemon)
     try:
         with shared.client() as client:

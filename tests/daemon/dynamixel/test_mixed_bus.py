@@ -260,7 +260,7 @@ def test_an_answer_of_the_last_cycle_that_comes_during_this_one_is_late_not_a_se
     assert BusEventKind.DUPLICATE_ID not in kinds(bus) and bus.chains[0].link.health.counters.late[1] == 1
 
 
-def test_an_answer_that_took_the_place_of_a_later_one_is_late_not_a_second_servo() -> None:
+def test_a_late_answer_taken_for_a_later_one_is_no_second_servo() -> None:
     """The late answer of one cycle was taken for the next one's, whose own came in the cycle after that, beside a third."""
     bus, far, _ = bus_of(*("2XL430-W250",) * 3)
     for n_late in (0, 1, 1, 0, 1):
