@@ -154,12 +154,12 @@ class PathTrajectory(Trajectory):
 
     def append(self, chunk: Chunk) -> None:
         """Add a chunk, which must begin where `state_at(n_frames - 1)` ends."""
-        frames, report = chunk.path.at_rate(self._rate_hz), chunk.path.report
+        frames = chunk.path.at_rate(self._rate_hz)
         self._placed.append(_Placed(self.n_frames, self.n_frames + len(frames), chunk))
         self._frames.append(frames)
         self.n_frames += len(frames)
         self.complete = chunk.complete
-        self.statistics.take_report(report, len(frames))
+        self.statistics.take_path(chunk.path, len(frames))
         while len(self._placed) > 1 and self._placed[1].first < self.pushed - KEPT_FRAMES:
             self._kept_from += len(self._frames.pop(0))
             del self._placed[0]

@@ -118,7 +118,8 @@ class Poser:
         if self._arms_follow == "world":
             turned = np.swapaxes(self._trunk.into_chest(q) @ human.chest_rotation, -1, -2)
             upper, fore = ((d[:, :, None] @ turned)[:, :, 0] for d in (upper, fore))
-        weights = bone_weights(human)
+        all_reach = all(arms.reaches_all for arms in self._arms)
+        weights = np.tile(np.eye(2), (2, human.upper.shape[1], 1, 1)) if all_reach else bone_weights(human)
         for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
             if arms.reaches_all:
                 weights[sides] = np.eye(2)

@@ -8,14 +8,17 @@ from collections.abc import Awaitable, Callable
 import numpy as np
 
 from daemon.generator.generated import Generated
-from daemon.playback.sources.preview_source import PreviewSource
+from daemon.playback.sources.preview_source import HEAD_FRAMES, PreviewSource
 from daemon.poses.pose_sequence import PoseSequence, posture_of
+from mmm_core.motion.motion import Motion
 from tests.support.kinematic import raised_arm
 
+LONG = raised_arm(seconds=4.0, angle_rad=0.6)
+LONGER = raised_arm(seconds=5.0, angle_rad=1.2)
 DRAFT, WHOLE = raised_arm(seconds=1.0, angle_rad=0.6), raised_arm(seconds=2.0, angle_rad=1.2)
 
 
-async def score_of() -> tuple[PreviewSource, Callable[..., Awaitable[None]]]:
+async def score_of(draft: Motion = DRAFT) -> tuple[PreviewSource, Callable[..., Awaitable[None]]]:
     """A score, and what lets its motion come, or an error."""
     comes: asyncio.Future[Generated] = asyncio.get_running_loop().create_future()
 
@@ -24,14 +27,14 @@ async def score_of() -> tuple[PreviewSource, Callable[..., Awaitable[None]]]:
 
     whole = asyncio.create_task(wait())
 
-    async def come(error: Exception | None = None) -> None:
+    async def come(error: Exception | None = None, motion: Motion = WHOLE) -> None:
         if error is None:
-            comes.set_result(Generated(WHOLE, "", "", {}, ""))
+            comes.set_result(Generated(motion, "", "", {}, ""))
         else:
             comes.set_exception(error)
         await asyncio.wait({whole})
 
-    return PreviewSource(posture_of(DRAFT), whole, lambda generated: posture_of(generated.motion)), come
+    return PreviewSource(posture_of(draft), whole, lambda generated: posture_of(generated.motion)), come
 
 
 def same(a: PoseSequence, b: PoseSequence) -> bool:
@@ -81,5 +84,44 @@ def test_without_a_motion_the_draft_is_all():
         assert score.ready and not score.revised
         stretch, last = score.next()
         assert last and same(stretch, posture_of(DRAFT).at(np.full(2, len(DRAFT.joints_m) - 1)))
+
+    asyncio.run(run())
+
+
+def test_of_a_long_draft_the_first_frames_are_given_out_first_and_the_others_where_no_motion_has_come():
+    async def run():
+        score, come = await score_of(LONG)
+        draft = posture_of(LONG)
+        head, last = score.next()
+        assert not last and same(head, draft[:HEAD_FRAMES]) and score.ready
+        others, last = score.next()
+        assert not last and same(others, draft[HEAD_FRAMES:]) and not score.ready
+        await come(motion=LONGER)
+        assert score.revised and same(score.rest(n_left=10), posture_of(LONGER)[len(draft) - 10 :])
+        rest, last = score.next()
+        assert last and same(rest, posture_of(LONGER)[len(draft) :])
+
+    asyncio.run(run())
+
+
+def test_a_motion_goes_on_from_the_first_frames_of_a_long_draft():
+    async def run():
+        score, come = await score_of(LONG)
+        score.next()
+        await come(motion=LONGER)
+        assert score.revised and same(score.rest(n_left=HEAD_FRAMES - 3), posture_of(LONGER)[3:])
+        rest, last = score.next()
+        assert last and same(rest, posture_of(LONGER)[HEAD_FRAMES:])
+
+    asyncio.run(run())
+
+
+def test_without_a_motion_a_long_draft_is_played_to_its_end():
+    async def run():
+        score, come = await score_of(LONG)
+        score.next()
+        await come(ValueError("the generator was killed"))
+        rest, last = score.next()
+        assert last and same(rest, posture_of(LONG)[HEAD_FRAMES:])
 
     asyncio.run(run())
