@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import os
+import threading
 from collections.abc import Generator
 from pathlib import Path
 
@@ -66,17 +67,39 @@ def keep_to(core: int) -> bool:
     return True
 
 
+class _Starting(threading.local):
+    """What a thread is starting.
+
+    Attributes:
+        n: blocks of `on_all_cores` that are open.
+        own: the thread's cores outside of them.
+    """
+
+    n = 0
+    own: frozenset[int] | set[int] = frozenset()
+
+
+_starting = _Starting()
+
+
 @contextlib.contextmanager
 def on_all_cores() -> Generator[None]:
-    """What the calling thread starts meanwhile may run wherever this process might when it began."""
+    """What the calling thread starts meanwhile may run wherever this process might when it began.
+
+    An event loop may start several processes at a time: the thread goes back to its own cores at the end of the last block.
+    """
     if not _ALL:
         yield
         return
-    own = os.sched_getaffinity(0)
-    with contextlib.suppress(OSError):
-        os.sched_setaffinity(0, _ALL)
+    if not _starting.n:
+        _starting.own = os.sched_getaffinity(0)
+        with contextlib.suppress(OSError):
+            os.sched_setaffinity(0, _ALL)
+    _starting.n += 1
     try:
         yield
     finally:
-        with contextlib.suppress(OSError):
-            os.sched_setaffinity(0, own)
+        _starting.n -= 1
+        if not _starting.n:
+            with contextlib.suppress(OSError):
+                os.sched_setaffinity(0, _starting.own)

@@ -46,9 +46,37 @@ def test_where_no_claim_can_be_kept_there_is_none(tmp_path: Path) -> None:
     assert not (tmp_path / "elsewhere").exists()
 
 
-@pytest.mark.skipif(
+needs_two_cores = pytest.mark.skipif(
     not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2, reason="needs two cores and Linux"
 )
+
+
+@needs_two_cores
+def test_two_starts_at_a_time_leave_the_front_off_the_core(tmp_path: Path) -> None:
+    """The bus and the ctl process were started at a time: the front then ran on the bus process's core, and lost it 10 ms a text."""
+    everywhere = os.sched_getaffinity(0)
+    seen: list[set[int]] = []
+
+    def front() -> None:
+        CoreClaim(frozenset(everywhere), tmp_path).keep_off()
+        seen.append(os.sched_getaffinity(0))
+        first, second = on_all_cores(), on_all_cores()
+        first.__enter__()
+        second.__enter__()
+        first.__exit__(None, None, None)
+        seen.append(os.sched_getaffinity(0))
+        second.__exit__(None, None, None)
+        seen.append(os.sched_getaffinity(0))
+
+    thread = threading.Thread(target=front)  # its affinity ends with it
+    thread.start()
+    thread.join()
+    before, while_one_starts, after = seen
+    assert after == before != everywhere
+    assert while_one_starts == everywhere
+
+
+@needs_two_cores
 def test_the_front_keeps_off_the_core_its_threads_too_and_its_children_may_run_anywhere(tmp_path: Path) -> None:
     everywhere = os.sched_getaffinity(0)
     seen: list[set[int]] = []
