@@ -50,6 +50,8 @@ log = logging.getLogger(__name__)
 
 NICENESS = 5
 POLL_MS = 200
+AFTER_DRAFT_MS = 10
+"""Longest pause after a draft: meanwhile the front receives it and makes the first frames, and needs the cores."""
 MOST_CONNECTIONS = 128
 MOST_BEGUN = 8
 """Motions of which only the draft is made; with so many the oldest is made before anything else."""
@@ -123,8 +125,10 @@ def serve(
         received: called with the descriptor of the connection of each message, see `ConnectionGuard.received`.
     """
     begun: deque[tuple[list[bytes], Iterator[FromGenerator]]] = deque()
+    pause_ms = 0
     while alive():
-        asked = socket.poll(0 if begun else POLL_MS)
+        asked = socket.poll(pause_ms if begun else POLL_MS)
+        pause_ms = 0
         if asked and len(begun) < MOST_BEGUN:
             frames = socket.recv_multipart(copy=False)
             received(connection_of(frames[0]))
@@ -143,6 +147,7 @@ def serve(
             socket.send_multipart([*route, encode(reply)])
             if isinstance(reply, GeneratedMessage) and reply.draft_of:
                 begun.append((route, replies))
+                pause_ms = AFTER_DRAFT_MS
                 break
 
 

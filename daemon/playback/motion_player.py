@@ -67,7 +67,8 @@ class MotionPlayer:
         Raises:
             RetargetError: the motion does not fit the robot.
         """
-        raw, last = await asyncio.to_thread(self.source.next)
+        source = self.source
+        raw, last = source.next() if source.is_at_hand else await asyncio.to_thread(source.next)
         idle = not start.command_id
 
         def chunks_at(splice: Splice) -> Iterator[Chunk]:

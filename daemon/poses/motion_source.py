@@ -17,6 +17,11 @@ class MotionSource(ABC):
         return True
 
     @property
+    def is_at_hand(self) -> bool:
+        """Whether `next` only gives out what is there, so that a worker thread would take longer than the call."""
+        return False
+
+    @property
     def revised(self) -> bool:
         """Whether a better motion than the one being played has come, whose `rest` may take its place."""
         return False

@@ -43,6 +43,11 @@ class PreviewSource(MotionSource):
         """Whether a part of the preview has not been given out, or its motion has come or failed."""
         return self._given < len(self._preview) or self._whole.done()
 
+    @property
+    def is_at_hand(self) -> bool:
+        """Whether the next segment is one of the preview."""
+        return not self._whole.done()
+
     def next(self) -> tuple[PoseSequence, bool]:
         """The preview in two segments, or the motion as soon as that has come."""
         first, n = self._given, len(self._preview)
