@@ -53,7 +53,7 @@ needs_two_cores = pytest.mark.skipif(
 
 @needs_two_cores
 def test_two_starts_at_a_time_leave_the_front_off_the_core(tmp_path: Path) -> None:
-    """The bus and the ctl process were started at a time: the front then ran on the bus process's core, and lost it 10 ms a text."""
+    """The bus and the ctl process were started at a time: from then on the front ran on the bus process's core as well."""
     everywhere = os.sched_getaffinity(0)
     seen: list[set[int]] = []
 
