@@ -16,12 +16,12 @@ from mmm_core.language.scope import ScopeVerdict, clauses_of, unreadable, with_c
 from mmm_core.model.clip import ClipText
 from mmm_core.model.sampling import SamplingSettings
 from mmm_core.model.text import TextEncoder, TextStates, strip_emoji
-from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, pack_ids, tokens_for_frames, unpack_ids
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, pack_ids, tokens_for_frames, unpack_ids
 from mmm_core.motion.features import Root, mirror, recover, recover_from_positions
 from mmm_core.motion.motion import FPS, Motion
 
-SHORTEST_S = 0.8
-"""Seconds that a predicted length is raised to."""
+SHORTEST_TOKENS = 4
+"""Tokens that a predicted length is raised to: 0.8 s."""
 
 
 class MotionModel:
@@ -99,9 +99,7 @@ class MotionModel:
         """
         if self.model.length is None:
             raise GenerationError("no length was asked for", "seconds: this model was not trained to choose a length")
-        longest_s = MAX_TOKENS * FRAMES_PER_TOKEN / FPS
-        seconds = min(longest_s, max(SHORTEST_S, self.model.length.seconds(states)[0]))
-        return tokens_for_frames(round(seconds * FPS)) * FRAMES_PER_TOKEN
+        return max(SHORTEST_TOKENS, self.model.length.n_tokens(states)[0]) * FRAMES_PER_TOKEN
 
     def motion(
         self,

@@ -23,7 +23,7 @@ from torch.overrides import TorchFunctionMode
 from mmm_core.errors import CheckpointError
 from mmm_core.language.scope import ScopeClassifier, ScopeIndex
 from mmm_core.model.clip import ClipConfig, ClipText
-from mmm_core.model.length import LengthPredictor
+from mmm_core.model.length import LENGTH_PREDICTORS, LengthPredictor
 from mmm_core.model.text import MiniLm, MiniLmConfig
 from mmm_core.model.tokenizer import PartConfig, Tokenizer, TokenizerConfig
 from mmm_core.model.transformer import MotionTransformer, TransformerConfig
@@ -80,7 +80,7 @@ def save_model(path: Path, model: Model, *, half: bool = True) -> None:
     config: dict[str, Any] = {
         "tokenizer": asdict(model.tokenizer.config),
         "transformer": asdict(model.transformer.config),
-        "length": model.length is not None,
+        "length": None if model.length is None else type(model.length).__name__,
         "rest_pose": model.rest_pose,
     }
     metadata = {"format": str(FORMAT), "kind": "mmmd-model", "provenance": json.dumps(model.provenance)}
@@ -113,7 +113,7 @@ def load_model(path: Path | None = None) -> Model:
             model = Model(
                 tokenizer=_tokenizer(config["tokenizer"]),
                 transformer=MotionTransformer(TransformerConfig(**config["transformer"])),
-                length=LengthPredictor(config["transformer"]["text_dim"]) if config.get("length", True) else None,
+                length=_length(config),
                 scope=None,
                 provenance=json.loads(metadata["provenance"]),
                 text=ClipText(ClipConfig(**config["text"]), word_pieces) if "text" in config else None,
@@ -145,6 +145,14 @@ class _Uninitialised(TorchFunctionMode):
         if getattr(func, "__module__", "") == nn.init.__name__:
             return kwargs["tensor"] if kwargs and "tensor" in kwargs else args[0]
         return func(*args, **(kwargs or {}))
+
+
+def _length(config: dict[str, Any]) -> LengthPredictor | None:
+    """The length predictor that a checkpoint names; older ones say only whether they have one, which is log-normal."""
+    kind = config.get("length", True)
+    if not kind:
+        return None
+    return LENGTH_PREDICTORS["LogNormalLength" if kind is True else kind](config["transformer"]["text_dim"])
 
 
 def _tokenizer(config: dict[str, Any]) -> Tokenizer | VqVae:

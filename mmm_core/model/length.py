@@ -1,7 +1,9 @@
-"""Length from text: the seconds that a command takes, with their spread.
+"""Length from text: the number of tokens that a command takes.
 
-A log-normal: the median and the spread of log seconds are read from the word states by attention pooling, so that
-counts ("five times") reach it. The caller's `seconds` always wins over this.
+`LengthClassifier` gives a probability to each number of tokens, as the length estimator of T2M does (Guo et al., CVPR 2022),
+and the likeliest number is taken. Where the same words always mean the same motion, every other number is wrong: with one
+token less the last stroke is cut in half. `LogNormalLength` is the predictor of checkpoints that were trained before the
+classifier. The caller's `seconds` always wins over both.
 """
 
 from __future__ import annotations
@@ -10,31 +12,60 @@ import torch
 from torch import Tensor, nn
 
 from mmm_core.model.text import TextStates
+from mmm_core.model.tokens import MAX_TOKENS, tokens_for_frames
+from mmm_core.motion.motion import FPS
 
 
-class LengthPredictor(nn.Module):
-    """Text states -> mean and log standard deviation of log seconds."""
+class LengthClassifier(nn.Module):
+    """Text states -> logits of each number of tokens, by attention pooling over the words, so that counts reach it."""
+
+    def __init__(self, text_dim: int = 384, width: int = 384, n_heads: int = 8) -> None:
+        super().__init__()
+        self.score = nn.Linear(text_dim, n_heads)
+        self.value = nn.Linear(text_dim, width)
+        self.body = nn.Sequential(nn.Linear(width + text_dim, width), nn.GELU(), nn.Linear(width, width), nn.GELU())
+        self.out = nn.Linear(width, MAX_TOKENS + 1)
+
+    def forward(self, text: TextStates) -> Tensor:
+        """(B, MAX_TOKENS + 1) logits of 0 to MAX_TOKENS tokens."""
+        return self.out(self.body(torch.cat([_pooled(text, self.score, self.value), text.sentence], -1)))
+
+    @torch.inference_mode()
+    def n_tokens(self, text: TextStates) -> list[int]:
+        """The likeliest number of tokens for each text, at least one."""
+        return (self(text)[:, 1:].argmax(-1) + 1).tolist()
+
+
+class LogNormalLength(nn.Module):
+    """Text states -> mean and log standard deviation of log seconds, by attention pooling over the words."""
 
     def __init__(self, text_dim: int = 384, width: int = 192, n_heads: int = 4) -> None:
         super().__init__()
-        self.n_heads = n_heads
         self.score = nn.Linear(text_dim, n_heads)
-        self.value = nn.Linear(text_dim, n_heads * width // n_heads)
+        self.value = nn.Linear(text_dim, width)
         self.body = nn.Sequential(nn.Linear(width + text_dim, width), nn.GELU(), nn.Linear(width, width), nn.GELU())
         self.out = nn.Linear(width, 2)
 
     def forward(self, text: TextStates) -> tuple[Tensor, Tensor]:
         """(B,) mean and (B,) log standard deviation of log seconds."""
-        B, W, _ = text.words.shape
-        scores = self.score(text.words).masked_fill(~text.word_mask[..., None], -1e9).softmax(1)  # (B, W, H)
-        values = self.value(text.words).reshape(B, W, self.n_heads, -1)
-        pooled = (scores[..., None] * values).sum(1).reshape(B, -1)
-        mean, log_std = self.out(self.body(torch.cat([pooled, text.sentence], -1))).unbind(-1)
+        mean, log_std = self.out(
+            self.body(torch.cat([_pooled(text, self.score, self.value), text.sentence], -1))
+        ).unbind(-1)
         return mean + 1.0, log_std.clamp(-4.0, 1.0)  # +1: e seconds is a usual length
 
     @torch.inference_mode()
-    def seconds(self, text: TextStates, quantile: float = 0.5) -> list[float]:
-        """The `quantile` of the predicted length, seconds, for each text."""
-        mean, log_std = self(text)
-        z = torch.special.ndtri(torch.tensor(quantile, dtype=torch.float64)).float()
-        return (mean + z * log_std.exp()).exp().tolist()
+    def n_tokens(self, text: TextStates) -> list[int]:
+        """The number of tokens of the median length for each text, at most MAX_TOKENS."""
+        return [min(MAX_TOKENS, tokens_for_frames(max(1, round(s * FPS)))) for s in self(text)[0].exp().tolist()]
+
+
+def _pooled(text: TextStates, score: nn.Linear, value: nn.Linear) -> Tensor:
+    """(B, D) word values, each head's share of D averaged over the words by its own scores."""
+    scores = score(text.words).masked_fill(~text.word_mask[..., None], -1e9).softmax(1)  # (B, W, H)
+    values = value(text.words).reshape(*scores.shape, -1)
+    return (scores[..., None] * values).sum(1).flatten(1)
+
+
+LengthPredictor = LengthClassifier | LogNormalLength
+LENGTH_PREDICTORS: dict[str, type[LengthPredictor]] = {c.__name__: c for c in (LengthClassifier, LogNormalLength)}
+"""The predictors by the name that a checkpoint's configuration gives."""

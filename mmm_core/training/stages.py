@@ -29,11 +29,10 @@ from mmm_core.imports.datasets import MotionFolder, open_folder
 from mmm_core.imports.kit import joints_from_kit
 from mmm_core.inference.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder, save_model
 from mmm_core.model.clip import ClipText
-from mmm_core.model.length import LengthPredictor
+from mmm_core.model.length import LengthClassifier
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill
 from mmm_core.model.text import MiniLm, MiniLmConfig, TextEncoder, TextStates
 from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig
-from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from mmm_core.model.transformer import MotionTransformer
 from mmm_core.model.vqvae import VqVae
 from mmm_core.motion.features import joints_from_positions, recover
@@ -244,18 +243,17 @@ class Stages:
         return CaptionStates.load(path)
 
     @cached_property
-    def length(self) -> LengthPredictor:
-        """Seconds from text."""
-        fps = FPS if self.folder is None else self.folder.fps
+    def length(self) -> LengthClassifier:
+        """Number of tokens from text."""
         start = None
         if self.start is not None and self.start.transformer.config.n_words == self.recipe.text.tuned_layers:
             start = self.start.length  # else it has learnt to read other word states
+        if not isinstance(start, LengthClassifier):
+            start = None
         corpus = self.corpus
         if self.fresh is not None:
             corpus = self.fresh.corpus(self.recipe.transformer.schedule.steps - 1)
-        seen = corpus.seen(range(len(corpus.ids)))
-        seconds = [(len(ids) - n) * FRAMES_PER_TOKEN / fps for ids, n in zip(corpus.ids, seen.tolist(), strict=True)]
-        return train_length(corpus, seconds, self.recipe.length, self.run, start)
+        return train_length(corpus, self.recipe.length, self.run, start)
 
     @cached_property
     def fresh(self) -> FreshClips | None:

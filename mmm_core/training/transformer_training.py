@@ -15,7 +15,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mmm_core import distributed
-from mmm_core.model.length import LengthPredictor
+from mmm_core.model.length import LengthClassifier
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokenizer import Tokenizer
 from mmm_core.model.transformer import MotionTransformer, TransformerConfig
@@ -26,7 +26,7 @@ from mmm_core.training.run import Run, Schedule, train
 
 TOKENS_PER_BATCH = 1100
 """Rows per batch follow from the length, so that every step costs about the same."""
-LENGTH_BATCH = 256
+LENGTH_BATCH = 128
 
 
 @dataclass(frozen=True)
@@ -191,27 +191,29 @@ def train_transformer(
 
 
 def train_length(
-    corpus: TokenCorpus, seconds: list[float], schedule: Schedule, run: Run, start: LengthPredictor | None = None
-) -> LengthPredictor:
-    """A length predictor trained by maximum likelihood on each caption and its clip's length, from `start` or from nothing.
+    corpus: TokenCorpus, schedule: Schedule, run: Run, start: LengthClassifier | None = None
+) -> LengthClassifier:
+    """A length predictor trained by cross-entropy on each caption and its clip's tokens, from `start` or from nothing.
 
-    People's clips are cut from recordings, so their length says little; they count only where there is nothing else.
+    Tokens at a clip's beginning that show another motion do not count. People's clips are cut from recordings, so their
+    length says little; they are used only where there is nothing else.
     """
     torch.manual_seed(schedule.seed)
-    predictor = LengthPredictor(corpus.captions.words.shape[1])
+    predictor = LengthClassifier(corpus.captions.words.shape[1])
     if start is not None:
         predictor.load_state_dict(start.state_dict())
     taken = corpus.is_real if corpus.is_real.all() else ~corpus.is_real
-    pairs = [(row, seconds[i]) for i, rows in enumerate(corpus.caption_rows) if taken[i] for row in rows]
+    n_tokens = [len(ids) - n for ids, n in zip(corpus.ids, corpus.seen(range(len(corpus.ids))).tolist(), strict=True)]
+    pairs = [(row, n_tokens[i]) for i, rows in enumerate(corpus.caption_rows) if taken[i] for row in rows]
     device = run.torch_device
 
     def loss_fn(_step: int, generator: torch.Generator) -> dict[str, Tensor]:
         drawn = torch.randint(len(pairs), (LENGTH_BATCH,), generator=generator)[distributed.share(LENGTH_BATCH)]
         picked = [pairs[i] for i in drawn.tolist()]
-        mean, log_std = predictor(corpus.captions.gather([row for row, _ in picked]).to(device))
-        error = (torch.tensor([s for _, s in picked], device=device).log() - mean) / log_std.exp()
-        loss = (0.5 * error.square() + log_std).mean()
-        return {"loss": loss, "spread": log_std.exp().mean()}
+        logits = predictor(corpus.captions.gather([row for row, _ in picked]).to(device))
+        asked = torch.tensor([n for _, n in picked], device=device)
+        right = (logits.argmax(-1) == asked).float().mean()
+        return {"loss": F.cross_entropy(logits, asked), "right": right}
 
     train(predictor, loss_fn, schedule, run, "length")
     return predictor
