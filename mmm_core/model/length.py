@@ -23,7 +23,9 @@ class LengthClassifier(nn.Module):
         super().__init__()
         self.score = nn.Linear(text_dim, n_heads)
         self.value = nn.Linear(text_dim, width)
-        self.body = nn.Sequential(nn.Linear(width + text_dim, width), nn.GELU(), nn.Linear(width, width), nn.GELU())
+        self.body = nn.Sequential(
+            nn.Dropout(0.2), nn.Linear(width + text_dim, width), nn.GELU(), nn.Dropout(0.2), nn.Linear(width, width), nn.GELU()
+        )  # fmt: skip
         self.out = nn.Linear(width, MAX_TOKENS + 1)
 
     def forward(self, text: TextStates) -> Tensor:

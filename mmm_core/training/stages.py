@@ -252,7 +252,7 @@ class Stages:
             start = None
         corpus = self.corpus
         if self.fresh is not None:
-            corpus = self.fresh.corpus(self.recipe.transformer.schedule.steps - 1)
+            corpus = self.fresh.corpus(max(0, self.recipe.transformer.schedule.steps - 1))
         return train_length(corpus, self.recipe.length, self.run, start)
 
     @cached_property
@@ -313,7 +313,7 @@ class Stages:
         transformer, length, tokenizer = self.transformer, self.length, self.tokenizer
         how = self.recipe.tokenizer
         if isinstance(tokenizer, Tokenizer) and how.decoder.steps and (self.start is None or how.tune_start):
-            newest = [] if self.fresh is None else self.fresh.clips(self.recipe.transformer.schedule.steps - 1)
+            newest = [] if self.fresh is None else self.fresh.clips(max(0, self.recipe.transformer.schedule.steps - 1))
             tune_decoder(tokenizer, [*self.clips, *newest], how.decoder, self.run)
         synthesised = self._has_gestures
         text = self.text if isinstance(self.text, ClipText) else None
