@@ -114,8 +114,8 @@ class Engine(MotionModel):
             seed: any integer from 0 to 2^31 - 1.
             seconds: length of the motion, at most 9.8; None lets the model choose.
             candidates: motions generated at once, of which the model's likeliest is kept; with two or more, a number of
-                repetitions that the text names is met more often (`mmm_core.generate.repetition_editing`). None means two
-                where the text names a number and no length is given, else one.
+                more than eight repetitions that the text names is met (`mmm_core.generate.repetition_editing`). None means
+                two for such a text where no length is given, else one.
 
         Raises:
             GenerationError: seed, seconds or candidates out of range, or no seconds for a model without lengths.

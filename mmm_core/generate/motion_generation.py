@@ -43,8 +43,10 @@ from mmm_core.recognition.seen import Scene
 OPENING_TOKENS = 2
 """Tokens that the preview and the motion share: 0.4 s, longer than generating and retargeting the motion usually takes.
 Their cost in probes: docs/model.md."""
+MOST_LEARNT_STROKES = 8
+"""Most strokes of a gesture of the corpus. The model makes up to as many itself; more are made by repeating its strokes."""
 CANDIDATES_TO_COUNT = 2
-"""Candidates for a text that names a number. More take longer and are within one of it no more often (docs/model.md)."""
+"""Candidates for a text that names more strokes. A third takes longer and is near their number no more often (docs/model.md)."""
 CANDIDATE_STRIDE = 7_919_999
 """Distance between the seeds of candidates, so that neighbouring seeds share none."""
 
@@ -69,7 +71,7 @@ class MotionGeneration:
         self._first_steps = [FirstStep() for _ in self._steps[0].commands] if self._steps else []
         self._candidates, self._counts = candidates or 1, [None] * len(self._steps)
         if candidates != 1 and n_frames is None and engine.model.is_ours:
-            self._counts = [count_asked(s.commands[0].text) if len(s.commands) == 1 else None for s in self._steps]
+            self._counts = [_count_to_make(s) for s in self._steps]
         n_tokens = sum(s.n_tokens for s in self._steps) + TRANSITION_TOKENS * max(0, len(self._steps) - 1)
         self.n_frames = n_tokens * FRAMES_PER_TOKEN if n_frames is None else n_frames
         if len(self._steps) == 1 and n_frames is None:
@@ -217,3 +219,9 @@ class MotionGeneration:
             Scene(end / FPS, f"{step.words}\n{step.understood or self._verdict.nearest}")
             for end, step in zip(ends, self._steps, strict=True)
         )
+
+
+def _count_to_make(step: Step) -> int | None:
+    """The number of strokes that the words of a step name, where the model has not learnt to make as many."""
+    count = count_asked(step.commands[0].text) if len(step.commands) == 1 else None
+    return count if count is not None and count > MOST_LEARNT_STROKES else None

@@ -43,6 +43,8 @@ _FRONTED = re.compile(
 _RAISES = re.compile(r"^(?:raise|lift|put up|hold up) (?:your |the )?(?:left|right) (?:hand|arm)(?: up| high)?$")
 _ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
 """'Raise your left hand and wave' is one gesture."""
+_WITHOUT_OBJECT = re.compile(r"(?:an?|one)\b|[a-z]+$")
+_HAND_TO = re.compile(r"(?:your |the )?(?:left|right) (?:hand|arm) to\b")
 _BARE_LIMB = re.compile(rf"^(?:with )?(?:your |the |both |left |right |other )*(?:{LIMB}|head|body|eyes|face)$")
 """A limb of which nothing is said is no command."""
 _HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)s?\b.*\b(?:seconds?|secs?)\b")
@@ -112,6 +114,8 @@ def divided(clause: str) -> list[str]:
             continue
         if _HOLDS.match(second) or (not asked and _RAISES.match(first) and _ONLY_WAVES.match(second)):
             continue
+        if a == SOME_ARM and not asked and _WITHOUT_OBJECT.match(first) and _HAND_TO.match(second):
+            continue  # "a salute, right hand to the brow" says how
         if a == SOME_ARM == b and asked:
             return [_sided(first, "right"), _sided(second, "left")] if "hand" in clause else [first, second]
         if not _apart(a, b):

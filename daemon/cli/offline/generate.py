@@ -78,9 +78,9 @@ def generate(
         bvh_names: its bones: mixamo or cmu as retargeting programs know them, in a T pose at rest; mmmd has our joints.
         batch: JSON lines of {"id", "text", "seed", "seconds"}: one .npz named by its id for each.
         story: JSON lines of {"text", "seconds"}: one motion with generated transitions, of any length.
-        candidates: motions made at once, of which the model's likeliest is kept; with two or more, a number of strokes that the
-            text names ("clap five times") is kept more often. When it is not given: two for a text with a number and no seconds,
-            else one. A story has one of each.
+        candidates: motions made at once, of which the model's likeliest is kept; with two or more, a number of more than
+            eight strokes that the text names ("clap ten times") is made. When it is not given: two for such a text without
+            seconds, else one. A story has one of each.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
         precision: of matrix products; int8 for the shipped model where the processor multiplies such integers (VNNI), else

@@ -40,15 +40,15 @@ def train(
     """Train a model, or one stage of it with what it needs, from one TOML recipe.
 
     An interrupted run, even a killed one, goes on where it was with the same result: give the same --run. Recipes that
-    ship: compact (the model in this package, about four hours on two CPU cores), compact_go_on (that model and more words,
-    an hour on a core that multiplies bf16) and paper (MMM as published; a GPU and HumanML3D). Several GPUs or machines:
-    start it with torchrun. OMP_WAIT_POLICY=passive helps on a busy machine.
+    ship: compact (a model from nothing, about four hours on two CPU cores), compact_deterministic (the model in this package
+    trained further, an hour and a half on one core), compact_lengths (its length predictor anew) and paper (MMM as published;
+    a GPU and HumanML3D). Several GPUs or machines: start it with torchrun. OMP_WAIT_POLICY=passive helps on a busy machine.
 
     Example: mmmd train --data ../shared/data --run runs/compact --out model.safetensors
 
     Example, the paper's tokenizer: mmmd train tokenizer --config paper --data HumanML3D --device cuda --precision bf16
 
-    Example, from the shipped model on: mmmd train --config compact_go_on --data DIR --precision bf16 --out more.safetensors
+    Example, from the shipped model on: mmmd train --config compact_deterministic --data DIR --out more.safetensors
 
     Example, only the scope of a finished run anew: mmmd train scope --run runs/compact --out model.safetensors
 

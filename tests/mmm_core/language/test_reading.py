@@ -155,6 +155,18 @@ class TestAtOnce:
     def test_one_or_in_turn(self, clause: str) -> None:
         assert divided(clause) == [clause]
 
+    @pytest.mark.parametrize(
+        ("text", "n_commands"),
+        [
+            ("a soldier's greeting, right hand to the eyebrow", 1),
+            ("salute, left hand to your brow", 1),
+            ("a nod, right hand to your heart", 2),
+            ("a wave, left hand on your hip", 2),
+        ],
+    )
+    def test_a_hands_way_says_how_where_no_other_limb_is_meant(self, text: str, n_commands: int) -> None:
+        assert [len(step) for step in read(text).steps] == [n_commands]
+
     def test_the_same_limb_follows_and_it_is_said(self) -> None:
         reading = read("clap while you wave with your left hand")
         assert [len(step) for step in reading.steps] == [1, 1] and reading.notes

@@ -324,8 +324,9 @@ def test_a_share_of_the_learning_rate_for_a_part(tmp_path: Path) -> None:
     assert moved["slow.weight"] == pytest.approx(1e-3, rel=1e-2)
 
 
-def test_the_recipe_that_goes_on_fits_the_shipped_model(tmp_path: Path) -> None:
-    assert Stages(read_recipe("compact_go_on"), Run(tmp_path)).start is not None
+@pytest.mark.parametrize("recipe", ["ablation", "compact_deterministic", "compact_lengths"])
+def test_the_recipes_that_go_on_fit_the_shipped_model(tmp_path: Path, recipe: str) -> None:
+    assert Stages(read_recipe(recipe), Run(tmp_path)).start is not None
 
 
 def test_the_scope_of_a_finished_run_is_built_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -434,11 +435,11 @@ def test_a_bad_recipe_is_named_by_its_key(tmp_path: Path, change: str, message: 
 
 
 def test_an_unknown_recipe_lists_those_that_ship(capsys: pytest.CaptureFixture[str]) -> None:
-    assert known_recipes() == ["ablation", "compact", "compact_go_on", "compact_on_beat", "paper"]
+    assert known_recipes() == ["ablation", "compact", "compact_deterministic", "compact_lengths", "paper"]
     for name in known_recipes():
         read_recipe(name)
     assert main(["train", "--config", "nothing"]) == 2
-    assert "ablation, compact, compact_go_on, compact_on_beat, paper" in capsys.readouterr().err
+    assert "ablation, compact, compact_deterministic, compact_lengths, paper" in capsys.readouterr().err
 
 
 def test_the_papers_recipe_has_the_released_sizes() -> None:
