@@ -96,7 +96,7 @@ class PoseSequence:
             head_quat_wxyz=self.head_quat_wxyz.astype(np.float32),
             forearm_twist_rad=self.forearm_twist_rad.astype(np.float32),
             features=np.zeros((len(self), N_FEATURES), np.float32),
-            tokens=np.zeros(0, np.int32),
+            tokens=np.zeros(0, np.int64),
             text=like.text if like else text,
             seed=like.seed if like else 0,
             status=like.status if like else "accepted",

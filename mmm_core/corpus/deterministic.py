@@ -39,7 +39,8 @@ def synthesise_deterministic(rng: np.random.Generator, weights: Mapping[str, flo
 def words_given(caption: str, gesture: Gesture) -> str | None:
     """The words that the engine gives the model for a sentence.
 
-    None where it reads several commands in it, or where no number is named and the gesture has not the usual number of strokes.
+    None where it reads several commands in it, where no number is named and the gesture has not the usual number of strokes, and
+    where it takes the words of a height for those of a size ("halfway"), which leaves the words of the usual height.
     """
     steps = read(caption).steps
     if len(steps) != 1 or len(steps[0]) != 1:
@@ -49,6 +50,8 @@ def words_given(caption: str, gesture: Gesture) -> str | None:
         and count_asked(caption) is None
         and gesture.count != usual_count(gesture.family)
     ):
+        return None
+    if gesture.height and steps[0][0].manner.size != 1.0:
         return None
     return steps[0][0].text
 

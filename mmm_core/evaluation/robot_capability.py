@@ -50,5 +50,5 @@ def as_motion(features: Features, text: str = "") -> Motion:
     seen = recover(features)
     return Motion(
         seen.joints_m.astype(np.float32), FPS, seen.head_quat_wxyz.astype(np.float32), seen.forearm_twist_rad.astype(np.float32),
-        features, np.zeros(0, np.int32), text, 0, "accepted", 1.0,
+        features, np.zeros(0, np.int64), text, 0, "accepted", 1.0,
     )  # fmt: skip

@@ -66,7 +66,7 @@ def no_motion(text: str, seed: int, verdict: ScopeVerdict) -> Motion:
         head_quat_wxyz=np.zeros((0, 4), np.float32),
         forearm_twist_rad=np.zeros((0, 2), np.float32),
         features=np.zeros((0, N_FEATURES), np.float32),
-        tokens=np.zeros(0, np.int32),
+        tokens=np.zeros(0, np.int64),
         text=text,
         seed=seed,
         status="rejected",

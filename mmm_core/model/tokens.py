@@ -51,10 +51,10 @@ def frames_for_seconds(seconds: float, fps: float) -> int:
     return max(FRAMES_PER_TOKEN, round(seconds * fps))
 
 
-def pack_ids(ids: NDArray[np.integer], n_codes: int) -> NDArray[np.int32]:
+def pack_ids(ids: NDArray[np.integer], n_codes: int) -> NDArray[np.int64]:
     """One id per position from one id per codebook: (L, C) -> (L,), the first codebook in the lowest place."""
     place = n_codes ** np.arange(ids.shape[1], dtype=np.int64)
-    return (ids.astype(np.int64) * place).sum(1).astype(np.int32)
+    return (ids.astype(np.int64) * place).sum(1)
 
 
 def unpack_ids(packed: NDArray[np.integer], n_codes: int, n_codebooks: int) -> NDArray[np.int64]:

@@ -38,7 +38,7 @@ class Motion:
         head_quat_wxyz: (T, 4) float32, world orientation of the head; identity faces +z upright.
         forearm_twist_rad: (T, 2) float32, left and right, right-hand rule about elbow to wrist; 0 is rest.
         features: (T, 263) float32, HumanML3D layout, not normalised.
-        tokens: (L,) int32, one id for each four frames (several codebooks are packed into one id).
+        tokens: (L,) int64, one id for each four frames (several codebooks are packed into one id).
         text: the command.
         seed: the seed the motion was sampled with.
         status: accepted, degraded or rejected, the scope verdict of the text.
@@ -50,7 +50,7 @@ class Motion:
     head_quat_wxyz: NDArray[np.float32]
     forearm_twist_rad: NDArray[np.float32]
     features: NDArray[np.float32]
-    tokens: NDArray[np.int32]
+    tokens: NDArray[np.int64]
     text: str
     seed: int
     status: Status
@@ -97,7 +97,7 @@ class Motion:
                     head_quat_wxyz=self.head_quat_wxyz.astype(np.float32),
                     forearm_twist_rad=self.forearm_twist_rad.astype(np.float32),
                     features=self.features.astype(np.float32),
-                    tokens=self.tokens.astype(np.int32),
+                    tokens=self.tokens.astype(np.int64),
                     text=np.array(self.text),
                     seed=np.int64(self.seed),
                     status=np.array(self.status),
@@ -182,7 +182,7 @@ def load_npz(path: Path | str) -> Motion:
             head_quat_wxyz=fields.get("head_quat_wxyz", identity).astype(np.float32),
             forearm_twist_rad=fields.get("forearm_twist_rad", np.zeros((T, 2), np.float32)).astype(np.float32),
             features=fields.get("features", np.zeros((T, N_FEATURES), np.float32)).astype(np.float32),
-            tokens=fields.get("tokens", np.zeros(0)).astype(np.int32),
+            tokens=fields.get("tokens", np.zeros(0)).astype(np.int64),
             text=str(fields.get("text", "")),
             seed=int(fields.get("seed", 0)),
             status=str(fields.get("status", "accepted")),  # type: ignore[arg-type]  # checked by Motion

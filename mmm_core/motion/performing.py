@@ -102,7 +102,7 @@ def _motion(features: NDArray[np.float32]) -> Motion:
     seen = recover(features)
     return Motion(
         seen.joints_m.astype(np.float32), FPS, seen.head_quat_wxyz.astype(np.float32), seen.forearm_twist_rad.astype(np.float32),
-        np.asarray(features, np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0,
+        np.asarray(features, np.float32), np.zeros(0, np.int64), "", 0, "accepted", 1.0,
     )  # fmt: skip
 
 

@@ -55,7 +55,7 @@ def motion_of(joints: np.ndarray, text: str, status: str = "accepted", score: fl
     return Motion(
         joints_m=joints.astype(np.float32), fps=FPS, head_quat_wxyz=np.tile(np.array([1, 0, 0, 0], np.float32), (T, 1)),
         forearm_twist_rad=np.zeros((T, 2), np.float32), features=np.zeros((T, 263), np.float32),
-        tokens=np.zeros(max(1, T // 4), np.int32), text=text, seed=0, status=status, scope_score=score,
+        tokens=np.zeros(max(1, T // 4), np.int64), text=text, seed=0, status=status, scope_score=score,
     )  # fmt: skip
 
 

@@ -128,7 +128,7 @@ def motion_of(
     T = len(joints)
     return Motion(
         joints.astype(np.float32), FPS, quat_wxyz(head_rotation).astype(np.float32), np.zeros((T, 2), np.float32),
-        np.zeros((T, N_FEATURES), np.float32), np.zeros(0, np.int32), path.stem, 0, "accepted", 1.0,
+        np.zeros((T, N_FEATURES), np.float32), np.zeros(0, np.int64), path.stem, 0, "accepted", 1.0,
     )  # fmt: skip
 
 

@@ -54,7 +54,7 @@ class TestEdit:
 
     def test_a_motion_of_another_program_is_encoded(self, engine: Engine) -> None:
         motion = engine.generate("nod", seed=1, seconds=3).motion
-        foreign = type(motion)(**{**vars(motion), "tokens": np.zeros(0, np.int32)})
+        foreign = type(motion)(**{**vars(motion), "tokens": np.zeros(0, np.int64)})
         changed = edit(engine, foreign, Edit(1, 2), "nod", seed=2).motion
         assert np.isfinite(changed.joints_m).all()
 

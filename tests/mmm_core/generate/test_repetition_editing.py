@@ -75,7 +75,7 @@ def swinging(n: int, period: int = 12, rest: int = 8) -> Motion:
     still = np.repeat(nodding().joints_m[:1], T, axis=0)
     return replace(
         nodding(), joints_m=still, head_quat_wxyz=head, forearm_twist_rad=np.zeros((T, 2), np.float32),
-        features=np.zeros((T, nodding().features.shape[1]), np.float32), tokens=np.zeros(0, np.int32),
+        features=np.zeros((T, nodding().features.shape[1]), np.float32), tokens=np.zeros(0, np.int64),
     )  # fmt: skip
 
 

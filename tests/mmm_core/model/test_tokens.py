@@ -12,9 +12,12 @@ from mmm_core.errors import GenerationError
 from mmm_core.model.tokens import frames_for_seconds, pack_ids, tokens_for_frames, unpack_ids
 
 
-@given(arrays(np.int64, st.tuples(st.integers(1, 49), st.integers(1, 3)), elements=st.integers(0, 511)))
-def test_packed_ids_unpack_to_themselves(ids: np.ndarray) -> None:
-    assert np.array_equal(unpack_ids(pack_ids(ids, 512), 512, ids.shape[1]), ids)
+@given(st.sampled_from([512, 2048, 8192]), st.data())
+def test_packed_ids_unpack_to_themselves(n_codes: int, data: st.DataObject) -> None:
+    """Three of 2,048 codes do not fit into 32 bits."""
+    shape = st.tuples(st.integers(1, 49), st.integers(1, 3))
+    ids = data.draw(arrays(np.int64, shape, elements=st.integers(0, n_codes - 1)))
+    assert np.array_equal(unpack_ids(pack_ids(ids, n_codes), n_codes, ids.shape[1]), ids)
 
 
 @given(st.integers(1, 196))
