@@ -55,7 +55,7 @@ def test_a_stroke_on_the_beat_comes_again_as_it_was(family: str) -> None:
     assert change_m(period) < 2e-3
     ids = shipped_engine().model.tokenizer.encode(torch.from_numpy(clip.features)[None])[0]
     first, tokens = core.start // 4 + (n - 3) * period // 4, period // 4
-    assert (ids[first : first + tokens] == ids[first + tokens : first + 2 * tokens]).float().mean() > 0.9
+    assert (ids[first : first + tokens] == ids[first + tokens : first + 2 * tokens]).float().mean() > 0.85
 
 
 def test_nothing_on_the_beat_is_left_to_chance_but_pauses() -> None:
