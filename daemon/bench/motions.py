@@ -62,7 +62,7 @@ def _motion(joints_m: NDArray[np.floating], head: NDArray[np.floating], twist: N
     return Motion(
         joints_m.astype(np.float32), FPS, head.astype(np.float32),
         np.zeros((T, 2), np.float32) if twist is None else twist.astype(np.float32),
-        np.zeros((T, N_FEATURES), np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0,
+        np.zeros((T, N_FEATURES), np.float32), np.zeros(0, np.int64), "", 0, "accepted", 1.0,
     )  # fmt: skip
 
 

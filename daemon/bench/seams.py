@@ -184,6 +184,6 @@ def _posture_of_joints(recovered: Any) -> PoseSequence:
     T = len(recovered.joints_m)
     motion = Motion(
         recovered.joints_m.astype(np.float32), FPS, recovered.head_quat_wxyz.astype(np.float32),
-        np.zeros((T, 2), np.float32), np.zeros((T, N_FEATURES), np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0,
+        np.zeros((T, 2), np.float32), np.zeros((T, N_FEATURES), np.float32), np.zeros(0, np.int64), "", 0, "accepted", 1.0,
     )  # fmt: skip
     return posture_of(motion)

@@ -30,7 +30,7 @@ def standing_motion(upper: Direction, fore: Direction) -> Motion:
     head = np.tile(np.array([1.0, 0, 0, 0], np.float32), (_FRAMES, 1))
     return Motion(
         np.repeat(joints, _FRAMES, 0).astype(np.float32), FPS, head, np.zeros((_FRAMES, 2), np.float32),
-        np.zeros((_FRAMES, N_FEATURES), np.float32), np.zeros(0, np.int32), "", 0, "accepted", 1.0,
+        np.zeros((_FRAMES, N_FEATURES), np.float32), np.zeros(0, np.int64), "", 0, "accepted", 1.0,
     )  # fmt: skip
 
 
