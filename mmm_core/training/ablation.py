@@ -69,11 +69,11 @@ TRANSFORMERS: Mapping[str, Variant] = {
     "last two layers of the text encoder trained": Variant(text={"tuned_layers": 2}),
 }
 TOKENIZERS: Mapping[str, Variant] = {
-    "512 x 16 (as shipped)": Variant(tokenizer={"n_codes": 512, "code_dim": 16}),
+    "2048 x 16 (as shipped)": Variant(tokenizer={"n_codes": 2048, "code_dim": 16}),
     "128 x 16": Variant(tokenizer={"n_codes": 128, "code_dim": 16}),
-    "2048 x 16": Variant(tokenizer={"n_codes": 2048, "code_dim": 16}),
-    "512 x 4": Variant(tokenizer={"n_codes": 512, "code_dim": 4}),
-    "512 x 64": Variant(tokenizer={"n_codes": 512, "code_dim": 64}),
+    "512 x 16": Variant(tokenizer={"n_codes": 512, "code_dim": 16}),
+    "2048 x 4": Variant(tokenizer={"n_codes": 2048, "code_dim": 4}),
+    "2048 x 64": Variant(tokenizer={"n_codes": 2048, "code_dim": 64}),
 }
 
 

@@ -130,7 +130,7 @@ def test_an_edit_of_one_arm_moves_that_arm_and_a_bad_one_says_why(run):
         done = robot.edit("raise your left arm", plan=plan, parts=["left_arm"]).done
         assert done is not None and done.frames == pytest.approx(first.done.frames, abs=30)
         assert done.shown == "shown" and "raises the left hand" in done.seen, done
-        assert robot.edit("bow", command=first.id, start_s=0.6).done
+        assert robot.edit("nod", command=first.id, start_s=0.6).done
         for fields, code in (
             ({"command": first.id, "start_s": 1.0, "end_s": 1.4}, "not_reached"),
             ({"plan": plan, "parts": ["tail"]}, "bad_edit"),

@@ -27,7 +27,7 @@ def one_engine() -> Iterator[None]:
 @pytest.fixture(scope="module")
 def wave(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("motions") / "wave.npz"
-    assert main(["generate", "wave with your right hand", "--seconds", "3", "--out", str(path)]) == 0
+    assert main(["generate", "wave with your right hand", "--seconds", "4", "--out", str(path)]) == 0
     return path
 
 
@@ -43,8 +43,8 @@ def test_one_part_of_a_motion_is_made_again(wave: Path, tmp_path: Path) -> None:
 
 def test_a_motion_grows_at_its_end(wave: Path, tmp_path: Path) -> None:
     out = tmp_path / "longer.npz"
-    assert main(["edit", str(wave), "bow", "--after-s", "2", "--out", str(out)]) == 0
-    assert len(load_npz(out).joints_m) == 100
+    assert main(["edit", str(wave), "bow", "--after-s", "4", "--out", str(out)]) == 0
+    assert len(load_npz(out).joints_m) == 160
 
 
 def test_what_is_not_reached_ends_with_status_1(wave: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -74,7 +74,7 @@ def test_the_generator_says_what_is_not_reached() -> None:
     ("options", "status", "message"),
     [
         (["--part", "tail"], 1, "left_arm, right_arm, rest"),
-        (["--start-s", "2", "--end-s", "1"], 1, "0 <= start < end <= 3.0 s"),
+        (["--start-s", "2", "--end-s", "1"], 1, "0 <= start < end <= 4.0 s"),
         (["--part", "rest", "--after-s", "1"], 2, "one or the other"),
         (["--then", "other.npz"], 2, "--after-s"),
     ],
