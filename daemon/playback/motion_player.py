@@ -84,7 +84,8 @@ class MotionPlayer:
             self._splicer.follow_with(splice, self._plan)
             return True
 
-        made = await self._splicer.first_chunk(chunks_at, place, wanted, wait_for_rest)
+        purpose = "idle" if idle else "command"
+        made = await self._splicer.first_chunk(chunks_at, place, wanted, wait_for_rest, purpose)
         if made is not None:
             self._keep(*made, is_last=last)
         return made is not None
@@ -150,7 +151,9 @@ class MotionPlayer:
             self._splicer.replace_tail(splice, plan, chunk)
             return True
 
-        made = await self._splicer.first_chunk(chunks_at, place, lambda: self._buffer.running and wanted())
+        made = await self._splicer.first_chunk(
+            chunks_at, place, lambda: self._buffer.running and wanted(), purpose="revision"
+        )
         if made is not None:
             self._keep(*made, is_last=last)
 

@@ -11,6 +11,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -25,6 +26,9 @@ from retarget.path.paths import JointState
 
 FIRST_RETARGET_S = 0.03
 """Seconds assumed until the first chunk of the first trajectory is made; later ones are measured."""
+Purpose = Literal["command", "idle", "revision"]
+"""What new frames are for. A revision waits for no one and takes longer than a command, which would wait as long if both had one
+estimate; idle movements are easier than either."""
 RETRY_MARGIN = 1.2
 """A second attempt is spliced in after this many times the duration of the first, which came too late."""
 
@@ -38,6 +42,7 @@ class Splice:
         before: the poses that would have followed.
         frame: frame of the running trajectory that is the last to be played; None at rest.
         began_s: time at which the attempt began.
+        latency: how long frames of this purpose take.
         made: whether new frames stand there. A splice that is left without them lets the trajectory run to its end.
     """
 
@@ -45,11 +50,15 @@ class Splice:
     before: PoseSequence
     frame: int | None
     began_s: float
+    latency: LatencyEstimate
     made: bool = False
 
 
 class Splicer:
     """Makes splices, one at a time, and learns how long the first chunk of a trajectory takes.
+
+    Attributes:
+        latencies: of each purpose.
 
     Args:
         buffer: the running trajectory.
@@ -58,39 +67,44 @@ class Splicer:
 
     def __init__(self, buffer: SetpointBuffer, clock: Clock = REAL_CLOCK) -> None:
         self._buffer, self._clock = buffer, clock
-        self.latency = LatencyEstimate(FIRST_RETARGET_S)
+        self.latencies: dict[Purpose, LatencyEstimate] = {
+            "command": LatencyEstimate(FIRST_RETARGET_S),
+            "idle": LatencyEstimate(FIRST_RETARGET_S),
+            "revision": LatencyEstimate(FIRST_RETARGET_S),
+        }
 
     @contextmanager
-    def splice(self, *, late_s: float = 0.0) -> Generator[Splice]:
+    def splice(self, purpose: Purpose = "command", *, late_s: float = 0.0) -> Generator[Splice]:
         """A splice so far ahead that a first chunk will be made in time.
 
         Args:
+            purpose: of the new frames.
             late_s: seconds that an attempt took which came too late; 0 for a first attempt.
         """
-        began_s = self._clock.now_s()
+        began_s, latency = self._clock.now_s(), self.latencies[purpose]
         if late_s:
-            self.latency.took(late_s)
+            latency.took(late_s)
         plan = self._buffer.current
         if plan is None or not self._buffer.running or self._buffer.dry:
-            splice = self._at_rest(plan, began_s)
+            splice = self._at_rest(plan, began_s, latency)
         else:
-            frame = self._buffer.frame_within(plan, max(self.latency.seconds, RETRY_MARGIN * late_s))
+            frame = self._buffer.frame_within(plan, max(latency.seconds, RETRY_MARGIN * late_s))
             plan.extend(frame + 1)
             frame = max(0, min(frame, plan.n_frames - 1))
-            splice = Splice(plan.state_at(frame), plan.posture_from(frame, FADE_FRAMES), frame, began_s)
+            splice = Splice(plan.state_at(frame), plan.posture_from(frame, FADE_FRAMES), frame, began_s, latency)
         with self._open(splice):
             yield splice
 
     @contextmanager
     def splice_at_once(self) -> Generator[Splice]:
         """A splice after the last frame pushed, whose velocity is the difference quotient that the limiter continues from."""
-        began_s, plan = self._clock.now_s(), self._buffer.current
+        began_s, plan, latency = self._clock.now_s(), self._buffer.current, self.latencies["command"]
         if plan is None or not self._buffer.running or self._buffer.dry:
-            splice = self._at_rest(plan, began_s)
+            splice = self._at_rest(plan, began_s, latency)
         else:
             plan.extend(plan.pushed)
             frame = max(0, min(plan.pushed, plan.n_frames) - 1)
-            splice = Splice(plan.step_at(frame), plan.posture_from(frame, FADE_FRAMES), frame, began_s)
+            splice = Splice(plan.step_at(frame), plan.posture_from(frame, FADE_FRAMES), frame, began_s, latency)
         with self._open(splice):
             yield splice
 
@@ -102,12 +116,14 @@ class Splicer:
             if not splice.made and (plan := self._buffer.current) is not None:
                 plan.end = None
 
-    def _at_rest(self, plan: Trajectory | None, began_s: float) -> Splice:
+    def _at_rest(self, plan: Trajectory | None, began_s: float, latency: LatencyEstimate) -> Splice:
         if plan is not None and plan.resumes and self._buffer.running:
             plan.end = plan.pushed  # nothing moves until the splice is made or left
-            return Splice(self._buffer.at_rest, plan.posture_from(plan.n_frames - 1, FADE_FRAMES), None, began_s)
+            return Splice(
+                self._buffer.at_rest, plan.posture_from(plan.n_frames - 1, FADE_FRAMES), None, began_s, latency
+            )
         self._buffer.drop()
-        return Splice(self._buffer.at_rest, self._buffer.posture_now, None, began_s)
+        return Splice(self._buffer.at_rest, self._buffer.posture_now, None, began_s, latency)
 
     def missed(self, splice: Splice) -> bool:
         """Whether the bus process has played beyond the splice, or ran dry, before its frames were made."""
@@ -128,7 +144,7 @@ class Splicer:
         beyond = self._buffer.end_after(splice.frame)
         self._buffer.follow_with(plan)
         if plan.n_frames:
-            self.latency.took(self._clock.now_s() - splice.began_s)
+            splice.latency.took(self._clock.now_s() - splice.began_s)
             plan.pushed = min(beyond, plan.n_frames - 1)
             self._buffer.pump()
         splice.made = True
@@ -139,7 +155,7 @@ class Splicer:
         beyond = self._buffer.end_after(splice.frame)
         plan.cut(splice.frame)
         plan.append(chunk)
-        self.latency.took(self._clock.now_s() - splice.began_s)
+        splice.latency.took(self._clock.now_s() - splice.began_s)
         plan.end, plan.pushed = None, min(plan.pushed + beyond, plan.n_frames - 1)
         self._buffer.pump()
         splice.made = True
@@ -150,6 +166,7 @@ class Splicer:
         place: Callable[[Splice, Chunk], bool],
         wanted: Callable[[], bool],
         wait_for_rest: Callable[[], Awaitable[None]] | None = None,
+        purpose: Purpose = "command",
     ) -> tuple[Iterator[Chunk], Chunk] | None:
         """Make the first chunk in a worker thread and place it, again and again until it comes in time.
 
@@ -158,6 +175,7 @@ class Splicer:
             place: makes the splice; false where the chunk is not wanted any more.
             wanted: whether to try; called before each attempt.
             wait_for_rest: waits until the joints rest, where the bus process ran dry; None gives up there.
+            purpose: of the chunk.
 
         Returns:
             The chunks, the first of which is placed, and that chunk; None where none was placed.
@@ -173,7 +191,7 @@ class Splicer:
                 await wait_for_rest()
             if not wanted():
                 return None
-            with self.splice(late_s=late_s) as splice:
+            with self.splice(purpose, late_s=late_s) as splice:
                 chunks = chunks_at(splice)
                 if chunks is None:
                     return None
@@ -187,6 +205,7 @@ class Splicer:
         plan = self._buffer.current
         if plan is None or not self._buffer.running:
             return replace(self._buffer.posture_now.at(np.zeros(n, np.intp)), fps=FPS)
-        last = min(self._buffer.frame_within(plan, ahead_s + self.latency.seconds), plan.n_frames - 1)
+        ahead_s += self.latencies["command"].seconds
+        last = min(self._buffer.frame_within(plan, ahead_s), plan.n_frames - 1)
         places = [last - round(k * self._buffer.rate_hz / FPS) for k in reversed(range(n))]
         return replace(joined([plan.posture_from(place, 1) for place in places]), fps=FPS)

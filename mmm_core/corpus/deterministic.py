@@ -15,9 +15,13 @@ import numpy as np
 
 from mmm_core.corpus.beat import BEAT_S
 from mmm_core.corpus.families import FAMILIES, Gesture
-from mmm_core.corpus.synthesis import ClipSpec, SynthClip, draw_gesture, synthesise_spec
+from mmm_core.corpus.synthesis import ClipSpec, SynthClip, draw_gesture, has_styles, in_a_style, synthesise_spec
 from mmm_core.language.count_words import count_asked
 from mmm_core.language.reading import read
+
+STYLED_SHARE = 0.2
+"""Share of gestures without a style that get one where they can: every style of a gesture is a motion to learn, and `draw_gesture`
+gives one to 7 in 100."""
 
 
 def synthesise_deterministic(rng: np.random.Generator, weights: Mapping[str, float] | None = None) -> SynthClip:
@@ -29,6 +33,8 @@ def synthesise_deterministic(rng: np.random.Generator, weights: Mapping[str, flo
     """
     while True:
         drawn = draw_gesture(rng, weights=weights)
+        if not drawn.style and has_styles(FAMILIES[drawn.family]) and rng.random() < STYLED_SHARE:
+            drawn = in_a_style(drawn, rng)
         gesture = replace(drawn, hold_s=0.0) if drawn.style else replace(drawn, hold_s=0.0, tempo=1.0, size=1.0)
         clip = synthesise_spec(ClipSpec((gesture,)), rng, BEAT_S, deterministic=True)
         captions = [] if clip is None else [w for c in clip.captions if (w := words_given(c, gesture)) is not None]

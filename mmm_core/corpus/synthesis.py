@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mmm_core.corpus.beat import Calm
 from mmm_core.corpus.body import Body, perform
-from mmm_core.corpus.families import FAMILIES, Gesture
+from mmm_core.corpus.families import FAMILIES, Family, Gesture
 from mmm_core.corpus.grammar import caption, usual_counts
 from mmm_core.corpus.score import REST_ARM, ArmPose, Score
 from mmm_core.corpus.styles import STYLES
@@ -112,10 +112,21 @@ def _in_a_manner(g: Gesture, rng: np.random.Generator) -> Gesture:
         return replace(g, size=float(rng.choice([0.65, 1.25])))
     if kind < 0.48 and family.holds:
         return replace(g, hold_s=float(rng.choice([1, 2, 3, 4, 5], p=[0.1, 0.3, 0.3, 0.2, 0.1])))
-    if kind < 0.55 and family.limb == "arm" and not family.starts_away:
-        name = str(rng.choice(list(STYLES)))
-        return replace(g, style=name, tempo=STYLES[name].tempo, size=STYLES[name].size if family.counts else 1.0)
+    if kind < 0.55 and has_styles(family):
+        return in_a_style(g, rng)
     return g
+
+
+def has_styles(family: Family) -> bool:
+    """Whether gestures of a family are performed in styles: those of arms that begin at rest."""
+    return family.limb == "arm" and not family.starts_away
+
+
+def in_a_style(g: Gesture, rng: np.random.Generator) -> Gesture:
+    """The gesture in a style drawn at random, with the tempo and size that the style has."""
+    name = str(rng.choice(list(STYLES)))
+    size = STYLES[name].size if FAMILIES[g.family].counts else 1.0
+    return replace(g, style=name, tempo=STYLES[name].tempo, size=size)
 
 
 def draw_spec(

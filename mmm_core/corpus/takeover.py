@@ -1,7 +1,8 @@
 """A gesture that begins in the middle of another one, as a new text takes over a robot that moves.
 
 The first seconds show the gesture that was running; then every channel leads over to the captioned gesture within `LEAD_S`, while that
-one already runs on its own beat. A model that is trained to predict the rest, given the first tokens, learns to go on from any pose.
+one already runs on its own beat. Its words decide it alone (`mmm_core.corpus.deterministic`). A model that is trained to predict
+the rest, given the first tokens, learns to go on from any pose.
 """
 
 from __future__ import annotations
@@ -11,9 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from mmm_core.corpus.beat import BEAT_S
 from mmm_core.corpus.body import perform
+from mmm_core.corpus.deterministic import synthesise_deterministic
 from mmm_core.corpus.score import Score, minimum_jerk
-from mmm_core.corpus.synthesis import ClipSpec, SynthClip, draw_gesture, draw_spec, score_of, words_for
+from mmm_core.corpus.synthesis import ClipSpec, SynthClip, draw_gesture, score_of
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.motion.features import features_from_joints
 from mmm_core.motion.motion import FPS
@@ -40,23 +43,20 @@ class Takeover(Score):
         return (1 - share) * old + share * new
 
 
-def synthesise_takeover(
-    rng: np.random.Generator, beat_s: float, weights: Mapping[str, float] | None, single_share: float
-) -> tuple[SynthClip, int]:
+def synthesise_takeover(rng: np.random.Generator, weights: Mapping[str, float] | None = None) -> tuple[SynthClip, int]:
     """A clip that begins in the middle of another gesture, with the captions of what follows, and how many of its tokens that gesture has.
 
     Args:
         rng: source of all chance.
-        beat_s: seconds of a beat, as of `synthesise_spec`.
         weights: how often each family is drawn.
-        single_share: share of clips that go on with one gesture.
     """
     token_s = FRAMES_PER_TOKEN / FPS
     while True:
-        spec, running = draw_spec(rng, weights, single_share), replace(draw_gesture(rng), style="", hold_s=0.0)
-        if any(gesture.style for gesture in spec.gestures):
+        new, running = synthesise_deterministic(rng, weights), replace(draw_gesture(rng), style="", hold_s=0.0)
+        if any(gesture.style for gesture in new.spec.gestures):
             continue  # a style holds from a clip's first frame to its last
-        after, before = score_of(spec, rng, beat_s), score_of(ClipSpec((running,)), rng, beat_s)
+        after = score_of(new.spec, rng, BEAT_S, deterministic=True)
+        before = score_of(ClipSpec((running,)), rng, BEAT_S)
         least = SEEN_TOKENS[0] * token_s
         cut = int(rng.integers(SEEN_TOKENS[0], max(int((before.time_s - least) / token_s), SEEN_TOKENS[0]) + 1))
         n_seen = int(min(rng.integers(SEEN_TOKENS[0], SEEN_TOKENS[1] + 1), cut))
@@ -68,4 +68,4 @@ def synthesise_takeover(
         body = replace(body, joints_m=body.joints_m[first:], head_R_world=body.head_R_world[first:],
                        forearm_twist_rad=body.forearm_twist_rad[first:])  # fmt: skip
         features = features_from_joints(body.joints_m, body.head_R_world, body.forearm_twist_rad)
-        return SynthClip(features, words_for(spec, rng), spec, body), n_seen
+        return SynthClip(features, new.captions, new.spec, body), n_seen

@@ -109,10 +109,8 @@ def features_of(engine: MotionModel, ids: Tensor, steps: Sequence[tuple[int, Ste
         steps: the steps, each with the token at which it begins.
     """
     several = [(first, step) for first, step in steps if step.rows]
-    if (
-        len(steps) == 1 and len(several) == 1 and len(ids) == len(steps[0][1].ids)
-    ):  # no other ids: all joints have an owner
-        step = steps[0][1]
+    if len(several) == len(steps) == 1 and len(ids) == len(several[0][1].ids):  # every joint has an owner
+        step = several[0][1]
         own = engine.model.tokenizer.decode(torch.stack(step.rows)).numpy()
         whole = own[step.owners["trunk"]]
         return put_together(whole, {part: own[k] for part, k in step.owners.items()}, 0, len(whole))

@@ -76,9 +76,8 @@ class Engine(MotionModel):
             expected = "one with CLIP's text tower in it: import it with --clip and --vocabulary"
             raise CheckpointError(path, "text", "no text encoder of its width", expected)
         config = model.transformer.config
-        can_int8 = (
-            int8_is_supported() and config.n_out == config.n_codebooks
-        )  # one that only edits cannot show its inputs
+        shows_inputs = config.n_out == config.n_codebooks  # a model that only edits cannot be calibrated
+        can_int8 = int8_is_supported() and shows_inputs
         if precision is None:
             precision = "int8" if model.is_ours and can_int8 else "fp32"
         chosen = fastest_precision() if precision == "auto" else precision

@@ -39,7 +39,7 @@ class LengthClassifier(nn.Module):
 
 
 class LogNormalLength(nn.Module):
-    """Text states -> mean and log standard deviation of log seconds, by attention pooling over the words."""
+    """Text states -> mean of log seconds, by attention pooling over the words. The second output was its spread in training."""
 
     def __init__(self, text_dim: int = 384, width: int = 192, n_heads: int = 4) -> None:
         super().__init__()
@@ -48,17 +48,15 @@ class LogNormalLength(nn.Module):
         self.body = nn.Sequential(nn.Linear(width + text_dim, width), nn.GELU(), nn.Linear(width, width), nn.GELU())
         self.out = nn.Linear(width, 2)
 
-    def forward(self, text: TextStates) -> tuple[Tensor, Tensor]:
-        """(B,) mean and (B,) log standard deviation of log seconds."""
-        mean, log_std = self.out(
-            self.body(torch.cat([_pooled(text, self.score, self.value), text.sentence], -1))
-        ).unbind(-1)
-        return mean + 1.0, log_std.clamp(-4.0, 1.0)  # +1: e seconds is a usual length
+    def forward(self, text: TextStates) -> Tensor:
+        """(B,) mean of log seconds."""
+        out = self.out(self.body(torch.cat([_pooled(text, self.score, self.value), text.sentence], -1)))
+        return out[:, 0] + 1.0  # +1: e seconds is a usual length
 
     @torch.inference_mode()
     def n_tokens(self, text: TextStates) -> list[int]:
         """The number of tokens of the median length for each text, at most MAX_TOKENS."""
-        return [min(MAX_TOKENS, tokens_for_frames(max(1, round(s * FPS)))) for s in self(text)[0].exp().tolist()]
+        return [min(MAX_TOKENS, tokens_for_frames(max(1, round(s * FPS)))) for s in self(text).exp().tolist()]
 
 
 def _pooled(text: TextStates, score: nn.Linear, value: nn.Linear) -> Tensor:

@@ -53,8 +53,9 @@ class FreshRecipe:
         free_share: share of clips that keep no beat: performed as by a person, with sway, breath and uneven strokes.
         canonical_share: share of clips whose sentence is the one of it and its mirror image that the engine reads.
         single_share: share of clips that show one gesture; the others show two at once, or two or three in turn.
-        takeover_share: share of clips that begin in the middle of another gesture, whose tokens are given and not learnt.
-        deterministic_share: share of clips that show one gesture without any chance (`mmm_core.corpus.deterministic`).
+        takeover_share: share of clips that begin in the middle of another gesture, whose tokens are given and not learnt; what
+            follows is one gesture without any chance.
+        deterministic_share: share of the others that show one gesture without any chance (`mmm_core.corpus.deterministic`).
     """
 
     clips: int = 0
@@ -113,20 +114,17 @@ def make_round(how: FreshRecipe, seed: int, k: int, weights: Mapping[str, float]
 
 
 def _make(how: FreshRecipe, rng: np.random.Generator, weights: Mapping[str, float]) -> Clip:
-    if how.deterministic_share and rng.random() < how.deterministic_share:
-        clip = synthesise_deterministic(rng, weights)
-        return _read_from_one_side(clip, how.captions, 0)
-    beat_s = 0.0 if rng.random() < how.free_share else BEAT_S
     if how.takeover_share and rng.random() < how.takeover_share:
-        made, n_seen = synthesise_takeover(rng, beat_s, weights, how.single_share)
-    else:
-        made, n_seen = synthesise(rng, beat_s, weights, how.single_share), 0
+        return _read_from_one_side(*synthesise_takeover(rng, weights), how.captions)
+    if how.deterministic_share and rng.random() < how.deterministic_share:
+        return _read_from_one_side(synthesise_deterministic(rng, weights), 0, how.captions)
+    made = synthesise(rng, 0.0 if rng.random() < how.free_share else BEAT_S, weights, how.single_share)
     if rng.random() >= how.canonical_share:
-        return Clip(made.features, made.captions[: how.captions], False, n_seen)
-    return _read_from_one_side(made, how.captions, n_seen)
+        return Clip(made.features, made.captions[: how.captions], is_real=False)
+    return _read_from_one_side(made, 0, how.captions)
 
 
-def _read_from_one_side(made: SynthClip, n_captions: int, n_seen: int) -> Clip:
+def _read_from_one_side(made: SynthClip, n_seen: int, n_captions: int) -> Clip:
     """The clip whose sentence the engine reads: this one or its mirror image."""
     read = [canonical(c) for c in made.captions]
     turned = read[0][1]  # the others only where they are read from the same side

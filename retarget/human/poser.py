@@ -118,17 +118,22 @@ class Poser:
         if self._arms_follow == "world":
             turned = np.swapaxes(self._trunk.into_chest(q) @ human.chest_rotation, -1, -2)
             upper, fore = ((d[:, :, None] @ turned)[:, :, 0] for d in (upper, fore))
-        all_reach = all(arms.reaches_all for arms in self._arms)
-        weights = np.tile(np.eye(2), (2, human.upper.shape[1], 1, 1)) if all_reach else bone_weights(human)
+        weights = self._weights(human)
         for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
-            if arms.reaches_all:
-                weights[sides] = np.eye(2)
             angles, cut = self._arm_angles(arms, upper[sides], fore[sides], weights[sides], before[joints])
             q[:, joints], outside[:, joints] = angles.transpose(1, 0, 2), cut.transpose(1, 0, 2)
         for i, joint, sense in self._twists:
             q[:, joint] = sense * human.forearm_twist_rad[i]
         outside |= (q < low) | (q > high)
         return Poses(np.minimum(np.maximum(q, low), high), outside, upper, fore, weights)
+
+    def _weights(self, human: HumanPose) -> Array:
+        """(2, T, 2, 2) weights of upper arm and forearm; equal ones for arms that reach every direction of both."""
+        weights = np.tile(np.eye(2), (2, human.upper.shape[1], 1, 1))
+        some = [i for arms, sides in zip(self._arms, self._sides, strict=True) if not arms.reaches_all for i in sides]
+        if some:
+            weights[some] = bone_weights(human)[some]
+        return weights
 
     def directions(self, q_rad: Array) -> tuple[Array, Array]:
         """(2, T, 3) directions of the upper arms and of the forearms, left and right, in poses (T, J)."""

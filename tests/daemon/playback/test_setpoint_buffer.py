@@ -168,11 +168,11 @@ def test_what_is_in_hand_is_taken_back_when_another_motion_takes_over(bench):
     bench.play(RIGHT)
     bench.cycle(40)
     for _ in range(20):  # first chunks have been quick
-        bench.splicer.latency.took(0.03)
+        bench.splicer.latencies["command"].took(0.03)
     bench.buffer._queue_frames = 40
     bench.cycle(10)
     assert bench.link.queued_frames >= 35
-    lead = bench.splicer.latency.seconds * ROBOT.bus.rate_hz
+    lead = bench.splicer.latencies["command"].seconds * ROBOT.bus.rate_hz
     plan = bench.play(LEFT, retarget_cycles=0)
     first = len(bench.records)
     bench.cycle(60)
@@ -181,6 +181,21 @@ def test_what_is_in_hand_is_taken_back_when_another_motion_takes_over(bench):
     bench.finish()
     assert_within_limits(bench)
     assert not np.concatenate([r["clipped"] for r in bench.records]).any()
+
+
+def test_slow_revisions_delay_no_command(bench):
+    bench.arm()
+    bench.play(RIGHT)
+    bench.cycle(20)
+    for _ in range(20):
+        bench.splicer.latencies["command"].took(0.01)
+        bench.splicer.latencies["revision"].took(0.2)
+    with bench.splicer.splice("revision") as revision:
+        pass
+    with bench.splicer.splice() as command:
+        pass
+    assert revision.frame is not None and command.frame is not None
+    assert revision.frame - command.frame >= 0.15 * ROBOT.bus.rate_hz
 
 
 @settings(max_examples=examples(15), deadline=None, suppress_health_check=list(HealthCheck))
@@ -210,10 +225,10 @@ def test_what_is_committed_is_what_will_have_been_played(bench, ahead_s, fps):
     plan = bench.play(replace(RIGHT, fps=fps))
     whole = at_tempo(posture_of(RIGHT), fps / 20.0)
     bench.cycle(30)
-    bench.splicer.latency = LatencyEstimate(0.03)  # measured, else
+    bench.splicer.latencies["command"] = LatencyEstimate(0.03)  # measured, else
     shown = bench.splicer.committed(8, ahead_s)
     assert shown.fps == whole.fps == 20.0
-    end_s = (plan.statistics.last_frame + 1) * PERIOD_S + ahead_s + bench.splicer.latency.seconds
+    end_s = (plan.statistics.last_frame + 1) * PERIOD_S + ahead_s + bench.splicer.latencies["command"].seconds
     at = round(end_s * whole.fps)
     off_deg = [distance_deg(shown, whole.at(np.arange(at + d - 7, at + d + 1))).max() for d in (-1, 0, 1)]
     assert min(off_deg) < (1e-4 if fps == 20.0 else 10) < max(off_deg)

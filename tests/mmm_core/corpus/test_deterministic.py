@@ -50,6 +50,12 @@ def test_a_sentence_without_a_number_has_the_usual_one() -> None:
     assert words_given("wave seven times with your right hand", Gesture("wave", "right", 7)) is not None
 
 
+def test_a_height_that_the_engine_takes_for_a_size_is_not_learnt() -> None:
+    low = Gesture("raise", "left", height="low")
+    assert words_given("raise your left arm halfway", low) is None
+    assert words_given("raise your left arm to shoulder height", low) == "raise your left arm to shoulder height"
+
+
 def test_drawn_clips_show_one_gesture_as_their_captions_say() -> None:
     for seed in range(40):
         clip = synthesise_deterministic(np.random.default_rng(seed))

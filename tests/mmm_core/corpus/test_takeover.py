@@ -22,7 +22,7 @@ HAND = [20, 21]
 @pytest.mark.parametrize("seed", range(6))
 def test_a_takeover_leads_smoothly_into_the_gesture_that_its_words_ask_for(seed: int) -> None:
     """No jump where one gesture ends, no faster than gestures are, and at the end the pose that the gesture alone ends with."""
-    clip, n_seen = synthesise_takeover(np.random.default_rng(seed), BEAT_S, None, 1.0)
+    clip, n_seen = synthesise_takeover(np.random.default_rng(seed))
     assert SEEN_TOKENS[0] <= n_seen <= SEEN_TOKENS[1] and len(clip.features) <= MAX_TOKENS * FRAMES_PER_TOKEN
     assert len(clip.features) % FRAMES_PER_TOKEN == 0 and clip.captions
     cut = n_seen * FRAMES_PER_TOKEN
@@ -37,7 +37,7 @@ def test_a_takeover_leads_smoothly_into_the_gesture_that_its_words_ask_for(seed:
 
 def test_many_takeovers_begin_away_from_rest() -> None:
     rest = synthesise(np.random.default_rng(0), BEAT_S, {"stand": 1.0}, 1.0).body.joints_m[0, HAND]
-    made = [synthesise_takeover(np.random.default_rng((5, i)), BEAT_S, None, 1.0) for i in range(20)]
+    made = [synthesise_takeover(np.random.default_rng((5, i))) for i in range(20)]
     away_m = [np.abs(c.body.joints_m[FRAMES_PER_TOKEN * n, HAND] - rest).max() for c, n in made]
     assert np.mean(np.array(away_m) > 0.15) > 0.5
 

@@ -27,7 +27,7 @@ needs_data = pytest.mark.skipif(
 )
 SMALL = "2048 x 4"
 TUNED = "last two layers of the text encoder trained"
-FOLDER = TUNED.replace(" ", "_")
+FOLDER, SMALL_FOLDER = (name.replace(" ", "_") for name in (TUNED, SMALL))
 EACH_KIND = [
     next(p for p in PROBES if expects(p))
     for expects in (
@@ -76,9 +76,9 @@ def test_variants_are_trained_and_measured_and_kept(
     printed = capsys.readouterr().out
     assert all(f"| {name} |" in printed for name in (TUNED, SMALL)) and "error_mm" in printed
     figures = {path.parent.name: json.loads(path.read_text()) for path in tmp_path.glob("run/*/figures.json")}
-    assert set(figures) == {FOLDER, "512_x_4"}
+    assert set(figures) == {FOLDER, SMALL_FOLDER}
     assert load_model(tmp_path / "run" / FOLDER / "model.safetensors").transformer.config.n_words == 2
-    assert figures[FOLDER]["r1_ratio"] >= 0 and figures["512_x_4"]["codes_used"] > 0
+    assert figures[FOLDER]["r1_ratio"] >= 0 and figures[SMALL_FOLDER]["codes_used"] > 0
     (tmp_path / "run" / FOLDER / "figures.json").write_text(json.dumps({"limb": 0.25}))
     assert run_ablations(read_recipe(str(recipe)), Run(tmp_path / "run"), some_recordings, [TUNED]) == {
         TUNED: {"limb": 0.25}
