@@ -71,4 +71,10 @@ def _post(kind: str, request: dict[str, Any], events: dict[str, Any]) -> dict[st
 
 
 def _socket(summary: str) -> dict[str, Any]:
-    return {"summary": f"WebSocket: {summary}", "responses": {"101": {"description": "the connection is a WebSocket"}}}
+    return {
+        "summary": f"WebSocket: {summary}",
+        "responses": {
+            "101": {"description": "the connection is a WebSocket"},
+            "426": {"description": "a GET that asks for no WebSocket; the body says how to connect"},
+        },
+    }

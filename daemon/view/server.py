@@ -146,11 +146,11 @@ class _Handler(RequestHandler):
     def write_error(self, status_code: int, **_: Any) -> None:
         self.finish({"type": "error", "code": "http", "found": self._reason, "asked": self.request.path})
 
-    def _refuse(self, status: int, why: str) -> None:
+    def _refuse(self, status: int, why: str, code: str = "forbidden") -> None:
         self.set_status(status)
         if status == 401:
             self.set_header("WWW-Authenticate", "Bearer")
-        self.finish({"type": "error", "code": "forbidden", "asked": self.request.path, "found": why})
+        self.finish({"type": "error", "code": code, "asked": self.request.path, "found": why})
 
 
 class _File(_Handler):
@@ -208,6 +208,17 @@ class _Socket(WebSocketHandler, _Handler):
         if self.server.sockets >= MOST_SOCKETS:
             self._refuse(503, f"{MOST_SOCKETS} connections are open; close a page")
 
+    async def get(self, *args: str, **kwargs: str) -> None:
+        if self.request.headers.get("Upgrade", "").lower() == "websocket":
+            await super().get(*args, **kwargs)
+            return
+        self.set_header("Upgrade", "websocket")
+        self.set_header("Connection", "Upgrade")
+        at = f"{self.request.host}{self.request.path}"
+        example = {"/v1/cmd": "bow", "/v1/ctl": "stop"}.get(self.request.path)
+        post = f", or send one request by POST: curl -d {example} http://{at}" if example else ""
+        self._refuse(426, f"a GET that asks for no WebSocket; connect to ws://{at}{post}", "upgrade_required")
+
     def check_origin(self, origin: str) -> bool:
         return True  # `prepare` has judged it
 
@@ -263,9 +274,6 @@ class _Requests(_Socket):
     async def _answer(self, event: bytes) -> None:
         self.set_header("Content-Type", "application/json")
         await self.finish(event + b"\n")
-
-    async def get(self, *args: Any, **kwargs: Any) -> None:
-        await super().get(*args, **kwargs)
 
     def open(self, *args: str, **_: str) -> None:
         super().open()

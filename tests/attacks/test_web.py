@@ -108,6 +108,22 @@ def test_what_is_refused_says_so_by_its_status(web: Web, body: dict[str, str], s
     assert code in (None, json.loads(event)["code"])
 
 
+@pytest.mark.parametrize(
+    ("path", "says"),
+    [
+        ("/v1/cmd", "curl -d bow http://127.0.0.1"),
+        ("/v1/ctl", "curl -d stop http://127.0.0.1"),
+        ("/v1/pub", "connect to ws://127.0.0.1"),
+        ("/v1/stream", "connect to ws://127.0.0.1"),
+    ],
+)
+def test_a_get_where_a_websocket_is_says_how_to_connect(web: Web, path: str, says: str) -> None:
+    """A browser or `curl` without a body got 400 and `Can "Upgrade" only to "WebSocket".`, which told nobody what to send."""
+    status, body = web.ask(path)
+    assert status == 426 and json.loads(body)["code"] == "upgrade_required"
+    assert says in json.loads(body)["found"]
+
+
 def test_the_description_names_every_request(web: Web) -> None:
     document = json.loads(web.ask("/v1/openapi.json")[1])
     assert {"Say", "Story", "Gesture", "Stop", "Estop", "Done", "StateEvent"} <= document["components"][
