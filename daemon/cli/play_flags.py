@@ -91,6 +91,7 @@ def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
 
 def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
     """Send a request and print its events; the exit status."""
+    from daemon.cli.loading_note import LoadingNote
     from daemon.client.compositions import FIRST_REPLY_TIMEOUT_S, patience_s
     from daemon.client.errors import exit_status
     from daemon.wire.codec import encode
@@ -98,8 +99,9 @@ def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
 
     status = 0
     timeout_s = patience_s(request) if wait else FIRST_REPLY_TIMEOUT_S
-    with at.client() as robot:
+    with at.client() as robot, LoadingNote(at) as note:
         for event in robot.events_of(request, timeout_s):
+            note.answered()
             if json:
                 sys.stdout.write(encode(event).decode() + "\n")
             elif not isinstance(event, Refusal):
