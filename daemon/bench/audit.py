@@ -7,7 +7,6 @@ wire and the servos fail on a schedule, requests come at random and frames are n
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -55,7 +54,7 @@ _METHOD = (
 def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -> dict[str, Any]:
     """`prompts`, `robots`, `goals`, `violations`, contacts, `repairs`, and the same for each robot.
 
-    Each robot's are told on stderr as soon as they are known.
+    The sums of each robot go to stderr as soon as they are known.
 
     Args:
         prompts: number of texts.
@@ -87,7 +86,7 @@ def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -
         some = own[: max(1, round(_DISTURBED_SHARE * len(own)))]
         rough = _play_disturbed(robot, track(some, f"{name}, disturbed", console=stderr), seed + r)
         per_robot[name] = {"calm": calm, "disturbed": rough}
-        stderr.out(f"{name}: {json.dumps(per_robot[name])}", highlight=False)  # known, should the rest be cut short
+        stderr.out(f"{name}: {_summary(calm, rough)}", highlight=False)  # known, should the rest be cut short
     both = [part for parts in per_robot.values() for part in parts.values()]
     return {
         "prompts": prompts,
@@ -98,6 +97,12 @@ def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -
         "per_robot": per_robot,
         **context(seed, _METHOD),
     }
+
+
+def _summary(*parts: dict[str, Any]) -> str:
+    """What a robot's audits found, in a line."""
+    goals, violations, contacts = (sum(p[key] for p in parts) for key in ("goals", "violations", "self_contacts"))
+    return f"{goals:,} goals, {violations} outside a limit, {contacts} poses in self-contact"
 
 
 def _has_tables(robot: RobotModel) -> bool:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import importlib
 import json as json_module
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, cast
 
 import tyro
 
@@ -100,10 +100,25 @@ def bench(
     if json:
         console.out(json_module.dumps(figures))
     else:
-        for key, value in figures.items():
-            console.print(f"[bold]{key}[/bold]: {value}")
+        for line in _lines(figures):
+            console.print(line, soft_wrap=True)
     failed = any(figures.get(key) for key in _MUST_BE_NONE) or figures.get("tokens_identical") is False
     return 1 if failed else 0
+
+
+def _lines(figures: Mapping[str, Any], indent: str = "") -> Iterator[str]:
+    """A line for each figure; figures of parts (a robot, a disturbance) stand indented below the part's name."""
+    for key, value in figures.items():
+        head = f"{indent}[bold]{key}[/bold]:"
+        if not isinstance(value, Mapping):
+            yield f"{head} {value}"
+            continue
+        below = cast("Mapping[str, Any]", value)
+        if any(isinstance(v, Mapping) for v in below.values()):
+            yield head
+            yield from _lines(below, indent + "    ")
+        else:
+            yield f"{head} {', '.join(f'{k} {v}' for k, v in below.items())}"
 
 
 def _all(

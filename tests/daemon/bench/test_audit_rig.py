@@ -105,7 +105,10 @@ def test_a_robot_of_ones_own_can_be_audited(tmp_path, capsys):
         text.replace('name = "op3"', 'name = "mine"').replace("rate_hz = 125", "rate_hz = 40")
     )
     assert main(["bench", "audit", "--robot", str(mine), "--n", "1", "--json"]) == 0
-    figures = json.loads(capsys.readouterr().out)
+    out, err = capsys.readouterr()
+    assert "0 outside a limit, 0 poses in self-contact" in err
+    assert "poses_checked" not in err, "all figures of every robot stood on stderr, and once more in the result"
+    figures = json.loads(out)
     assert figures["robots"] == [str(mine)] and figures["goals"] > 0 and figures["violations"] == 0
 
 
