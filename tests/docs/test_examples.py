@@ -59,8 +59,17 @@ def test_hello_by_curl(port: str) -> None:
 
 
 def test_hello_in_python(daemon: RunningDaemon) -> None:
-    said = run(sys.executable, str(EXAMPLES / "hello.py"), *daemon.at).split()
-    assert said[0] == "accepted" and "done" in said and "stopped," in said
+    """It stops a robot that moves: it stopped one that had not set out yet."""
+    said = run(sys.executable, str(EXAMPLES / "hello.py"), *daemon.at).splitlines()
+    assert said[0].startswith("accepted") and said[-3].startswith("done")
+    assert said[-1] == "stopped, the robot was moving"
+
+
+def test_hello_by_websocket(port: str) -> None:
+    """One text interrupts another, and a stop ends the third: each text hears its own end."""
+    lines = run(sys.executable, str(EXAMPLES / "hello_websocket.py"), f"ws://127.0.0.1:{port}").splitlines()
+    assert "clap cancelled say wave" in lines and "wave done" in [line.strip() for line in lines]
+    assert lines[-2:] == ["halt ack ", "again cancelled stop"]
 
 
 def test_hello_in_node(port: str) -> None:
