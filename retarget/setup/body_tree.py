@@ -80,9 +80,19 @@ class BodyTree:
             forward_key = max(DIRECTIONS, key=lambda k: float(np.dot(DIRECTIONS[k], forward)))
             self.notes.append(f"forward is {forward_key}: joints named left stand on the {left_key} side")
         else:
-            forward_key = "x" if up_key[-1] != "x" else "y"
-            self.notes.append(f"forward is taken as {forward_key}: no names tell left from right; check")
+            forward_key = self._forward_of_spread(up_key)
+            self.notes.append(
+                f"forward is taken as {forward_key}: no joint is named left, right, l or r, so left and right may be swapped; see"
+                f" `mmmd robot show`, and where they are, rename the joints in the description (`left_...`, `right_...`)"
+            )
         return rotation_to_standard(forward_key, up_key), forward_key, up_key
+
+    def _forward_of_spread(self, up_key: str) -> str:
+        """The level axis across the one along which the joints lie farthest apart: two arms stand side by side."""
+        places = np.array([self.data.xanchor[j] for j in self.joints]).reshape(-1, 3)
+        level = [k for k in ("x", "y", "z") if k != up_key[-1]]
+        spread = {k: float(np.ptp(places @ np.array(DIRECTIONS[k]))) if len(places) else 0.0 for k in level}
+        return min(level, key=lambda k: spread[k])
 
     def _lateral_middle(self) -> float:
         """Where the mirror plane stands: limbs come in pairs, so half way between the outermost joints."""

@@ -72,7 +72,9 @@ class _Finder:
             if len(a) == len(b) >= 2 and abs(self._tree.anchor[a[0]][2] - self._tree.anchor[b[0]][2]) < 0.1 * self._tree.size()
         ]  # fmt: skip
         if not pairs:
-            found = f"{len(limbs['left'])} limbs on the left, {len(limbs['right'])} on the right, none alike"
+            found = "; ".join([
+                f"{len(limbs['left'])} limbs on the left, {len(limbs['right'])} on the right, none alike", *self._tree.notes
+            ])  # fmt: skip
             raise RobotFileError(self._path, "description", found, "a pair of arms of at least two joints")
         return max(pairs, key=lambda p: self._tree.anchor[p[0][0]][2])
 

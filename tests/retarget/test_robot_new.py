@@ -145,6 +145,31 @@ def test_another_frame_gives_the_same_robot(tmp_path: Path) -> None:
     assert rotation_to_standard("-y", "z") @ [0, -1, 0] == pytest.approx([1, 0, 0])
 
 
+@pytest.mark.parametrize("look", ["x", "y"])
+def test_names_in_another_language_still_give_a_pair_of_arms(tmp_path: Path, look: str) -> None:
+    """A robot that looks along y, with joints named "links" and "rechts": no arms were found, and nothing said why."""
+    side = "y" if look == "x" else "x"
+    at = {"x": "{} 0 {}", "y": "0 {} {}"}[side]
+    links, joints = ['<link name="rumpf"/>'], list[str]()
+    for name, where in (("links", 0.1), ("rechts", -0.1)):
+        above = "rumpf"
+        for i, place in enumerate((at.format(where, 0.3), "0 0 0", "0 0 -0.2"), 1):
+            axis = "0 1 0" if (look == "x") == (i != 2) else "1 0 0"
+            shape = '<visual><origin xyz="0 0 -0.1"/><geometry><box size="0.03 0.03 0.18"/></geometry></visual>'
+            links.append(f'<link name="{name}_{i}_teil">{shape}</link>')
+            joints.append(
+                f'<joint name="{name}_{i}" type="revolute"><parent link="{above}"/><child link="{name}_{i}_teil"/>'
+                f'<origin xyz="{place}"/><axis xyz="{axis}"/><limit lower="-1.5" upper="1.5" effort="1" velocity="3"/></joint>'
+            )
+            above = f"{name}_{i}_teil"
+    path = tmp_path / "eigen.urdf"
+    path.write_text(f'<robot name="eigen">{"".join(links + joints)}</robot>')
+    found = find_anatomy(path)
+    roles = [j.role.partition("_")[2] for j in found.joints]
+    assert sorted(roles) == sorted(["shoulder_pitch", "shoulder_roll", "elbow"] * 2)
+    assert found.forward == look and any("left and right may be swapped" in note for note in found.notes)
+
+
 def test_gears_and_unfit_ranges_become_servo_keys(tmp_path: Path) -> None:
     propose(described("toddlerbot"), tmp_path / "robot.toml", "XL330-M288")
     text = (tmp_path / "robot.toml").read_text()
