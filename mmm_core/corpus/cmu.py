@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import logging
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from functools import lru_cache
@@ -19,9 +21,12 @@ from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.motion.features import features_from_joints, mirror
 
+log = logging.getLogger(__name__)
 LONGEST_FRAMES = MAX_TOKENS * FRAMES_PER_TOKEN
 SHORTEST_FRAMES = 24
-FREE_TERMS = ("CMU", "MIT", "CC0")
+OWN = "own"
+"""Terms of a trial that states none: the folder's owner recorded it."""
+FREE_TERMS = ("CMU", "MIT", "CC0", OWN)
 """Terms of trials that are used; every other is left out."""
 MORE = "more"
 """Subfolder with further recordings in the same form."""
@@ -40,10 +45,12 @@ def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.
 
     Used: recordings under terms of `FREE_TERMS`, sentences that are not KIT-ML's, upright frames outside `bad_frames`. The
     recordings are those of `motions_common_skeleton.npz`, or where there is none, TRIAL.bvh or TRIAL.amc (with its .asf).
-    A subfolder `more` is read too; of a recording that both hold, the subfolder's copy is used.
+    A subfolder `more` is read too; of a recording that both hold, the subfolder's copy is used. A line of `clips.jsonl` needs
+    `trial` and `captions` alone, and is the whole recording for training then; without `trials.jsonl` all recordings are the
+    reader's own. The log says how many clips are left out, and why.
 
     Raises:
-        TrainingDataError: a file is missing or a clip lies outside its recording.
+        TrainingDataError: a file is missing, a clip has no captions or lies outside its recording.
         MotionFileError: a recording cannot be read.
     """
     more, replaced = folder / MORE, frozenset[str]()
@@ -57,29 +64,66 @@ def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.
 
 def _read_folder(folder: Path, split: str, replaced: frozenset[str]) -> Iterator[tuple[NDArray[np.float32], list[str]]]:
     """The clips of one folder, without those of the trials in `replaced`."""
-    trials = {t["trial"]: t for t in _json_lines(folder / "trials.jsonl")}
+    listed = folder / "trials.jsonl"
+    trials = {t["trial"]: t for t in _json_lines(listed)} if listed.is_file() else None
+    left_out = Counter[str]()
     with ExitStack() as stack:
         recording = _recordings(folder, stack)
         for clip in _json_lines(folder / "clips.jsonl"):
-            trial = trials.get(clip["trial"])
-            joints = None if trial is None else recording(clip["trial"])
-            if trial is None or joints is None:
-                raise TrainingDataError(
-                    folder, clip["clip"], f"trial {clip['trial']!r} is unknown", "a trial of trials.jsonl"
-                )
-            if clip["split"] != split or trial["terms"] not in FREE_TERMS or clip["trial"] in replaced:
+            name = str(clip.get("trial", ""))
+            label, about = str(clip.get("clip", name)), {} if trials is None else trials.get(name)
+            joints = None if about is None else recording(name)
+            if about is None or joints is None:
+                allowed = "a trial of trials.jsonl" if trials is not None else f"a recording {name}.bvh or {name}.amc"
+                raise TrainingDataError(folder, label, f"trial {name!r} is unknown", allowed)
+            if clip.get("split", "train") != split or name in replaced:
                 continue
-            captions = [c for c, s in zip(clip["captions"], clip["caption_source"], strict=True) if s != "KIT-ML"]
-            if not 0 <= clip["start"] < clip["end"] <= len(joints) + 1:
-                found = f"frames {clip['start']} to {clip['end']}"
-                raise TrainingDataError(folder, clip["clip"], found, f"within the recording's {len(joints)} frames")
-            joints = joints[clip["start"] : clip["end"]].astype(np.float64)
-            if not captions or _touches(clip, trial["bad_frames"]) or not _upright(joints):
+            if (terms := about.get("terms", OWN)) not in FREE_TERMS:
+                left_out[f"terms {terms!r}, where {', '.join(FREE_TERMS)} are used"] += 1
                 continue
-            for start in range(0, len(joints) - SHORTEST_FRAMES, LONGEST_FRAMES):
-                features = features_from_joints(joints[start : start + LONGEST_FRAMES])
+            start, end = clip.get("start", 0), clip.get("end", len(joints))
+            if not 0 <= start < end <= len(joints) + 1:
+                found = f"frames {start} to {end}"
+                raise TrainingDataError(folder, label, found, f"within the recording's {len(joints)} frames")
+            joints = joints[start:end].astype(np.float64)
+            captions = _captions(folder, label, clip)
+            if reason := _unusable(joints, captions, (start, end), about.get("bad_frames", [])):
+                left_out[reason] += 1
+                continue
+            for first in range(0, len(joints) - SHORTEST_FRAMES, LONGEST_FRAMES):
+                features = features_from_joints(joints[first : first + LONGEST_FRAMES])
                 yield features, captions
                 yield mirror(features), [mirror_words(c) for c in captions]
+    for reason, n in left_out.items():
+        log.info("%s: %d clips of %s are left out: %s", folder, n, split, reason)
+
+
+def _captions(folder: Path, label: str, clip: dict[str, Any]) -> list[str]:
+    """The sentences of a clip, without KIT-ML's.
+
+    Raises:
+        TrainingDataError: the line has none.
+    """
+    captions = clip.get("captions")
+    if not isinstance(captions, list) or not captions:
+        raise TrainingDataError(
+            folder, label, f"captions {captions!r}", 'a list of sentences, ["waves with the right hand"]'
+        )
+    sources = clip.get("caption_source", [OWN] * len(captions))
+    return [c for c, source in zip(captions, sources, strict=True) if source != "KIT-ML"]
+
+
+def _unusable(
+    joints_m: NDArray[np.float64], captions: list[str], span: tuple[int, int], bad: list[list[int]]
+) -> str:  # fmt: skip
+    """Why a clip is not used; empty when it is."""
+    if not captions:
+        return "their sentences are KIT-ML's"
+    if len(joints_m) <= SHORTEST_FRAMES:
+        return f"{SHORTEST_FRAMES} frames or fewer"
+    if any(span[0] < end and start < span[1] for start, end in bad):
+        return "they touch bad frames"
+    return "" if _upright(joints_m) else "the person does not stand upright"
 
 
 def _recordings(folder: Path, stack: ExitStack) -> Callable[[str], NDArray[Any] | None]:
@@ -102,10 +146,6 @@ def _upright(joints_m: NDArray[np.float64]) -> bool:
     spine = joints_m[:, 12] - joints_m[:, 0]
     vertical = spine[:, 1] / np.maximum(np.linalg.norm(spine, axis=-1), 1e-6)
     return bool(joints_m[:, 0, 1].min() > 0.6 and vertical.min() > 0.5)
-
-
-def _touches(clip: dict[str, Any], spans: list[list[int]]) -> bool:
-    return any(clip["start"] < end and start < clip["end"] for start, end in spans)
 
 
 def _json_lines(path: Path) -> list[dict[str, Any]]:

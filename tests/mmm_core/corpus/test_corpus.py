@@ -251,7 +251,32 @@ def test_an_unknown_recording_is_named(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_files_is_named(tmp_path: Path) -> None:
-    with pytest.raises(TrainingDataError, match=r"trials\.jsonl"):
+    with pytest.raises(TrainingDataError, match=r"clips\.jsonl"):
+        list(read_clips(tmp_path))
+
+
+def test_a_folder_of_ones_own_needs_recordings_and_captions_alone(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Recordings with terms that are not in the list were left out without a word, and a line had to have nine fields."""
+    caplog.set_level("INFO")
+    made = synthesise_spec(ClipSpec((Gesture("bow"),)), np.random.default_rng(0))
+    assert made is not None
+    standing = recover(made.features[:40]).joints_m.astype(np.float32)
+    np.savez(tmp_path / "motions_common_skeleton.npz", a=standing, b=standing[:20])
+    (tmp_path / "clips.jsonl").write_text(
+        '{"trial": "a", "captions": ["bow low"]}\n{"trial": "b", "captions": ["bow"]}\n'
+    )
+    (features, captions), (_, mirrored) = read_clips(tmp_path)
+    assert len(features) == 40 and captions == mirrored == ["bow low"]
+    assert "1 clips of train are left out: 24 frames or fewer" in caplog.text
+
+    (tmp_path / "trials.jsonl").write_text('{"trial": "a", "terms": "mine"}\n{"trial": "b"}\n')
+    assert list(read_clips(tmp_path)) == []
+    assert "terms 'mine', where CMU, MIT, CC0, own are used" in caplog.text
+    (tmp_path / "clips.jsonl").write_text('{"trial": "a"}\n')
+    (tmp_path / "trials.jsonl").unlink()
+    with pytest.raises(TrainingDataError, match="captions None"):
         list(read_clips(tmp_path))
 
 
