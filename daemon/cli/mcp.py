@@ -13,6 +13,9 @@ from daemon.cli.connection import Connection
 def mcp(at: OmitArgPrefixes[Connection] = Connection()) -> int:  # noqa: B008
     """Serve the Model Context Protocol over stdin and stdout: a language model can say, stop and look, within the limits.
 
+    The host of the model starts it; `mmmd run` runs beside it. A host that knows no virtual environment needs the whole path of
+    `mmmd` (`command -v mmmd`).
+
     Example, in the settings of a model's host: {"mcpServers": {"robot": {"command": "mmmd", "args": ["mcp"]}}}
 
     Args:
