@@ -40,11 +40,14 @@ def train(
     """Train a model, or one stage of it with what it needs, from one TOML recipe.
 
     An interrupted run, even a killed one, goes on where it was with the same result: give the same --run. Recipes that
-    ship: compact (a model from nothing, about four hours on two CPU cores), compact_deterministic (the model in this package
+    ship: small (a small model from nothing in minutes, to try things with), compact (a model from nothing, about four hours
+    on two CPU cores), compact_deterministic (the model in this package
     trained further, an hour and a half on one core), compact_lengths (its length predictor anew) and paper (MMM as published;
     a GPU and HumanML3D). Several GPUs or machines: start it with torchrun. OMP_WAIT_POLICY=passive helps on a busy machine.
 
-    Example: mmmd train --data ../shared/data --run runs/compact --out model.safetensors
+    Example: mmmd train --config small --run runs/small --out small.safetensors
+
+    Example: mmmd train --data DIR --run runs/compact --out model.safetensors
 
     Example, the paper's tokenizer: mmmd train tokenizer --config paper --data HumanML3D --device cuda --precision bf16
 
@@ -126,11 +129,12 @@ _HOURS = ("all", "tokenizer", "transformer", "evaluator", "ablation")
 
 
 def _agreed(stage: str, config: str, folder: Path) -> bool:
-    """Whether a person at a terminal says yes to hours of work; where nobody can be asked it was meant."""
+    """Whether a person at a terminal says yes to the work; where nobody can be asked it was meant."""
     if not sys.stdin.isatty():
         return True
+    how_long = "for minutes" if config == "small" else "for hours"
     sys.stdout.write(
-        f"This trains ({stage}, recipe {config}) for hours, in {folder}; it can be interrupted. Go on? [y/N] "
+        f"This trains ({stage}, recipe {config}) {how_long}, in {folder}; it can be interrupted. Go on? [y/N] "
     )
     sys.stdout.flush()
     return sys.stdin.readline().strip().lower() in ("y", "yes")

@@ -435,7 +435,7 @@ def test_a_bad_recipe_is_named_by_its_key(tmp_path: Path, change: str, message: 
 
 
 def test_an_unknown_recipe_lists_those_that_ship(capsys: pytest.CaptureFixture[str]) -> None:
-    assert known_recipes() == ["ablation", "compact", "compact_deterministic", "compact_lengths", "paper"]
+    assert known_recipes() == ["ablation", "compact", "compact_deterministic", "compact_lengths", "paper", "small"]
     for name in known_recipes():
         read_recipe(name)
     assert main(["train", "--config", "nothing"]) == 2
