@@ -10,7 +10,6 @@ MOST_LINES = 300
 LONGER = {
     "daemon/control/control_loop.py": "the hot path of the bus process in one file (STYLE 8)",
     "daemon/shared_memory/bus_link.py": "one class: both ends of the shared memory, word by word",
-    "daemon/supervisor/supervisor.py": "one class: five processes, their starts and ends",
     "daemon/view/server.py": "one class a socket, each a few lines on the same base",
     "daemon/front/front.py": "one class: all sockets and the tick",
     "daemon/scheduling/scheduler.py": "one class: every end of a command",

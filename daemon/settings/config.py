@@ -132,7 +132,7 @@ class DaemonConfig:
         robot: name of a packaged robot, or path of a robot.toml.
         bus: URL of the servo bus.
         endpoints: sockets.
-        log: MCAP file to record into, None for none; `mmmd run` takes a folder too, see `supervisor.log_file`.
+        log: MCAP file to record into, None for none; `mmmd run` takes a folder too, see `start_checks.log_file`.
         log_size_mb: a log of this size is ended and the next one begun; 0 for never.
         log_total_mb: oldest logs of the run are removed beyond so much together; 0 for never.
         generator: endpoint of a generator that runs already; None starts one.

@@ -17,6 +17,29 @@ from daemon.host.parent import PARENT_VARIABLE
 
 log = logging.getLogger(__name__)
 
+FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
+GOOD_LIFE_S = 2.0
+"""Seconds after which a process did not fail to start: the wait before its next start is short again."""
+
+
+class BackOff:
+    """Seconds to wait before the next start of a process: twice as long after each failure, short again after a success.
+
+    Args:
+        first_s: the wait after a success.
+        longest_s: the longest wait.
+        last_s: the wait that the first failure doubles; None: half of `first_s`.
+    """
+
+    def __init__(self, first_s: float, longest_s: float, *, last_s: float | None = None) -> None:
+        self._first_s, self._longest_s = first_s, longest_s
+        self._last_s = first_s / 2 if last_s is None else last_s
+
+    def after(self, *, good: bool) -> float:
+        """Seconds to wait now that the process has ended; `good` says whether it had started well."""
+        self._last_s = self._first_s if good else min(2 * self._last_s, self._longest_s)
+        return self._last_s
+
 
 class Child:
     """A Python module as a process of its own.

@@ -12,15 +12,16 @@ from daemon.errors import ConfigError, DaemonError
 from daemon.settings.config import DaemonConfig, EndpointInUseError
 from daemon.shared_memory.bus_link import BusLink
 from daemon.shared_memory.heartbeat import HeartbeatWatch
-from daemon.supervisor.children import Child
+from daemon.supervisor.children import BackOff, Child
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
 
 START_TIMEOUT_S = 20.0
 LOOK_S = 0.04
+"""Seconds between two looks at the heartbeat of the process."""
 SILENT_S = 0.2
-"""Looks, in seconds, without a beat: it is killed. The bus process has made an e-stop of it by then."""
+"""Seconds of looks without a heartbeat after which the process is killed; the bus process has made an e-stop of it by then."""
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.1, 5.0
 END_S = 2.0
 
@@ -77,15 +78,12 @@ class CtlKeeper:
 
     async def keep(self, attach: Callable[[Channel], None]) -> None:
         """Start it again whenever it ends or freezes, and `attach` the new channel."""
-        back_off_s = FIRST_BACK_OFF_S
+        back_off = BackOff(FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S)
         while True:
             assert self._child is not None, "not started"
             status = await self._lost(self._child)
             log.error("the ctl process ended with status %d, which is an e-stop; it is started again", status)
-            if self._child.lived_s > LONGEST_BACK_OFF_S:
-                back_off_s = FIRST_BACK_OFF_S
-            await asyncio.sleep(back_off_s)
-            back_off_s = min(2 * back_off_s, LONGEST_BACK_OFF_S)
+            await asyncio.sleep(back_off.after(good=self._child.lived_s > LONGEST_BACK_OFF_S))
             try:
                 attach(await self.start())
             except DaemonError as error:

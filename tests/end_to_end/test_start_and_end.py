@@ -14,7 +14,7 @@ import pytest
 
 from daemon.bench.tty_servos import go_first, go_last
 from daemon.cli import main
-from daemon.supervisor.supervisor import log_file, log_path_error
+from daemon.supervisor.start_checks import log_file, log_path_error
 from tests.support.harness import MMMD, RunningDaemon, mmmd
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]

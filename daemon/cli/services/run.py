@@ -85,7 +85,7 @@ def run(
 
     from daemon.logs.log_lines import start_logging
     from daemon.settings.sources import config_of, resolve
-    from daemon.supervisor.supervisor import log_file, log_path_error
+    from daemon.supervisor.start_checks import log_file, log_path_error
     from daemon.supervisor.supervisor import run as run_daemon
 
     settings = resolve(_flags(given), config)

@@ -27,7 +27,7 @@ from daemon.recording.mcap_reading import read_log
 from daemon.recording.rotation import RotatingLog
 from daemon.settings.sources import DEFAULTS, config_of, resolve
 from daemon.shared_memory.bus_link import cycle_dtype
-from daemon.supervisor.supervisor import BUS_END_TIMEOUT_S
+from daemon.supervisor.bus_keeper import END_TIMEOUT_S
 from retarget.robot.loading import load_robot
 from tests.support.harness import RunningDaemon, mmmd
 
@@ -180,7 +180,7 @@ def test_the_unit_leaves_the_bus_process_alone_when_the_front_dies_and_never_giv
     assert service["OOMPolicy"] == "continue"
     assert service["Restart"] == "on-failure" and service["RestartPreventExitStatus"].split() == ["2", "3"]
     assert unit["Unit"]["StartLimitIntervalSec"] == "0"
-    assert float(service["TimeoutStopSec"]) > config_of(resolve({}, None, {})).park_timeout_s + 3 * BUS_END_TIMEOUT_S
+    assert float(service["TimeoutStopSec"]) > config_of(resolve({}, None, {})).park_timeout_s + 3 * END_TIMEOUT_S
     shared_tmp = "PrivateTmp" not in service and "/tmp" in service["ReadWritePaths"].split()
     assert shared_tmp  # where `PortLock` keeps its files
 

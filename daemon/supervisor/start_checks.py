@@ -1,0 +1,81 @@
+"""Refusals before any process starts: a bus URL, web server, checkpoint or log file that cannot be."""
+
+from __future__ import annotations
+
+import importlib.util
+import time
+from importlib.metadata import entry_points
+from pathlib import Path
+
+from daemon.network.web_access import address_of
+from daemon.settings.config import HTTP_ADDRESS, DaemonConfig, config_error
+
+SAFETENSORS_HEAD_BYTES = 9
+"""Bytes that hold the header's length, eight of them, and the brace that the header begins with."""
+
+
+def check_config(config: DaemonConfig) -> None:
+    """Refuse settings that a process would fail on again and again.
+
+    Raises:
+        ConfigError: scheme of the bus, HTTP address, its library or the checkpoint.
+    """
+    check_scheme(config.bus)
+    if config.http or config.view:
+        check_web_server(config.http or HTTP_ADDRESS)
+    if config.model is not None:
+        check_model(config.model)
+
+
+def check_scheme(bus: str) -> None:
+    """Refuse a bus URL whose scheme nobody serves, before anything is started.
+
+    Raises:
+        ConfigError: it is unknown.
+    """
+    known = sorted(point.name for point in entry_points(group="mmmd.ports"))
+    if bus.partition(":")[0] not in known:
+        allowed = ", ".join(f"{name}://" for name in known)
+        raise config_error("bus", f"'{bus}', an unknown scheme", allowed, "for example dxl:///dev/ttyUSB0?baud=1000000")
+
+
+def check_web_server(address: str) -> None:
+    """Refuse an address that is none, and a server whose library is missing, before anything is started.
+
+    Raises:
+        ConfigError: either.
+    """
+    address_of(address)
+    if importlib.util.find_spec("tornado") is None:
+        raise config_error("http", "no tornado, the library that serves it", "mmmd[view]", "`pip install 'mmmd[view]'`")
+
+
+def check_model(path: Path) -> None:
+    """Refuse a checkpoint that cannot be one, before a generator is started again and again for it.
+
+    Raises:
+        ConfigError: there is no such file, it cannot be read, or it is no safetensors file.
+    """
+    do = "write one with `mmmd train`, or leave --model out for the shipped one"
+    try:
+        with path.open("rb") as file:
+            head = file.read(SAFETENSORS_HEAD_BYTES)
+    except OSError as error:
+        raise config_error("model", f"{path}: {error.strerror}", "a checkpoint (.safetensors)", do) from error
+    length = int.from_bytes(head[:8], "little")
+    if head[8:] != b"{" or not 0 < length <= path.stat().st_size - 8:
+        raise config_error("model", f"{path}, which is no safetensors file", "a checkpoint (.safetensors)", do)
+
+
+def log_file(path: Path) -> Path:
+    """The file to record into: in a folder one named by the time, so that each start of a service has its own."""
+    return path / time.strftime("mmmd-%Y%m%dT%H%M%S.mcap", time.gmtime()) if path.is_dir() else path
+
+
+def log_path_error(path: Path) -> str | None:
+    """Why a log cannot be written there; None when it can."""
+    if path.exists():
+        return f"--log {path}: the file exists; choose another name, or a folder; logs are not overwritten"
+    if not path.parent.is_dir():
+        return f"--log {path}: no folder {path.parent}; make it, or choose another"
+    return None
