@@ -73,7 +73,9 @@ class AuditRig:
         pushed = 0
         while pushed < n:
             some = path[pushed : min(n, pushed + _QUEUE)]
-            self._link.push(some, 1, pushed, self._link.epoch, last=n == len(path) and pushed + len(some) == n)
+            self._link.setpoints.push(
+                some, 1, pushed, self._link.epoch, last=n == len(path) and pushed + len(some) == n
+            )
             pushed += len(some)
             self._cycles(len(some))
         before = path[n - 2] if n > 1 else self._last
@@ -88,20 +90,20 @@ class AuditRig:
 
         A fault ends them; `fault` then names it, and `make_ready` is what a person does next.
         """
-        first, rows = self._link.n_cycles, [self._link.cycles_since(self._link.n_cycles)[0]]
+        first, rows = self._link.cycles.count, [self._link.cycles.since(self._link.cycles.count)[0]]
         for k in range(0, len(path), _RECORDED):
             if self.fault:
                 break
             part = path[k : k + _RECORDED]
-            self._link.push(part, 1, k, self._link.epoch, last=k + len(part) == len(path))
+            self._link.setpoints.push(part, 1, k, self._link.epoch, last=k + len(part) == len(path))
             self._cycles(len(part))
-            rows.append(self._link.cycles_since(first)[0])
+            rows.append(self._link.cycles.since(first)[0])
             first += len(rows[-1])
         if not self.fault:
             self._until(BusState.HOLDING, BusState.FAULT)
             self._cycles(round(after_s / self._period_s))
         self._take_state()
-        rows.append(self._link.cycles_since(first)[0])
+        rows.append(self._link.cycles.since(first)[0])
         return np.concatenate(rows)
 
     def play_disturbed(self, path: Array, draw: np.random.Generator) -> None:
@@ -120,7 +122,7 @@ class AuditRig:
                     some = some[::-1]
                 case _:
                     pass
-            self._link.push(some, 1, at, self._link.epoch, last=at + len(some) >= len(path))
+            self._link.setpoints.push(some, 1, at, self._link.epoch, last=at + len(some) >= len(path))
             at += len(some)
             self._cycles(len(some))
         self.make_ready()
@@ -163,7 +165,7 @@ class AuditRig:
         return {key: report[key] for key in _REPORTED} | {"repairs": self.repairs}
 
     def _take_state(self) -> None:
-        record = self._link.cycles_since(self._link.n_cycles - 1)[0][-1]
+        record = self._link.cycles.since(self._link.cycles.count - 1)[0][-1]
         self._last, self._velocity = np.array(record["goal_rad"]), np.zeros(self.robot.n_joints)
 
     def _reboot_latched(self) -> None:
@@ -185,7 +187,7 @@ class AuditRig:
         """Until nothing is queued and the robot is limp, holds, is in fault, or waits for the rest of what it plays."""
         lasting = (BusState.LIMP, BusState.HOLDING, BusState.PLAYING, BusState.FAULT, BusState.ESTOP)
         for _ in range(round(60 / self._period_s)):
-            if self._streamer.state in lasting and not self._link.queued_frames:
+            if self._streamer.state in lasting and not self._link.setpoints.queued_frames:
                 return
             self._cycles(1)
 

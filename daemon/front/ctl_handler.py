@@ -31,7 +31,7 @@ DRAIN_TIMEOUT_S = 0.05
 AT_ONCE = 64
 """Messages that are taken before the event loop has its turn."""
 UNTOLD_S = 0.1
-"""A halt that the bus process was asked for so long ago and that nobody has told of: who had to tell it was killed."""
+"""Seconds after which the front serves a halt that it was not told of: the process that had to tell it was killed."""
 
 
 class CtlHandler:
@@ -93,7 +93,7 @@ class CtlHandler:
     def tick(self) -> None:
         """Notice halts that nobody has told of: the process that took them may have been killed in between."""
         self._send_answers()
-        for asked in self._link.unknown_halts:
+        for asked in self._link.epochs.unknown_halts:
             if time.monotonic_ns() - asked.number // 2 > 1e9 * UNTOLD_S:
                 log.warning(
                     "%s was asked for, and ctl sent no message of it: the ctl process was lost, or the front held up",
@@ -130,12 +130,12 @@ class CtlHandler:
 
     def _halted(self, trigger: Trigger, asked: Asked, request: Stop | Estop | None) -> None:
         """The bus process was asked for a stop or an e-stop: end what came before it."""
-        if self._link.knows_of(asked):
+        if self._link.epochs.knows_of(asked):
             self._reply(Answered(asked.number))
             return
         self._performer.halts.note(trigger.value, request, at_s=asked.number / 2e9)
         self._follower.stopped = trigger is Trigger.STOP
-        self._link.know_of(asked)
+        self._link.epochs.know_of(asked)
         self._start(self._end_halted(lambda: self._reply(Answered(asked.number))))
 
     def _halt(self, number: int, request: Park | Torque) -> None:

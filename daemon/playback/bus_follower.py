@@ -12,9 +12,9 @@ from daemon.state.machine import ImpossibleTransitionError, RobotState, StateMac
 log = logging.getLogger(__name__)
 
 BUS_SILENT_S = 1.0
-"""A bus process that publishes no cycle for so long is frozen."""
+"""Seconds without a published cycle after which the bus process counts as frozen."""
 SETTLING_CYCLES = 3
-"""So many cycles after a stop the bus process has surely taken it."""
+"""Bus cycles after a stop by which the bus process has surely taken it."""
 _PLACES = {state: place for place, state in enumerate(RobotState)}
 REPORTS = {state: Trigger[f"BUS_{state.name}"] for state in BusState}
 
@@ -65,7 +65,7 @@ class BusFollower:
     @property
     def holds(self) -> bool:
         """Whether the bus process holds and has nothing left to play."""
-        return self._view.state is BusState.HOLDING and self._link.queued_frames == 0
+        return self._view.state is BusState.HOLDING and self._link.setpoints.queued_frames == 0
 
     @property
     def at_rest(self) -> bool:

@@ -62,7 +62,7 @@ class SetpointBuffer:
     @property
     def dry(self) -> bool:
         """Whether the bus process brakes because it has no frame left of a trajectory that is not at its end."""
-        return self.current is not None and self.current.ran_dry(self._link.queued_frames)
+        return self.current is not None and self.current.ran_dry(self._link.setpoints.queued_frames)
 
     @property
     def ahead_s(self) -> float:
@@ -99,13 +99,13 @@ class SetpointBuffer:
 
     def next_frame(self, plan: Trajectory) -> int:
         """The frame of the newest trajectory that the bus process takes next."""
-        return plan.pushed - min(self._link.queued_frames, plan.pushed)
+        return plan.pushed - min(self._link.setpoints.queued_frames, plan.pushed)
 
     def frame_within(self, plan: Trajectory, ahead_s: float) -> int:
         """The last frame of the newest trajectory that the bus process takes until `ahead_s` from now; -1: none yet."""
         since_s = (self._clock.now_s() - self._view.goals_s) % (1.0 / self.rate_hz)  # since it took the last one
         cycles = math.floor((since_s + ahead_s) * self.rate_hz)
-        before = self._waiting + max(0, self._link.queued_frames - plan.pushed)
+        before = self._waiting + max(0, self._link.setpoints.queued_frames - plan.pushed)
         return self.next_frame(plan) - 1 + max(0, cycles - before)
 
     @property
@@ -119,7 +119,7 @@ class SetpointBuffer:
         if plan is None or frame is None or plan.epoch != self.epoch:
             return 0
         plan.end = frame + 1
-        beyond = self._link.take_back(plan.pushed - plan.end) if plan.pushed > plan.end else 0
+        beyond = self._link.setpoints.take_back(plan.pushed - plan.end) if plan.pushed > plan.end else 0
         plan.pushed = min(plan.pushed, plan.end)
         return beyond
 
@@ -142,7 +142,7 @@ class SetpointBuffer:
     def pump(self) -> None:
         """Push setpoints until enough are in hand."""
         for plan in self._trajectories:
-            queued = self._link.queued_frames
+            queued = self._link.setpoints.queued_frames
             room = min(self._queue_frames - queued, plan.limit - plan.pushed, N_SETPOINTS - queued)
             if room > 0:
                 self._push(plan, room)
@@ -154,9 +154,9 @@ class SetpointBuffer:
         plan = self.current
         if plan is None or plan.end is not None or plan.epoch != self.epoch:
             return
-        stands = self._view.at_rest and not self._link.queued_frames
+        stands = self._view.at_rest and not self._link.setpoints.queued_frames
         if plan.resume(self._view.goal_rad, stands=stands):
-            plan.extend(plan.pushed + self._stream_frames - self._link.queued_frames - self._waiting)
+            plan.extend(plan.pushed + self._stream_frames - self._link.setpoints.queued_frames - self._waiting)
             self.pump()
 
     def read_cycles(self) -> None:
@@ -172,4 +172,4 @@ class SetpointBuffer:
             return
         frames = plan.frames(plan.pushed, plan.pushed + count)
         last = plan.ends_here and plan.pushed + len(frames) >= plan.n_frames
-        plan.pushed += self._link.push(frames, plan.plan_id, plan.pushed, plan.epoch, last=last)
+        plan.pushed += self._link.setpoints.push(frames, plan.plan_id, plan.pushed, plan.epoch, last=last)

@@ -53,14 +53,14 @@ def main() -> int:
     events = context.socket(zmq.PULL)
     events.setsockopt(zmq.RCVHWM, EVENT_QUEUE)
     events.bind(arguments.events)
-    index, flushed_s = max(0, link.n_cycles - N_CYCLES // 2), time.monotonic()  # what is still there
+    index, flushed_s = max(0, link.cycles.count - N_CYCLES // 2), time.monotonic()  # what is still there
     try:
         bounds = (arguments.size_mb, arguments.total_mb)
         with RotatingLog(Path(arguments.out), robot, *bounds, arguments.settings) as writer:
             while True:
                 last_round = bool(stopping) or parent.gone
                 events.poll(0 if last_round else round(POLL_S * 1e3))
-                records, index, lost = link.cycles_since(index)
+                records, index, lost = link.cycles.since(index)
                 if lost:
                     writer.cycles_dropped += lost
                     log.warning("%d cycles dropped: the disk is too slow", writer.cycles_dropped)

@@ -149,7 +149,7 @@ class _Player:
         driver = bus.chains[0].link
         self._tap = driver.port = Wiretap(driver.port, robot.servo_ids, {(g.address, g.size) for g in goals})
         self._streamer = ControlLoop(robot, bus, link, clock, watch_front=False)
-        self._index = link.n_cycles
+        self._index = link.cycles.count
         self._due_s = clock.now_s()
 
     def begin(self, first_rad: NDArray[np.float64]) -> None:
@@ -161,9 +161,9 @@ class _Player:
 
     def play(self, cycle: LoggedCycle, frame: int, *, last: bool) -> str:
         """One goal, one cycle; how what went to the servos differs from the log, empty for not at all."""
-        assert self._link.queued_frames < N_SETPOINTS
+        assert self._link.setpoints.queued_frames < N_SETPOINTS
         writes = self._tap.writes
-        self._link.push(cycle.goal_rad[None], 1, frame, self._link.epoch, last=last)
+        self._link.setpoints.push(cycle.goal_rad[None], 1, frame, self._link.epoch, last=last)
         record = self._cycle()
         if self._streamer.state is BusState.FAULT or self._tap.writes != writes + 1:
             raise ReplayFaultError(f"replay: at cycle {cycle.cycle} of the log: {self._reason()}")
@@ -205,5 +205,5 @@ class _Player:
         self._streamer.cycle()
         self._due_s = max(self._due_s + self._robot.bus.period_s, self._clock.now_s())
         self._clock.sleep_until(self._due_s)
-        records, self._index, _ = self._link.cycles_since(self._index)
+        records, self._index, _ = self._link.cycles.since(self._index)
         return records[-1]

@@ -1,19 +1,13 @@
 """Memory shared between front and bus process: setpoints down, requests down, cycles up. No locks.
 
-One file in memory, mapped by both. Each ring has one writer; indices are 64-bit words that only their owner moves, so a
-reader never waits and a stuck peer never blocks the bus. Requests are words too (`daemon.shared_memory.request_words`): an e-stop
-never queues behind anything, and is owed until a cycle has carried it out.
+One file in memory (`memory_files.py`), mapped by both, with two rings of one writer each (`rings.py`). Requests are words
+(`request_words.py`): an e-stop never queues behind anything, and is owed until a cycle has carried it out.
 """
 
 from __future__ import annotations
 
-import fcntl
-import os
-import tempfile
 import threading
 import time
-from contextlib import suppress
-from dataclasses import dataclass
 from enum import IntEnum
 from itertools import pairwise
 from pathlib import Path
@@ -22,19 +16,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.dynamixel.health import HEALTH
-from daemon.shared_memory.request_words import ESTOPS, HALTS, N_WORDS, Asked, Asker, BusRequest, RequestWords
+from daemon.shared_memory.memory_files import create_file, hold, is_held
+from daemon.shared_memory.request_words import ESTOPS, N_WORDS, Asked, Asker, BusRequest, Epochs, RequestWords
+from daemon.shared_memory.rings import (
+    N_CYCLES,
+    N_SETPOINTS,
+    CycleRing,
+    Setpoint,
+    SetpointRing,
+    cycle_dtype,
+    setpoint_dtype,
+)
 
-Array = NDArray[np.float64]
-
-N_SETPOINTS = 256
-N_CYCLES = 4096
 _TEXT_BYTES = 4096
 _MAGIC = 0x6D6D6D6404
-_PREFIX = "mmmd-link-"
 
 
 class BusState(IntEnum):
-    """What the bus process is doing."""
+    """States of the bus process."""
 
     LIMP = 0
     ARMING = 1
@@ -47,11 +46,10 @@ class BusState(IntEnum):
 
 
 class _Word(IntEnum):
+    """Places of single values among the words of shared memory; those of the rings are in `RingWord`."""
+
     MAGIC = 0
-    PUSHED = 1
-    POPPED = 2
     HEARTBEAT_NS = 4
-    CYCLES = 5
     READY = 6
     TEXT_LENGTH = 7
     REALTIME = 24
@@ -75,43 +73,13 @@ class Readiness(IntEnum):
     """What was asked for cannot be: the URL of the bus names an option or a value that there is not."""
 
 
-def setpoint_dtype(n_joints: int) -> np.dtype[np.void]:
-    """One setpoint: which plan and frame, whether it ends the plan, and (J,) radians.
-
-    Where `instead` is not 0 the setpoint and those after it are left out: the one of that number is next.
-    """
-    return np.dtype([
-        ("epoch", "u8"), ("plan_id", "u8"), ("instead", "u8"), ("frame", "u4"), ("last", "u1"), ("_", "V3"),
-        ("q_rad", "f8", n_joints),
-    ])  # fmt: skip
-
-
-def cycle_dtype(n_joints: int, n_servos: int) -> np.dtype[np.void]:
-    """One bus cycle: what was wanted, what the gate let through, what was written and what was measured.
-
-    `t_mono_ns` is when the goals were given to the ports, before the answers were waited for.
-    """
-    return np.dtype([
-        ("cycle", "u8"), ("t_mono_ns", "i8"), ("plan_id", "u8"), ("frame", "u4"), ("state", "u1"), ("last", "u1"),
-        ("underrun", "u1"), ("torque", "u1"), ("late_cycles", "u4"),
-        ("setpoint_rad", "f8", n_joints), ("goal_rad", "f8", n_joints), ("velocity_rad_s", "f8", n_joints),
-        ("goal_tick", "i4", n_servos), ("present_tick", "i4", n_servos), ("present_velocity_raw", "i4", n_servos),
-        ("present_current_raw", "i4", n_servos), ("error", "u1", n_servos), ("valid", "u1", n_servos), ("clipped", "u1", n_joints),
-    ])  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Setpoint:
-    """A setpoint taken from the ring."""
-
-    plan_id: int
-    frame: int
-    last: bool
-    q_rad: Array
-
-
 class BusLink:
     """Both ends of the shared memory; `create` in the front, `attach` in the bus process and in readers.
+
+    Attributes:
+        setpoints: the ring from the front to the bus process.
+        cycles: the ring from the bus process to its readers.
+        epochs: the halts that void setpoints.
 
     Args:
         path: of the file.
@@ -137,13 +105,14 @@ class BusLink:
             raise ValueError(f"{path}: {len(memory)} bytes; expected {starts[-1]} for {n_joints} joints")
         parts = [memory[a:b] for a, b in pairwise(starts)]
         self._words = parts[0].view(np.uint64)
-        self._setpoints, self._cycles, self._text = parts[1].view(setpoints), parts[2].view(cycles), parts[3]
+        self.setpoints = SetpointRing(self._words, parts[1].view(setpoints))
+        self.cycles = CycleRing(self._words, parts[2].view(cycles))
+        self._text = parts[3]
         self.health: NDArray[np.void] = parts[4].view(HEALTH)
         """(S,) state and counters of each servo; the bus process writes them in every cycle, anybody reads."""
         self._requests = RequestWords(parts[5].view(np.uint64))
-        self._left_out: list[tuple[int, int]] = []
         self._asking = threading.Lock()
-        self._known_halts: dict[BusRequest, int] = dict.fromkeys(HALTS, 0)
+        self.epochs = Epochs(self._requests)
         if owner:
             self._words[_Word.MAGIC] = _MAGIC
             self.heartbeat()
@@ -152,12 +121,8 @@ class BusLink:
 
     @classmethod
     def create(cls, n_joints: int, n_servos: int | None = None) -> BusLink:
-        """New shared memory, in /dev/shm where there is one; what daemons that were killed left there is removed."""
-        folder = "/dev/shm" if os.access("/dev/shm", os.W_OK) else tempfile.gettempdir()
-        _remove_orphans(Path(folder))
-        fd, name = tempfile.mkstemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=folder)
-        os.close(fd)
-        return cls(Path(name), n_joints, n_servos or n_joints, owner=True)
+        """New shared memory, see `create_file`."""
+        return cls(create_file(), n_joints, n_servos or n_joints, owner=True)
 
     @classmethod
     def attach(cls, path: Path, n_joints: int, n_servos: int | None = None, *, asker: Asker = Asker.FRONT) -> BusLink:
@@ -173,58 +138,8 @@ class BusLink:
 
     @property
     def epoch(self) -> int:
-        """Grows with each halt that the front has asked for or knows of: setpoints of an older epoch are thrown away.
-
-        So a halt that the front has not been told of yet voids what it pushes meanwhile as well.
-        """
-        return sum(self._requests.halts(Asker.FRONT).values()) + sum(self._known_halts.values())
-
-    def know_of(self, halt: Asked) -> None:
-        """The front has been told of a halt that was asked for on `ctl`, and pushes nothing of before it any more."""
-        self._known_halts[halt.kind] = max(halt.number, self._known_halts[halt.kind])
-
-    def knows_of(self, halt: Asked) -> bool:
-        """Whether the front has been told of a halt."""
-        return halt.number <= self._known_halts[halt.kind]
-
-    @property
-    def unknown_halts(self) -> list[Asked]:
-        """Halts asked for on `ctl` of which the front has not been told."""
-        halts = self._requests.halts(Asker.CTL).items()
-        return [Asked(kind, number) for kind, number in halts if number > self._known_halts[kind]]
-
-    @property
-    def queued_frames(self) -> int:
-        """Setpoints pushed that are still to be taken."""
-        tail = int(self._words[_Word.POPPED])
-        self._left_out = [(first, end) for first, end in self._left_out if end > tail]
-        return int(self._words[_Word.PUSHED]) - tail - sum(end - max(first, tail) for first, end in self._left_out)
-
-    def push(self, q_rad: Array, plan_id: int, first_frame: int, epoch: int, *, last: bool) -> int:
-        """Append setpoints (N, J) as far as there is room; returns how many. `last` marks the final one of the plan."""
-        head = int(self._words[_Word.PUSHED])
-        n = min(len(q_rad), N_SETPOINTS - (head - int(self._words[_Word.POPPED])))
-        for i in range(n):
-            slot = self._setpoints[(head + i) % N_SETPOINTS]
-            slot["epoch"], slot["plan_id"], slot["frame"], slot["instead"] = epoch, plan_id, first_frame + i, 0
-            slot["last"] = last and i == len(q_rad) - 1
-            slot["q_rad"] = q_rad[i]
-        self._words[_Word.PUSHED] = head + n
-        return n
-
-    def take_back(self, n: int) -> int:
-        """Leave out the last `n` setpoints pushed; how many of them the bus process had come to already.
-
-        None may be left out before. Each tells where to go on, the last first: wherever the bus process is just then, it
-        leaves out what it has not come to.
-        """
-        head = int(self._words[_Word.PUSHED])
-        for index in range(head - 1, head - n - 1, -1):
-            self._setpoints[index % N_SETPOINTS]["instead"] = head  # one aligned word: there or not
-        first = max(head - n, int(self._words[_Word.POPPED]))
-        if first < head:
-            self._left_out.append((first, head))
-        return min(n, first - (head - n))
+        """The epoch of the setpoints that the front pushes now."""
+        return self.epochs.of_front
 
     def new_number(self) -> int:
         """The number of a request that is asked for now."""
@@ -234,8 +149,8 @@ class BusLink:
         """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before.
 
         Args:
-            kind: what.
-            stay_s: after so long in the park pose a `PARK` goes limp.
+            kind: the request.
+            stay_s: seconds in the park pose after which a `PARK` goes limp.
             number: of a request that was asked for before now; None takes a new one.
         """
         with self._asking:  # threads of one process
@@ -270,7 +185,7 @@ class BusLink:
     @property
     def bus_lives(self) -> bool:
         """Whether a bus process has these requests to carry out, be it frozen."""
-        return _is_held(self.path)
+        return is_held(self.path)
 
     # The side of the process that serves `ctl`.
 
@@ -285,12 +200,12 @@ class BusLink:
 
     @property
     def estop_kind(self) -> BusRequest:
-        """What an e-stop asks for, as the daemon is set."""
+        """The request that an e-stop stands for, by the daemon's setting `estop`."""
         return BusRequest.ESTOP_HOLD if self._words[_Word.ESTOP_HOLDS] else BusRequest.ESTOP
 
     @property
     def robot_state(self) -> int:
-        """As the front shows it."""
+        """State of the robot as the front has shown it, see `show_robot_state`."""
         return int(self._words[_Word.ROBOT_STATE])
 
     @property
@@ -319,32 +234,16 @@ class BusLink:
 
     def hold(self) -> None:
         """Show, to the end of this process, that there is one to carry out requests."""
-        self._held = os.open(self.path, os.O_RDONLY | os.O_CLOEXEC)
-        fcntl.flock(self._held, fcntl.LOCK_EX)
+        self._held = hold(self.path)
 
     @property
     def park_stay_s(self) -> float:
-        """How long the robot stays in the park pose with torque, as the newest `PARK` says."""
+        """Seconds that the robot stays in the park pose with torque, by the newest `PARK`."""
         return int(self._words[_Word.PARK_STAY_MS]) / 1000
 
     def take_setpoint(self) -> Setpoint | None:
         """The next setpoint of the current epoch; None when there is none."""
-        tail, head, epoch = int(self._words[_Word.POPPED]), int(self._words[_Word.PUSHED]), self._halts
-        found: Setpoint | None = None
-        while tail < head and found is None:
-            slot = self._setpoints[tail % N_SETPOINTS]
-            if int(slot["instead"]) > tail:
-                tail = int(slot["instead"])
-                continue
-            if int(slot["epoch"]) == epoch:
-                found = Setpoint(int(slot["plan_id"]), int(slot["frame"]), bool(slot["last"]), np.array(slot["q_rad"]))
-            tail += 1
-        self._words[_Word.POPPED] = tail
-        return found
-
-    def drop_queued(self) -> None:
-        """Throw away every setpoint pushed so far."""
-        self._words[_Word.POPPED] = self._words[_Word.PUSHED]
+        return self.setpoints.take(self.epochs.now)
 
     @property
     def cut_asked(self) -> bool:
@@ -365,11 +264,6 @@ class BusLink:
         self._requests.done(taken)
 
     @property
-    def _halts(self) -> int:
-        """The epoch as it is, whoever knows of it."""
-        return sum(sum(self._requests.halts(asker).values()) for asker in Asker)
-
-    @property
     def heartbeat_age_s(self) -> float:
         """Seconds since the front's last heartbeat."""
         return (time.monotonic_ns() - int(self._words[_Word.HEARTBEAT_NS])) * 1e-9
@@ -380,7 +274,7 @@ class BusLink:
         self._words[_Word.READY] = readiness
 
     def set_text(self, text: str) -> None:
-        """What went wrong, for `text`."""
+        """Set the reason of a failure or fault, see `text`."""
         data = np.frombuffer(text.encode("utf-8")[:_TEXT_BYTES], np.uint8)
         self._text[: len(data)] = data
         self._words[_Word.TEXT_LENGTH] = len(data)
@@ -393,57 +287,3 @@ class BusLink:
         """Tell the front how fast the robot may move, and why."""
         self._words[_Word.SPEED_PERMILLE] = max(1, round(1000 * share))
         self._words[_Word.DERATED_BY], self._words[_Word.DERATED_SERVO] = by, servo_id
-
-    def next_record(self) -> np.void:
-        """The slot of the next cycle; fill it, then `publish`."""
-        return self._cycles[int(self._words[_Word.CYCLES]) % N_CYCLES]
-
-    def publish(self) -> None:
-        """Make the slot visible."""
-        self._words[_Word.CYCLES] += np.uint64(1)
-
-    # Readers.
-
-    @property
-    def n_cycles(self) -> int:
-        """Cycles published so far."""
-        return int(self._words[_Word.CYCLES])
-
-    def cycles_since(self, index: int) -> tuple[NDArray[np.void], int, int]:
-        """Copies of the cycles from `index` on, the index to go on from, and how many were lost to slow reading."""
-        n = self.n_cycles
-        first = max(index, n - (N_CYCLES - 64))
-        rows = np.arange(first, n) % N_CYCLES
-        return self._cycles[rows], n, first - index
-
-
-def _is_held(path: Path) -> bool:
-    """Whether a bus process holds the lock of a memory's file, see `BusLink.hold`."""
-    try:
-        fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
-    except OSError:
-        return False
-    try:
-        fcntl.flock(fd, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    finally:
-        os.close(fd)
-    return False
-
-
-def _remove_orphans(folder: Path) -> None:
-    """Remove shared memory whose owner, named in the file name, is no more."""
-    for path in folder.glob(f"{_PREFIX}*-*"):
-        owner = path.name.removeprefix(_PREFIX).partition("-")[0]
-        if not owner.isdigit():
-            continue
-        try:
-            os.kill(int(owner), 0)
-        except ProcessLookupError:
-            if _is_held(path):  # its bus process still has the robot, and `ctl` looks for that by this file
-                continue
-            with suppress(OSError):  # another user's
-                path.unlink()
-        except (PermissionError, OverflowError):
-            continue

@@ -143,3 +143,38 @@ class RequestWords:
 
     def _newest(self, kind: BusRequest) -> int:
         return int(self._asked[:, kind].max())
+
+
+class Epochs:
+    """Epochs of setpoints: each halt begins one, and setpoints of an older epoch are thrown away.
+
+    The front pushes setpoints of the epoch that it knows of. So a halt asked for on `ctl` voids also those that the front pushes
+    before it has been told.
+    """
+
+    def __init__(self, requests: RequestWords) -> None:
+        self._requests = requests
+        self._known: dict[BusRequest, int] = dict.fromkeys(HALTS, 0)
+
+    def now(self) -> int:
+        """The epoch after all halts, whoever knows of them."""
+        return sum(sum(self._requests.halts(asker).values()) for asker in Asker)
+
+    @property
+    def of_front(self) -> int:
+        """The epoch after the halts that the front has asked for or knows of."""
+        return sum(self._requests.halts(Asker.FRONT).values()) + sum(self._known.values())
+
+    def know_of(self, halt: Asked) -> None:
+        """The front has been told of a halt that was asked for on `ctl`, and pushes nothing of before it any more."""
+        self._known[halt.kind] = max(halt.number, self._known[halt.kind])
+
+    def knows_of(self, halt: Asked) -> bool:
+        """Whether the front has been told of a halt."""
+        return halt.number <= self._known[halt.kind]
+
+    @property
+    def unknown_halts(self) -> list[Asked]:
+        """Halts asked for on `ctl` of which the front has not been told."""
+        halts = self._requests.halts(Asker.CTL).items()
+        return [Asked(kind, number) for kind, number in halts if number > self._known[kind]]

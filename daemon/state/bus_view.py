@@ -65,7 +65,7 @@ class BusView:
     def update(self) -> tuple[NDArray[Any], int]:
         """Cycles since the last call, and how many were lost between."""
         looked_s = self._clock.now_s()
-        records, self.index, lost = self._link.cycles_since(self.index)
+        records, self.index, lost = self._link.cycles.since(self.index)
         self.lost += lost
         if len(records) or self._last_cycle_s is None:  # None: the bus process is ready, its first cycle is to come
             self._last_cycle_s = self._clock.now_s()
@@ -91,7 +91,7 @@ class BusView:
 
     def health(self) -> list[ServoHealth]:
         """Each servo as the bus process sees it now; none before its first cycle."""
-        if not self._link.n_cycles:
+        if not self._link.cycles.count:
             return []
         return [
             ServoHealth(

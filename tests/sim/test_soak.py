@@ -111,9 +111,9 @@ class Person:
             del self.r.records[:-1]
 
     def _play(self) -> None:
-        if self.r.state is BusState.HOLDING and self.r.link.queued_frames == 0:
+        if self.r.state is BusState.HOLDING and self.r.link.setpoints.queued_frames == 0:
             q = self._motions[int(self.draw.integers(3))]
-            self.r.link.push(q, 1, 0, self.r.link.epoch, last=True)
+            self.r.link.setpoints.push(q, 1, 0, self.r.link.epoch, last=True)
         if self.draw.random() < 0.01:
             self.r.link.request([BusRequest.STOP, BusRequest.PARK][int(self.draw.integers(2))])
         self._cycles(20)

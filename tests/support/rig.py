@@ -57,7 +57,7 @@ class Rig:
             self.streamer.cycle()
             self._due_s = max(self._due_s + self.robot.bus.period_s, self.clock.now_s())
             self.clock.sleep_until(self._due_s)
-            rows, self._index, lost = self.link.cycles_since(self._index)
+            rows, self._index, lost = self.link.cycles.since(self._index)
             assert lost == 0 and len(rows) == 1
             self.records.append(rows[0])
         return self.records[-1]
@@ -79,7 +79,7 @@ class Rig:
 
     def push(self, q_rad: np.ndarray, plan_id: int = 1, *, last: bool = True) -> None:
         """Hand setpoints (N, J) to the streamer."""
-        assert self.link.push(q_rad, plan_id, 0, self.link.epoch, last=last) == len(q_rad)
+        assert self.link.setpoints.push(q_rad, plan_id, 0, self.link.epoch, last=last) == len(q_rad)
 
     def goals_rad(self) -> np.ndarray:
         """(T, J) goals of the cycles with torque."""

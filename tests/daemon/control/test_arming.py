@@ -132,7 +132,7 @@ def test_one_servo_that_stops_by_its_watchdog_is_a_named_fault(servo_id):
         r.arm()
         servo = r.sim.servos[servo_id]
         while r.clock.now_s() < 6.6:
-            if r.link.queued_frames < 20:
+            if r.link.setpoints.queued_frames < 20:
                 r.push(swing(r.robot, 1.5))
             r.cycle()
         r.until(BusState.FAULT, within_s=2.0)

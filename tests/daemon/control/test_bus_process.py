@@ -33,8 +33,8 @@ class BusProcess:
     @property
     def state(self) -> BusState:
         self.link.heartbeat()
-        n = self.link.n_cycles
-        return BusState(int(self.link.cycles_since(n - 1)[0][0]["state"])) if n else BusState.LIMP
+        n = self.link.cycles.count
+        return BusState(int(self.link.cycles.since(n - 1)[0][0]["state"])) if n else BusState.LIMP
 
     def wait_for(self, what: Callable[[], bool]) -> None:
         end_s = time.monotonic() + 30
@@ -71,12 +71,12 @@ def servos(tmp_path):
 
 def test_it_says_when_it_has_the_robot_and_what_rights_it_got(started):
     bus = started("sim://")
-    bus.wait_for(lambda: bus.link.readiness is Readiness.READY and bus.link.n_cycles > 3)
+    bus.wait_for(lambda: bus.link.readiness is Readiness.READY and bus.link.cycles.count > 3)
     assert bus.state is BusState.LIMP
     assert all(isinstance(right, bool) for right in bus.link.has_realtime)
     os.kill(bus.process.pid, signal.SIGINT)  # Ctrl-C is the front's to handle
-    before = bus.link.n_cycles
-    bus.wait_for(lambda: bus.link.n_cycles > before + 5)
+    before = bus.link.cycles.count
+    bus.wait_for(lambda: bus.link.cycles.count > before + 5)
     bus.link.request(BusRequest.SHUTDOWN)
     assert bus.process.wait(10) == 0
 
@@ -116,7 +116,7 @@ def test_killed_while_armed_the_servos_stop_by_their_watchdog(started, servos, t
     assert servos.bus.audit.report()["violations"] == 0
 
     again = started(f"dxl://{tmp_path}/servos?baud=1000000")
-    again.wait_for(lambda: again.link.readiness is Readiness.READY and again.link.n_cycles > 3)
+    again.wait_for(lambda: again.link.readiness is Readiness.READY and again.link.cycles.count > 3)
     assert again.state is BusState.FAULT, "a new process arms nothing by itself, and calls nothing limp that has torque"
     assert "torque" in again.link.text and "mmmd reset" in again.link.text
     again.link.request(BusRequest.RESET)

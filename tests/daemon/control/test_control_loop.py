@@ -73,7 +73,7 @@ def test_stop_brakes_within_limits_and_holds():
         r.cycle(100)
         assert r.state is BusState.HOLDING and all(r.torque)
         assert_brakes_within_limits(r.records[-101:], r.robot)
-        assert r.link.queued_frames == 0
+        assert r.link.setpoints.queued_frames == 0
         r.assert_limits_kept()
 
 
@@ -151,7 +151,7 @@ def test_no_order_of_requests_and_setpoints_breaks_a_limit(sequence, seed):
                     q[:] = random.uniform(-4, 4, q.shape)
                 if action == "nan":
                     q[random.integers(len(q))] = random.choice([np.nan, np.inf, 1e300])
-                r.link.push(q, plan_id, 0, r.link.epoch, last=True)
+                r.link.setpoints.push(q, plan_id, 0, r.link.epoch, last=True)
             r.cycle(n)
         assert r.sim.audit.report()["violations"] == 0, r.sim.audit.report()["details"]
         torque = any(r.torque)

@@ -64,8 +64,8 @@ def test_a_hot_servo_slows_the_robot_before_it_trips_and_it_comes_to_the_same_en
             r.cycle(60)
             q = swing(r.robot, 4.0)
             done, first = 0, len(r.records)
-            while done < len(q) or r.link.queued_frames or r.state is BusState.PLAYING:
-                done += r.link.push(q[done : done + 20], 1, done, r.link.epoch, last=done + 20 >= len(q))
+            while done < len(q) or r.link.setpoints.queued_frames or r.state is BusState.PLAYING:
+                done += r.link.setpoints.push(q[done : done + 20], 1, done, r.link.epoch, last=done + 20 >= len(q))
                 r.cycle(5)
                 assert len(r.records) - first < 3000
             r.assert_limits_kept()

@@ -84,7 +84,7 @@ def test_late_cycles_are_skipped_and_counted_not_made_up_for():
     try:
         running = Running(robot, link, Slow(), n_cycles=100)
         running.streamer.run()
-        record = link.cycles_since(link.n_cycles - 1)[0][0]
+        record = link.cycles.since(link.cycles.count - 1)[0][0]
     finally:
         link.close()
     assert 4 <= record["late_cycles"] <= 6

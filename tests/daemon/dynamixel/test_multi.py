@@ -155,7 +155,7 @@ def test_when_one_port_is_lost_the_servos_of_the_other_come_to_rest_within_their
             if streamer.state is BusState.HOLDING:
                 break
         assert streamer.state is BusState.HOLDING, link.text
-        link.push(swing(ROBOT, 2.0), 1, 0, link.epoch, last=True)
+        link.setpoints.push(swing(ROBOT, 2.0), 1, 0, link.epoch, last=True)
         for _ in range(60):
             cycle()
         ports[0].unplugged = True

@@ -85,16 +85,16 @@ async def soon() -> None:
 def test_a_halt_ends_what_came_before_it_and_the_front_pushes_nothing_of_before(verb):
     async def test(front: Front) -> None:
         before = front.link.epoch
-        front.link.push(np.zeros((3, 2)), 1, 0, before, last=False)
+        front.link.setpoints.push(np.zeros((3, 2)), 1, 0, before, last=False)
         number = front.halted(verb)
         assert front.link.epoch == before, "the front knows nothing of it yet"
-        front.link.push(np.zeros((3, 2)), 1, 3, front.link.epoch, last=True)
+        front.link.setpoints.push(np.zeros((3, 2)), 1, 3, front.link.epoch, last=True)
         assert front.ctl.take_setpoint() is None, "what it pushes meanwhile is void"
         front.desk.take_waiting()
         await soon()
-        assert front.ended == [verb] and front.link.epoch != before and not front.link.unknown_halts
+        assert front.ended == [verb] and front.link.epoch != before and not front.link.epochs.unknown_halts
         assert front.answer() == Answered(number)
-        front.link.push(np.zeros((1, 2)), 2, 0, front.link.epoch, last=True)
+        front.link.setpoints.push(np.zeros((1, 2)), 2, 0, front.link.epoch, last=True)
         setpoint = front.ctl.take_setpoint()
         assert setpoint is not None and setpoint.plan_id == 2
 

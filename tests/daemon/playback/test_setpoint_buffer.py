@@ -61,7 +61,7 @@ class Bench:
             self.clock.sleep_until(due_s)
             before = self.view.index
             self.buffer.read_cycles()
-            self.records += list(self.link.cycles_since(before)[0])
+            self.records += list(self.link.cycles.since(before)[0])
             if pump:
                 self.buffer.pump()
 
@@ -146,7 +146,7 @@ def test_about_the_asked_time_of_setpoints_is_in_hand(bench):
     bench.arm()
     bench.play(RIGHT)
     bench.cycle(20)
-    assert 8 <= bench.link.queued_frames <= 10
+    assert 8 <= bench.link.setpoints.queued_frames <= 10
 
 
 def test_the_length_of_a_plan_is_told_from_its_first_piece_on(bench):
@@ -171,7 +171,7 @@ def test_what_is_in_hand_is_taken_back_when_another_motion_takes_over(bench):
         bench.splicer.latencies["command"].took(0.03)
     bench.buffer._queue_frames = 40
     bench.cycle(10)
-    assert bench.link.queued_frames >= 35
+    assert bench.link.setpoints.queued_frames >= 35
     lead = bench.splicer.latencies["command"].seconds * ROBOT.bus.rate_hz
     plan = bench.play(LEFT, retarget_cycles=0)
     first = len(bench.records)

@@ -392,10 +392,10 @@ class Recording:
 
     def publish(self, records: list[np.void]) -> None:
         for record in records:
-            slot = self.bus.next_record()
+            slot = self.bus.cycles.next_record()
             for name in record.dtype.names or ():
                 slot[name] = record[name]
-            self.bus.publish()
+            self.bus.cycles.publish()
 
     def wait_for(self, what: Callable[[], bool]) -> None:
         end_s = time.monotonic() + 30

@@ -32,38 +32,38 @@ def frames(n: int, start: float = 0.0) -> np.ndarray:
 
 
 def publish(bus: BusLink, cycle: int) -> None:
-    record = bus.next_record()
+    record = bus.cycles.next_record()
     record["cycle"], record["state"], record["goal_rad"] = cycle, BusState.PLAYING, cycle / 3
-    bus.publish()
+    bus.cycles.publish()
 
 
 def test_setpoints_arrive_in_order_and_bit_for_bit(link, bus):
     sent = frames(40)
-    assert link.push(sent, 7, 100, link.epoch, last=True) == 40
-    assert link.queued_frames == 40
+    assert link.setpoints.push(sent, 7, 100, link.epoch, last=True) == 40
+    assert link.setpoints.queued_frames == 40
     for i in range(40):
         got = bus.take_setpoint()
         assert got is not None
         assert (got.plan_id, got.frame, got.last) == (7, 100 + i, i == 39)
         assert got.q_rad.tobytes() == sent[i].tobytes()
     assert bus.take_setpoint() is None
-    assert link.queued_frames == 0
+    assert link.setpoints.queued_frames == 0
 
 
 def test_a_taken_setpoint_is_a_copy(link, bus):
-    link.push(frames(1), 1, 0, link.epoch, last=False)
+    link.setpoints.push(frames(1), 1, 0, link.epoch, last=False)
     got = bus.take_setpoint()
-    link.push(frames(N_SETPOINTS, 5.0), 2, 0, link.epoch, last=False)
+    link.setpoints.push(frames(N_SETPOINTS, 5.0), 2, 0, link.epoch, last=False)
     assert got is not None and got.q_rad.tobytes() == frames(1)[0].tobytes()
 
 
 def test_a_full_ring_takes_what_fits(link, bus):
-    assert link.push(frames(N_SETPOINTS + 30), 1, 0, link.epoch, last=True) == N_SETPOINTS
-    assert link.push(frames(3), 1, N_SETPOINTS, link.epoch, last=True) == 0
+    assert link.setpoints.push(frames(N_SETPOINTS + 30), 1, 0, link.epoch, last=True) == N_SETPOINTS
+    assert link.setpoints.push(frames(3), 1, N_SETPOINTS, link.epoch, last=True) == 0
     for _ in range(N_SETPOINTS):
         got = bus.take_setpoint()
         assert got is not None and not got.last, "the plan goes on behind what fitted"
-    assert link.push(frames(3), 1, N_SETPOINTS, link.epoch, last=True) == 3
+    assert link.setpoints.push(frames(3), 1, N_SETPOINTS, link.epoch, last=True) == 3
 
 
 @given(st.lists(st.tuples(st.sampled_from(["push", "take", "take_back"]), st.integers(1, 60)), max_size=60))
@@ -75,17 +75,17 @@ def test_what_is_taken_back_never_arrives_and_the_rest_does_in_order(actions):
         for action, most in actions:
             if action == "push":
                 sent = np.arange(number, number + most, dtype=float)[:, None]
-                own = link.push(sent, 1, 0, link.epoch, last=False)
+                own = link.setpoints.push(sent, 1, 0, link.epoch, last=False)
                 queued, number = queued + sent[:own, 0].tolist(), number + own
             elif action == "take_back":
                 n = min(most, own)  # the bus process may have come to some of them already
-                assert link.take_back(n) == max(0, n - len(queued))
+                assert link.setpoints.take_back(n) == max(0, n - len(queued))
                 queued, own = queued[: len(queued) - min(n, len(queued))], 0
             else:
                 for _ in range(most):
                     got = bus.take_setpoint()
                     assert (None if got is None else got.q_rad[0]) == (queued.pop(0) if queued else None)
-            assert link.queued_frames == len(queued)
+            assert link.setpoints.queued_frames == len(queued)
     finally:
         link.close()
 
@@ -93,11 +93,11 @@ def test_what_is_taken_back_never_arrives_and_the_rest_does_in_order(actions):
 @pytest.mark.parametrize("kind", [BusRequest.STOP, BusRequest.ESTOP, BusRequest.PARK])
 def test_a_stop_voids_what_was_pushed_before_and_by_who_does_not_know_of_it(link, bus, kind):
     epoch = link.epoch
-    link.push(frames(5), 1, 0, epoch, last=False)
+    link.setpoints.push(frames(5), 1, 0, epoch, last=False)
     link.request(kind)
-    link.push(frames(5), 1, 5, epoch, last=True)
+    link.setpoints.push(frames(5), 1, 5, epoch, last=True)
     assert bus.take_setpoint() is None
-    link.push(frames(2), 2, 0, link.epoch, last=True)
+    link.setpoints.push(frames(2), 2, 0, link.epoch, last=True)
     got = bus.take_setpoint()
     assert got is not None and got.plan_id == 2
 
@@ -146,22 +146,22 @@ def test_a_request_of_before_the_bus_process_is_not_carried_out(link):
 def test_cycles_are_read_by_several_readers_and_losses_counted(link, bus):
     for cycle in range(10):
         publish(bus, cycle)
-    rows, index, lost = link.cycles_since(0)
+    rows, index, lost = link.cycles.since(0)
     assert (list(rows["cycle"]), index, lost) == (list(range(10)), 10, 0)
     for cycle in range(10, N_CYCLES + 200):
         publish(bus, cycle)
-    rows, fast, lost = link.cycles_since(index)
+    rows, fast, lost = link.cycles.since(index)
     assert lost > 0 and lost + len(rows) == N_CYCLES + 200 - 10
     assert list(rows["cycle"]) == list(range(10 + lost, N_CYCLES + 200))
-    assert fast == link.n_cycles
+    assert fast == link.cycles.count
     assert rows["goal_rad"][-1].tobytes() == np.full(J, (N_CYCLES + 199) / 3).tobytes()
     other = BusLink.attach(link.path, J)
-    assert len(other.cycles_since(fast - 3)[0]) == 3
+    assert len(other.cycles.since(fast - 3)[0]) == 3
 
 
 def test_rows_read_do_not_change_when_the_ring_goes_round(link, bus):
     publish(bus, 1)
-    rows, _, _ = link.cycles_since(0)
+    rows, _, _ = link.cycles.since(0)
     for cycle in range(2, N_CYCLES + 3):
         publish(bus, cycle)
     assert rows["cycle"][0] == 1
@@ -231,9 +231,9 @@ def _play(path: Path, n: int) -> None:
         got = bus.take_setpoint()
         if got is None:
             continue
-        record = bus.next_record()
+        record = bus.cycles.next_record()
         record["cycle"], record["frame"], record["goal_rad"] = taken, got.frame, got.q_rad
-        bus.publish()
+        bus.cycles.publish()
         taken += 1
 
 
@@ -245,10 +245,10 @@ def test_across_processes_nothing_is_lost_or_torn(link):
     process.start()
     pushed = 0
     while pushed < n and process.is_alive():
-        pushed += link.push(sent[pushed : pushed + 50], 1, pushed, link.epoch, last=False)
+        pushed += link.setpoints.push(sent[pushed : pushed + 50], 1, pushed, link.epoch, last=False)
     process.join(30)
     assert process.exitcode == 0
-    rows, _, lost = link.cycles_since(0)
+    rows, _, lost = link.cycles.since(0)
     assert lost == 0
     assert list(rows["frame"]) == list(range(n))
     assert rows["goal_rad"].tobytes() == sent.tobytes()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from daemon.control.control_loop import CTL_LOST_S
+from daemon.control.bus_state_machine import CTL_LOST_S
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.shared_memory.heartbeat import HeartbeatWatch
 from tests.support.rig import lead_to, rig

@@ -98,7 +98,7 @@ class Robot:
                 break
             self.cycle()
         if state != "holding":
-            self.front.push(swing(self.robot, 2.0), 1, 0, self.front.epoch, last=True)
+            self.front.setpoints.push(swing(self.robot, 2.0), 1, 0, self.front.epoch, last=True)
             self.cycle(60)
         kinds = {"stopping": BusRequest.STOP, "parking": BusRequest.PARK, "fault": BusRequest.FAULT}
         if state in kinds:
