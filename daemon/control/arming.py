@@ -1,4 +1,4 @@
-"""From limp to torque: everything is verified anew, joints stand still, goals are pinned to where they stand, torque on.
+"""Arming, from limp to torque: verify the servos anew, wait until the joints stand still, pin goals to where they stand, torque on.
 
 A generator that gives the bus cycle back between its steps: records go on, and an e-stop, a stop or a front that has died
 counts at once, however long a bad wire or a swinging arm makes it. Torque comes on in the last step alone, servo by servo, and
@@ -26,12 +26,12 @@ from retarget.robot.robot import RobotModel
 log = logging.getLogger(__name__)
 
 WATCHDOG_UNITS = 10
-"""Servo bus watchdog, 20 ms each: 200 ms without any packet on the bus and the servos stop by themselves."""
+"""Servo bus watchdog in units of 20 ms: after 200 ms without any packet on the bus the servos stop by themselves."""
 
 
 @dataclass(frozen=True)
 class Armed:
-    """What a robot is like that has just got torque.
+    """A robot that has just got torque.
 
     Attributes:
         goal_tick: (S,) goals that the servos hold.

@@ -18,30 +18,31 @@ from numpy.typing import NDArray
 from daemon.dynamixel.reading import UNKNOWN, BusReading
 from daemon.dynamixel.registers.models import BusModel
 from daemon.errors import CommandError
+from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 
 LEAST_SHARE = 0.3
-"""Slower than this helps little: gravity heats a raised arm that stands still as well."""
+"""Smallest share of full speed. A slower motion helps little: gravity heats a raised arm that stands still as well."""
 HOT_C, HOTTEST_C = 10.0, 3.0
-"""Below the servo's temperature limit: where slowing begins, and where it is greatest."""
+"""Degrees below the servo's temperature limit at which slowing begins, and at which it is greatest."""
 LOW_V, LOWEST_V = 0.5, 0.1
-"""The same above the servo's lower voltage limit."""
+"""Volts above the servo's lower voltage limit at which slowing begins, and at which it is greatest."""
 HIGH_CURRENT, HIGHEST_CURRENT = 0.7, 0.95
-"""The same as shares of the current limit (of full load where a servo measures no current)."""
+"""Shares of the current limit (of full load where a servo measures no current) at which slowing begins, and is greatest."""
 CURRENT_S, VOLTAGE_S = 2.0, 0.5
-"""Time constants of the means that are judged: a start or a stop takes more for a moment, and may."""
+"""Seconds, time constants of the means that are judged: a start or a stop may take more current for a moment."""
 CHANGE_PER_S = 0.5
 FULL_LOAD = 1000
 _SLOWING = (
     np.array([[HOTTEST_C], [LOWEST_V], [-HIGHEST_CURRENT]]),
     np.array([[HOT_C], [LOW_V], [-HIGH_CURRENT]]),
 )
-"""Where slowing is greatest, and where it begins: by temperature, voltage, current."""
+"""Margins at which slowing is greatest, and at which it begins: of temperature, voltage, current."""
 
 
 class DeratedBy(IntEnum):
-    """What slows the robot down."""
+    """Causes of derating."""
 
     NOTHING = 0
     TEMPERATURE = 1
@@ -74,12 +75,12 @@ class Registers(Protocol):
 
     @property
     def ids(self) -> Sequence[int]:
-        """Of its servos, in the order of the reading."""
+        """Ids of the servos, in the order of the reading."""
         ...
 
     @property
     def models(self) -> Sequence[BusModel]:
-        """Of the same."""
+        """Models of the servos, in the same order."""
         ...
 
     def read_item(self, servo_id: int, name: str) -> int:
@@ -88,7 +89,7 @@ class Registers(Protocol):
 
 
 def read_limits(bus: Registers) -> ServoLimits:
-    """What the servos' registers say; a servo without one of them has no limit there, or full load.
+    """Read the limits in the servos' registers; a servo without such a register has no limit there, or full load.
 
     Raises:
         LinkError, ServoFaultError: a servo does not answer, or with an error.
@@ -145,6 +146,13 @@ class Derating:
         step = CHANGE_PER_S * self._period_s
         self.share += min(step, max(-step, wanted - self.share))
         return self.by is not before
+
+    def cause(self, robot: RobotModel) -> str:
+        """The cause for the log, with the servo that it lies in."""
+        if not self.by:
+            return "full speed again"
+        servo = robot.servos[self.row]
+        return f"slower: {self.by.name.lower()} of servo {servo.servo_id} ({servo.joint_name})"
 
 
 def _between(x: Array, low: Array, high: Array) -> Array:

@@ -1,4 +1,4 @@
-"""What a reading says of the servos while they have torque: what must end in a fault. Part of the bus process.
+"""Faults of servos with torque, found in what they answer. Part of the bus process.
 
 A servo that was silent for as long as its bus watchdog takes may have stopped by it while the others went on: it then
 answers as ever and refuses every goal, so it is asked as soon as it is back.
@@ -21,10 +21,10 @@ from retarget.robot.robot import RobotModel
 log = logging.getLogger(__name__)
 
 MISSING_CYCLES = 20
-"""Half of the servos silent for so many cycles is a fault (loose plug, power)."""
+"""Bus cycles in which half of the servos are silent that make a fault (loose plug, power)."""
 TORQUE_CHECK_CYCLES = 5
 MAY_HAVE_TRIPPED_S = 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S
-"""After so long without a packet a servo's watchdog may have run out."""
+"""Seconds without a packet after which a servo's watchdog may have run out."""
 
 
 class FaultDetector:
@@ -35,11 +35,27 @@ class FaultDetector:
         self._period_s = robot.bus.period_s
         self._missing_cycles = self._cycle = 0
         self._silent_s = np.zeros(len(bus.ids))
+        self._fed_s = 0.0
 
-    def armed(self) -> None:
-        """Torque has just come on: what was before is over."""
+    def armed(self, now_s: float) -> None:
+        """Torque has just come on: silences of before count no more."""
         self._missing_cycles = 0
         self._silent_s[:] = 0.0
+        self._fed_s = now_s
+
+    def stalled(self, now_s: float, *, driven: bool) -> str:
+        """Once a cycle: why a pause of the bus process is a fault; empty when it is none, and for servos that get no goals.
+
+        Raises:
+            LinkError: a servo does not say whether its watchdog has run out.
+        """
+        pause_s, self._fed_s = now_s - self._fed_s, now_s
+        if not driven or pause_s < MAY_HAVE_TRIPPED_S:
+            return ""
+        tripped = self._bus.tripped_watchdogs()
+        if not tripped:
+            return ""
+        return f"the bus process was held up for {pause_s:.2f} s: servo {tripped[0]} stopped by its watchdog"
 
     def fault(self, reading: BusReading) -> str:
         """Why the reading of a cycle with torque is a fault; empty when it is none.

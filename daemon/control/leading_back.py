@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from retarget.robot.ticks import JointServoMap
 
 STEP_TICK, _TICKS_PER_TURN = 1, 4096
-"""Ticks a cycle by which a servo of so many a turn is led; one of finer ticks as many degrees."""
+"""Ticks a cycle by which a servo of 4096 ticks a turn is led; a servo of finer ticks is led by as many degrees."""
 
 
 class LeadingBack:

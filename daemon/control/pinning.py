@@ -21,7 +21,7 @@ SWING_OUT_S = 1.0
 _STILL_S, _STILL_TICK = 0.02, 2
 """Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
 _PIN_TICK = 8
-"""So far may a joint be from its pinned goal when torque comes on: 0.7 degrees of a servo of 4096 ticks."""
+"""Ticks by which a joint may be away from its pinned goal when torque comes on: 0.7 degrees of a servo of 4096 ticks."""
 _TICKS_PER_TURN = 4096
 """What those two are for; finer servos (Y, P) may go as many degrees, coarser ones as many ticks."""
 
@@ -93,7 +93,7 @@ def pin_where_they_stand(
 
 
 def _ticks(bus: ServoBus, ticks: int) -> NDArray[np.float64]:
-    """(S,) so many of 4096 ticks in those of each servo; never fewer."""
+    """(S,) `ticks`, given for 4096 a turn, in the ticks of each servo; never fewer."""
     return np.array([ticks * max(1.0, s.model.ticks_per_turn / _TICKS_PER_TURN) for s in bus.servos])
 
 

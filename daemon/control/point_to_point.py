@@ -17,9 +17,11 @@ log = logging.getLogger(__name__)
 
 Array = NDArray[np.float64]
 SEARCH_PIECES_PER_S = 200
-"""So much of the search for a way is done in a second: a piece or a few in a cycle."""
+"""Pieces of the search for a way in a second: one or a few in a cycle."""
 HELD_S, SEARCHES = 0.5, 3
-"""A move that the gate has held for so long is looked for anew from where it stands, so many times."""
+"""Seconds that the gate holds the move before a way is searched for anew, and the number of searches."""
+NO_WAY_LIMP_S = 10.0
+"""Seconds that a robot for which no free way was found holds in a fault before it goes limp."""
 
 
 class PointToPointMove:
@@ -70,6 +72,15 @@ class PointToPointMove:
         if self._gone_s > self._approach.duration_s + stay_s and self._gate.at_rest:
             self.arrived, self._approach = True, None
         return goal
+
+    def no_way(self, where: str) -> str:
+        """Text of the fault that no way was found to a pose, "rest" or "park"."""
+        touching = self.blocked.touching() if self.blocked is not None else ()
+        near = ", ".join(f"{a} and {b}" for a, b in touching[:3])
+        return (
+            f"no free way to the {where} pose: the robot is in its own way{f' ({near})' if near else ''}; it holds, and goes"
+            f" limp in {NO_WAY_LIMP_S:g} s; lead its arms clear by hand, then reset and arm"
+        )
 
     def _look_for_a_way(self, to_rad: Array) -> None:
         """Some pieces of the search from where it stands; then the way, or the end of hope."""

@@ -72,7 +72,7 @@ def start(
         link.set_ready(Readiness.FAILED, str(error))
         return None
     streamer = ControlLoop(robot, bus, link, clock)
-    link.drop_queued()
+    link.setpoints.drop()
     why = AFTER_LOSS if after_loss else _HELD_BEFORE.format(holding) if holding else ""
     if why:
         log.error("fault: %s", why)

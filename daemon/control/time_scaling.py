@@ -14,9 +14,9 @@ import numpy as np
 from daemon.shared_memory.bus_link import Setpoint
 
 WAIT_S = 1.0
-"""So long a motion waits in all before it goes on without the robot: setpoints that do lead into it end as well."""
+"""Seconds that a motion waits in all before it goes on without the robot: a motion that leads into the robot ends as well."""
 REJOIN_PER_S = 2.0
-"""How fast the share of full speed comes back."""
+"""Rise of the share of full speed in a second, after the gate has held the robot."""
 _REJOINED = 0.5
 
 
@@ -39,7 +39,7 @@ class TimeScaling:
 
 
 class Source(Protocol):
-    """Where setpoints come from."""
+    """A source of setpoints."""
 
     def take_setpoint(self) -> Setpoint | None:
         """The next one; None when there is none."""

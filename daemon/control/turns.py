@@ -22,7 +22,7 @@ from retarget.robot.ticks import JointServoMap
 PAUSE_S = 0.15
 """Seconds of silence in which a servo may have lost its power and started again (which takes longer)."""
 SLACK_RAD = math.radians(5.0)
-"""Angle by which a joint may be found outside its range: so far another count of turns is still believed, or the one reported."""
+"""Angle by which a joint may be found outside its range and its count of turns, reported or another, is still believed."""
 MOST_APART_RAD = math.radians(2.0)
 """Largest angle by which the servos of one joint may disagree about it: what play, horns and zeros come to."""
 TURNS_UNKNOWN = "it forgets whole turns without power"

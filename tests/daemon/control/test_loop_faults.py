@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from daemon.control.control_loop import HEARTBEAT_LOST_S, PARK_AFTER_S
+from daemon.control.front_watch import HEARTBEAT_LOST_S, PARK_AFTER_S
 from daemon.shared_memory import bus_link as shared
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.robot.loading import load_robot
@@ -46,7 +46,7 @@ def test_a_servo_that_trips_is_a_named_fault_and_nothing_rearms(playing):
     with rig("reference", Fault("trip", start_s=4.0, servo_id=13)) as r:
         r.arm()
         while r.clock.now_s() < 4.2:
-            if playing and r.link.queued_frames < 20:
+            if playing and r.link.setpoints.queued_frames < 20:
                 r.push(swing(r.robot, 1.0))
             r.cycle()
         assert r.state is BusState.FAULT
@@ -81,7 +81,7 @@ def test_unplugged_is_a_fault_and_plugged_in_again_nothing_moves():
     with rig("reference", Fault("unplug", start_s=4.0, end_s=5.0)) as r:
         r.arm()
         while r.clock.now_s() < 6.0:
-            if r.state in (BusState.HOLDING, BusState.PLAYING) and r.link.queued_frames < 20:
+            if r.state in (BusState.HOLDING, BusState.PLAYING) and r.link.setpoints.queued_frames < 20:
                 r.push(swing(r.robot, 1.0))
             r.cycle()
         assert r.state is BusState.FAULT and "unplugged" in r.link.text

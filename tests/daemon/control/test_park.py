@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from daemon.control.control_loop import NO_WAY_LIMP_S
+from daemon.control.point_to_point import NO_WAY_LIMP_S
 from daemon.control.time_scaling import WAIT_S
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.path import rrt_connect

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from daemon.control.control_loop import FAULT_LIMP_S, TORQUE_OFF_REPEATS
+from daemon.control.front_watch import FAULT_LIMP_S
+from daemon.control.torque_switch import TORQUE_OFF_REPEATS
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from sim.faults import Fault
 from tests.support.rig import assert_brakes_within_limits, lead_to, rig, swing

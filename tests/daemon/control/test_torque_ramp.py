@@ -67,7 +67,7 @@ def test_in_a_fault_and_a_held_e_stop_the_ramp_stands_still(name: str) -> None:
             if request is not None:
                 r.link.request(request)
             else:
-                r.streamer._fault("made up")
+                r.streamer._states.fault("made up")
             r.cycle(2)
             item = "torque_limit" if r.bus.models[0].protocol == 1.0 else "goal_pwm"
             before = {i: s.get(item) for i, s in r.sim.servos.items()}

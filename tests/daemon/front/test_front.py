@@ -331,7 +331,7 @@ def test_what_the_processes_log_is_published(robot, running):
         line = next(e for _, e in told if isinstance(e, ev.LogEvent) and e.process == "bus" and "STOP" in e.text)
     assert (
         line.level == "info"
-        and line.module == "daemon.control.control_loop"
+        and line.module == "daemon.control.bus_state_machine"
         and 0 <= time.monotonic() - line.t_mono < 10
     )
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from daemon.control.control_loop import FAULT_LIMP_S
+from daemon.control.front_watch import FAULT_LIMP_S
 from daemon.control.starting import start
 from daemon.host.parent import PARENT_VARIABLE
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
