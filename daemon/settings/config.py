@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import ipaddress
 from collections.abc import Set
-from dataclasses import dataclass, field
+from dataclasses import Field, dataclass, field, fields
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 from daemon.errors import ConfigError
 from daemon.wire.requests import IDLE_STYLES, LONGEST_SILENCE_S, SHORTEST_SILENCE_S
 
-ESTOP_WAYS = ("cut", "hold")
 CMD_PORT, CTL_PORT, PUB_PORT, STREAM_PORT = 5871, 5872, 5873, 5875
 HTTP_ADDRESS = "127.0.0.1:5880"
 
@@ -91,22 +91,53 @@ def _is_loopback(host: str) -> bool:
 
 
 @dataclass(frozen=True)
-class Endpoints:
-    """Where the daemon's sockets are.
+class Setting:
+    """What is said of a setting beside its name, type and default: once, for config file, environment and command line.
 
     Attributes:
-        cmd: requests and their events.
-        ctl: stop, estop, reset, arm, park, torque, status.
-        pub: state and events for all.
-        keys: folder of CURVE keys, for which see `daemon.network.keys`; None leaves only local endpoints.
-        stream: joint targets from another program; empty takes a place beside `cmd`, see `stream_beside`.
+        help: what people read; `{default:g}` stands for the default.
+        low: the least value of a number.
+        high: the greatest value of a number.
+        choices: the words that are allowed; empty where any is.
+        is_flag: whether `mmmd run` has an option for it.
+        in_environment: whether `MMMD_NAME` sets it for `mmmd run`.
     """
 
-    cmd: str = f"tcp://127.0.0.1:{CMD_PORT}"
-    ctl: str = f"tcp://127.0.0.1:{CTL_PORT}"
-    pub: str = f"tcp://127.0.0.1:{PUB_PORT}"
-    keys: Path | None = None
-    stream: str = ""
+    help: str
+    low: float | None = None
+    high: float | None = None
+    choices: tuple[str, ...] = ()
+    is_flag: bool = True
+    in_environment: bool = True
+
+
+def _setting(default: Any, help: str, **more: Any) -> Any:
+    """A field with its `Setting`."""
+    return field(default=default, metadata={"setting": Setting(help, **more)})
+
+
+def settings_of_class(kind: type[DaemonConfig] | type[Endpoints]) -> dict[str, tuple[Field[Any], Setting]]:
+    """The fields of a class that are settings, in their order."""
+    return {f.name: (f, f.metadata["setting"]) for f in fields(kind) if "setting" in f.metadata}
+
+
+@dataclass(frozen=True)
+class Endpoints:
+    """Where the daemon's sockets are."""
+
+    cmd: str = _setting(f"tcp://127.0.0.1:{CMD_PORT}", "endpoint of requests and their events")
+    ctl: str = _setting(f"tcp://127.0.0.1:{CTL_PORT}", "endpoint of stop, estop, reset, arm, park, torque, status")
+    pub: str = _setting(f"tcp://127.0.0.1:{PUB_PORT}", "endpoint of state and events, for all")
+    keys: Path | None = _setting(
+        None,
+        "folder of CURVE keys (`mmmd keys`): tcp sockets then take allowed clients only, and may be on any address;"
+        " without keys only this machine reaches the daemon",
+        in_environment=False,  # read by `daemon.network.keys`
+    )
+    stream: str = _setting(
+        "",
+        "endpoint of joint targets under a lease; beside `cmd` (four ports on, or PATH.stream) when it is not given",
+    )
 
     def __post_init__(self) -> None:
         """Refuse what other machines could reach, and two sockets at one place.
@@ -126,63 +157,91 @@ class Endpoints:
 
 @dataclass(frozen=True)
 class DaemonConfig:
-    """Settings of one daemon.
+    """Settings of one daemon, in the order in which people read them."""
 
-    Attributes:
-        robot: name of a packaged robot, or path of a robot.toml.
-        bus: URL of the servo bus.
-        endpoints: sockets.
-        log: MCAP file to record into, None for none; `mmmd run` takes a folder too, see `start_checks.log_file`.
-        log_size_mb: a log of this size is ended and the next one begun; 0 for never.
-        log_total_mb: oldest logs of the run are removed beyond so much together; 0 for never.
-        generator: endpoint of a generator that runs already; None starts one.
-        model: checkpoint of the generator; None takes the shipped one.
-        auto_arm: whether the first text may arm the robot.
-        estop: what an e-stop does: `cut` torque, or brake within the limits and `hold` (a second one then cuts).
-        idle: style of the movements while there is nothing to play: off, calm or lively.
-        alive: whether trunk and head go along with generated gestures (`mmm_core/motion/life.py`).
-        gestures: folder of the user's own gestures; None takes the user's data folder.
-        motions: folder in which `edit` looks for files; None takes the folder the daemon was started in.
-        model_hash: beginning of the checkpoint's hash that the generator must have; empty takes any.
-        metrics: HOST:PORT of Prometheus metrics, on a loopback address; empty for none.
-        http: HOST:PORT of HTTP and WebSocket; empty for none, or for `HTTP_ADDRESS` with `view`.
-        view: whether the web page is served there as well.
-        queue_s: setpoints kept ready in the bus process.
-        state_rate_hz: how often `v1/state` is published.
-        generate_timeout_s: longest wait for the generator.
-        park_timeout_s: longest wait for the robot to park at the end.
-        lease_s: a lease without a target for so long brakes and holds, where it names no time itself.
-        lease_park_s: after so long without a target the lease ends and the robot parks.
-        lease_limp_s: the robot stays so long in the park pose before it goes limp, when a lease has led to it.
-        stream_queue_s: setpoints of a stream kept ready in the bus process while it moves.
-    """
-
-    robot: str
-    bus: str
+    robot: str = _setting(
+        "reference", "name of a packaged robot, or path of a robot.toml; {default} when nothing says otherwise"
+    )
+    bus: str = _setting(
+        "sim://",
+        "where the servos are: sim:// (when nothing says otherwise) or dxl://DEVICE?baud=N (without: the robot file's); several"
+        " ports with commas between them",
+    )
+    log: Path | None = _setting(
+        None, "MCAP file to record into, or a folder: then each start has a file of its own, named by the time"
+    )
+    log_size_mb: float = _setting(
+        500.0,
+        "size in MB at which a log is ended and the next one begun (NAME.1.mcap, ...); 0 for never",
+        low=0.0,
+        high=1e6,
+    )
+    log_total_mb: float = _setting(
+        0.0, "size in MB of all logs of a run beyond which the oldest are removed; 0 for never", low=0.0, high=1e7
+    )
+    generator: str | None = _setting(
+        None, "endpoint of a generator that runs already (`mmmd generator`); one is started when it is not given"
+    )
+    model: Path | None = _setting(None, "checkpoint of the generator; the shipped one when it is not given")
+    model_hash: str = _setting("", "beginning of the checkpoint's hash; a generator with another one is not used")
+    auto_arm: bool = _setting(True, "the first text arms the robot; --no-auto-arm waits for `mmmd arm`")
+    estop: str = _setting(
+        "cut",
+        "what an e-stop does: cut torque (when it is not given), or brake within the limits and hold; a second one cuts",
+        choices=("cut", "hold"),
+    )
+    idle: str = _setting("off", "small movements while there is nothing to play", choices=("off", *IDLE_STYLES))
+    alive: bool = _setting(
+        True,
+        "trunk and head go along with generated gestures, by a few degrees; --no-alive plays gestures as they were generated",
+    )
+    gestures: Path | None = _setting(
+        None, "folder of your own gestures; your data folder when it is not given", in_environment=False
+    )
+    motions: Path | None = _setting(
+        None, "folder in which `edit` looks for files; the folder the daemon was started in when it is not given"
+    )
     endpoints: Endpoints = field(default_factory=Endpoints)
-    log: Path | None = None
-    log_size_mb: float = 500.0
-    log_total_mb: float = 0.0
-    generator: str | None = None
-    model: Path | None = None
-    auto_arm: bool = True
-    estop: str = "cut"
-    idle: str = "off"
-    alive: bool = True
-    gestures: Path | None = None
-    motions: Path | None = None
-    model_hash: str = ""
-    metrics: str = ""
-    http: str = ""
-    view: bool = False
-    queue_s: float = 0.1
-    state_rate_hz: float = 20.0
-    generate_timeout_s: float = 10.0
-    park_timeout_s: float = 20.0
-    lease_s: float = 0.2
-    lease_park_s: float = 5.0
-    lease_limp_s: float = 2.0
-    stream_queue_s: float = 0.03
+    metrics: str = _setting(
+        "", "HOST:PORT of Prometheus metrics, for this machine only (127.0.0.1:9109); none when it is not given"
+    )
+    http: str = _setting(
+        "",
+        f"HOST:PORT of HTTP and WebSocket ({HTTP_ADDRESS}); beyond this machine clients need the token that is printed",
+    )
+    view: bool = _setting(False, f"serve the web page as well, at --http or http://{HTTP_ADDRESS}")
+    queue_s: float = _setting(
+        0.1, "seconds of setpoints kept ready in the bus process", low=0.02, high=0.3, is_flag=False
+    )
+    state_rate_hz: float = _setting(20.0, "messages of `v1/state` in a second", low=1.0, high=200.0, is_flag=False)
+    generate_timeout_s: float = _setting(
+        10.0, "seconds after which a generator that does not answer has failed", low=0.1, high=600.0, is_flag=False
+    )
+    park_timeout_s: float = _setting(
+        20.0, "seconds that the robot has to park when the daemon ends", low=1.0, high=120.0, is_flag=False
+    )
+    lease_s: float = _setting(
+        0.2,
+        "seconds without a target of a streaming program after which the robot brakes and holds ({default:g})",
+        low=SHORTEST_SILENCE_S,
+        high=LONGEST_SILENCE_S,
+    )
+    lease_park_s: float = _setting(
+        5.0,
+        "seconds without a target after which the program's lease ends and the robot parks ({default:g})",
+        low=0.1,
+        high=600.0,
+    )
+    lease_limp_s: float = _setting(
+        2.0, "seconds in the park pose after that before the robot goes limp ({default:g})", low=0.0, high=600.0
+    )
+    stream_queue_s: float = _setting(
+        0.03,
+        "seconds of a stream's setpoints kept ready in the bus process while the robot moves",
+        low=0.01,
+        high=0.3,
+        is_flag=False,
+    )
 
     def __post_init__(self) -> None:
         """Check ranges, the generator's endpoint and that of the metrics.
@@ -190,22 +249,15 @@ class DaemonConfig:
         Raises:
             ConfigError: a value is outside its range.
         """
-        for key, low, high in (
-            ("queue_s", 0.02, 0.3), ("log_size_mb", 0.0, 1e6), ("log_total_mb", 0.0, 1e7), ("state_rate_hz", 1.0, 200.0),
-            ("generate_timeout_s", 0.1, 600.0), ("park_timeout_s", 1.0, 120.0),
-            ("lease_s", SHORTEST_SILENCE_S, LONGEST_SILENCE_S), ("lease_park_s", 0.1, 600.0), ("lease_limp_s", 0.0, 600.0),
-            ("stream_queue_s", 0.01, 0.3),
-        ):  # fmt: skip
+        for key, (_, said) in settings_of_class(DaemonConfig).items():
             value = getattr(self, key)
-            if not low <= value <= high:
-                raise config_error(key, f"{value}", f"{low} to {high}", "choose a value in this range")
+            if said.low is not None and said.high is not None and not said.low <= value <= said.high:
+                raise config_error(key, f"{value}", f"{said.low} to {said.high}", "choose a value in this range")
+            if said.choices and value not in said.choices:
+                raise config_error(key, repr(value), ", ".join(said.choices), "choose one of these")
         if self.lease_park_s <= self.lease_s:
             allowed = f"more than lease_s ({self.lease_s:g})"
             raise config_error("lease_park_s", f"{self.lease_park_s:g}", allowed, "holding comes before parking")
-        if self.idle not in ("off", *IDLE_STYLES):
-            raise config_error("idle", repr(self.idle), ", ".join(("off", *IDLE_STYLES)), "choose one of these")
-        if self.estop not in ESTOP_WAYS:
-            raise config_error("estop", repr(self.estop), ", ".join(ESTOP_WAYS), "choose one of these")
         if self.metrics:
             metrics_address(self.metrics)
         if self.generator is not None:

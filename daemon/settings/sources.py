@@ -8,33 +8,50 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import Field, dataclass, fields
 from pathlib import Path
 from typing import Any
 
 from daemon.errors import ConfigError
-from daemon.settings.config import DaemonConfig, Endpoints, stream_beside
+from daemon.settings.config import DaemonConfig, Endpoints, Setting, settings_of_class, stream_beside
 
-_ENDPOINTS = Endpoints()
-_CONFIG = DaemonConfig("reference", "sim://")
-DEFAULTS: dict[str, Any] = {
-    "robot": "reference", "bus": "sim://", "log": None, "log_size_mb": _CONFIG.log_size_mb,
-    "log_total_mb": _CONFIG.log_total_mb, "generator": None, "model": None, "model_hash": "", "auto_arm": True,
-    "estop": _CONFIG.estop, "idle": "off", "alive": True, "gestures": None, "motions": None,
-    "cmd": _ENDPOINTS.cmd, "ctl": _ENDPOINTS.ctl, "pub": _ENDPOINTS.pub, "stream": "", "keys": None,
-    "metrics": "", "http": "", "view": False, "queue_s": _CONFIG.queue_s, "state_rate_hz": _CONFIG.state_rate_hz,
-    "generate_timeout_s": _CONFIG.generate_timeout_s, "park_timeout_s": _CONFIG.park_timeout_s, "lease_s": _CONFIG.lease_s,
-    "lease_park_s": _CONFIG.lease_park_s, "lease_limp_s": _CONFIG.lease_limp_s,
-    "stream_queue_s": _CONFIG.stream_queue_s, "log_json": False,
-}  # fmt: skip
-_PATHS = ("log", "model", "gestures", "motions", "keys")
-_ENDPOINT_KEYS = ("cmd", "ctl", "pub", "keys", "stream")
+_ENDPOINT_KEYS = ("cmd", "ctl", "pub", "stream", "keys")
 _LOG_JSON = "log_json"
 """Read by `mmmd run` itself."""
 
 
 @dataclass(frozen=True)
-class Setting:
+class KnownSetting:
+    """A setting of `mmmd run`: its default, its own type, and what is said of it."""
+
+    default: Any
+    kind: type
+    said: Setting
+
+
+def _known() -> dict[str, KnownSetting]:
+    """All settings, the endpoints in their place among the others."""
+    found: dict[str, KnownSetting] = {}
+    for f in fields(DaemonConfig):
+        if f.name == "endpoints":
+            ends = settings_of_class(Endpoints)
+            found |= {key: _known_of(*ends[key]) for key in _ENDPOINT_KEYS}
+        else:
+            found[f.name] = _known_of(f, f.metadata["setting"])
+    return found | {_LOG_JSON: KnownSetting(False, bool, Setting("print one JSON object a line instead of text"))}
+
+
+def _known_of(f: Field[Any], said: Setting) -> KnownSetting:
+    kinds: dict[str, type] = {"str": str, "float": float, "bool": bool, "Path": Path}
+    return KnownSetting(f.default, kinds[str(f.type).removesuffix(" | None")], said)
+
+
+SETTINGS = _known()
+DEFAULTS: dict[str, Any] = {key: known.default for key, known in SETTINGS.items()}
+
+
+@dataclass(frozen=True)
+class SourcedValue:
     """A value and where it came from."""
 
     value: Any
@@ -52,7 +69,7 @@ def default_file(environment: Mapping[str, str]) -> Path | None:
 
 def resolve(
     flags: Mapping[str, Any], file: Path | None = None, environment: Mapping[str, str] | None = None
-) -> dict[str, Setting]:
+) -> dict[str, SourcedValue]:
     """Every setting; flags that are None were not given.
 
     Raises:
@@ -60,25 +77,25 @@ def resolve(
     """
     environment = os.environ if environment is None else environment
     file = file or default_file(environment)
-    found = {key: Setting(value, "default") for key, value in DEFAULTS.items()}
+    found = {key: SourcedValue(value, "default") for key, value in DEFAULTS.items()}
     if file is not None:
-        found |= {key: Setting(value, str(file)) for key, value in _read(file).items()}
-    for key in DEFAULTS:
+        found |= {key: SourcedValue(value, str(file)) for key, value in _read(file).items()}
+    for key, known in SETTINGS.items():
         variable = f"MMMD_{key.upper()}"
-        if variable in environment and variable not in ("MMMD_KEYS", "MMMD_GESTURES"):  # folders, read where needed
-            found[key] = Setting(_converted(key, environment[variable], variable), variable)
+        if variable in environment and known.said.in_environment:
+            found[key] = SourcedValue(_converted(key, environment[variable], variable), variable)
     found |= {
-        key: Setting(_path(key, value), f"--{key.replace('_', '-')}")
+        key: SourcedValue(_path(key, value), f"--{key.replace('_', '-')}")
         for key, value in flags.items()
         if value is not None
     }
     if not found["stream"].value:
         taken = {str(found["ctl"].value), str(found["pub"].value)}
-        found["stream"] = Setting(stream_beside(str(found["cmd"].value), taken), "beside cmd")
+        found["stream"] = SourcedValue(stream_beside(str(found["cmd"].value), taken), "beside cmd")
     return found
 
 
-def config_of(settings: Mapping[str, Setting]) -> DaemonConfig:
+def config_of(settings: Mapping[str, SourcedValue]) -> DaemonConfig:
     """The daemon's configuration.
 
     Raises:
@@ -108,8 +125,7 @@ def _read(file: Path) -> dict[str, Any]:
 
 def _converted(key: str, value: Any, source: str) -> Any:
     """A value of the setting's own type."""
-    default = DEFAULTS[key]
-    wanted: type = str if default is None else type(default)  # pyright: ignore[reportUnknownVariableType]
+    wanted = str if SETTINGS[key].kind is Path else SETTINGS[key].kind
     if wanted is bool and isinstance(value, str):
         known = {"1": True, "true": True, "yes": True, "0": False, "false": False, "no": False}
         value = known.get(value.lower(), value)
@@ -124,4 +140,4 @@ def _converted(key: str, value: Any, source: str) -> Any:
 
 
 def _path(key: str, value: Any) -> Any:
-    return Path(value).expanduser() if key in _PATHS and isinstance(value, str) else value
+    return Path(value).expanduser() if SETTINGS[key].kind is Path and isinstance(value, str) else value

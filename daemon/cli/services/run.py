@@ -2,44 +2,51 @@
 
 from __future__ import annotations
 
+import inspect
 import logging
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
+from daemon.settings.sources import SETTINGS, KnownSetting, config_of, resolve
 
-def run(
-    robot: str | None = None,
-    bus: str | None = None,
-    config: Path | None = None,
-    log: Path | None = None,
-    log_size_mb: float | None = None,
-    log_total_mb: float | None = None,
-    generator: str | None = None,
-    model: Path | None = None,
-    model_hash: str | None = None,
-    auto_arm: bool = True,
-    estop: Literal["cut", "hold"] | None = None,
-    idle: Literal["off", "calm", "lively"] | None = None,
-    alive: bool = True,
-    gestures: Path | None = None,
-    motions: Path | None = None,
-    cmd: str | None = None,
-    ctl: str | None = None,
-    pub: str | None = None,
-    stream: str | None = None,
-    keys: Path | None = None,
-    lease_s: float | None = None,
-    lease_park_s: float | None = None,
-    lease_limp_s: float | None = None,
-    metrics: str | None = None,
-    http: str | None = None,
-    view: bool = False,
-    log_json: bool = False,
-    quiet: bool = False,
-) -> int:
+
+def _with_settings(command: Callable[..., int]) -> Callable[..., int]:
+    """The command with an option for each setting that has one, which come to it as keyword arguments."""
+    own = inspect.signature(command)
+    options = [
+        inspect.Parameter(
+            key,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=known.default if known.kind is bool else None,
+            annotation=Annotated[
+                _type_of_option(known), tyro.conf.arg(help=known.said.help.format(default=known.default) + ".")
+            ],
+        )
+        for key, known in SETTINGS.items()
+        if known.said.is_flag
+    ]
+    parameters = [p for p in own.parameters.values() if p.kind is not inspect.Parameter.VAR_KEYWORD]
+    parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in parameters]
+    ordered = [*options[:2], parameters[0], *options[2:], *parameters[1:]]
+    command.__signature__ = own.replace(parameters=ordered)  # type: ignore[attr-defined]  # which tyro reads
+    command.__annotations__ |= {p.name: p.annotation for p in options}
+    return command
+
+
+def _type_of_option(known: KnownSetting) -> Any:
+    """Switches are what they are; another option may be missing."""
+    if known.kind is bool:
+        return bool
+    kind: Any = Literal[known.said.choices] if known.said.choices else known.kind
+    return kind | None
+
+
+@_with_settings
+def run(config: Path | None = None, quiet: bool = False, **given: Any) -> int:
     """Take texts over ZeroMQ and move servos, until SIGTERM or Ctrl-C, which park the robot.
 
     Every setting can also stand in a TOML file or in the environment (MMMD_ROBOT, ...); `mmmd config show` tells the
@@ -50,41 +57,13 @@ def run(
     Example: mmmd run --robot op3 --bus dxl:///dev/ttyUSB0 --log run.mcap
 
     Args:
-        robot: name of a packaged robot, or path of a robot.toml; reference when nothing says otherwise.
-        bus: where the servos are: sim:// or dxl://DEVICE?baud=N (without: the robot file's), several ports with commas
-            between them.
         config: TOML file; else $MMMD_CONFIG, ~/.config/mmmd/mmmd.toml, /etc/mmmd/mmmd.toml.
-        log: MCAP file to record into, or a folder: then each start has a file of its own, named by the time.
-        log_size_mb: a log of this size is ended and the next one begun (NAME.1.mcap, ...); 0 for never.
-        log_total_mb: oldest logs of this run are removed beyond so much together; 0 for never.
-        generator: endpoint of a generator that runs already (`mmmd generator`); one is started when it is not given.
-        model: checkpoint of the generator; the shipped one when it is not given.
-        model_hash: beginning of the checkpoint's hash; a generator with another one is not used.
-        auto_arm: the first text arms the robot; --no-auto-arm waits for `mmmd arm`.
-        estop: what `mmmd estop` does: cut torque (when it is not given), or brake within the limits and hold; a second one cuts.
-        idle: small movements while there is nothing to play.
-        alive: trunk and head go along with generated gestures, by a few degrees; --no-alive plays them as they were generated.
-        gestures: folder of your own gestures; your data folder when it is not given.
-        motions: folder in which `edit` looks for files; the current one when it is not given.
-        cmd: endpoint of requests.
-        ctl: endpoint of stop, estop, reset, arm, park, torque, status.
-        pub: endpoint of state and events.
-        stream: endpoint of joint targets under a lease; beside `cmd` (four ports on, or PATH.stream) when it is not given.
-        keys: folder of CURVE keys (`mmmd keys`): tcp sockets then take allowed clients only, and may be on any address.
-        lease_s: a streaming program silent for so long: the robot brakes and holds (0.2 when it is not given).
-        lease_park_s: silent for so long: its lease ends and the robot parks (5).
-        lease_limp_s: so long in the park pose after that, then limp (2).
-        metrics: HOST:PORT of Prometheus metrics, for this machine only (127.0.0.1:9109); none when it is not given.
-        http: HOST:PORT of HTTP and WebSocket (127.0.0.1:5880); beyond this machine it takes a token, which is printed.
-        view: the web page as well, at --http or http://127.0.0.1:5880.
-        log_json: one JSON object a line instead of text.
         quiet: log only warnings.
+        given: settings, see `daemon.settings.config.DaemonConfig`.
     """
-    given = dict(locals())
     from dataclasses import replace
 
     from daemon.logs.log_lines import start_logging
-    from daemon.settings.sources import config_of, resolve
     from daemon.supervisor.start_checks import log_file, log_path_error
     from daemon.supervisor.supervisor import run as run_daemon
 
@@ -120,8 +99,6 @@ def config(
         config: TOML file; else where `mmmd run` looks.
         json: print one JSON object.
     """
-    from daemon.settings.sources import config_of, resolve
-
     settings = resolve({}, config)
     config_of(settings)
     if json:
@@ -139,10 +116,8 @@ def config(
 
 
 def _flags(given: dict[str, Any]) -> dict[str, Any]:
-    """What was given on the command line; a switch that stands as it is by default was not."""
-    flags = {key: value for key, value in given.items() if key not in ("config", "quiet")}
-    flags["auto_arm"] = None if given["auto_arm"] else False
-    flags["alive"] = None if given["alive"] else False
-    flags["log_json"] = True if given["log_json"] else None
-    flags["view"] = True if given["view"] else None
-    return flags
+    """Options that were given; a switch that stands as it is by default was not."""
+    return {
+        key: None if SETTINGS[key].kind is bool and value == SETTINGS[key].default else value
+        for key, value in given.items()
+    }
