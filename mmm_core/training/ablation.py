@@ -40,7 +40,7 @@ BASE = "as shipped"
 PROBE_SEEDS = 2
 REAL_REPEATS, REAL_EACH = 5, 10
 COUNTED_CLIPS = 2000
-"""Of the corpus, whose codes are counted."""
+"""Clips of the corpus whose codes are counted."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The mean of several models' weights: what each learnt on other clips, in the time and size of one.
+"""The mean of several models' weights, each trained on other clips, in the time and size of one model.
 
 Models that went on from one start lie so near each other that the mean of their weights is a model too, often a better one than
 each by itself (Wortsman et al. 2022, "Model soups", the uniform soup).

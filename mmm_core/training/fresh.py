@@ -1,4 +1,4 @@
-"""Clips made anew while a transformer trains: every so many steps a round of them, seen beside those of the rounds before.
+"""Clips made anew while a transformer trains, a round of them after a fixed number of steps, beside those of the rounds before.
 
 22,000 fixed clips hold some ninety of a rare family; the synthesiser makes hundreds in a second, and reading captions takes longer
 than training on them. So a round's clips are made, encoded and kept in the run's folder when its first step comes, and the

@@ -1,4 +1,4 @@
-"""What a training makes, from one TOML file: data, text encoder, the sizes and the schedule of each stage."""
+"""The recipe of a training in one TOML file: data, text encoder, the sizes and the schedule of each stage."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ RECIPES = Path(__file__).parent / "recipes"
 
 @dataclass(frozen=True)
 class DataRecipe:
-    """What it is made from.
+    """The data of a training.
 
     Attributes:
         folder: a HumanML3D or KIT-ML folder, or one with clips.jsonl (docs/DATA.md); empty for none.
@@ -35,6 +35,11 @@ class DataRecipe:
     synthesised: int = 0
     licence: str = ""
     fresh: FreshRecipe = field(default_factory=FreshRecipe)
+
+    @property
+    def has_gestures(self) -> bool:
+        """Whether any clip is of the gesture corpus."""
+        return bool(self.synthesised or self.fresh.clips)
 
 
 @dataclass(frozen=True)
@@ -159,7 +164,7 @@ class Recipe:
     scope: ScopeRecipe = field(default_factory=ScopeRecipe)
 
     def seeded(self) -> Recipe:
-        """The same with the recipe's seed in every stage that has none of its own."""
+        """The recipe with its seed in every stage that has none of its own."""
 
         def with_seed(schedule: Schedule) -> Schedule:
             return replace(schedule, seed=schedule.seed or self.seed)
@@ -171,7 +176,7 @@ class Recipe:
                        evaluator=with_seed(self.evaluator))  # fmt: skip
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain tables, for a checkpoint."""
+        """The recipe as plain tables, for a checkpoint."""
         return asdict(self)
 
 

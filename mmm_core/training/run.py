@@ -70,7 +70,7 @@ class Schedule:
 
 @dataclass(frozen=True)
 class Run:
-    """Where and how a stage runs.
+    """Place and manner of a stage's run.
 
     Attributes:
         folder: states, CSV logs, samples.

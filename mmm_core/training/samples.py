@@ -1,16 +1,75 @@
-"""Pictures while a model trains: a row of small figures for each motion."""
+"""Pictures while a model trains: a row of small figures for each motion that it decodes or samples."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
+from torch import Tensor
 
+from mmm_core.imports.kit import joints_from_kit
+from mmm_core.model.sampling import SamplingSettings, empty_row, fill
+from mmm_core.model.text import TextStates
+from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.transformer import MotionTransformer
+from mmm_core.model.vqvae import VqVae
+from mmm_core.motion.features import joints_from_positions, recover
 from mmm_core.motion.skeleton import JOINT_NAMES, PARENTS
 
 INSTANTS = 8
+SAMPLE_TEXTS = ("wave with your right hand", "raise your left arm", "clap your hands", "bow")
+SAMPLE_TOKENS = 15
 _COLOURS = {"left": "#c0392b", "right": "#2471a3"}
+
+
+@torch.no_grad()
+def draw_reconstruction(path: Path, tokenizer: Tokenizer | VqVae, shown: Tensor, ours: bool) -> None:
+    """Draw a clip (T, D) before and after its way through the tokenizer; `ours` as in `draw_samples`."""
+    features = shown.to(tokenizer.mean.device)
+    again = tokenizer.decode(tokenizer.encode(features[None]))[0].cpu().numpy()
+    draw_rows(path, {"a clip": _joints(shown.numpy(), ours), "through the tokenizer": _joints(again, ours)})
+
+
+@torch.no_grad()
+def draw_samples(
+    path: Path,
+    transformer: MotionTransformer,
+    texts: TextStates,
+    known: Sequence[Tensor],
+    tokenizer: Tokenizer | VqVae,
+    ours: bool,
+) -> None:
+    """Draw a motion for each of `SAMPLE_TEXTS`.
+
+    Args:
+        path: of the picture.
+        transformer: as it is at this step; it is back on its device afterwards.
+        texts: states of `SAMPLE_TEXTS`.
+        known: (L, C) ids of a clip for each text, whose lower body is the context of a model that makes the upper one.
+        tokenizer: decodes the ids.
+        ours: whether its features are those of `Motion`, not those of a data set.
+    """
+    device = transformer.codebooks.device
+    transformer.cpu()
+    rows = [empty_row(transformer, SAMPLE_TOKENS) for _ in SAMPLE_TEXTS]
+    if transformer.config.n_predicted is not None:
+        for row, ids in zip(rows, known, strict=False):
+            row[:, 1:] = ids[torch.arange(SAMPLE_TOKENS) % len(ids), 1:]
+    filled = fill(transformer, texts, rows, list(range(len(rows))), SamplingSettings())
+    transformer.to(device)
+    motions = [tokenizer.decode(ids[None])[0].numpy() for ids in filled]
+    draw_rows(path, {t: _joints(m, ours) for t, m in zip(SAMPLE_TEXTS, motions, strict=True)})
+
+
+def _joints(features: NDArray[np.float32], ours: bool) -> NDArray[np.floating]:
+    """(T, 22, 3) metres."""
+    if ours:
+        return recover(features).joints_m
+    joints = joints_from_positions(features)
+    return joints if joints.shape[1] == 22 else joints_from_kit(joints)
 
 
 def draw_rows(path: Path, motions: dict[str, NDArray[np.floating]]) -> None:

@@ -7,6 +7,7 @@ prompts that choose its thresholds or measure it (docs/scope.md). About two minu
 from __future__ import annotations
 
 import logging
+from pathlib import Path
 
 import numpy as np
 import torch
@@ -17,9 +18,11 @@ from mmm_core.corpus.grammar import caption, known_commands
 from mmm_core.corpus.outside import OUTSIDE, outside_texts
 from mmm_core.corpus.synthesis import draw_spec
 from mmm_core.corpus.withheld import is_withheld
+from mmm_core.errors import CheckpointError
+from mmm_core.inference.checkpoint import load_model, load_text_encoder, save_model
 from mmm_core.language.scope import ScopeClassifier, ScopeIndex, clauses_of
 from mmm_core.model.text import TextEncoder
-from mmm_core.training.recipe import ScopeRecipe
+from mmm_core.training.recipe import Recipe, ScopeRecipe
 
 log = logging.getLogger(__name__)
 INDEX_ROWS = 4
@@ -36,6 +39,19 @@ def build_scope(encoder: TextEncoder, recipe: ScopeRecipe) -> ScopeIndex:
     can, cannot = sentence_vectors(inside, encoder), sentence_vectors(outside, encoder)
     vectors = sentence_vectors([*commands, *OUTSIDE], encoder)
     return ScopeIndex([*commands, *OUTSIDE], vectors, len(commands), train_classifier(can, cannot))
+
+
+def renew_scope(recipe: Recipe, made: Path, out: Path) -> None:
+    """Build the scope again for the finished checkpoint at `made` and write it to `out`; all other weights stay.
+
+    Raises:
+        CheckpointError: `made` is missing, or an imported model, which has no scope.
+    """
+    model = load_model(made)
+    if model.text is not None or model.scope is None:
+        raise CheckpointError(made, "scope", "a model without one", "a model of synthesised gestures that reads MiniLM")
+    model.scope = build_scope(load_text_encoder(), recipe.scope)
+    save_model(out, model)
 
 
 def scope_sentences(recipe: ScopeRecipe) -> tuple[list[str], list[str]]:

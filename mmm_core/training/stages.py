@@ -6,18 +6,15 @@ the run's folder; a stage that is done is only loaded, so any of them can be ask
 
 from __future__ import annotations
 
-import json
 import logging
 import os
-import subprocess
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 import torch
-from torch import Tensor, nn
+from torch import nn
 
 from mmm_core import distributed
 from mmm_core.corpus.stream import make_corpus
@@ -26,16 +23,14 @@ from mmm_core.evaluation.extractors import OURS, Evaluator, save_evaluator
 from mmm_core.evaluation.reconstruction import tokenizer_figures
 from mmm_core.imports.clip_weights import read_clip
 from mmm_core.imports.datasets import MotionFolder, open_folder
-from mmm_core.imports.kit import joints_from_kit
-from mmm_core.inference.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder, save_model
+from mmm_core.inference.checkpoint import Model, load_model, load_text_encoder, save_model
 from mmm_core.model.clip import ClipText
 from mmm_core.model.length import LengthClassifier
-from mmm_core.model.sampling import SamplingSettings, empty_row, fill
-from mmm_core.model.text import MiniLm, MiniLmConfig, TextEncoder, TextStates
-from mmm_core.model.tokenizer import Tokenizer, TokenizerConfig
+from mmm_core.model.text import MiniLm, MiniLmConfig, TextEncoder
+from mmm_core.model.tokenizer import Tokenizer
 from mmm_core.model.transformer import MotionTransformer
 from mmm_core.model.vqvae import VqVae
-from mmm_core.motion.features import joints_from_positions, recover
+from mmm_core.motion.features import RestPose
 from mmm_core.motion.motion import FPS, N_FEATURES
 from mmm_core.training.batches import (
     CaptionStates,
@@ -48,17 +43,17 @@ from mmm_core.training.batches import (
 )
 from mmm_core.training.evaluator_training import train_evaluator
 from mmm_core.training.fresh import WEIGHTS_FILE, FreshClips, make_round, read_weights
+from mmm_core.training.provenance import hours_of, provenance
 from mmm_core.training.recipe import Recipe
 from mmm_core.training.refining import refined
 from mmm_core.training.run import Run
-from mmm_core.training.samples import draw_rows
+from mmm_core.training.samples import SAMPLE_TEXTS, draw_reconstruction, draw_samples
 from mmm_core.training.scope_training import build_scope
+from mmm_core.training.start import read_start, start_path
 from mmm_core.training.tokenizer_training import train_tokenizer, tune_decoder
 from mmm_core.training.transformer_training import train_length, train_transformer
 
 log = logging.getLogger(__name__)
-SAMPLE_TEXTS = ("wave with your right hand", "raise your left arm", "clap your hands", "bow")
-SAMPLE_TOKENS = 15
 
 
 class Stages:
@@ -93,7 +88,7 @@ class Stages:
         distributed.wait()
         clips = load_clips(path)
         people = sum(c.is_real for c in clips)
-        log.info("%d clips, %.1f h, %d from people", len(clips), self._hours(clips), people)
+        log.info("%d clips, %.1f h, %d from people", len(clips), hours_of(clips, self._fps), people)
         return clips
 
     def _made(self) -> list[Clip]:
@@ -130,7 +125,8 @@ class Stages:
     @cached_property
     def start(self) -> Model | None:
         """The model that the recipe goes on from, if there is one; with refined codebooks where the recipe has more codes."""
-        model, how = self._read_start, self.recipe.tokenizer
+        how = self.recipe.tokenizer
+        model = read_start(self.recipe, self.run.folder, self._rest_pose)
         if model is None or model.tokenizer.config.n_codes == how.n_codes:
             return model
         path = self.run.folder / "start_refined.safetensors"
@@ -145,54 +141,6 @@ class Stages:
         return load_model(path)
 
     @cached_property
-    def _read_start(self) -> Model | None:
-        """The checkpoint that the recipe names, checked.
-
-        Raises:
-            CheckpointError: it cannot be read, or has other sizes, another text encoder or another body than are asked for.
-        """
-        if not self.recipe.start:
-            return None
-        path = self._start_path
-        model, how = load_model(path), self.recipe
-        self._check_same_start(path)
-        found, books = model.transformer.config, model.tokenizer.n_codebooks
-        pose = "mmmd" if self.folder is None else "humanml3d"
-        if model.rest_pose != pose:
-            raise CheckpointError(path, "rest_pose", model.rest_pose, f"{pose}, as the data have")
-        if (model.text is None) != (how.text.encoder == "minilm"):
-            has = "minilm" if model.text is None else "clip"
-            raise CheckpointError(path, "text", f"a model that reads {has}", f"{how.text.encoder}, as the recipe says")
-        sizes = how.tokenizer.config(len(model.tokenizer.mean))
-        held = model.tokenizer.config
-        if isinstance(sizes, TokenizerConfig) and isinstance(held, TokenizerConfig) and sizes.n_codes > held.n_codes:
-            sizes = replace(sizes, n_codes=held.n_codes)  # its codebooks are refined (`start`)
-        if sizes != model.tokenizer.config:
-            raise CheckpointError(path, "tokenizer", f"{model.tokenizer.config}", f"{sizes}, as the recipe says")
-        wanted = how.transformer.config(sizes, books, found.text_dim, how.text.tuned_layers)
-        if 0 in (found.n_words, wanted.n_words):  # its words' layers begin as the text encoder's, or are left behind
-            wanted = replace(wanted, n_words=found.n_words)
-        if replace(wanted, dropout=found.dropout) != found:
-            raise CheckpointError(path, "transformer", f"{found}", f"{wanted}, as the recipe says")
-        return model
-
-    def _check_same_start(self, path: Path) -> None:
-        """A run that goes on does so from the same file: ids of another tokenizer mean other motions."""
-        marker, found = self.run.folder / "start.sha256", file_hash(path)
-        if not marker.is_file():
-            self.run.folder.mkdir(parents=True, exist_ok=True)
-            marker.write_text(found)
-        began = marker.read_text().strip()
-        if began != found:
-            raise CheckpointError(
-                path, "", f"sha256 {found[:12]}", f"{began[:12]}, which the run began with, or a new --run"
-            )
-
-    @property
-    def _start_path(self) -> Path:
-        return MODEL_FILE if self.recipe.start == "shipped" else Path(self.recipe.start)
-
-    @cached_property
     def tokenizer(self) -> Tokenizer | VqVae:
         """Motion to ids, trained; with the decoder as it was when the ids were made."""
         start = self.start  # before hours of work on what will be refused
@@ -201,10 +149,15 @@ class Stages:
         if start is not None:
             if len(start.tokenizer.mean) != width:
                 found = f"a tokenizer of {len(start.tokenizer.mean)} features"
-                raise CheckpointError(self._start_path, "tokenizer", found, f"{width}, as the data have")
+                raise CheckpointError(start_path(self.recipe), "tokenizer", found, f"{width}, as the data have")
             return start.tokenizer
         shown = torch.from_numpy(max(clips, key=lambda c: len(c.features)).features)
-        run = replace(self.run, sampler=lambda module, path: self._draw_reconstruction(module, shown, path))
+
+        def sample(module: nn.Module, path: Path) -> None:
+            assert isinstance(module, (Tokenizer, VqVae))
+            draw_reconstruction(path, module, shown, self.folder is None)
+
+        run = replace(self.run, sampler=sample)
         statistics = None
         if self.folder is not None and not self.recipe.data.synthesised:
             statistics = torch.from_numpy(self.folder.mean), torch.from_numpy(self.folder.std)
@@ -220,9 +173,7 @@ class Stages:
             TrainingDataError: the tokenizer loses what the recipe's gate asks it to keep.
         """
         self._check_tokenizer()
-        captions = sorted({c for clip in self.clips for c in clip.captions})
-        row = {caption: i for i, caption in enumerate(captions)}
-        rows = [[row[c] for c in clip.captions] for clip in self.clips]
+        captions, rows = self._captions
         is_real = np.array([c.is_real for c in self.clips])
         below = self.recipe.text.tuned_layers
         states = self._caption_states(captions, self.text, f"captions_below_{below}.pt" if below else "captions.pt")
@@ -232,8 +183,15 @@ class Stages:
         """The gate, before anything is trained on the tokenizer."""
         if self.recipe.tokenizer.gate and isinstance(self.tokenizer, Tokenizer) and distributed.rank() == 0:
             if faults := tokenizer_figures(self.tokenizer)["faults"]:
-                path = self.run.folder / "tokenizer.pt" if self.start is None else self._start_path
+                path = self.run.folder / "tokenizer.pt" if self.start is None else start_path(self.recipe)
                 raise TrainingDataError(path, "tokenizer.gate", "; ".join(faults), "more steps, or gate = false")
+
+    @property
+    def _captions(self) -> tuple[list[str], list[list[int]]]:
+        """Every caption once, and for each clip the rows of its captions."""
+        captions = sorted({c for clip in self.clips for c in clip.captions})
+        row = {caption: i for i, caption in enumerate(captions)}
+        return captions, [[row[c] for c in clip.captions] for clip in self.clips]
 
     def _caption_states(self, captions: list[str], encoder: TextEncoder, name: str) -> CaptionStates:
         path = self.run.folder / name
@@ -281,7 +239,12 @@ class Stages:
         tuned = self.recipe.text.tuned_layers
         config = how.config(tokenizer.config, tokenizer.n_codebooks, self.corpus.captions.words.shape[1], tuned)
         texts = self.text.encode(list(SAMPLE_TEXTS))
-        run = replace(self.run, sampler=lambda module, path: self._draw_samples(module, texts, path))
+
+        def sample(module: nn.Module, path: Path) -> None:
+            assert isinstance(module, MotionTransformer)
+            draw_samples(path, module, texts, self.corpus.ids, tokenizer, self.folder is None)
+
+        run = replace(self.run, sampler=sample)
         start = None if self.start is None else self.start.transformer
         return train_transformer(
             self.fresh or self.corpus, tokenizer, config, how.schedule, run, how.corruption, how.tokens_per_batch, start,
@@ -294,15 +257,12 @@ class Stages:
 
         It reads MiniLM's states whatever the model reads, so that models with other text encoders can be compared.
         """
-        captions = sorted({c for clip in self.clips for c in clip.captions})
-        row = {caption: i for i, caption in enumerate(captions)}
-        rows = [[row[c] for c in clip.captions] for clip in self.clips]
+        captions, rows = self._captions
         shared = self.recipe.text.encoder == "minilm" and not self.recipe.text.tuned_layers
         encoder, name = (self.text, "captions.pt") if shared else (load_text_encoder(), "captions_minilm.pt")
         states = self._caption_states(captions, encoder, name)
         width, words = self.clips[0].features.shape[1], states.words.shape[1]
-        pose = "mmmd" if self.folder is None else "humanml3d"
-        config = replace(OURS, n_features=width, word=words, rest_pose=pose)
+        config = replace(OURS, n_features=width, word=words, rest_pose=self._rest_pose)
         evaluator = train_evaluator(self.clips, states, rows, self.recipe.evaluator, self.run, config)
         if distributed.rank() == 0:
             save_evaluator(self.run.folder / "evaluator.safetensors", evaluator, self.provenance())
@@ -310,71 +270,27 @@ class Stages:
 
     def model(self) -> Model:
         """All stages, as a model to be saved."""
-        transformer, length, tokenizer = self.transformer, self.length, self.tokenizer
-        how = self.recipe.tokenizer
+        transformer, length, tokenizer, how = self.transformer, self.length, self.tokenizer, self.recipe.tokenizer
         if isinstance(tokenizer, Tokenizer) and how.decoder.steps and (self.start is None or how.tune_start):
             newest = [] if self.fresh is None else self.fresh.clips(max(0, self.recipe.transformer.schedule.steps - 1))
             tune_decoder(tokenizer, [*self.clips, *newest], how.decoder, self.run)
-        synthesised = self._has_gestures
         text = self.text if isinstance(self.text, ClipText) else None
-        pose = "humanml3d" if self.folder is not None else "mmmd"
-        scope = build_scope(self.text, self.recipe.scope) if synthesised and text is None else None
-        return Model(tokenizer, transformer, length, scope, self.provenance(), text, pose)
-
-    @property
-    def _has_gestures(self) -> bool:
-        return bool(self.recipe.data.synthesised or self.recipe.data.fresh.clips)
+        scope = build_scope(self.text, self.recipe.scope) if self.recipe.data.has_gestures and text is None else None
+        return Model(tokenizer, transformer, length, scope, self.provenance(), text, self._rest_pose)
 
     def provenance(self) -> dict[str, object]:
-        """Where a checkpoint comes from: recipe, data with its licence, seed, revision, last losses."""
-        sources = [f"those of its start ({self.start.provenance.get('data', 'not stated')})"] if self.start else []
-        sources += ["synthesised gestures (this repository, Apache-2.0)"] if self._has_gestures else []
-        if self.data is not None:
-            sources.append(f"{self.data.name}: {self.recipe.data.licence or 'licence not stated by the recipe'}")
-        start = {"start": {"sha256": file_hash(self._start_path), **self.start.provenance}} if self.start else {}
-        return {
-            **start,
-            "recipe": json.loads(json.dumps(self.recipe.to_dict())),
-            "seed": self.recipe.seed,
-            "data": "; ".join(sources),
-            "clips": len(self.clips),
-            "clips_from_people": int(sum(c.is_real for c in self.clips)),
-            "hours": round(self._hours(self.clips), 2),
-            "revision": _revision(),
-            "metrics": _last_losses(self.run.folder),
-        }
+        """Where a checkpoint of this run comes from."""
+        start = None if self.start is None else (start_path(self.recipe), self.start)
+        return provenance(self.recipe, self.run.folder, self.data, self.clips, self._fps, start)
 
-    def _hours(self, clips: Sequence[Clip]) -> float:
-        fps = FPS if self.folder is None else self.folder.fps
-        return sum(len(c.features) for c in clips) / fps / 3600
+    @property
+    def _rest_pose(self) -> RestPose:
+        """The body of the data, as checkpoints name it."""
+        return "mmmd" if self.folder is None else "humanml3d"
 
-    def _joints(self, features: np.ndarray) -> np.ndarray:
-        """(T, 22, 3) metres, by whatever the features are."""
-        if self.folder is None:
-            return recover(features).joints_m
-        joints = joints_from_positions(features)
-        return joints if joints.shape[1] == 22 else joints_from_kit(joints)
-
-    @torch.no_grad()
-    def _draw_reconstruction(self, tokenizer: nn.Module, shown: Tensor, path: Path) -> None:
-        assert isinstance(tokenizer, (Tokenizer, VqVae))
-        features = shown.to(tokenizer.mean.device)
-        again = tokenizer.decode(tokenizer.encode(features[None]))[0].cpu().numpy()
-        draw_rows(path, {"a clip": self._joints(shown.numpy()), "through the tokenizer": self._joints(again)})
-
-    @torch.no_grad()
-    def _draw_samples(self, transformer: nn.Module, texts: TextStates, path: Path) -> None:
-        assert isinstance(transformer, MotionTransformer)
-        device = transformer.codebooks.device
-        transformer.cpu()
-        rows = [empty_row(transformer, SAMPLE_TOKENS) for _ in SAMPLE_TEXTS]
-        if transformer.config.n_predicted is not None:  # the lower body of a clip is the context
-            for row, ids in zip(rows, self.corpus.ids, strict=False):
-                row[:, 1:] = ids[torch.arange(SAMPLE_TOKENS) % len(ids), 1:]
-        filled = fill(transformer, texts, rows, list(range(len(rows))), SamplingSettings())
-        transformer.to(device)
-        motions = [self.tokenizer.decode(ids[None])[0].numpy() for ids in filled]
-        draw_rows(path, {t: self._joints(m) for t, m in zip(SAMPLE_TEXTS, motions, strict=True)})
+    @property
+    def _fps(self) -> float:
+        return FPS if self.folder is None else self.folder.fps
 
 
 def make_model(recipe: Recipe, run: Run, data: Path | None, out: Path) -> None:
@@ -382,36 +298,3 @@ def make_model(recipe: Recipe, run: Run, data: Path | None, out: Path) -> None:
     model = Stages(recipe, run, data).model()
     if distributed.rank() == 0:
         save_model(out, model, half=model.text is None)
-
-
-def renew_scope(recipe: Recipe, made: Path, out: Path) -> None:
-    """Build the scope again for the finished checkpoint at `made` and write it to `out`; all other weights stay.
-
-    Raises:
-        CheckpointError: `made` is missing, or an imported model, which has no scope.
-    """
-    model = load_model(made)
-    if model.text is not None or model.scope is None:
-        raise CheckpointError(made, "scope", "a model without one", "a model of synthesised gestures that reads MiniLM")
-    model.scope = build_scope(load_text_encoder(), recipe.scope)
-    save_model(out, model)
-
-
-def _last_losses(folder: Path) -> dict[str, dict[str, float]]:
-    """The last line of each stage's log."""
-    found: dict[str, dict[str, float]] = {}
-    for path in sorted(folder.glob("*.csv")):
-        lines = path.read_text().splitlines()
-        if len(lines) > 1 and lines[0].startswith("step,"):
-            names, values = lines[0].split(","), lines[-1].split(",")
-            found[path.stem] = {n: float(v) for n, v in zip(names, values, strict=False) if n != "seconds"}
-    return found
-
-
-def _revision() -> str:
-    """Git revision of the code that trains, or "unknown" outside a checkout."""
-    try:
-        done = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True, check=True, timeout=10)
-    except (OSError, subprocess.SubprocessError):
-        return "unknown"
-    return done.stdout.strip()

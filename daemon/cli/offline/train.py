@@ -85,7 +85,8 @@ def train(
     from mmm_core import distributed
     from mmm_core.training.recipe import read_recipe
     from mmm_core.training.run import Run
-    from mmm_core.training.stages import Stages, make_model, renew_scope
+    from mmm_core.training.scope_training import renew_scope
+    from mmm_core.training.stages import Stages, make_model
 
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     torch.set_num_threads(threads)
