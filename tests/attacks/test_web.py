@@ -20,7 +20,8 @@ from daemon.errors import ConfigError
 from daemon.network.web_access import Access
 from daemon.scheduling.command_queue import SHADOW_S
 from daemon.view.relay import MOST_KEPT, Reader
-from daemon.view.server import BURST, MOST_BYTES, MOST_SOCKETS
+from daemon.view.server import MOST_BYTES
+from daemon.view.web_state import BURST, MOST_SOCKETS
 from tests.support.harness import RunningDaemon
 
 pytestmark = pytest.mark.realtime

@@ -1,0 +1,92 @@
+"""Addresses of the web server that answer by themselves: files of the page, OpenAPI, shapes of the robot, a recorded run."""
+
+from __future__ import annotations
+
+# pyright: reportUnknownMemberType=false
+# Tornado's `finish` and `write` take a `dict` without saying of what.
+from pathlib import Path
+from typing import Any
+
+from tornado.web import RequestHandler
+
+from daemon.view.openapi import openapi
+from daemon.view.web_state import WebState
+
+FILE_TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
+_POLICY = "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+
+
+class BaseHandler(RequestHandler):
+    """What all addresses have in common: who may use them, and nothing of it kept or framed by other sites."""
+
+    @property
+    def server(self) -> WebState:
+        return self.settings["server"]
+
+    def set_default_headers(self) -> None:
+        self.clear_header("Server")
+        for name, value in (
+            ("Content-Security-Policy", _POLICY), ("X-Content-Type-Options", "nosniff"), ("Referrer-Policy", "no-referrer"),
+            ("Cache-Control", "no-cache"), ("Cross-Origin-Resource-Policy", "same-origin"),
+        ):  # fmt: skip
+            self.set_header(name, value)
+
+    def prepare(self) -> None:
+        if refused := self.server.access.refusal(self.request.headers, self.get_query_argument("token", "")):
+            self.refuse(*refused)
+
+    def write_error(self, status_code: int, **_: Any) -> None:
+        self.finish({"type": "error", "code": "http", "found": self._reason, "asked": self.request.path})
+
+    def refuse(self, status: int, why: str, code: str = "forbidden") -> None:
+        self.set_status(status)
+        if status == 401:
+            self.set_header("WWW-Authenticate", "Bearer")
+        self.finish({"type": "error", "code": code, "asked": self.request.path, "found": why})
+
+
+class FileHandler(BaseHandler):
+    """A file of the page; without a token, as it holds nothing of the robot."""
+
+    def initialize(self, file: Path) -> None:
+        self._file = file
+
+    def prepare(self) -> None:
+        if not self.server.access.token:
+            super().prepare()
+
+    def get(self) -> None:
+        self.set_header("Content-Type", f"{FILE_TYPES[self._file.suffix]}; charset=utf-8")
+        self.finish(self._file.read_bytes())
+
+
+class OpenApiHandler(BaseHandler):
+    """The description of the HTTP addresses."""
+
+    def get(self) -> None:
+        self.set_header("Content-Type", "application/json")
+        self.finish(openapi())
+
+
+class RobotHandler(BaseHandler):
+    """Shapes of a robot, by its name."""
+
+    def get(self, name: str) -> None:
+        shapes = self.server.shapes.get(name)
+        if shapes is None:
+            self.refuse(404, f"the shapes of {name!r} are not known here; start `mmmd view` with --robot")
+            return
+        self.set_header("Content-Type", "application/octet-stream")
+        self.finish(shapes)
+
+
+class RunHandler(BaseHandler):
+    """A recorded run; 204 where a daemon is shown."""
+
+    def get(self) -> None:
+        if self.server.run is None:
+            self.set_status(204)
+            self.finish()
+            return
+        self.set_header("Content-Type", "application/octet-stream")
+        self.finish(self.server.run)
