@@ -1,10 +1,8 @@
 """Simulated servos on one half-duplex wire: bytes in, answers out, each byte in its time.
 
 What is modelled: time of every byte, half duplex with collisions, answers in order, every instruction. Not modelled: see
-the list in docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). Where the manual is
-silent: in a sync or bulk read the next servo waits for the time of an answer that does not come (on protocol 1.0 for ever,
-for it waits for the packet itself); a fast read ends at the first servo that is silent, for the next ones cannot continue
-its checksum.
+the list in docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). How several servos
+answer one packet is in `answers.py`.
 """
 
 from __future__ import annotations
@@ -13,15 +11,13 @@ from collections.abc import Callable, Sequence
 
 from daemon.dynamixel.codec import packet
 from daemon.dynamixel.codec import packet_protocol1 as packet1
-from daemon.dynamixel.codec.packet import ALERT_BIT, BROADCAST_ID, Access, Instruction, Packet, Part
-from daemon.dynamixel.registers.registers import RETURN_DELAY_UNIT_S
+from daemon.dynamixel.codec.packet import BROADCAST_ID, Instruction, Packet
 from retarget.robot.robot import RobotModel
+from sim.answers import Answers, answers
 from sim.audit.audit import Audit
 from sim.faults import FaultSchedule
 from sim.servos.instructions import Instructions, accesses_of
 from sim.servos.servo import SimServo
-from sim.wire.fast_reply import share_as, shares_of
-from sim.wire.packet_faults import Piece, apply_packet_faults
 from sim.wire.wire import Wire, WireSettings
 from sim.world import World
 
@@ -62,6 +58,7 @@ class SimBus:
         self.servos = {k: s for k, s in self.world.servos.items() if mine is None or k in mine}
         """By the id in the robot's file."""
         self.wire = Wire(wire)
+        self._answers = Answers(self.wire, self.world)
         self._instructions = Instructions(self.world.audit)
         if baud is not None:
             self.set_baud(baud)
@@ -80,7 +77,7 @@ class SimBus:
 
     @property
     def faults(self) -> FaultSchedule:
-        """What goes wrong."""
+        """The faults that strike servos and wire."""
         return self.world.faults
 
     @faults.setter
@@ -89,7 +86,7 @@ class SimBus:
 
     @property
     def audit(self) -> Audit:
-        """What was received."""
+        """The audit of what was received."""
         return self.world.audit
 
     def set_baud(self, baud: int) -> None:
@@ -125,8 +122,8 @@ class SimBus:
             return
         self.world.advance(t_s)
         for servo in self._listening(protocol, t_s, baud):
-            if servo.servo_id == servo_id and _answers(servo, Instruction.WRITE):
-                self._send(servo, servo_id, servo.errors.checksum, b"", t_s, baud)
+            if servo.servo_id == servo_id and answers(servo, Instruction.WRITE):
+                self._answers.send(servo, servo_id, servo.errors.checksum, b"", t_s, baud)
 
     def _hear(self, p: Packet, protocol: float, t_s: float, baud: int) -> None:
         """One instruction packet, heard by the servos of its protocol and baud."""
@@ -141,9 +138,9 @@ class SimBus:
             else:
                 by_id[servo_id] = [servo]
         if p.instruction in _FAST_READS and protocol == 2.0:
-            self._answer_fast(p, by_id, t_s, baud)
+            self._answers.fast(p, by_id, t_s, baud)
         elif p.instruction in _READS:
-            self._answer_group(p, protocol, by_id, t_s, baud)
+            self._answers.group(p, protocol, by_id, t_s, baud)
         elif p.instruction in _GROUP_WRITES:
             for access in accesses_of(p, protocol):
                 for servo in by_id.get(access.servo_id, ()):
@@ -190,8 +187,8 @@ class SimBus:
                 self._instructions.carry_out(servo, p, t_s, by_second_id=True)
         for servo in by_id.get(p.servo_id, ()):
             error, parameters = self._instructions.carry_out(servo, p, t_s)
-            if _answers(servo, p.instruction):
-                self._send(servo, p.servo_id, error, parameters, t_s, baud)
+            if answers(servo, p.instruction):
+                self._answers.send(servo, p.servo_id, error, parameters, t_s, baud)
 
     def _answer_all(self, p: Packet, by_id: dict[int, list[SimServo]], t_s: float, baud: int) -> None:
         """A broadcast: everybody obeys, and only a ping is answered, by one id after another."""
@@ -200,103 +197,8 @@ class SimBus:
             for servo in by_id[servo_id]:
                 error, parameters = self._instructions.carry_out(servo, p, t_s)
                 if p.instruction == Instruction.PING:
-                    ends_s.append(self._send(servo, servo_id, error, parameters, t_s, baud))
+                    ends_s.append(self._answers.send(servo, servo_id, error, parameters, t_s, baud))
             t_s = max(ends_s, default=t_s)
-
-    def _send(self, servo: SimServo, servo_id: int, error: int, parameters: bytes, t_s: float, baud: int) -> float:
-        """Put one status packet of `servo_id` on the wire; the time it ends, or would have ended."""
-        byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
-        status = packet.status if servo.model.protocol == 2.0 else packet1.status
-        start_s = t_s + self._pause_s(servo)
-        alert = servo.alert()
-        error |= alert
-        end_s = start_s + byte_s * (len(parameters) + (11 if servo.model.protocol == 2.0 else 6))
-        pieces = apply_packet_faults(self.faults, servo_id, lambda i: status(i, error, parameters), start_s, byte_s)
-        if ((alert and servo.is_faulted) or servo.watchdog_tripped) and pieces == [
-            Piece(status(servo_id, error, parameters))
-        ]:
-            self.audit.heard_in_fault(t_s, servo.spec.servo_id)
-        for piece in pieces:
-            sent_s = self.wire.answer(start_s + piece.after_s, piece.data, baud, alone=piece.alone)
-            end_s = max(end_s, sent_s) if not piece.after_s else end_s
-        return end_s
-
-    def _pause_s(self, servo: SimServo) -> float:
-        if self.wire.settings.no_wire_delay:
-            return 0.0
-        return servo.memory.get("return_delay_time") * RETURN_DELAY_UNIT_S + self.wire.settings.turnaround_s
-
-    def _answer_group(
-        self, p: Packet, protocol: float, by_id: dict[int, list[SimServo]], t_s: float, baud: int
-    ) -> None:
-        """One status packet after another, in the order asked; on protocol 1.0 each waits for the packet before its own."""
-        for access in accesses_of(p, protocol):
-            ends_s = [
-                self._send(servo, access.servo_id, *servo.read(access.address, access.length), t_s, baud)
-                for servo in by_id.get(access.servo_id, ())
-                if _answers(servo, Instruction.READ)
-            ]
-            if protocol == 1.0 and (not ends_s or self.faults.active("silent", t_s, access.servo_id)):
-                return
-            byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
-            t_s = max(ends_s, default=t_s + (11 + access.length) * byte_s)
-
-    def _answer_fast(self, p: Packet, by_id: dict[int, list[SimServo]], t_s: float, baud: int) -> None:
-        """One packet to which each servo adds its part; those with one id talk at once."""
-        turns: list[list[SimServo]] = []
-        parts: list[list[Part]] = []
-        accesses = accesses_of(p, 2.0)
-        for access in accesses:
-            able = [servo for servo in by_id.get(access.servo_id, ()) if _answers_fast(servo)]
-            if not able:
-                break
-            turns.append(able)
-            parts.append([_part(servo, access) for servo in able])
-            if len(turns) == 1 and len({self._pause_s(servo) for servo in able}) > 1:
-                break  # two begin at different times: nobody can make out a packet to go on with
-        if not turns:
-            return
-        length = 1 + sum(4 + access.length for access in accesses)
-        shares = shares_of(parts, length)
-        start_s = t_s + self._pause_s(turns[0][0])
-        if not self.faults.strikes_packets and all(len(said) == 1 for said in shares):  # nothing comes between them
-            self.faults.packet += len(turns)
-            for (servo,), (part,) in zip(turns, parts, strict=True):
-                if (part.error & ALERT_BIT and servo.is_faulted) or servo.watchdog_tripped:
-                    self.audit.heard_in_fault(t_s, servo.spec.servo_id)
-            self.wire.answer(start_s, b"".join(own for (own,) in shares), baud)
-            return
-        byte_s = 0.0 if self.wire.settings.no_wire_delay else 10 / baud
-        for turn, servos in enumerate(turns):
-            pieces = [
-                (start_s if turn else t_s + self._pause_s(servo), piece)
-                for servo, part in zip(servos, parts[turn], strict=True)
-                for piece in apply_packet_faults(
-                    self.faults, part.servo_id, share_as(parts[:turn], part, length), start_s, byte_s
-                )
-            ]
-            for own_s, piece in pieces:
-                self.wire.answer(own_s + piece.after_s, piece.data, baud, alone=piece.alone)
-            if not pieces:
-                return
-            start_s += len(shares[turn][0]) * byte_s
-
-
-def _answers(servo: SimServo, kind: int) -> bool:
-    """Whether the status return level lets it answer."""
-    level = servo.memory.get("status_return_level")
-    return level == 2 or kind == Instruction.PING or (level == 1 and kind == Instruction.READ)
-
-
-def _answers_fast(servo: SimServo) -> bool:
-    """Whether it takes part in a fast read."""
-    return servo.model.has_fast_sync(servo.firmware) and _answers(servo, Instruction.READ)
-
-
-def _part(servo: SimServo, access: Access) -> Part:
-    """What it adds to the answer of a fast read."""
-    error, data = servo.read(access.address, access.length)
-    return Part(access.servo_id, error | servo.alert(), data.ljust(access.length, b"\0"))
 
 
 def _packet_ends(data: bytes | bytearray, *, with_1: bool) -> list[int]:

@@ -10,27 +10,24 @@ import asyncio
 import logging
 import sys
 import time
-from collections.abc import Callable
 from typing import Any
 
-import msgspec
 import zmq
 import zmq.asyncio
 
 from daemon.front.ctl_handler import CtlHandler
+from daemon.front.publisher import SOCKET_BOUNDS, Publisher, Record
 from daemon.front.rate_limits import RATE_HZ, RequestLimits
-from daemon.front.request_handler import TOPICS, RequestHandler
+from daemon.front.request_handler import RequestHandler
 from daemon.front.stop_texts import stops
-from daemon.front.subscriptions import MOST_BYTES, RECEIVE_QUEUE, LastValues
 from daemon.front.target_handler import TargetHandler
 from daemon.generator.client import GeneratorClient
 from daemon.gestures.library import GestureLibrary
 from daemon.host.clock import TICK_S
-from daemon.logs.log_feed import EVENT_LOGGER
 from daemon.network.connections import ConnectionGuard, Share
 from daemon.network.inbox import Inbox, Message
 from daemon.network.keys import Doorkeeper, KeyFolder
-from daemon.network.sockets import bind, publish_now, send_now
+from daemon.network.sockets import bind, send_now
 from daemon.playback.bus_follower import BusFollower
 from daemon.playback.setpoint_buffer import SetpointBuffer
 from daemon.playback.sources.source_factory import SourceFactory
@@ -48,7 +45,6 @@ from daemon.wire.status import HealthEvent, LogEvent, StateEvent
 from retarget.robot.robot import RobotModel
 
 log = logging.getLogger(__name__)
-event_log = logging.getLogger(EVENT_LOGGER)
 
 DRAIN_LIMIT = 10_000
 PARK_AGAIN_S = 1.0
@@ -61,7 +57,6 @@ SWITCH_S = 0.001
 """Longest that a worker thread keeps the interpreter from the event loop."""
 SHARES = {"cmd": Share(256), "pub": Share(256), "stream": Share(64)}
 """Connections of each socket."""
-Record = Callable[[str, bytes], None]
 
 
 class Front:
@@ -92,10 +87,10 @@ class Front:
         self._generator, self._record = generator, record
         self.machine = StateMachine(auto_arm=config.auto_arm)
         self.view = BusView(link, robot)
-        planner = SetpointBuffer(robot, link, self.view, config.queue_s, config.stream_queue_s)
-        self._planner = planner
+        self._planner = planner = SetpointBuffer(robot, link, self.view, config.queue_s, config.stream_queue_s)
         self.follower = BusFollower(link, self.view, planner, self.machine)
-        self.ledger = Ledger(self._send, self._publish_event)
+        self._publisher = Publisher(context, record)
+        self.ledger = Ledger(self._send, self._publisher.event)
         sources = SourceFactory(config, robot, generator, GestureLibrary(config.gestures))
         self.performer = Scheduler(config, link, planner, self.follower, self.ledger, sources)
         self._desk = RequestHandler(config, robot, self.performer, sources, self.ledger, generator, self.state_event)
@@ -103,23 +98,22 @@ class Front:
         self.recording = str(config.log) if config.log else ""
         self._rates = RequestLimits()
         self._tasks: list[asyncio.Task[None]] = []
-        self._events_dropped = self._overruns = 0
+        self._events_dropped = 0
         self._cmd = context.socket(zmq.ROUTER)
         self._cmd.setsockopt(zmq.ROUTER_MANDATORY, 1)  # a peer that does not read is noticed
-        self._pub = context.socket(zmq.XPUB)
-        self._pub.setsockopt(zmq.XPUB_VERBOSE, 1)
-        self._pub.setsockopt(zmq.XPUB_NODROP, 1)
         self._stream = context.socket(zmq.SUB)
         self._stream.subscribe(b"")  # not CONFLATE, with which libzmq aborts the process upon a message of two parts
-        self._targets = TargetHandler(robot, self.performer, self.ledger, self._publish_event)
-        self.ctl = CtlHandler(link, self.performer, self.ledger, self.drain_cmd, self.state_event, self._publish_event)
+        self._targets = TargetHandler(robot, self.performer, self.ledger, self._publisher.event)
+        self.ctl = CtlHandler(
+            link, self.performer, self.ledger, self.drain_cmd, self.state_event, self._publisher.event
+        )
         sys.setswitchinterval(SWITCH_S)
         keys = KeyFolder(config.endpoints.keys) if config.endpoints.keys is not None else None
         self._doorkeeper = Doorkeeper(context, keys) if keys is not None else None
-        sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "pub": self._pub, "stream": self._stream}
+        sockets: dict[str, zmq.Socket[Any]] = {"cmd": self._cmd, "pub": self._publisher.socket, "stream": self._stream}
         try:
             for key, socket in sockets.items():
-                bounds = {"most_bytes": MOST_BYTES, "queue": RECEIVE_QUEUE} if key == "pub" else {}
+                bounds = SOCKET_BOUNDS if key == "pub" else {}
                 bind(socket, key, getattr(config.endpoints, key), keys, **bounds)
         except BaseException:
             if self._doorkeeper is not None:
@@ -129,16 +123,19 @@ class Front:
             raise
         self._guard = ConnectionGuard({key: (socket, SHARES[key]) for key, socket in sockets.items()})
         self._cmd_inbox, self._stream_inbox = Inbox(self._cmd, self._guard), Inbox(self._stream, self._guard)
-        self._last_values = LastValues(TOPICS, Inbox(self._pub, self._guard), self._guard, self._publish_bytes)
+        self._last_values = self._publisher.guarded_by(self._guard)
 
     def start(self) -> None:
         """Begin to serve, in the running event loop."""
         self.view.begin()
-        serve = (
-            self._serve_cmd, self._last_values.serve, self._serve_stream, self._tick_forever, self._publish_state_forever,
-            self._publish_health_forever,
-        )  # fmt: skip
+        serve = (self._serve_cmd, self._last_values.serve, self._serve_stream, self._tick_forever)
         self._tasks = [asyncio.create_task(s(), name=s.__name__) for s in serve]
+        for topic, period_s, event in (
+            ("v1/state", 1 / self._config.state_rate_hz, self.state_event),
+            ("v1/health", HEALTH_EVERY_S, self._health_event),
+        ):
+            work = self._publisher.publish_every(period_s, topic, lambda event=event: self.ledger.stamp(event()))
+            self._tasks.append(asyncio.create_task(work, name=topic))
         self._guard.start()
 
     async def failure(self) -> None:
@@ -185,7 +182,7 @@ class Front:
             await asyncio.to_thread(self._doorkeeper.close)
         await self._generator.close()
         self._cmd.close(200)  # the last events still go out
-        self._pub.close(200)
+        self._publisher.socket.close(200)
         self._stream.close(0)
 
     async def _serve_cmd(self) -> None:
@@ -226,7 +223,7 @@ class Front:
         except WireError as error:
             event = error_event(error)
             self.ledger.reply(route, event)
-            self._publish_event(event)
+            self._publisher.event(event)
         except Exception as error:  # one request must not end the daemon
             log.exception("a request failed")
             event = Rejected(code="internal", asked="cmd", found=str(error), allowed="", do="see the daemon's log")
@@ -254,40 +251,19 @@ class Front:
             self.performer.tick()
             await asyncio.sleep(TICK_S)
 
-    async def _publish_state_forever(self) -> None:
-        while True:
-            self._publish("v1/state", encode(self.ledger.stamp(self.state_event())))
-            await asyncio.sleep(1 / self._config.state_rate_hz)
-
-    async def _publish_health_forever(self) -> None:
-        while True:
-            silent_ms = round(1e3 * self.view.silent_s, 1)
-            event = HealthEvent(robot=self._robot.name, servos=self.view.health(), silent_ms=silent_ms)
-            self._publish("v1/health", encode(self.ledger.stamp(event)))
-            await asyncio.sleep(HEALTH_EVERY_S)
-
     def _send(self, route: Route, event: Event) -> None:
         self._events_dropped += not send_now(self._cmd, [*route.frames, encode(event)])
-
-    def _publish_event(self, event: Event) -> None:
-        self._publish("v1/event", encode(event))
-        event_log.info("%s", _line(event))
 
     def publish_log(self, event: LogEvent) -> None:
         """Publish a line of the log, with the time at which it was written."""
         written_s = event.t_mono
         self.ledger.stamp(event)
         event.t_mono = written_s
-        self._publish("v1/log", encode(event))
+        self._publisher.publish("v1/log", event)
 
-    def _publish(self, topic: str, payload: bytes) -> None:
-        self._last_values.keep(topic.encode(), payload)
-        if self._record is not None:
-            self._record(topic, payload)
-        self._publish_bytes(topic.encode(), payload)
-
-    def _publish_bytes(self, topic: bytes, payload: bytes) -> None:
-        self._overruns += not publish_now(self._pub, [topic, payload])
+    def _health_event(self) -> HealthEvent:
+        silent_ms = round(1e3 * self.view.silent_s, 1)
+        return HealthEvent(robot=self._robot.name, servos=self.view.health(), silent_ms=silent_ms)
 
     def state_event(self) -> StateEvent:
         """The robot and the daemon now."""
@@ -303,12 +279,12 @@ class Front:
             joint_names=list(self._robot.joint_names),
             goal_rad=[round(float(q), 5) for q in self.view.goal_rad],
             present_rad=[round(float(q), 5) for q in self.view.present_rad],
-            queued_ms=round(1e3 * self.link.queued_frames / self._robot.bus.rate_hz, 1),
+            queued_ms=round(1e3 * self.link.setpoints.queued_frames / self._robot.bus.rate_hz, 1),
             bus_info=self.view.counters()
             | {
                 "requests_dropped": self._rates.refused,
                 "events_dropped": self._events_dropped,
-                "subscribers_overrun": self._overruns,
+                "subscribers_overrun": self._publisher.overruns,
                 "connections_shut": self._guard.shut.total(),
             },
             recording=self.recording,
@@ -322,11 +298,3 @@ class Front:
             person_faces=posture.faces()[0].round(3).tolist(),
             effort=self.view.effort.round(1).tolist(),
         )
-
-
-def _line(event: Event) -> str:
-    """An event as one line of the log, without what every event has and without fields that are empty."""
-    skip = ("v", "seq", "t_mono", "id")
-    fields = msgspec.structs.asdict(event).items()
-    text = " ".join(f"{k}={v!r}" for k, v in fields if k not in skip and v not in (None, "", [], {}))
-    return f"{event.__struct_config__.tag} {event.id[:8]} {text}"

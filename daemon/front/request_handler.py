@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from daemon.errors import ClipError, GestureExistsError, UnknownGestureError
 from daemon.front.conversations import Client, Conversations
+from daemon.front.publisher import TOPICS
 from daemon.front.stop_texts import asks_to_stop
 from daemon.generator.client import GeneratorClient
 from daemon.gestures.library import GestureLibrary
@@ -46,12 +47,6 @@ from daemon.wire.requests import (
 from daemon.wire.status import CapabilitiesEvent, JointInfo, StateEvent
 from retarget.robot.robot import RobotModel
 
-TOPICS = {
-    "v1/state": "the robot and the daemon, several times a second; the last one at once on subscribing",
-    "v1/health": "every servo's state and counters, once a second; the last one at once on subscribing",
-    "v1/event": "every event of every command",
-    "v1/log": "the lines that the daemon's processes log",
-}
 READ_AHEAD_S = 0.5
 """Seconds after a command, when its motion has been made, until its words are read for texts that may refer to it."""
 

@@ -19,7 +19,7 @@ MOST_TOPIC_BYTES = 64
 RATE_HZ, BURST = 20.0, 500
 """Subscriptions and their ends that one connection may send; a program that connects again sends all of its own at once."""
 COST_OF_OTHERS = 8.0
-"""A topic that is not published counts as so many that are."""
+"""Cost of a topic that is not published, where a published one costs 1."""
 PAUSE_S = 0.01
 """Seconds between two looks; a last value is sent once for all who subscribe meanwhile."""
 MOST_AT_A_LOOK, MOST_AT_ONCE = 2048, 32

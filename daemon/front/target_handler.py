@@ -37,7 +37,7 @@ class TargetHandler:
 
     @property
     def secret(self) -> str:
-        """Of the lease that is held; empty for none."""
+        """Secret of the lease that is held; empty for none."""
         lease = self._performer.lease
         return lease.request.secret if lease is not None and isinstance(lease.request, Lease) else ""
 

@@ -14,9 +14,9 @@ from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 NAMED_EVERY_S = 1.0
-"""Of each kind of bad message one is told in so long a time, with how many there were."""
+"""Seconds between two reports of the same kind of bad message; a report counts the messages since the last."""
 FARTHEST_RAD = 1000.0
-"""No joint of any robot goes so far: a number of another unit, or none."""
+"""Angle that no joint of any robot reaches: a larger number is of another unit, or none."""
 
 
 class TargetParser:

@@ -19,9 +19,9 @@ from daemon.wire.requests import Request
 
 MOST_WAITING = 64
 SHADOW_S = 0.1
-"""A command that comes so soon after a stop was on its way when it was given, unless its sender's clock shows otherwise."""
+"""Seconds after a stop in which a command that comes counts as sent before the stop, unless its sender's clock shows otherwise."""
 CLOCKS_KEPT = 64
-"""Clocks of other machines, of which the newest halt is remembered."""
+"""Number of other machines' clocks for which the newest halt is remembered."""
 LONGEST_WAY_S = 10.0
 """Seconds by which a message of another machine may come later than one that it sent after it: TCP sends lost packets anew.
 Stamps that would need more than that to be true are taken for wrong."""
@@ -139,7 +139,7 @@ class StopOrdering:
 
 
 class CommandQueue:
-    """All commands on their way, in order of arrival."""
+    """The commands on their way, in order of arrival."""
 
     def __init__(self) -> None:
         self._all: list[QueuedCommand] = []
@@ -159,21 +159,21 @@ class CommandQueue:
         return len(self._all) >= MOST_WAITING
 
     def add(self, pending: QueuedCommand) -> None:
-        """A command came."""
+        """Append a command that has just come."""
         self._all.append(pending)
 
     def remove(self, pending: QueuedCommand) -> None:
-        """It is played or has ended."""
+        """Remove a command that is played or has ended."""
         if pending in self._all:
             self._all.remove(pending)
 
     def renew(self, pending: QueuedCommand) -> None:
-        """Its time has come: it is the newest of all."""
+        """Move a command whose time has come behind all others: it is the newest."""
         self._all.remove(pending)
         self._all.append(pending)
 
     def overtaken_by(self, newest: QueuedCommand) -> list[QueuedCommand]:
-        """Those that end because `newest` takes over: all before it but those whose time has not come."""
+        """Commands that end because `newest` takes over: all before it but those whose time has not come."""
         before = self._all[: self._all.index(newest)]
         return [p for p in before if not p.committing and not (p.when == "at" and not p.turn)]
 

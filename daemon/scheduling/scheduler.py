@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from daemon.host.clock import REAL_CLOCK, TICK_S, LoopClock, sleep_while
+from daemon.host.clock import REAL_CLOCK, LoopClock
 from daemon.playback.bus_follower import BusFollower
 from daemon.playback.playback import Playback
 from daemon.playback.setpoint_buffer import SetpointBuffer
@@ -22,7 +22,7 @@ from daemon.playback.sources.source_factory import SourceFactory
 from daemon.playback.sources.stream_source import StreamSource
 from daemon.poses.layers import Layers
 from daemon.scheduling.command_queue import MOST_WAITING, CommandQueue, QueuedCommand, StopOrdering
-from daemon.scheduling.until_armed import until_armed
+from daemon.scheduling.turn_taking import TurnTaking
 from daemon.settings.config import DaemonConfig
 from daemon.shared_memory.bus_link import BusLink, BusRequest
 from daemon.state.lease import LeaseState
@@ -36,7 +36,6 @@ from daemon.state.replies import (
     lease_silent,
     refusal,
     refused_later,
-    too_late,
 )
 from daemon.wire.events import Ack, Cancelled, Failed, Progress, Rejected
 from daemon.wire.requests import Lease, tag_of
@@ -44,11 +43,6 @@ from daemon.wire.status import CurrentCommand
 from retarget.errors import RetargetError
 
 log = logging.getLogger(__name__)
-
-YIELD_S = 0.25
-"""A motion that is ready waits so long at most for a newer one that is being made: most are made in a tenth of that."""
-ARMING_S = 1.5
-"""A limp robot cannot begin a motion sooner: what has a shorter deadline is rejected at once."""
 
 
 class Scheduler:
@@ -70,13 +64,13 @@ class Scheduler:
         sources: SourceFactory,
         clock: LoopClock = REAL_CLOCK,
     ) -> None:
-        self._clock = clock
         self._config, self._link, self._ledger, self._sources = config, link, ledger, sources
         self.planner, self.follower = planner, follower
         self.layers = Layers(config.idle)
         self.halts = StopOrdering()
         self._waiting = CommandQueue()
         self._player = Playback(planner, follower, ledger, self.layers, sources.verdict, clock)
+        self._turns = TurnTaking(self._waiting, self._player, planner, follower, link, clock)
 
     @property
     def machine(self) -> StateMachine:
@@ -246,17 +240,15 @@ class Scheduler:
             prepared = await self._sources.prepare(entry, self._player)
             if pending.cancelled_by:  # Python 3.11's `wait_for` may swallow the cancellation
                 return
-            self._check_deadline(entry)
+            self._turns.check_deadline(entry)
             plan_id = self.planner.new_plan_id()
             self._sources.kept.number(entry.id, plan_id)
             if not self._begins_now(pending):
                 await self._accept(entry, prepared, plan_id)
-            await self._turn(pending)
+            await self._turns.come(pending, self._overtake)
             arming = Progress(plan_id=plan_id, stage="arming")
-            await until_armed(self.follower, self._link, lambda: self._ledger.emit(entry, arming), self._clock)
-            if self._clock.now_s() > entry.deadline_s:
-                raise too_late(entry, "its turn came too late")
-            await self._yield(pending)
+            await self._turns.until_armed(entry, lambda: self._ledger.emit(entry, arming))
+            await self._turns.give_way(pending)
             await self._take_over(pending, prepared, plan_id)
         except NotPlayableError as error:
             self._ledger.emit(entry, error.event)
@@ -282,47 +274,6 @@ class Scheduler:
         if not (entry.accepted or entry.ended):
             self._ledger.emit(entry, await prepared.accepted(entry, plan_id))
 
-    def _check_deadline(self, entry: Entry) -> None:
-        """Refuse at once what cannot begin in time.
-
-        Raises:
-            NotPlayableError: it cannot.
-        """
-        request, earliest_s = entry.request, self._clock.now_s()
-        if request.deadline_s is None:
-            return
-        found = "the motion was ready too late"
-        if request.when == "at" and request.at_s is not None:
-            earliest_s, found = max(earliest_s, request.at_s), "its time is later than that"
-        if request.when == "after" and self._player.entry is not None:
-            earliest_s, found = earliest_s + self.planner.ahead_s, "what is played before it ends later than that"
-        if self.machine.state is RobotState.LIMP:
-            earliest_s, found = earliest_s + ARMING_S, "the robot has to be armed first"
-        if earliest_s > entry.deadline_s:
-            raise too_late(entry, found)
-
-    async def _turn(self, pending: QueuedCommand) -> None:
-        """Wait for the command's turn or time; it has the right to take over afterwards."""
-        request = pending.entry.request
-        if request.when == "now":
-            self._overtake(pending)
-        elif request.when == "at" and request.at_s is not None:
-            while (left_s := request.at_s - self._clock.now_s()) > 0:
-                await self._clock.sleep(min(left_s, 1.0))
-            self._waiting.renew(pending)
-            self._overtake(pending)
-        elif request.when == "after":
-            while self._player.entry is not None or not self._waiting.is_next(pending):
-                await self._clock.sleep(TICK_S)
-                if self._clock.now_s() > pending.entry.deadline_s:
-                    raise too_late(pending.entry, "its turn did not come in time")
-        pending.turn = True
-
-    async def _yield(self, pending: QueuedCommand) -> None:
-        """Wait a moment where a newer command may be about to take over: the robot does not set out twice."""
-        at_most_s = min(YIELD_S, pending.entry.deadline_s - self._clock.now_s())
-        await sleep_while(self._clock, lambda: self._waiting.may_be_overtaken(pending), at_most_s)
-
     async def _take_over(self, pending: QueuedCommand, prepared: PreparedSource, plan_id: int) -> None:
         """Make it what is played; what was played ends in `cancelled`."""
         entry = pending.entry
@@ -343,5 +294,5 @@ class Scheduler:
 
 
 def _named(entry: Entry) -> str:
-    """As those are told that end because of it."""
+    """The `by` of the events of those commands that this one ends."""
     return f"{tag_of(entry.request)} {entry.id}"
