@@ -29,7 +29,7 @@ from retarget.robot.robot import RobotModel
 Array = NDArray[np.float64]
 _MOST_FPS = 1000
 BLOCK_FRAMES, _AHEAD_FRAMES = 24, 8
-"""A long motion is made into a path in blocks of so many frames, each with 0.4 s after it in view."""
+"""Frames of the blocks in which a long motion is made into a path, and frames after each that are taken into account: 0.4 s."""
 _STRETCHES = (1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
 """How many times slower is tried, one after another, to keep an error asked for."""
 _WORTH = 0.97
@@ -38,7 +38,7 @@ _WORTH = 0.97
 
 @dataclass(frozen=True)
 class _Wanted:
-    """What a motion wants of a robot.
+    """Demands of a motion on a robot.
 
     Attributes:
         poses: its poses, and the directions of the person's bones.
@@ -51,7 +51,7 @@ class _Wanted:
     contacts: HumanContacts
 
     def stretched(self, times: float) -> _Wanted:
-        """The same, so many times slower."""
+        """The demands, `times` times slower."""
         return replace(self, poses=self.poses.stretched(times), aims=self.aims.stretched(times))
 
 

@@ -25,7 +25,7 @@ from sim.steal_time import machine_time
 log = logging.getLogger(__name__)
 
 _IDLE_S = 0.05
-"""The servos' time goes on at least so often, so that watchdogs run out when nobody talks."""
+"""Longest step of the servos' time in seconds, so that watchdogs run out when nobody talks."""
 
 
 class PtyServer:

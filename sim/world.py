@@ -109,7 +109,7 @@ class World:
                     self.drives.place(servo.index, tick)
 
     def lead_by_hand(self, pose_rad: Sequence[float]) -> None:
-        """The same, then switch servos that count turns off and on there."""
+        """Lead the joints to a pose by hand, then switch servos that count turns off and on there."""
         self.move_by_hand(pose_rad)
         for servo in self.servos.values():
             if servo.spec.extended:

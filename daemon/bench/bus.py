@@ -238,7 +238,7 @@ def _loss(seconds: float, *, fast: bool) -> tuple[dict[str, Any], float]:
 
 
 def _peer(name: str, seconds: float) -> dict[str, Any]:
-    """The same cycle by a peer: at 1 and 4 Mbit/s, without a wire, and with one reply in a thousand lost."""
+    """The bus cycle of `bus` by a peer: at 1 and 4 Mbit/s, without a wire, and with one reply in a thousand lost."""
     figures: dict[str, Any] = {}
     if name == "dynamixel-sdk":
         figures["codec_us"] = round(sdk_codec_us(IDS, _reply(fast=False)), 1)

@@ -1,4 +1,4 @@
-"""The same cycle by other clients: dynamixel-sdk, rustypot (extra `bench`), and a minimal C program where there is a compiler."""
+"""The bus cycle by other clients: dynamixel-sdk, rustypot (extra `bench`), and a minimal C program where there is a compiler."""
 
 from __future__ import annotations
 

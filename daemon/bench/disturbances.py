@@ -22,7 +22,7 @@ takes Python more than ten on a machine whose cores are all busy."""
 LONGEST_WAIT_S = 0.6
 """Longest time from the disturbance to the request; each is drawn at random."""
 SHORTEST_WAIT_S = 0.01
-"""The same, at least: bytes of a process that was just killed have reached the servos by then."""
+"""Seconds of the shortest wait: bytes of a process that was just killed have reached the servos by then."""
 LONGEST_TEAR_S = 1.0
 """Longest time for which the port is torn."""
 LONGEST_FREEZE_S = 0.8

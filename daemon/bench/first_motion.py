@@ -24,7 +24,7 @@ from daemon.wire.requests import Say
 N_WARM = 5
 REST_S = 0.3
 STORY_S = 1.0
-"""A story is told so long before a text interrupts it."""
+"""Seconds that a story is played before a text interrupts it."""
 _STORY = ("wave with your right hand", "clap your hands", "nod twice", "bow")
 _METHOD = (
     "mmmd run --bus sim:// with all its processes; the clock starts when the front receives the text and ends when the"

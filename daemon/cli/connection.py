@@ -45,7 +45,7 @@ class Connection:
         return Client(self.endpoints, self.timeout_s)
 
     def async_client(self) -> AsyncClient:
-        """The same for asyncio.
+        """An asyncio client for the daemon.
 
         Raises:
             ConfigError: an endpoint is not a local one and there are no keys.

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import sys
 import uuid
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, cast
+
+import tyro
 
 from daemon.cli.connection import Connection
 from daemon.client.event_text import describe
 from daemon.errors import CommandError
+from daemon.wire.request_base import LEAST_AMPLITUDE, LEAST_TEMPO, MOST_AMPLITUDE, MOST_TEMPO
 
 if TYPE_CHECKING:
     from daemon.wire.requests import Play, PlayOptions
@@ -17,23 +20,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PlayFlags:
-    """How it is to be played.
+    """How a motion is to be played: the options of `daemon.wire.requests.Play`, and the command's id.
 
     Attributes:
-        tempo: how much faster than it was made, 0.5 to 2.
-        amplitude: size of the movement, 0.3 to 1.2.
-        mirror: left for right.
-        repeat: how often.
-        loop: go round until something ends it.
-        hold: stop in the pose that says most, and stay.
-        when: now (takes over), after (what is played), or at (with --at-s).
-        at_s: when to take over, on the daemon's clock (`t_mono` of its events).
-        deadline_s: reject it when it cannot begin so many seconds from now.
-        id: the same id twice is one command; one is chosen when it is not given.
+        mirror: exchange left and right.
+        repeat: number of times that the motion is played.
+        loop: play the motion again and again until another command or a stop ends it.
+        hold: stop in the most telling pose of the motion, and stay in it.
+        when: now (replaces the running motion), after (the running motion has ended), or at (with --at-s).
+        at_s: time at which the motion begins with --when at, in seconds of the daemon's clock (`t_mono` of its events).
+        deadline_s: seconds from now after which the motion is rejected instead of begun.
+        id: name of the command; the same id sent twice is one command. A random one when it is not given.
     """
 
-    tempo: float = 1.0
-    amplitude: float = 1.0
+    tempo: Annotated[
+        float, tyro.conf.arg(help=f"speed, as a multiple of the generated one, {LEAST_TEMPO:g} to {MOST_TEMPO:g}.")
+    ] = 1.0
+    amplitude: Annotated[
+        float, tyro.conf.arg(help=f"size of the movement, as a multiple, {LEAST_AMPLITUDE:g} to {MOST_AMPLITUDE:g}.")
+    ] = 1.0
     mirror: bool = False
     repeat: int = 1
     loop: bool = False
@@ -44,11 +49,8 @@ class PlayFlags:
     id: str = ""
 
     def options(self) -> PlayOptions:
-        """For the request."""
-        return {
-            "tempo": self.tempo, "amplitude": self.amplitude, "mirror": self.mirror, "repeat": self.repeat,
-            "loop": self.loop, "hold": self.hold, "when": self.when, "at_s": self.at_s, "deadline_s": self.deadline_s,
-        }  # fmt: skip
+        """Keyword arguments of the request."""
+        return cast("PlayOptions", {f.name: getattr(self, f.name) for f in fields(self) if f.name != "id"})
 
 
 INTERRUPTED = 130

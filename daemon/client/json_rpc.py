@@ -102,7 +102,7 @@ class AnswerWriter:
             self._answers.put_nowait(answer)
 
     def close(self, timeout_s: float) -> None:
-        """Wait until all is written, so long at most."""
+        """Wait until all answers are written, `timeout_s` at most."""
         if not self._answers.full():
             self._answers.put_nowait(None)
         self._thread.join(timeout_s)

@@ -127,7 +127,7 @@ class Stream:
 
 
 class AsyncStream:
-    """The same for asyncio; `AsyncClient.stream` makes it.
+    """A lease for asyncio, see `Stream`; `AsyncClient.stream` makes it.
 
     Attributes:
         news: what was heard of it.

@@ -36,7 +36,7 @@ log = logging.getLogger(__name__)
 SWITCH_S = 0.001
 """Longest that the doorkeeper's thread keeps the interpreter from the one that takes e-stops."""
 SCHED_FIFO = 1
-"""As in sched.h; ZeroMQ takes the number."""
+"""Number of the scheduler in sched.h, which ZeroMQ takes."""
 SHARE = Share(512, gives_way="oldest")
 """Connections to `ctl`: who connects gets in whatever waits there, as it may be for an e-stop."""
 ORPHAN_CHECK_S = 0.5

@@ -10,10 +10,11 @@ from __future__ import annotations
 from daemon.dynamixel.health import QUARANTINE_AFTER
 
 _BREAK_POINTS, _MOST_POINTS = 4, 12
-"""Points of a cycle whose reply broke off; a whole one takes one point away. At so many it is left: three in a row, or one
-in five for long. That is well before those behind a dead servo would be taken for dead."""
+"""Points that a cycle costs whose reply broke off, and points at which chained reads are left; a whole reply takes one point away.
+They are left after three broken replies in a row, or one in five for long: well before the servos behind a dead one would be
+taken for dead."""
 _PAUSE_CYCLES, _LONGEST_PAUSE_CYCLES = 25, 3200
-"""For so long each servo answers for itself; twice as long each time that it helps only for a moment."""
+"""Cycles in which each servo answers for itself, first and at most; twice as many each time that it helps for a moment only."""
 _HELD_CYCLES = 200
 assert _MOST_POINTS <= _BREAK_POINTS * QUARANTINE_AFTER
 

@@ -45,7 +45,7 @@ def direct(address: int) -> Layout:
 
 
 DIRECT = direct(126)
-"""Of X and MX: effort 126, velocity 128, position 132."""
+"""Addresses of X and MX: effort 126, velocity 128, position 132."""
 PROTOCOL_1_ADDRESS, PROTOCOL_1_LENGTH = 36, 6
 """Protocol 1.0: position 36, speed 38, load 40."""
 

@@ -16,7 +16,7 @@ PROBE_EVERY_S = 1.0
 BROWN_OUT_AFTER = 3
 """Cycles in a row without an answer of many, before power is suspected: one may be a spoilt group read."""
 WITHHELD_S, _WITHHELD_CYCLES = 0.15, 3
-"""A servo whose torque a goal switches on, and that has been silent for so long and so many cycles, gets no goal any more: it
+"""Seconds and cycles of silence after which a servo whose torque a goal switches on gets no goal any more: it
 may have lost its power, started again (which takes longer) and hang limp wherever it fell."""
 
 
@@ -27,11 +27,11 @@ class Health(IntEnum):
     LATE = 1
     """Its last answer came after its deadline."""
     MISSING = 2
-    """It did not answer in the last cycle."""
+    """The servo did not answer in the last cycle."""
     FAULTED = 3
-    """It answers, and reports a hardware error or came back without its torque or settings."""
+    """The servo answers, and reports a hardware error or came back without its torque or settings."""
     QUARANTINED = 4
-    """It has been missing for long and is left out of the cycle; asked once a second."""
+    """The servo has been missing for long and is left out of the cycle; it is asked once a second."""
 
 
 COUNTERS = ("timeouts", "crc", "late", "retries", "alerts")

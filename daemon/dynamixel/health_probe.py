@@ -1,4 +1,4 @@
-"""What is asked of single servos beside the exchange: slow registers in turn, and whether one that was left out is back."""
+"""Requests to single servos beside the exchange: slow registers in turn, and whether a servo that was left out is back."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from daemon.host.clock import Clock
 Identity = tuple[int, int]
 """Model number and firmware."""
 PINGS_ONLY: Identity = (0, 0)
-"""It answers a ping, but nothing that could name it (protocol 1.0, status return level 0)."""
+"""Identity of a servo that answers a ping and nothing that could name it (protocol 1.0, status return level 0)."""
 MUTE_TEXT = "answers pings only: status return level 0"
 _OTHER_PROTOCOL = "speaks protocol"
 

@@ -146,7 +146,7 @@ def _single(port: Port, clock: Clock, servo_id: int) -> list[tuple[int, int, int
 
 
 def _asked(port: Port, clock: Clock, protocol: float, servo_id: int, request: bytes, length: int) -> Packet | None:
-    """One question; the answer that has so many parameters, or None."""
+    """Send one request; the answer with the expected number of parameters, or None."""
     _drain(port)
     dialect = DIALECTS[protocol]
     decoder = dialect.decoder()

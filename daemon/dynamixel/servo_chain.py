@@ -25,7 +25,7 @@ from retarget.robot.robot import ServoSpec
 log = logging.getLogger(__name__)
 
 _SILENT_ENOUGH = 4
-"""When the first so many servos are silent, the others are not asked."""
+"""Number of servos, the first of the chain, whose silence makes further questions needless."""
 _SLOW_BYTES = 14 + 11 + 7
 """Question and answer of the slow registers of one servo."""
 

@@ -23,9 +23,10 @@ from retarget.robot.robot import ServoSpec
 TRIES = 3
 _REOPEN_EVERY_S = 0.5
 _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
-"""Through a long answer we sleep, and wake so long before its computed end: one wake-up, not one for every chunk."""
+"""Seconds that an answer must last for the wait to sleep, and seconds before its computed end at which the sleep ends: one
+wake-up, not one for every chunk."""
 _ECHO_BYTES = 8
-"""So many bytes of a request come back only by echo: no answer begins like one."""
+"""Bytes of a request that, when they come back, are an echo: no answer begins like a request."""
 
 
 class ServoLink:

@@ -70,7 +70,7 @@ class SlowReader:
         return not self._spans[row][0].witness and not self._tried[row]
 
     def no_window(self, row: int) -> None:
-        """It refuses one."""
+        """The servo refuses its indirect window: its registers are read one by one."""
         self._tried[row] = True
 
     def map_window(

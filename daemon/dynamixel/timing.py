@@ -33,7 +33,7 @@ class Timing:
         return n_bytes * self._byte_s
 
     def expected_s(self, n_bytes: int, answers: int) -> float:
-        """Shortest time of an exchange of `n_bytes` in both directions with so many answers."""
+        """Shortest time of an exchange of `n_bytes` in both directions and `answers` answers."""
         return n_bytes * self._byte_s + answers * self.return_delay_s
 
     def longest_s(self, n_bytes: int, answers: int) -> float:
@@ -41,6 +41,6 @@ class Timing:
         return self.expected_s(n_bytes, answers) + self.turnaround_s + self.margin_s
 
     def measured(self, n_bytes: int, answers: int, took_s: float) -> None:
-        """A whole exchange took so long."""
+        """Learn from a whole exchange, which took `took_s`."""
         extra_s = max(0.0, took_s - self.expected_s(n_bytes, answers))
         self.turnaround_s += _GAIN * (min(extra_s, 0.02) - self.turnaround_s)

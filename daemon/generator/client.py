@@ -100,7 +100,7 @@ class GeneratorClient:
         self._lose_follows()
 
     def _lose_follows(self) -> None:
-        """What was to follow a draft never comes."""
+        """Fail all requests that wait for the motion after their draft."""
         for follows in self._follows.values():
             if not follows.done():
                 found, do = f"the generator is {self.state}", "see the daemon's output"
@@ -156,7 +156,7 @@ class GeneratorClient:
     async def _whole(
         self, request_id: int, follows: asyncio.Future[FromGenerator], timeout_s: float, asked: str
     ) -> Generated:
-        """What follows a draft."""
+        """The motion that follows a draft."""
         life = self._lives
         try:
             async with asyncio.timeout(timeout_s):

@@ -54,8 +54,8 @@ class GenerateMessage(msgspec.Struct, tag="generate", kw_only=True):
     Attributes:
         text: a command.
         seconds: of the motion; None lets the model choose.
-        before: what it is to go on from; None for a motion by itself.
-        prefix_s: so much of the end of `before` is context of the new motion.
+        before: the motion that the new one continues; None for a motion by itself.
+        prefix_s: seconds at the end of `before` that the new motion continues from.
         draft: whether a draft, which can be played at once, is to come first; where none can be made none comes.
     """
 
@@ -135,7 +135,7 @@ class PingMessage(msgspec.Struct, tag="ping", kw_only=True):
 
 
 class PongMessage(msgspec.Struct, tag="pong", kw_only=True):
-    """It lives, with this checkpoint."""
+    """The generator lives, with this checkpoint."""
 
     id: int
     checkpoint_hash: str
@@ -143,7 +143,7 @@ class PongMessage(msgspec.Struct, tag="pong", kw_only=True):
 
 
 class FailureMessage(msgspec.Struct, tag="failure", kw_only=True):
-    """It could not: `bad_edit` and `bad_keyframes` when what was asked does not fit the motion or the model."""
+    """A request failed: `bad_edit` and `bad_keyframes` when it does not fit the motion or the model."""
 
     id: int
     code: str

@@ -54,7 +54,7 @@ AFTER_DRAFT_MS = 10
 """Longest pause after a draft: meanwhile the front receives it and makes the first frames, and needs the cores."""
 MOST_CONNECTIONS = 128
 MOST_BEGUN = 8
-"""Motions of which only the draft is made; with so many the oldest is made before anything else."""
+"""Largest number of motions of which only the draft is made; beyond it the oldest is completed before anything else."""
 
 
 class MotionService(Protocol):

@@ -17,7 +17,7 @@ from mmm_core.generate.continuation import continue_motion
 from mmm_core.generate.editing import Edit, edit, part_names
 from mmm_core.generate.engine import Engine
 from mmm_core.generate.keyframes import Keyframe, between, features_of
-from mmm_core.generate.result import GenerationResult, no_motion
+from mmm_core.generate.result import GenerationResult, no_motion, understood_as
 from mmm_core.generate.story import Scene, StoryState, continue_story
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.language.warming import warmed
@@ -120,7 +120,7 @@ class EngineService:
         return Generated(made.motion, *how, draft_of=draft_of, scenes=made.scenes, commands=commands, denied=denied)
 
     def _unless_rejected(self, text: str, seed: int, make: Callable[[], Motion], code: str) -> Generated:
-        """What `make` makes, unless the text is out of scope; no text at all is in scope."""
+        """The motion that `make` returns, unless the text is out of scope; no text at all is in scope."""
         began_s = time.perf_counter()
         verdict = self._engine.understand(text)[1] if text.strip() else ScopeVerdict("accepted", 1.0, "", "")
         if verdict.status == "rejected":
@@ -131,9 +131,8 @@ class EngineService:
             raise UnfitRequestError(code, error.asked, error.allowed) from error
 
     def _generated(self, motion: Motion, verdict: ScopeVerdict, began_s: float, told: bytes = b"") -> Generated:
-        understood = f"{verdict.nearest} ({verdict.score:.2f})" if verdict.nearest else ""
         timings_ms = {"made": 1e3 * (time.perf_counter() - began_s)}
-        return Generated(motion, understood, verdict.reason, timings_ms, self.checkpoint_hash, told)
+        return Generated(motion, understood_as(verdict), verdict.reason, timings_ms, self.checkpoint_hash, told)
 
     def _parts(self, asked: list[str]) -> tuple[str, ...]:
         """Names of this model's parts; `upper` and `lower` stand for several where it has no such codebook."""
@@ -146,7 +145,7 @@ class EngineService:
 
 
 def _with_features(motion: Motion, rest_pose: RestPose) -> Motion:
-    """The same, with the features of its joints, as a model knows them, where it came with neither features nor ids."""
+    """The motion with the features of its joints, as a model knows them, where it came with neither features nor ids."""
     if motion.features.any() or len(motion.tokens):
         return motion
     return replace(motion, features=features_of(motion, rest_pose).numpy())

@@ -39,7 +39,7 @@ MOVED_RAD = float(np.deg2rad(5.0))
 _PLAY_DEG = 0.5
 """Further beyond a limit is told: less is play and rounding."""
 POSE_S = 0.5
-"""A pose is the mean of so much, and is kept as a motion of a second."""
+"""Seconds of positions whose mean is the pose; it is kept as a motion of a second."""
 _LONGEST_GAP_S = 0.25
 """A longer pause between two positions is told; it is bridged by a straight line."""
 
@@ -170,7 +170,7 @@ def inside_positions(q_rad: Array, limits: JointLimits, names: Sequence[str]) ->
 
 
 def slowed(q_rad: Array, velocity_rad_s: Array) -> tuple[Array, float]:
-    """The same way (T, J), slower where a joint was faster than `velocity_rad_s` (J,); and how many times at most.
+    """The path (T, J), slower where a joint was faster than `velocity_rad_s` (J,); and the largest factor.
 
     Every frame lies on the straight lines between the given ones, so that none is nearer to anything than they are.
     """

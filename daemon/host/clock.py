@@ -70,12 +70,12 @@ class LoopClock(Clock, Protocol):
     """A clock for code that runs in an event loop."""
 
     async def sleep(self, seconds: float) -> None:
-        """Let others of the event loop run until so many seconds have passed."""
+        """Let other tasks of the event loop run until `seconds` have passed."""
         ...
 
 
 async def sleep_while(clock: LoopClock, condition: Callable[[], bool], at_most_s: float) -> None:
-    """Let others of the event loop run as long as the condition holds, up to so many seconds."""
+    """Let other tasks of the event loop run as long as the condition holds, `at_most_s` at most."""
     end_s = clock.now_s() + at_most_s
     while condition() and clock.now_s() < end_s:
         await clock.sleep(TICK_S)

@@ -38,7 +38,7 @@ LOOK_EVERY_S = 0.05
 MOST_UNREAD_BYTES = 3 << 20
 """Bytes of one connection since the last message that was received through it; its queue and the system's buffer hold less."""
 MOST_UNREAD_TOGETHER_BYTES = 12 << 20
-"""The same of all connections together; beyond it the one with most is shut down. A byte may take 20 of memory."""
+"""Unread bytes of all connections together beyond which the one with most is shut down. A byte may take 20 of memory."""
 MOST_GROWTH_BYTES = 256 << 20
 """Memory that a process may grow by before silent ipc connections are shut down: their bytes cannot be counted."""
 TELL_EVERY_S = 1.0

@@ -21,11 +21,11 @@ class LatencyEstimate:
 
     @property
     def seconds(self) -> float:
-        """What is to be allowed for."""
+        """Seconds to allow for the next one."""
         return self.mean_s + _SPREADS * self.spread_s
 
     def took(self, seconds: float) -> None:
-        """So long it took."""
+        """Learn from the newest measurement."""
         off_s = seconds - self.mean_s
         self.mean_s += _NEWEST * off_s
         self.spread_s += _NEWEST * (abs(off_s) - self.spread_s)

@@ -17,7 +17,7 @@ from daemon.poses.motion_source import MotionSource
 from daemon.wire.events import Progress
 
 MOST_REVISIONS = 5
-"""Attempts at putting a revised motion in place; a machine that is late so often plays the preview to its end."""
+"""Attempts at putting a revised motion in place; after as many late ones the preview is played to its end."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 from daemon.poses.pose_sequence import PoseSequence, mixed
 
 REACH_S = 1.0
-"""So long before a pose is due the motion begins to be led to it, and so long after it is free again."""
+"""Seconds before a pose is due at which the motion begins to be led to it, and seconds after it at which it is free again."""
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ def _filled(pattern: str, rng: np.random.Generator) -> str:
 
 
 def _spoken(command: str, rng: np.random.Generator) -> str:
-    """As a command, a request, of a person, or in a row: the forms that known commands have, too."""
+    """The text as a command, a request, of a person, or in a row: the forms that known commands have, too."""
     draw = rng.random()
     if draw < 0.2:
         return _pick(REQUESTS, rng).replace("{v}", command)

@@ -35,9 +35,9 @@ INSTANTS = 8
 ROWS = 6
 """Prompts of a contact sheet."""
 SMOOTH = 3
-"""Lines are drawn so many times larger and made smaller."""
+"""Factor by which lines are drawn larger before the picture is made smaller."""
 COLOURS = 6
-"""Of a picture; fewer colours, smaller files."""
+"""Number of colours of a picture; fewer colours, smaller files."""
 _PALETTE = {"": (68, 68, 68), "left": (192, 57, 43), "right": (36, 113, 163)}
 
 
@@ -50,7 +50,7 @@ class PostureFeatures:
 
     @classmethod
     def of(cls, joints_m: Array, head_quat_wxyz: Array) -> PostureFeatures:
-        """The same with the head's orientation (T, 4)."""
+        """The features with the head's orientation (T, 4)."""
         return cls(joints_m.astype(np.float64), matrix_from_quat(head_quat_wxyz.astype(np.float64))[..., 2])
 
     def __len__(self) -> int:

@@ -70,7 +70,7 @@ def read_npy(path: Path, most_bytes: int = MOST_BYTES) -> NDArray[Any]:
 
 
 def _array(f: IO[bytes], n_bytes: int) -> NDArray[Any]:
-    """The array in a stream that is so many bytes long."""
+    """The array in the next `n_bytes` of a stream."""
     version = np.lib.format.read_magic(f)
     if version not in ((1, 0), (2, 0)):
         raise ArraysError(f"npy version {version}; allowed: 1.0, 2.0")

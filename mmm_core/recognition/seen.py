@@ -23,7 +23,7 @@ TRUNK_FAMILIES = ("bow", "twist_repeat", "trunk_circle", "twist", "sway", "slump
 ARM_FAMILIES = ("raise", "clap", "arm_side", "wave")
 """Families of the arms that are looked for though no word names them."""
 PLAINER = "wave"
-"""Of the families that are named this one is looked for first: others show its sign too."""
+"""Family that is searched for first among those that are named: others show its sign too."""
 STILL_FAMILIES = ("breathe", "shift", "stand")
 """Families in whose performance hardly anything moves."""
 _HAVE_DIRECTION = ("look", "tilt_head", "lean", "twist", "point")

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 _LEAST_SINE = 0.3
 """Sine of the angle between neighbouring shoulder axes below which one of them is of no use."""
 _SAME_M = 1e-6
-"""An axis so near the shoulder passes through it."""
+"""Metres within which an axis passes through the shoulder."""
 _SHOULDER_PARTS = ("shoulder_pitch", "shoulder_roll", "shoulder_yaw")
 
 

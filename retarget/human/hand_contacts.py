@@ -32,7 +32,7 @@ _DAMPING = 2e-4
 _WORTH_IT = 0.5
 """A contact that the robot reaches in less than this share of its frames is not gone for."""
 _KEPT_M = 0.02
-"""A contact counts as kept with so much between, beyond the margin."""
+"""Metres between two shapes, beyond the margin, up to which their contact counts as kept."""
 
 
 @dataclass(frozen=True)

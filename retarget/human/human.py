@@ -1,4 +1,4 @@
-"""What a human motion says to a robot: chest frame, arm directions in it, trunk and head angles.
+"""A human motion in the terms of a robot: chest frame, arm directions in it, trunk and head angles.
 
 Human frame: x left, y up, z forward. Robot frame: x forward, y left, z up.
 """

@@ -32,7 +32,7 @@ _REST_PULL = 0.004
 """Weight of squared steps against squared direction errors: a tenth of a degree for human motion, all for an unseen joint."""
 _REST_STEPS = 3
 _CHOICE_PULL = 0.03
-"""The same for arms that cannot show both bones: less is shown where that needs a jump."""
+"""Weight of squared steps for arms that cannot show both bones: they show less where more would need a jump."""
 _SEEN_RAD = 0.004
 """Direction error that resting may leave before it is tried again from where it came to."""
 _NEARBY = 0.01
@@ -70,7 +70,7 @@ class Poses:
         )
 
     def stretched(self, times: float) -> Poses:
-        """The same, so many times slower."""
+        """The poses, `times` times slower."""
         T = len(self.q_rad)
         at = np.linspace(0, T - 1, max(2, round(T * times)) if T > 1 else 1)
         low = np.minimum(at.astype(np.int64), T - 1)

@@ -28,7 +28,7 @@ class Trunk:
         self._waist_chain = tuple(sorted(chain, key=lambda j: len(kinematics.chains[j])))
 
     def _joints(self, roles: tuple[str, ...]) -> list[tuple[int, int, float]]:
-        """Of each role that the robot has: which angle, which joint, and its sense."""
+        """For each role that the robot has: the angle, the joint, and its sense."""
         found: list[tuple[int, int, float]] = []
         for i, role in enumerate(roles):
             joint = self._kinematics.robot.joint_with_role(role)

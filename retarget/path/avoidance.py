@@ -15,9 +15,9 @@ Array = NDArray[np.float64]
 STRENGTHS = (0.0, 0.0, 0.0, 0.1, 0.3, 0.6, 1.0)
 """Share drawn towards the rest pose around what a path touches, one attempt after another; first by pushes alone."""
 _AIM_M = 0.002
-"""A pose led round keeps so much more than the margin, for what limits in time then cut off."""
+"""Metres beyond the margin that a pose is led round by, for what the limits in time then cut off."""
 _PUSHED_ON_M = 0.004
-"""A path that touches is pushed so much further than the margin."""
+"""Metres beyond the margin that a touching path is pushed to."""
 _PUSHES = 6
 _MOST_PUSHED_RAD = 0.15
 _COME_STEPS = 5

@@ -42,7 +42,7 @@ class Known:
     t: Array
 
     def of(self, pairs: Indices) -> Known:
-        """The same of some pairs."""
+        """The bounds of some of the pairs."""
         return Known(self.centre, self.axis, self.turn, self.distance[:, pairs], self.s[:, pairs], self.t[:, pairs])
 
     def and_also(self, more: Known) -> Known:

@@ -24,7 +24,7 @@ MARGIN_M = 0.010
 """Poses nearer to themselves than this count as touching; pairs that rest nearer may come half as near as they rest."""
 _FARTHEST_M = 1.0
 MEASURED_M = 0.007
-"""Other shapes are measured exactly when their bounds come so near to the margin: more than poses are led round by."""
+"""Metres beyond the margin below which shapes are measured exactly, not bounded: more than poses are led round by."""
 _CAPSULE_TYPES = (2, 3)  # mjGEOM_SPHERE, mjGEOM_CAPSULE
 
 

@@ -20,7 +20,7 @@ from retarget.path.lookahead_qp import Bounds, LeastSquares, frames_between, nea
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 _WINDOW_FRAMES, _AHEAD_FRAMES = 36, 10
-"""A long reference is solved in windows, each with so many frames after it in view."""
+"""Frames of the windows in which a long reference is solved, and frames after each that are taken into account."""
 _TAIL_WEIGHT = 1e-3
 """Weight of the frames after the last known one, in which the joints come to rest."""
 _PULL = 1e-3
@@ -62,7 +62,7 @@ class Angles:
         self._target_rad: Array = q_rad[:, joints].T[..., None]  # (G, T, 1)
 
     def around(self, first: int, q_rad: Array | None) -> Sequence[QuadraticCost]:
-        """The same everywhere."""
+        """The same costs for every path."""
         target = self._target_rad[:, first : None if q_rad is None else first + len(q_rad)]
         return (QuadraticCost(self._joints, np.ones((*target.shape, 1)), target),)
 

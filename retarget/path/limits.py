@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 SLACK = 1e-9
 """Relative slack within which a step counts as inside its bounds: rounding of sums, far below a tick."""
 _ROUNDING_RAD = 1e-12
-"""A step that ends so near outside a position limit was meant to end on it."""
+"""Radians outside a position limit within which the end of a step was meant to be on it."""
 
 
 @dataclass(frozen=True)

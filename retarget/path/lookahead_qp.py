@@ -26,9 +26,9 @@ _OPTIMAL = 1
 _TIGHTENED = 1e-4
 """Share of a bound kept free: the solver keeps bounds within 1e-6."""
 _INWARD_RAD = 4e-6
-"""The same for positions: far below a tick."""
+"""Radians by which position bounds are tightened: far below a tick."""
 _LAST_STEP = 0.02
-"""The last step may be so much of what one step of braking takes away: at rest, but with an inside."""
+"""Largest last step as a share of what one step of braking takes away: at rest, but with an interior."""
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ _ROUNDING_RAD = 1e-10
 
 @dataclass(frozen=True)
 class JointState:
-    """Where joints are told to be: (J,) position and velocity."""
+    """Commanded state of the joints: (J,) position and velocity."""
 
     position_rad: Array
     velocity_rad_s: Array

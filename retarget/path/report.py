@@ -1,4 +1,4 @@
-"""What retargeting changed, in numbers a user can read."""
+"""Report of the changes that retargeting made, in numbers a user can read."""
 
 from __future__ import annotations
 

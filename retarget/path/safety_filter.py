@@ -16,7 +16,7 @@ from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 LOOK_AHEAD_S = 0.15
-"""Once it has braked for a contact it goes on only when so much of the way to the target is free: it does not creep."""
+"""Seconds of the way to the target that must be free before a robot that has braked for a contact goes on: it does not creep."""
 _NEARER_M = 1e-6
 """Poses that are within the margin already may not come nearer to themselves than by rounding."""
 

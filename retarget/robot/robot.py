@@ -19,7 +19,7 @@ ROLES = (
     "head_yaw", "head_pitch", "head_roll", "waist_yaw", "waist_pitch", "waist_roll",
     *(f"{side}_{part}" for side in ("left", "right") for part in _ARM_PARTS),
 )  # fmt: skip
-"""What a joint is for. Joints with nothing human to follow (wrists, waist roll) rest."""
+"""Roles of joints. Joints with nothing human to follow (wrists, waist roll) rest."""
 POINTS = ("left_wrist", "right_wrist", "head", "chest")
 """Places that retargeting and pictures need: sites of the description, or [points] of the robot file."""
 DIRECTIONS = {

@@ -21,7 +21,7 @@ from retarget.robot.tables import FORMAT, JointTable, MotionTable, RobotTable, k
 from retarget.robot.ticks import JointServoMap
 
 _MOST_RAD = 6.3
-"""A file whose joints all end within so many "degrees" was written in radians."""
+"""Degrees within which the limits of all joints can only mean that the file was written in radians."""
 
 
 def read_robot_file(path: Path, blanks: bool = False) -> RobotModel:

@@ -46,7 +46,7 @@ class JointTable(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class DifferentialTable(msgspec.Struct, forbid_unknown_fields=True):
-    """As many servos as joints that move each other: joint angles = joint_per_servo @ servo angles."""
+    """A group of as many servos as joints that move each other: joint angles = joint_per_servo @ servo angles."""
 
     joints: list[str]
     servos: list[ServoTable]

@@ -116,7 +116,7 @@ class JointServoMap:
 
 
 _WHOLE = 1e-9
-"""A limit so near a whole tick was meant to be on it."""
+"""Ticks between a limit and a whole tick within which the limit was meant to be on it."""
 _Terms = list[list[tuple[int, float]]]
 
 

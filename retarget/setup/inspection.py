@@ -1,4 +1,4 @@
-"""What a robot still lacks before it may be run, and what its owner should look at."""
+"""Checks of a robot before it may be run: what is missing, and what its owner should look at."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _BEYOND_DEG = 0.51
 
 @dataclass(frozen=True)
 class Inspection:
-    """What was found.
+    """A finding.
 
     Attributes:
         missing: without these it cannot be run, or would touch itself; each with what to do.

@@ -22,10 +22,10 @@ from retarget.setup.standing_pose import standing_pose
 Array = NDArray[np.float64]
 _UNLIMITED_DEG = (-90.0, 90.0)
 _HAND_ACCELERATION_M_S2 = 12.0
-"""Of the outstretched arm: about what the reference robot's arms are allowed."""
+"""Acceleration of the hand at the outstretched arm: about what the reference robot's arms are allowed."""
 _CLEAR_M = 0.015
 _OUTWARD = (0.15, 0.25, 0.35, 0.5, 0.7, 1.0)
-"""Arms hang so far outwards, per unit down: the first that keeps clear of the body is taken."""
+"""Metres outwards per metre down at which arms may hang: the first that keeps clear of the body is taken."""
 
 
 @dataclass(frozen=True)

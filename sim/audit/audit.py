@@ -22,13 +22,14 @@ PIN_TOLERANCE_TICK, _TICKS_PER_TURN = 12, 4096
 """About one degree of such a servo: torque may come on over a goal no further from where the servo stands. Finer servos
 (Y, P) may be as many degrees away, coarser ones as many ticks."""
 HURRY_GOALS, HURRY_RATE = 4, 1.1
-"""So many goals may come at once (a cycle that was held up, those that start late behind it), in the long run a tenth too many."""
+"""Goals that may come at once (a cycle that was held up, and those that start late behind it), and their rate in the long run as
+a multiple of the bus rate."""
 TTY_GOALS = 30
-"""Behind a tty: so many may have waited in it while a loaded machine let the simulator sleep."""
+"""Goals that may come at once behind a tty: a loaded machine may have let the simulator sleep meanwhile."""
 FAULT_GRACE_S = 0.1
 """Goals that were under way when a servo tripped are not counted against anybody."""
 ANSWERS_TOLD = 10
-"""A servo's trip is known to the client after so many whole answers: some may be lost on their way."""
+"""Whole answers after which the client must know of a servo's trip: some may be lost on their way."""
 _MAX_DETAILS = 20
 
 
@@ -189,7 +190,7 @@ class Audit:
         }
 
     def touched(self, steps: int, *, led: bool) -> None:
-        """The body touched itself in so many steps; `led`: while every servo had torque."""
+        """Count `steps` in which the body touched itself; `led`: while every servo had torque."""
         self.body_contacts += steps
         self.led_contacts += steps if led else 0
 

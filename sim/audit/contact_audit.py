@@ -21,9 +21,9 @@ from retarget.robot.ticks import JointServoMap
 
 Array = NDArray[np.float64]
 EVERY = 5
-"""Of so many sets of goals one is checked, and the first after torque came on."""
+"""Number of sets of goals of which one is checked; the first after torque came on always is."""
 ROUNDED_M = 0.002
-"""So much deeper may a contact seem to grow: goals are whole ticks."""
+"""Metres by which a contact may seem to grow deeper: goals are whole ticks."""
 _MAX_POSES = 500_000
 _POSES_AT_ONCE = 1000
 _MAX_DETAILS = 20

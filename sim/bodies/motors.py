@@ -25,7 +25,7 @@ _THERMAL_TIME_CONSTANT_S = 600.0
 _STALL_RISE_K = 300.0
 """Heating if stalled for ever: an XM430 passes 80 degrees after about two minutes, 40 % of stall settles near 70."""
 _STALL_RISE_Y_K = 100.0
-"""The same of a Y, whose motor trips at 60 degrees: its continuous current (half of its maximum) settles below that."""
+"""Kelvin by which a stalled Y warms up: its motor trips at 60 degrees; half of its maximum current is allowed for long."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Motor:
 
     @property
     def resistance_ohm(self) -> float:
-        """Of the winding."""
+        """Resistance of the winding."""
         return self.rated_v / self.stall_current_a
 
     @property

@@ -28,7 +28,7 @@ ROOM_C = 25.0
 _LOAD_FILTER_S = 2.0
 """Time constant of the load that the overload check looks at (our estimate; the manual says 'persistent')."""
 _SUPPLY_OHM = 0.05
-"""Of supply and cables, shared by the servos of one rated voltage (our estimate)."""
+"""Resistance of supply and cables, shared by the servos of one rated voltage (our estimate)."""
 
 
 class Mode(IntEnum):
@@ -132,7 +132,7 @@ class Drives:
         self._quiet, self._rows = False, None
 
     def live(self) -> list[tuple[float, ...]]:
-        """Of each servo: position, velocity, current, duty, voltage, temperature, path position, path velocity."""
+        """Of each servo a tuple of position, velocity, current, duty, voltage, temperature, path position, path velocity."""
         if self._rows is None:
             ramp_tick_s = self._ramp_tick_s * self.torque
             measured = (

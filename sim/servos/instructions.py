@@ -1,4 +1,4 @@
-"""What an instruction makes one servo do, and what it answers; goals and torque are told to the audit."""
+"""Carries instructions out on one servo and returns its answer; goals and torque are reported to the audit."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from sim.servos.memory import Memory
 
 _FIRMWARE = {"x330": 52, "mx1": 41, "ax": 24}
 _FIRMWARE_OTHER = 45
-"""Of X and MX; of Y and P any would do."""
+"""Firmware of X and MX; of Y and P any would do."""
 _LIVE_AT = range(120, 147)
 _LIVE = struct.Struct("<HBBhhiiiiHB")  # realtime tick 120 ... temperature 146, side by side; P: 568 ... 594
 _MS_PER_S, _TICK_WRAP_MS = 1000, 32768

@@ -52,7 +52,7 @@ class WireSettings:
 
 
 class Wire:
-    """What is on the wire towards the client, and what the adapter has not handed on yet."""
+    """Bytes on the wire towards the client, and bytes that the adapter has not handed on yet."""
 
     def __init__(self, settings: WireSettings | None = None) -> None:
         self.settings = settings or WireSettings()

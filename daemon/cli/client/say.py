@@ -31,8 +31,8 @@ def say(
         text: what to do, in English.
         seed: the same text, seed and seconds give the same motion.
         seconds: length of the motion; the model chooses when it is not given.
-        prefix_s: so much of what is played just then, 0.2 to 1.6, is what the new motion goes on from: the longer, the less
-            it sets out anew, and the less it shows of the text. 0 for none.
+        prefix_s: seconds of the running motion, 0.2 to 1.6, that the new one continues from: the longer, the smoother the
+            transition, and the less of the text shows. 0 for none.
         how: how it is to be played.
         wait: return when the motion has ended; --no-wait returns once it is accepted.
         json: print each event as one JSON object a line.

@@ -30,7 +30,7 @@ SLOW_TEMPO = 0.5
 MOST_SECONDS = 60.0
 """Longest recording: the longest gesture that is kept."""
 _SILENCE_S = 2.0
-"""Without a measurement for so long the recording ends: the daemon is gone."""
+"""Seconds without a measurement after which the recording ends: the daemon is gone."""
 
 
 @dataclass(frozen=True)

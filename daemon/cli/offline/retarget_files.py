@@ -127,7 +127,7 @@ def start_folder(settings: Settings, motions: list[Path], folder: Path, out: Pat
 
 
 def on_cores(settings: Settings, pairs: list[tuple[Path, Path]], n_workers: int) -> Iterator[Done]:
-    """Retarget pairs of input and output on so many processes, in the order in which they are done."""
+    """Retarget pairs of input and output on `n_workers` processes; yields them in the order in which they are done."""
     jobs = ((settings, path, target) for path, target in pairs)
     if n_workers == 1:
         yield from map(_one, jobs)
@@ -138,7 +138,7 @@ def on_cores(settings: Settings, pairs: list[tuple[Path, Path]], n_workers: int)
 
 
 def on_dask(settings: Settings, pairs: list[tuple[Path, Path]], address: str) -> Iterator[Done]:
-    """The same on the workers of a Dask cluster, which must see the same files under the same paths.
+    """Retarget pairs on the workers of a Dask cluster, which must see the same files under the same paths.
 
     Raises:
         CommandError: Dask is not installed, or nothing answers at the address.

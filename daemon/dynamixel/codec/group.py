@@ -175,7 +175,7 @@ class FastGroupReply:
 
 
 class GroupWrite1:
-    """The same on protocol 1.0: few servos, no checksum worth a table."""
+    """A group write on protocol 1.0: few servos, no checksum worth a table."""
 
     def __init__(self, servo_ids: Sequence[int], address: int, size: int) -> None:
         self._ids, self._address, self._size = tuple(servo_ids), address, size

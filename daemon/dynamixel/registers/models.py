@@ -46,7 +46,7 @@ class IndirectWindow:
 class Thermometer:
     """One temperature that a servo measures, and the item with the limit at which it trips.
 
-    `above_c`: so much hotter it may be than what is told of the servo, from the factory.
+    `above_c`: degrees by which it may be hotter, from the factory, than the temperature that is reported of the servo.
     """
 
     present: str
@@ -136,7 +136,7 @@ class BusModel:
         return round(raw / 10) if self.family == "y" and raw > LOW_VOLTS_RAW else raw
 
     def temperature_c(self, values: Mapping[str, int]) -> int | None:
-        """Of the servo: of several temperatures the one nearest to its limit; None when none is in `values`."""
+        """Temperature of the servo; of several the one nearest to its limit. None when none is in `values`."""
         found = [values[t.present] - t.above_c for t in self.thermometers if t.present in values]
         return max(found, default=None)
 
@@ -262,7 +262,7 @@ def _y(name: str, number: int, velocity: int, acceleration: int) -> BusModel:
 
 
 def _p(name: str, number: int) -> BusModel:
-    """As said of Y."""
+    """A model of series P, whose registers lie as those of Y."""
     modes = (0, 1, 3, 4, 16)
     return BusModel(name, number, "p", 2.0, P, 607500, 0, modes, 10500000, (15.0, 35.0), None, 0, True)
 

@@ -17,7 +17,7 @@ WATCHDOG_UNIT_S = 0.02
 WATCHDOG_TRIPPED = -1
 RETURN_DELAY_UNIT_S = 2e-6
 POSITION_MODE, EXTENDED_POSITION_MODE = 3, 4
-"""Of operating_mode: the two in which joints are driven."""
+"""Values of operating_mode in which joints are driven."""
 
 UNITS: dict[str, tuple[float, str]] = {
     "": (1.0, ""),

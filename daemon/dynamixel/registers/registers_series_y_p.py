@@ -13,7 +13,7 @@ _INT32 = 2**31 - 1
 _WORD = 32767
 _Y_GAIN = _INT32
 INVERTER_ABOVE_MOTOR_C = 20
-"""The two temperature limits of a Y from the factory, 80 and 60 degrees: so much hotter may its inverter be than its motor."""
+"""Degrees by which the inverter of a Y may be hotter than its motor: 80 and 60 degrees are the limits from the factory."""
 LOW_VOLTS_RAW = 400
 """Present input voltage of a Y: the manual says 0.01 V, `ym080_230_r099.model` 0.1 V. A Y runs on 16 to 40 V (its limits'
 range), so a value up to 400 can only be in 0.1 V, and one above only in 0.01 V."""
@@ -173,7 +173,7 @@ ERROR_CODES = {
 }  # fmt: skip
 """Values of error_code (Y): one at a time, not bits (manual, "Error Code")."""
 HOLDING_ERRORS = (9, 17, 18, 19, 20)
-"""Those that leave torque on; all but the battery's make the servo stop and refuse goals until they are cleared."""
+"""Errors that leave torque on; all but the battery's make the servo stop and refuse goals until they are cleared."""
 
 
 def error_code_text(code: int) -> str:

@@ -20,7 +20,7 @@ NEEDED, ADVISED = "needed", "advised"
 """Severity: without it the robot does not do what it is told, or only less well."""
 _MODES = {False: (POSITION_MODE, "position"), True: (EXTENDED_POSITION_MODE, "extended position")}
 _REVERSED, _TIME_BASED, _TORQUE_BY_GOAL = 0b0001, 0b0100, 0b1000
-"""Of drive_mode. Torque by goal: after a reboot the next goal would switch torque on, wherever the joint hangs by then."""
+"""Bits of drive_mode. Torque by goal: after a reboot the next goal would switch torque on, wherever the joint hangs by then."""
 _TORQUE_AT_POWER_ON = 0b01  # of startup_configuration
 _SHUTDOWN_ON = 0b100100  # overheating, overload: the same bits in both protocols
 _HOT_MARGIN_C = 10

@@ -23,7 +23,7 @@ MOVES = (
 _HOLDS = ("torque_enable", "torque_limit")
 """Items whose lower value lets a joint fall."""
 _BOOT_S, _ASK_EVERY_S = 2.0, 0.1
-"""After a reboot a servo is asked for so long, so often, whether it is back."""
+"""Seconds that a servo has to come back after a reboot, and seconds between two questions whether it is back."""
 
 
 @dataclass(frozen=True)

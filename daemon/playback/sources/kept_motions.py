@@ -72,7 +72,7 @@ class KeptMotions:
         return self._kept.get(command_id)
 
     def of_plan(self, plan_id: int) -> KeptMotion | None:
-        """The same by the number of its plan."""
+        """The motion of a command, by the number of its plan."""
         return next((kept for kept in self._kept.values() if kept.plan_id == plan_id), None)
 
     def some(self) -> str:

@@ -54,7 +54,7 @@ from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.robot import RobotModel
 
 PREFIX_FRAMES = 32
-"""So much of what is played is shown to the generator, however little of it is the prefix: ids depend on what was before."""
+"""Frames of the running motion that the generator is shown, however few of them are the prefix: ids depend on the frames before."""
 FIRST_MAKE_S = 0.1
 """Assumed time until a motion with a prefix is made; later ones are measured."""
 _THEIRS = ("bad_edit", "bad_keyframes", "not_reached")
