@@ -9,40 +9,27 @@ from __future__ import annotations
 import json
 import os
 import sys
-import tempfile
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from daemon.client import Client
-from daemon.demo.main_job import child, free_endpoints, wait_until_ready
-from tests.support.browser import Browser
-from tests.support.harness import free_ports
+from docs.tools.page_rig import PageRig, page_rig
 
 STOPS = 20
 WATCHED_S = 5.0
-SIZE_PX = (1280, 800)
 
 
 def main(picture: Path | None) -> None:
     """Start a daemon with the page, measure, print, and keep a picture of the page in mid-motion."""
-    with tempfile.TemporaryDirectory() as name:
-        folder, ends, (port,) = Path(name), free_endpoints(), free_ports(1)
-        at = ["--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub]
-        log = folder / "daemon.log"
-        with child(["run", "--view", "--http", f"127.0.0.1:{port}", *at], log) as daemon, Client(ends) as client:
-            wait_until_ready(client, daemon, log)
-            with Browser(*SIZE_PX) as browser:
-                sys.stdout.write(
-                    json.dumps(_measured(browser, f"http://127.0.0.1:{port}/", client, picture), indent=1) + "\n"
-                )
+    with page_rig() as rig:
+        sys.stdout.write(json.dumps(_measured(rig, picture), indent=1) + "\n")
 
 
-def _measured(browser: Browser, url: str, client: Client, picture: Path | None) -> dict[str, Any]:
-    browser.open(url)
-    browser.wait(lambda: browser.js("globalThis.mmmd?.frames > 0 && !!mmmd.capable"), "the page", 60)
+def _measured(rig: PageRig, picture: Path | None) -> dict[str, Any]:
+    browser, client = rig.browser, rig.client
+    rig.open_page()
     paint_ms = browser.js("performance.getEntriesByName('first-contentful-paint')[0].startTime")
     client.arm()
     client.say("wave with your right hand", wait=False, loop=True)

@@ -11,20 +11,14 @@ from __future__ import annotations
 
 import json
 import sys
-import tempfile
-from pathlib import Path
 from typing import Any
 
 from daemon.bench.first_motion import N_WARM, from_rest
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
-from daemon.client import Client
-from daemon.demo.main_job import child, free_endpoints, wait_until_ready
-from tests.support.browser import Browser
-from tests.support.harness import free_ports
+from docs.tools.page_rig import SIZE_PX, PageRig, page_rig
 
 TURNS, TEXTS = 4, 8
-SIZE_PX = (1280, 800)
 _METHOD = (
     f"mmmd run --view --bus sim://; {TURNS} turns of the same {TEXTS} texts with and without the page in a headless Chromium that"
     f" draws in software, {SIZE_PX[0]} x {SIZE_PX[1]}; times as in first-motion from rest; {N_WARM} texts before to warm up"
@@ -33,18 +27,13 @@ _METHOD = (
 
 def main(turns: int, n_texts: int, seed: int = 0) -> dict[str, Any]:
     """`first_motion_ratio`, medians in milliseconds with and without the page, and the frames that the page drew meanwhile."""
-    with tempfile.TemporaryDirectory() as name:
-        folder, ends, (port,) = Path(name), free_endpoints(), free_ports(1)
-        at = ["--cmd", ends.cmd, "--ctl", ends.ctl, "--pub", ends.pub]
-        log = folder / "daemon.log"
-        with child(["run", "--view", "--http", f"127.0.0.1:{port}", *at], log) as daemon, Client(ends) as client:
-            wait_until_ready(client, daemon, log)
-            client.arm()
-            with Browser(*SIZE_PX) as browser:
-                return _turns(browser, f"http://127.0.0.1:{port}/", client, turns, n_texts, seed)
+    with page_rig() as rig:
+        rig.client.arm()
+        return _turns(rig, turns, n_texts, seed)
 
 
-def _turns(browser: Browser, url: str, client: Client, turns: int, n_texts: int, seed: int) -> dict[str, Any]:
+def _turns(rig: PageRig, turns: int, n_texts: int, seed: int) -> dict[str, Any]:
+    browser, client = rig.browser, rig.client
     from_rest(client, draw_texts(N_WARM, seed), seed, "warm")
     with_ms: list[float] = []
     without_ms: list[float] = []
@@ -52,9 +41,10 @@ def _turns(browser: Browser, url: str, client: Client, turns: int, n_texts: int,
     for turn in range(turns):
         texts = draw_texts(n_texts, seed + 1 + turn)
         for is_open in (True, False) if turn % 2 else (False, True):
-            browser.open(url if is_open else "about:blank")
             if is_open:
-                browser.wait(lambda: browser.js("globalThis.mmmd?.frames > 0 && !!mmmd.capable"), "the page", 60)
+                rig.open_page()
+            else:
+                browser.open("about:blank")
             found = from_rest(client, texts, seed, f"{turn}-{'page' if is_open else 'none'}")
             (with_ms if is_open else without_ms).append(found["p50_ms"])
             frames += browser.js("mmmd.frames") if is_open else 0
