@@ -8,17 +8,10 @@ ROOT = Path(__file__).parent.parent
 PACKAGES = ("mmm_core", "retarget", "daemon", "sim")
 MOST_LINES = 300
 LONGER = {
-    "daemon/control/control_loop.py": "the hot path of the bus process in one file (STYLE 8)",
-    "daemon/shared_memory/bus_link.py": "one class: both ends of the shared memory, word by word",
-    "daemon/view/server.py": "one class a socket, each a few lines on the same base",
-    "daemon/front/front.py": "one class: all sockets and the tick",
-    "daemon/scheduling/scheduler.py": "one class: every end of a command",
     "daemon/client/async_client.py": "one method a request",
-    "mmm_core/training/stages.py": "one class: the stages of a recipe in their order",
     "mmm_core/corpus/grammar.py": "tables of phrases",
     "mmm_core/language/context.py": "the context between commands and its words",
     "retarget/human/arms.py": "closed forms of three families of arms that share their state",
-    "sim/bus.py": "one class: a half-duplex bus",
 }
 
 
