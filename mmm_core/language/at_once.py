@@ -3,42 +3,36 @@
 from __future__ import annotations
 
 import re
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 
-from mmm_core.language.limbs import ARMS, LIMB, SOME_ARM, limbs_named, limbs_of
-from mmm_core.language.word_tables import REMEMBERED, lines
+from mmm_core.language.limbs import ARMS, SOME_ARM, limbs_named, limbs_of
+from mmm_core.language.word_tables import LIMB, REMEMBERED, any_of, lines
 
-_POSE = re.compile(
-    rf"^(?:(?:and|also|with|please) )*(?:rais|lift|hold|keep|put|stretch|cross|fold|cover|shad|rest|plac|lean|look|tilt|turn|twist|point|spread|extend|reach|leav|clasp|lay|have|"
-    rf"(?:your |the |both |one )?(?:left |right )?{LIMB}\b|(?:your |the )?head|gaz|glanc|flex|touch)\w*"
-)
-_ENDS = re.compile(r"\b(?:bow(?! your head)|bows|curtsy|salute|slump|celebrate)\b")
-"""Verbs of gestures that are done by themselves: "clap and bow" is in turn."""
-_VERB_FIRST = re.compile(r"^(?:also )?(?!(?:left|right|both|your|the|one|hands?|arms?|head|eyes|a|an)\b)\w+")
-_WHILE = re.compile(
-    r"\s*,?\s*\b(?:and )?(?:(?:all the )?(?:while|whilst)|meanwhile|at the same time as|(?:during|for|all) (?:all |the (?:whole |entire )?)?time(?: that| in which)?|for as long as|as long as|as well as(?= \w+ing\b)|(?:in time|along|in step|in rhythm) (?:with|to)(?= (?:your |the )?\w+ing\b)|(?<=[a-z], )but (?:still )?keep(?: on)?(?= \w+ing\b))\b,?\s+(?:(?:also|you are|you|at the same time|still)\s+)*"
-)
+_any = partial(any_of, "at_once")
+_POSE = re.compile(rf"^(?:(?:and|also|with|please) )*{_any('pose')}\w*")
+_NO_POSE = re.compile(rf"{_any('no pose')}\b")
+_ENDS = re.compile(rf"\b{_any('by itself')}\b")
+_VERB_FIRST = re.compile(rf"^(?:also )?(?!{_any('no verb')}\b)\w+")
+_WHILE = re.compile(rf"\s*,?\s*\b(?:and )?{_any('while')}\b,?\s+(?:{_any('while also')}\s+)*")
 _AS_YOU = re.compile(
-    rf"\s*,?\s*\bas (?:you(?! (?:can|could|like|wish|want|please|would|did|do)\b)(?: are)?\s+|(?=(?:your|the|both) (?:left |right )?(?:{LIMB}|head|eyes|body|trunk)\b))"
+    rf"\s*,?\s*\bas (?:you(?! {_any('as you can')}\b)(?: are)?\s+|"
+    rf"(?=(?:your|the|both) (?:left |right )?(?:{LIMB}|head|eyes|body|trunk)\b))"
 )
-_SAME_TIME = re.compile(
-    r"\s*,?\s*(?:\band )?(?:\bboth )?\b(?:at the (?:very )?same (?:time|moment)|simultaneously|at once|together|(?:all )?in one(?: go| movement| motion)?(?=$|[,.])|all at once|concurrently|in parallel|in (?:unison|sync|tandem)(?=$|[,.])|meanwhile(?=$|[,.]))\b[,:]?\s*(?:and )?"
-)
+_SAME_TIME = re.compile(rf"\s*,?\s*(?:\band )?(?:\bboth )?\b{_any('same time')}\b[,:]?\s*(?:and )?")
 _LEADING = re.compile(
     r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$"
 )
 _WITH_LEADING = re.compile(
-    rf"^with (?P<first>(?:your |both |the )*(?:left |right )?{LIMB} (?:crossed|folded|raised|stretched|spread|up|out|on|behind|over|wide|high)\b[^,]*),\s*(?P<second>\w.+)$"
+    rf"^with (?P<first>(?:your |both |the )*(?:left |right )?{LIMB} {_any('held first')}\b[^,]*),\s*(?P<second>\w.+)$"
 )
 _WITH_POSE = re.compile(
-    rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{LIMB} (?:(?:held|placed|resting|raised|stretched|crossed|folded|laid|spread|extended|lifted|straight|wide|high|still|firmly) )*(?:(?:on|over|behind|to (?:your |the )?(?:heart|chest|head|ears?|mouth|chin|face|forehead|temple|sides?|sky|ceiling|front|left|right|belly|shoulder)|at(?= (?:your |the |its )?(?:sides?|hips?|chest|heart|head|ears?|mouth|chin|shoulders?|waist|belly|brow|temples?|forehead|face|(?:shoulder|hip|chest|head|eye|waist) (?:height|level))\b)|in front|out|up|in(?= (?:the air|your (?:lap|pocket)|fists?)\b)|above|across|wide|forward|sideways|overhead|apart|against)\b.*|crossed|folded|raised|stretched|spread|extended|clasped|lifted|high|akimbo))$"
+    rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{LIMB} (?:{_any('held')} )*"
+    rf"(?:{_any('held at')}\b.*|{_any('is held')}))$"
 )
 _AND = re.compile(r"\s*,\s*(?:and\s+|but\s+)?(?:also\s+)?|\s+(?:and|plus|but)\s+(?:also\s+)?")
-_FILLER = re.compile(
-    r"^(?:and|also|then|with|keep|keeping|while|please|still)\s+(?=\w+ing\b|your|the|both|left|right)|^(?:your|the)\s+(?=(?:clapp|nodd|wav|shak|bow|point|salut|drumm|conduct)ing\b)|\s+(?:too|as well|also)$|^(?:also|and)\s+"
-)
+_FILLER = re.compile(_any("filler"))
 _FRONTED = re.compile(
-    r"^(?:(?:and|with|using) )+(?:your |the )?(left|right)(?: hand| arm)?,? (?!(?:hand|arm|on|up|to|out|over|behind|down|forward|raised|stretched)\b)(\w.+)$"
+    rf"^(?:(?:and|with|using) )+(?:your |the )?(left|right)(?: hand| arm)?,? (?!{_any('place')}\b)(\w.+)$"
 )
 _RAISES = re.compile(r"^(?:raise|lift|put up|hold up) (?:your |the )?(?:left|right) (?:hand|arm)(?: up| high)?$")
 _ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
@@ -50,24 +44,21 @@ _BARE_LIMB = re.compile(rf"^(?:with )?(?:your |the |both |left |right |other )*(
 _HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)s?\b.*\b(?:seconds?|secs?)\b")
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
 _IS = re.compile(
-    r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) (?:is|are|(?:should|must|can|will|ought to|has to|may) (?:be|stay|remain|rest)|stays?|remains?|goes|keeps?|rests?|sits?|lies|lays?|stands?)(?: being| held)? (?P<rest>.+)$"
+    r"^(?P<limb>(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head)) "
+    rf"{_any('is')}(?: being| held)? (?P<rest>.+)$"
 )
-
-
 _ACTS = re.compile(
     r"^(?:(?:let|have|get|make|keep) )?(?:your |the )?(?:(?P<side>left|right) (?:hand|arm|fist)|(?P<head>head)) "
-    r"(?:(?P<ing>(?:wav|salut|point|beckon|knock|punch|cover|touch|shad|scratch|shak|nodd|turn|tilt|hold|conduct|rubb|patt|wip|hammer|look|clapp)ing)"
-    r"|(?P<verb>wave|salute|point|beckon|knock|punch|cover|touch|shade|scratch|shake|nod|turn|tilt|conduct|rub|pat|wipe|hammer|look)(?:e?s)?)\b(?P<rest>.*)$"
+    rf"(?:(?P<ing>{_any('acting')})|(?P<verb>{_any('act')})(?:e?s)?)\b(?P<rest>.*)$"
 )
 """'Your left hand waves', 'have your head nod'."""
-
-
-_WAY = r"(?:up|down|back(?:wards?)?|forth|forwards?|over|in|out|left|right|high|low|sideways|to|fro)"
-_WAY_LAST = re.compile(rf"\b{_WAY}$")
-_WAY_FIRST = re.compile(rf"^{_WAY}\b(?! (?:hands?|arms?|fists?|palms?|one|elbow)\b)")
+_WAY_LAST = re.compile(rf"\b{_any('way')}$")
+_WAY_FIRST = re.compile(rf"^{_any('way')}\b(?! (?:hands?|arms?|fists?|palms?|one|elbow)\b)")
 """'Up and down' and 'back and forth' belong to one command."""
+_LEFT_OUT = re.compile(rf"{_any('left out')}\b")
 _RAISED_WITH = re.compile(
-    r" with (?:your |the )?(?P<side>(?:left|right) )?(?:hand|arm|fist) (?:(?:held|raised|stretched|straight|lifted) )*(?:up|out|high|overhead|raised|over|above|in)\b"
+    r" with (?:your |the )?(?P<side>(?:left|right) )?(?:hand|arm|fist) (?:(?:held|raised|stretched|straight|lifted) )*"
+    r"(?:up|out|high|overhead|raised|over|above|in)\b"
 )
 """'Signal with your left arm overhead' says where the arm is that signals."""
 
@@ -89,9 +80,7 @@ def are_at_once(a: str, b: str, *, joined: bool = True) -> bool:
 
 def is_pose(clause: str) -> bool:
     """Whether a command is a pose, which lasts as long as what is done beside it."""
-    return bool(_POSE.match(clause)) and not re.match(
-        r"(?:shake|roll|wobble|turn your palm|tilt your head from)\b", clause
-    )
+    return bool(_POSE.match(clause)) and not _NO_POSE.match(clause)
 
 
 def _apart(a: frozenset[str], b: frozenset[str]) -> bool:
@@ -175,7 +164,7 @@ def _is_its_own_arm(clause: str, start: int) -> bool:
 
 def _with_verb(second: str, first: str) -> str:
     """The second part with the verb of the first: "right with the right arm" beside "point left with the left arm"."""
-    verb = re.match(r"(?:point|reach|stretch|punch|wave|swing|push|pull|raise|lower)\b", first)
+    verb = _LEFT_OUT.match(first)
     one = re.match(
         r"(?:with |using )(?:your |the )?(?P<side>left|right|other)(?: hand| arm| one)? (?=to\b|up\b|down\b|forward|ahead|back)",
         second,

@@ -9,28 +9,19 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import partial
 
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.ellipsis import OTHER
+from mmm_core.language.word_tables import any_of
 
-_NOT = (
-    r"(?:please )?(?:never ?mind (?:about )?|do not (?:you )?(?:dare (?:to )?|ever |even |think of |try to )?|never(?: ever)? |no more |no |not |you (?:must|should|may|can|shall|need|do) not (?:have to |need to )?|"
-    r"i (?:do not|would not) (?:want|like|need)(?: (?:you|to see you|to see))?(?: to)? |without |forget (?:about |the idea of )?|stop |quit |"
-    r"avoid |refrain from |skip |leave out |abstain from |there is no (?:need|reason|point|call) (?:to|for you to|in) |no need to |(?:nobody|no one|none of us) (?:needs|wants|asked|asks|expects|likes)(?: you)?(?: to)? |i would (?:rather|prefer it if) you did not |you are not (?:to|allowed to|supposed to|meant to) |let us not |it is not necessary to |instead of |rather than |"
-    r"(?:any|every)thing (?:but|except(?: for)?|other than) |(?:do|give (?:me|us)|show (?:me|us)) (?:anything|everything|whatever you (?:like|want)) (?:but|except(?: for)?|other than) |"
-    r"(?:just |only )?not |in no case |under no circumstances |on no account |by no means |hold off on |no,? not )"
-)
-_DENIES = re.compile(
-    rf"^\W*(?:and |but |so |or |just |please |now |only |ok,? |robot,? |hey,? |well,? |no,? )*{_NOT}(?P<what>.+)$"
-)
+_any = partial(any_of, "denial")
+_DENIES = re.compile(rf"^\W*(?:{_any('before')} )*(?:please )?{_any('not')} (?P<what>.+)$")
 _BETWEEN = re.compile(
     r"\s*(?:,\s*(?:and |but )?instead\b,?|[,;:.!]+(?=\s|$)|\s-+\s|\bbut(?= )(?! (?:not|no)\b)(?<!anything but)(?<!everything but)(?<!\bnothing but)(?<!\ball but)"
     r"|\binstead,? (?!of\b)|\binstead$)\s*"
 )
-_INLINE = re.compile(
-    r"\s*,?\s*\b(?P<not>instead of|rather than|as opposed to|and not|but not|but without|and never|but never|without(?: using| moving)?|(?:and|but) do not|(?<!do )(?<!is )(?<!am )(?<!are )(?<!will )(?<!can )(?<!did )(?<!does )(?<!would )(?<!it )not(?! only)|and no|but no|(?:just|only) not|except(?: for)?(?: with)?|(?:and|but) (?:please )?(?:skip|leave out|forget|omit|drop|cut|spare (?:me|us)|never mind|no more|stop)(?: about)?)\s+"
-    r"(?P<what>[^,;:.!]+)"
-)
+_INLINE = re.compile(rf"\s*,?\s*\b(?P<not>{_any('inline')})\s+(?P<what>[^,;:.!]+)")
 _GERUND_FIRST = re.compile(
     r"^\W*(?:instead of|rather than|without) (?P<what>(?:\w+ing)(?: (?:your|the|at|to|with) \w+(?: \w+)?)?|(?:a|an) \w+),? (?=\w)"
 )
@@ -38,39 +29,31 @@ _NOT_A_BUT_B = re.compile(
     r"^\W*not (?!only\b)(?P<what>(?:an?|the|your|with|to)? ?[^,;]+?),? but (?:rather |instead )?(?P<rest>.+)$"
 )
 _SIDE_ONLY = re.compile(
-    r"^(?:(?:with|use|using|move|moving|raise|lift|touch|from|involve|involving|take|on|wave|the use of)\s+)?(?:your |the |that |my )?(?P<side>left|right)"
-    r"(?: (?:hand|arm|one|side|fist|palm))?(?: (?:this time|at all|alone|though|please|either|now))?$"
+    rf"^(?:{_any('side verb')}\s+)?(?:your |the |that |my )?(?P<side>left|right)(?: (?:hand|arm|one|side|fist|palm))?"
+    r"(?: (?:this time|at all|alone|though|please|either|now))?$"
 )
 _LEAVE = re.compile(
     r"(?:,?\s*(?:and|but|while)\s+)?\b(?:leave|keep|leaving|keeping|let)\s+(?:your |the )?(?P<side>left|right) (?:hand|arm|one)\s+"
-    r"(?:alone|out of it|out|still|down|hanging|at rest|where it is|at your side|rest|hang|by your side|in your pocket)\b,?\s*(?:and\s+)?"
+    rf"{_any('left alone')}\b,?\s*(?:and\s+)?"
 )
 _RESTS = re.compile(
-    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:your |the )(?P<side>left|right) (?:hand|arm) (?:rests|hangs(?: down)?|(?:stays|remains) (?:still|down|where it is|out of it))"
+    rf"(?:,?\s*(?:and|but|while)\s+)?\b(?:your |the )(?P<side>left|right) (?:hand|arm) {_any('rests')}"
     r"(?=\s*(?:$|,|;|and\b|while\b)),?\s*(?:(?:and|while)\s+)?"
 )
 """'The left hand rests, wave with the right.'"""
 _KEEP_STILL = re.compile(
-    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?(?:head|arms|both arms|hands|both hands|body|trunk|torso|upper body|shoulders|rest of (?:you|your body)|legs|feet|everything else)\s+"
-    r"(?:still|(?<!head )down|at your sides?|by your sides?|straight|alone|out of it|quiet|upright|where it is|where they are),?\s*(?:and\s+)?"
+    r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?"
+    rf"{_any('kept')}\s+{_any('kept still')},?\s*(?:and\s+)?"
 )
 _DIRECTION_ONLY = re.compile(
     r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$"
 )
-_WAVED_ASIDE = re.compile(
-    r"^(?:that (?:one|arm|hand|side|way)|this (?:one|arm|hand|side|way)|the other(?: one| way| hand| arm)?|it|that|the opposite|so|like that|"
-    r"be (?:shy|afraid|silly|scared|rude|lazy|so \w+)|worry|mind|wait|hesitate)$"
-)
-_NO_DENIAL = re.compile(
-    r"^\W*(?:do not (?:stop|forget to|hesitate to|be (?:shy|afraid))|never (?:stop|give up)|not only\b|no (?:idea|clue|problem|thanks|way|matter|doubt|one)\b|"
-    r"stop (?:your ears|sign|gesture|me\b|us\b|the traffic|traffic|them\b|him\b|her\b|here|there|signal|with)|no[, ]+no\b|not (?:bad|sure|yet|until|before))"
-)
+_WAVED_ASIDE = re.compile(rf"^{_any('waved aside')}$")
+_NO_DENIAL = re.compile(rf"^\W*{_any('no denial')}")
 _KEEP_DOING = re.compile(
     r"^\W*(?:please )?(?:do not|never) stop (?P<rest>\w.+)$|^\W*(?:please )?do not (?:forget|hesitate) to (?P<other>.+)$"
 )
-_ACTS_ALSO = re.compile(
-    r"\b(?:clap|bow|nod|wave|salut|point|rais|lift|shrug|shak|lean|cross|lower|mov|lookin?g?|danc|cheer|hand|arm|head|fist|finger|beckon|applau|punch|kneel|turn|tilt|touch|cover|hug|stretch|greet|twist|sway|rub|pat|fold|gestur|saw|sow|hammer|paint|drum|box|yawn|swim|row|climb|juggl|pray|push|pull|throw|catch|knock|flex|stir|conduct|steer|blow|kiss|wip|scratch|play|facepalm|flap|march)\w*"
-)
+_ACTS_ALSO = re.compile(rf"\b{_any('act')}\w*")
 _NOT_USING = re.compile(
     r"^\W*(?:please )?(?:do not|never) (?:use|take) (?:your |the )?(?P<side>left|right) (?:hand|arm|one) (?:to|for|when|and) (?P<rest>\w.+)$"
 )

@@ -7,26 +7,15 @@ Words and phrases that tell a limb stand in `words/limb_phrases.txt`, verbs and 
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import cache, partial
 
-from mmm_core.language.word_tables import pairs
+from mmm_core.language.word_tables import LIMB, any_of, pairs, phrases
 
 ARMS = frozenset({"left_arm", "right_arm"})
 HEAD, TRUNK = frozenset({"head"}), frozenset({"trunk"})
 SOME_ARM = frozenset({"some_arm"})
 """One arm, whichever is free."""
-LIMB = r"(?:hands?|arms?|fists?|palms?|fingers?|elbows?|forearms?|biceps|thumbs?)"
-
-
-def _phrases(kind: str) -> list[str]:
-    """The phrases of a kind in `words/limb_phrases.txt`."""
-    return [phrase.replace("@LIMB", LIMB) for of, phrase in pairs("limb_phrases") if of == kind]
-
-
-def _any(kind: str) -> str:
-    return f"(?:{'|'.join(_phrases(kind))})"
-
-
+_phrases, _any = partial(phrases, "limb_phrases"), partial(any_of, "limb_phrases")
 _ARM_SIDE = re.compile("|".join(_phrases("side")))
 _BOTH, _ARM = re.compile(rf"\b{_any('both')}"), re.compile(rf"\b{_any('arm')}")
 _HEAD = re.compile(

@@ -20,6 +20,8 @@ REMEMBERED = 2048
 """Words or sentences whose readings are kept by a cache; the longest unused goes."""
 WAY = "left|right|up|down|forwards?|backwards?|back"
 """Directions, for patterns of tables."""
+LIMB = r"(?:hands?|arms?|fists?|palms?|fingers?|elbows?|forearms?|biceps|thumbs?)"
+"""A hand, an arm or a part of them, for patterns of tables."""
 
 
 @cache
@@ -33,6 +35,24 @@ def lines(name: str) -> tuple[str, ...]:
 def pairs(name: str) -> tuple[tuple[str, str], ...]:
     """The two sides of each line `left => right`."""
     return tuple((left.rstrip(), right.strip()) for left, _, right in (line.partition("=>") for line in lines(name)))
+
+
+@cache
+def phrases(name: str, kind: str) -> tuple[str, ...]:
+    """The phrases of a kind in a table of lines `kind => phrase`; @LIMB stands for a hand, an arm or a part of them.
+
+    Raises:
+        KeyError: the table has no such kind.
+    """
+    found = tuple(phrase.replace("@LIMB", LIMB) for of, phrase in pairs(name) if of == kind)
+    if not found:
+        raise KeyError(f"{name}.txt has no line '{kind} => ...'")
+    return found
+
+
+def any_of(name: str, kind: str) -> str:
+    """A pattern for any phrase of a kind."""
+    return f"(?:{'|'.join(phrases(name, kind))})"
 
 
 class Rule(NamedTuple):
