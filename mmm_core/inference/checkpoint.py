@@ -175,8 +175,8 @@ def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None,
     pieces = WordPieces.from_file(str(word_pieces))
     with _Uninitialised():
         encoder = MiniLm(MiniLmConfig(**json.loads(metadata["config"])), pieces, n_left_out)
-    quantised = tensors.pop("word_embedding.bytes").float() * tensors.pop("word_embedding.scale").float()
-    tensors["word_embedding.weight"] = quantised
+    weight = tensors.pop("word_embedding.bytes").float().mul_(tensors.pop("word_embedding.scale").float())
+    tensors["word_embedding.weight"] = weight
     _fill(encoder, tensors, path, "")
     return encoder
 
@@ -263,5 +263,5 @@ def _fill(module: nn.Module, tensors: dict[str, Tensor], path: Path, prefix: str
         raise CheckpointError(
             path, prefix + name, "a tensor this model does not have", "only tensors of its configuration"
         )
-    module.load_state_dict({name: t.to(wanted[name].dtype) for name, t in tensors.items()})
+    module.load_state_dict({name: t.to(wanted[name].dtype) for name, t in tensors.items()}, assign=True)  # no copies
     module.eval().requires_grad_(False)

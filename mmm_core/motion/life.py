@@ -20,10 +20,10 @@ the last bit.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from mmm_core.motion.motion import FPS, Motion
 
@@ -114,10 +114,10 @@ def _turns(
     aside, apart, over, ups = where = np.stack([l_out + r_out, l_ahead - r_ahead, l_up - r_up, l_up + r_up])
     aside, apart, over, rise = where[:, _ahead(n, _CHEST_LEAD_FRAMES)]
     sunk = np.maximum(-np.diff(ups, prepend=ups[:1]), 0.0)
-    sinking = life.settle * np.asarray(lfilter([1.0], [1.0, _SETTLED - 1.0], sunk))
+    sinking = life.settle * _faded(sunk, 1.0 - _SETTLED)
     chest = np.stack([life.turn * (0.6 * aside - apart), life.tilt * over, -0.5 * life.lean * rise + sinking])
     later = _ahead(n, _LEAD_FRAMES)
-    aside, apart, over, rise = where[:, later] - np.asarray(lfilter([_FORGOTTEN], [1.0, _FORGOTTEN - 1.0], where))
+    aside, apart, over, rise = where[:, later] - _faded(_FORGOTTEN * where, 1.0 - _FORGOTTEN)
     head = life.gaze * np.stack([aside + 0.5 * apart, 0.3 * over, -0.5 * rise]) - 0.5 * chest
     head[2] += sinking
 
@@ -172,6 +172,12 @@ def _smooth(x: Array) -> Array:
     last = np.where(t < OPENING_FRAMES, OPENING_FRAMES - 1, n - 1)
     places = np.clip(t + np.arange(-half, half + 1)[:, None], 0, np.minimum(last, n - 1))
     return sum(w * x[..., place] for w, place in zip(_SMOOTH, places, strict=True))  # type: ignore[return-value]
+
+
+def _faded(x: Array, kept: float) -> Array:
+    """(..., T) running sums of which each frame keeps the share `kept`. scipy.signal would take half a second to import."""
+    rows = [list(accumulate(row, lambda total, new: new + kept * total)) for row in x.reshape(-1, x.shape[-1]).tolist()]
+    return np.array(rows).reshape(x.shape)
 
 
 def _envelope(n: int) -> Array:
