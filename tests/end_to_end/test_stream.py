@@ -25,10 +25,11 @@ from daemon.wire import events as ev
 from daemon.wire.codec import decode_event, encode
 from daemon.wire.requests import Release, Say
 from tests.support.harness import MMMD, MOST_CLIPPED_IN_AN_UNDERRUN, RunningDaemon
+from tests.support.robot_states import within
 
 pytestmark = pytest.mark.realtime
 
-PARK_S, LIMP_S = 1.2, 0.4
+PARK_S, LIMP_S = 2.0, 0.4
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "stream_sine.py"
 PERIOD_S = 0.02
 
@@ -83,6 +84,11 @@ def stages(stream: Stream) -> list[str]:
     return [e.stage for e in stream.news.events if isinstance(e, ev.Progress)]
 
 
+def lease_is(robot: Client, state: str) -> bool:
+    lease = robot.status().stream.lease
+    return lease is not None and lease.state == state
+
+
 def until_still(robot: Client, within_s: float = 3.0) -> list[float]:
     """Wait until two looks show the same goal; the goal."""
     end_s, before = time.monotonic() + within_s, [math.nan]
@@ -135,19 +141,19 @@ def test_silence_brakes_and_holds_then_parks_then_limp(robot):
     rest = robot.status().goal_rad
     with pytest.raises(RefusedError) as caught, robot.stream("sleepy") as stream:
         wave(robot, stream, 0.4)
-        time.sleep(0.35)
+        within(10, "silent", lambda: lease_is(robot, "silent"))
         held = until_still(robot)
         assert robot.status().stream.lease.held_by == "silence"
-        stream.send([q + 0.1 for q in rest])  # it lives: the robot goes on
-        time.sleep(0.1)
-        assert robot.status().stream.lease.state == "streaming"
-        time.sleep(0.3)
-        until_still(robot)
-        assert robot.status().goal_rad != held
+
+        def goes_on() -> bool:
+            stream.send([q + 0.1 for q in rest])
+            return lease_is(robot, "streaming") and robot.status().goal_rad != held
+
+        within(10, "a target after silence moves it again", goes_on)
         silent_s = time.monotonic()
-        parking = robot.wait_for("parking", timeout_s=PARK_S + 1)
+        parking = robot.wait_for("parking", timeout_s=20)
         assert parking.stream.lease is None and parking.command is None
-        robot.wait_for("limp", timeout_s=8)
+        robot.wait_for("limp", timeout_s=20)
         assert time.monotonic() - silent_s > LIMP_S
         stream.send(rest)
     assert caught.value.code == "lease_silent"
@@ -175,11 +181,13 @@ def test_a_text_that_cannot_be_made_leaves_the_stream_going(robot):
 
 
 def test_a_lease_may_name_a_shorter_silence(robot):
-    with robot.stream("quick", silence_s=0.05) as stream:
-        assert stream.news.events[0].silence_s == 0.05
+    ends = robot.endpoints
+    with contextlib.suppress(RefusedError), robot.stream("quick", silence_s=0.05) as stream:  # over, where all is slow
         stream.send(robot.status().goal_rad)
-        time.sleep(0.1)
-        assert robot.status().stream.lease.state == "silent"
+        stream.until(lambda event: isinstance(event, ev.Progress) and event.stage == "silent", 10, ends.cmd)
+    assert stream.news.events[0].silence_s == 0.05
+    silent = [e.reason for e in stream.news.events if isinstance(e, ev.Progress) and e.stage == "silent"]
+    assert silent and "no target for 0.05 s" in silent[0]
 
 
 def test_a_text_takes_over_and_the_stream_says_no_more(robot):
@@ -213,7 +221,7 @@ def test_what_ends_a_motion_ends_a_lease(robot, verb):
         wave(robot, stream, 0.4)
         began_s = time.monotonic()
         {"stop": robot.stop, "cancel": robot.cancel, "park": robot.park, "estop": robot.estop}[verb]()
-        assert time.monotonic() - began_s < 10
+        assert time.monotonic() - began_s < 30
         time.sleep(0.05)
         goal = until_still(robot)
         for _ in range(10):
@@ -226,6 +234,24 @@ def test_what_ends_a_motion_ends_a_lease(robot, verb):
     assert len(terminal) == 1
 
 
+def send_bad_ones(robot: Client, raw: zmq.Socket[bytes], stream: Stream) -> None:
+    """One frame of each kind, until it is counted."""
+    rest, names = robot.status().goal_rad, robot.status().joint_names
+    good = {"type": "target", "id": stream.news.id, "secret": stream.news.secret}
+    for frame in (
+        b"wave", b'{"type": "target"}', {**good, "q_rad": [0.0] * (len(rest) + 1)}, {**good, "q_rad": {"tail": 1.0}},
+        {**good, "q_rad": {names[0]: 5000.0}}, {**good, "id": "stolen", "q_rad": rest},
+    ):  # fmt: skip
+        data = frame if isinstance(frame, bytes) else json.dumps(frame).encode()
+        before = dict(robot.status().stream.bad)
+
+        def counted(data: bytes = data, before: dict[str, int] = before) -> bool:
+            raw.send(data)
+            return robot.status().stream.bad != before
+
+        within(20, f"{data!r} is counted", counted)
+
+
 def test_bad_messages_are_counted_and_named_and_move_nothing(robot, running):
     context = zmq.Context()
     raw = context.socket(zmq.PUB)
@@ -234,29 +260,19 @@ def test_bad_messages_are_counted_and_named_and_move_nothing(robot, running):
         before = dict(robot.status().stream.bad)
         with robot.stream("careful") as stream:
             rest = robot.status().goal_rad
-            n, name = len(rest), robot.status().joint_names[0]
-            good = {"type": "target", "id": stream.news.id, "secret": stream.news.secret}
-            for frame in (
-                b"wave", b'{"type": "target"}', {**good, "q_rad": [0.0] * (n + 1)}, {**good, "q_rad": {"tail": 1.0}},
-                {**good, "q_rad": {name: 5000.0}}, {**good, "id": "stolen", "q_rad": rest},
-            ):  # fmt: skip
-                data = frame if isinstance(frame, bytes) else json.dumps(frame).encode()
-                code_seen = dict(robot.status().stream.bad)
-                for _ in range(100):
-                    raw.send(data)
-                    time.sleep(0.01)
-                    if robot.status().stream.bad != code_seen:
-                        break
-            assert robot.status().goal_rad == rest
-            stream.send(rest)
-            time.sleep(0.1)
-            stream.send(rest)
+            with fed(stream, rest):  # bad messages are no sign of life
+                send_bad_ones(robot, raw, stream)
+            assert robot.status().goal_rad == pytest.approx(rest, abs=1e-6)
+
+            def told() -> set[str]:
+                stream.send(rest)  # which also hears what has come
+                return {e.status for e in stream.news.events if isinstance(e, ev.Progress) and e.stage == "bad_target"}
+
+            within(20, "told", lambda: told() >= {"wrong_number", "unknown_joint", "not_finite"})
         bad = robot.status().stream.bad
         for code in ("bad_json", "bad_value", "wrong_number", "unknown_joint", "not_finite", "no_lease"):
             assert bad.get(code, 0) > before.get(code, 0), (code, bad)
-        told = [e for e in stream.news.events if isinstance(e, ev.Progress) and e.stage == "bad_target"]
-        assert {e.status for e in told} >= {"wrong_number", "unknown_joint", "not_finite"}
-        assert all(e.reason for e in told)
+        assert all(e.reason for e in stream.news.events if isinstance(e, ev.Progress) and e.stage == "bad_target")
     finally:
         context.destroy(linger=0)
 
@@ -345,13 +361,17 @@ def test_a_client_that_is_killed_leaves_no_arm_moving(robot, running):
         assert robot.status().state == "moving"
         child.send_signal(signal.SIGKILL)
         child.wait(5)
-    killed_s = time.monotonic()
-    while robot.status().stream.lease.held_by != "silence":
-        assert time.monotonic() - killed_s < 1.0, "lease_s is 0.2"
-    goal = until_still(robot, within_s=1.0)
+
+    def is_held() -> bool:
+        lease = robot.status().stream.lease
+        return lease is None or lease.held_by == "silence"
+
+    within(1.5, "the arm is held: lease_s is 0.2", is_held)
+    goal = until_still(robot)
     time.sleep(0.2)
-    assert robot.status().goal_rad == goal
-    robot.wait_for("limp", timeout_s=15)
+    now = robot.status()
+    assert now.goal_rad == goal or now.stream.lease is None, "it moves, and not on the way to park"
+    robot.wait_for("limp", timeout_s=20)
     assert robot.status().stream.lease is None
 
 
