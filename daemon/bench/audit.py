@@ -100,7 +100,7 @@ def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -
 
 
 def _summary(*parts: dict[str, Any]) -> str:
-    """What a robot's audits found, in a line."""
+    """One line with the figures that the audits of a robot counted."""
     goals, violations, contacts = (sum(p[key] for p in parts) for key in ("goals", "violations", "self_contacts"))
     return f"{goals:,} goals, {violations} outside a limit, {contacts} poses in self-contact"
 

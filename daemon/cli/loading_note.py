@@ -1,4 +1,4 @@
-"""What a command writes while it waits for its first answer because the daemon still loads the motion model."""
+"""The line that a command writes while the daemon still loads the motion model and the first answer is outstanding."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -27,8 +27,8 @@ from retarget.path.paths import JointState
 FIRST_RETARGET_S = 0.03
 """Seconds assumed until the first chunk of the first trajectory is made; later ones are measured."""
 Purpose = Literal["command", "idle", "revision"]
-"""What new frames are for. A revision waits for no one and takes longer than a command, which would wait as long if both had one
-estimate; idle movements are easier than either."""
+"""Purposes of new frames. Each has its own estimate: nobody waits for a revision, which takes longer than the first frames of a
+command, and idle movements take less time than either."""
 RETRY_MARGIN = 1.2
 """A second attempt is spliced in after this many times the duration of the first, which came too late."""
 
@@ -68,9 +68,7 @@ class Splicer:
     def __init__(self, buffer: SetpointBuffer, clock: Clock = REAL_CLOCK) -> None:
         self._buffer, self._clock = buffer, clock
         self.latencies: dict[Purpose, LatencyEstimate] = {
-            "command": LatencyEstimate(FIRST_RETARGET_S),
-            "idle": LatencyEstimate(FIRST_RETARGET_S),
-            "revision": LatencyEstimate(FIRST_RETARGET_S),
+            purpose: LatencyEstimate(FIRST_RETARGET_S) for purpose in get_args(Purpose)
         }
 
     @contextmanager

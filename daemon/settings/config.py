@@ -92,7 +92,7 @@ def _is_loopback(host: str) -> bool:
 
 @dataclass(frozen=True)
 class Setting:
-    """What is said of a setting beside its name, type and default: once, for config file, environment and command line.
+    """Help, bounds and options of a setting, beside its name, type and default, for config file, environment and command line.
 
     Attributes:
         help: what people read; `{default:g}` stands for the default.
@@ -123,7 +123,7 @@ def settings_of_class(kind: type[DaemonConfig] | type[Endpoints]) -> dict[str, t
 
 @dataclass(frozen=True)
 class Endpoints:
-    """Where the daemon's sockets are."""
+    """Addresses of the daemon's sockets."""
 
     cmd: str = _setting(f"tcp://127.0.0.1:{CMD_PORT}", "endpoint of requests and their events")
     ctl: str = _setting(f"tcp://127.0.0.1:{CTL_PORT}", "endpoint of stop, estop, reset, arm, park, torque, status")

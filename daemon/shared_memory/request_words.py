@@ -175,6 +175,6 @@ class Epochs:
 
     @property
     def unknown_halts(self) -> list[Asked]:
-        """Halts asked for on `ctl` of which the front has not been told."""
+        """Halts that were asked for on `ctl` and not yet told to the front."""
         halts = self._requests.halts(Asker.CTL).items()
         return [Asked(kind, number) for kind, number in halts if number > self._known[kind]]

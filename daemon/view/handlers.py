@@ -17,7 +17,7 @@ _POLICY = "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'; bas
 
 
 class BaseHandler(RequestHandler):
-    """What all addresses have in common: who may use them, and nothing of it kept or framed by other sites."""
+    """Base of all addresses: checks who may use them, and forbids browsers to keep answers and other sites to frame them."""
 
     @property
     def server(self) -> WebState:

@@ -1,4 +1,4 @@
-"""What the addresses of the web server share: access, the daemon behind it, bounds on requests and connections."""
+"""State shared by the addresses of the web server: access, the daemon behind it, bounds on requests and connections."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a checkpoint comes from: recipe, data with its licence, seed, revision of the code, last losses."""
+"""Provenance of a checkpoint: recipe, data with its licence, seed, revision of the code, last losses."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def provenance(
     fps: float,
     start: tuple[Path, Model] | None,
 ) -> dict[str, object]:
-    """What a checkpoint of a run says of itself.
+    """Provenance that a checkpoint of a run carries.
 
     Args:
         recipe: of the run.

@@ -279,7 +279,7 @@ class Stages:
         return Model(tokenizer, transformer, length, scope, self.provenance(), text, self._rest_pose)
 
     def provenance(self) -> dict[str, object]:
-        """Where a checkpoint of this run comes from."""
+        """Provenance of a checkpoint of this run."""
         start = None if self.start is None else (start_path(self.recipe), self.start)
         return provenance(self.recipe, self.run.folder, self.data, self.clips, self._fps, start)
 
