@@ -91,7 +91,7 @@ def test_what_a_failed_test_leaves_open_does_not_fail_another(pytester, monkeypa
 
 @pytest.mark.parametrize("option", [[], ["--void-when-held-up"]], ids=["first run", "second run"])
 @pytest.mark.parametrize("held_up", [True, False])
-def test_only_a_realtime_test_that_fails_while_the_machine_stands_still_is_void(pytester, monkeypatch, option, held_up):
+def test_only_a_realtime_failure_while_the_machine_stands_still_is_void(pytester, monkeypatch, option, held_up):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     pytester.makepyprojecttoml("[tool.pytest.ini_options]\nmarkers = ['realtime']")
     pytester.makeconftest("from tests.conftest import *")

@@ -104,7 +104,7 @@ def write_lying(path: Path, shape: tuple[int, ...], n_bytes: int) -> Path:
         ((500_000, 22, 3), 500_000 * 264, "bytes"),
     ],
 )
-def test_a_file_that_unpacks_to_more_than_a_motion_is_refused_before_it_is_unpacked(tmp_path, shape, n_bytes, says):
+def test_a_file_that_unpacks_to_too_much_is_refused_before_unpacking(tmp_path, shape, n_bytes, says):
     """2 MB of zeros, said to be a motion of 10,000 s, took 1.5 GB."""
     path = write_lying(tmp_path / "bomb.npz", shape, n_bytes)
     with pytest.raises(MotionFileError, match=says):

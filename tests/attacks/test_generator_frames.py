@@ -105,7 +105,7 @@ def wait_until_gone(pid: int) -> None:
         time.sleep(0.05)
 
 
-def test_a_shared_generator_that_is_killed_starts_again_and_ends_with_its_keeper(tmp_path):
+def test_a_killed_shared_generator_restarts_and_ends_with_its_keeper(tmp_path):
     """`mmmd generator` was one process: whatever ended it left every robot without texts."""
     endpoint = f"ipc://{tmp_path}/generator"
     keeper = subprocess.Popen([*MMMD, "generator", "--bind", endpoint], stderr=subprocess.DEVNULL)

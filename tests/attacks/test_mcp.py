@@ -71,7 +71,7 @@ def test_no_line_keeps_a_language_model_from_its_estop(running):
         robot.reset()
 
 
-def test_a_host_that_reads_no_answer_does_not_keep_an_estop_from_being_carried_out(running):
+def test_a_host_that_reads_no_answer_does_not_delay_an_estop(running):
     """Answers were written by the loop that carries out calls: with 64 kB of them unread it stood still."""
     process = subprocess.Popen([*MMMD, "mcp", *running.at], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     try:

@@ -49,7 +49,7 @@ def unplug_and_plug_in(client, servos, state: str) -> None:
 @pytest.mark.parametrize(
     "state", [pytest.param(s, marks=() if s == "moving" else pytest.mark.soak) for s in ALL_STATES]
 )
-def test_a_recorder_that_was_killed_before_the_bus_was_unplugged_changes_nothing(servos, state, tmp_path):
+def test_a_recorder_killed_before_the_bus_is_unplugged_changes_nothing(servos, state, tmp_path):
     daemon = daemon_on(servos, "--log", str(tmp_path / "run.mcap"))
     try:
         with daemon.client() as client:

@@ -46,7 +46,7 @@ def armed(run):
         yield
 
 
-def test_a_story_moves_with_its_first_part_and_leaves_out_what_it_cannot_do(run):
+def test_a_story_moves_with_its_first_part_and_skips_rejected_ones(run):
     with run.client() as robot:
         said = robot.story([("wave with your right hand", 1.6), "walk to the window", ("nod twice", 1.6), ("bow", 2.0)])
         done = said.done

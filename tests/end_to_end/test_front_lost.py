@@ -36,7 +36,7 @@ pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
         pytest.param(("fault", "limp", "arming", "estop"), id="other", marks=pytest.mark.soak),
     ],
 )
-def test_the_front_killed_in_each_state_leaves_a_limp_robot_and_no_process(tmp_path, states):
+def test_a_front_killed_in_each_state_leaves_a_limp_robot_no_process(tmp_path, states):
     """Several daemons at once: hold after 0.5 s, park after 5 s, then the port is given back: of one that is limp after 5 s too."""
     rigs: list[tuple[Servos, RunningDaemon, int]] = []
     try:
@@ -85,7 +85,7 @@ def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands(shared: Share
         assert_works(client)
 
 
-def test_a_frozen_front_means_hold_then_park_and_it_goes_on_when_it_is_back(shared: SharedDaemon):
+def test_a_frozen_front_means_hold_then_park_and_it_resumes_afterwards(shared: SharedDaemon):
     daemon = shared.daemon
     parked = daemon.said.count("PARKING -> LIMP")
     with shared.client() as client:

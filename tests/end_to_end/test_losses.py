@@ -40,7 +40,7 @@ def test_lost_and_broken_replies_change_nothing_that_people_see(shared: SharedDa
     assert shared.servos.bus.faults.struck["drop"]
 
 
-def test_a_servo_that_does_not_answer_when_arming_is_a_fault_before_anything_moves(shared: SharedDaemon):
+def test_a_silent_servo_when_arming_is_a_fault_before_anything_moves(shared: SharedDaemon):
     before = shared.servos.bus.audit.report()["goals"]
     shared.servos.suffer(Fault("silent", servo_id=5))
     with shared.client() as client, pytest.raises(RefusedError) as caught:

@@ -132,7 +132,7 @@ def test_a_wrong_baud_and_other_servos_show_a_table(tty, tmp_path):
     assert "expected" in other and "found" in other
 
 
-def test_over_a_real_tty_a_text_moves_and_a_second_daemon_is_told_who_has_the_port(tty):
+def test_a_text_moves_over_a_tty_and_a_second_daemon_learns_the_owner(tty):
     url = tty.url(baud_of("op3"))
     daemon = RunningDaemon(robot="op3", bus=url)
     try:

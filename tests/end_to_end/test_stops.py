@@ -146,7 +146,7 @@ def test_no_thread_of_ctl_waits_for_a_core_while_it_has_the_interpreter(shared: 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 @pytest.mark.parametrize("states", some_and_all(("moving",), ("moving", "limp")))
-def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(shared: SharedDaemon, number, states):
+def test_the_loss_of_the_ctl_process_is_an_estop_and_it_is_restarted(shared: SharedDaemon, number, states):
     with shared.client() as client:
         for state in states:
             bring_to(client, state)
@@ -169,9 +169,7 @@ def test_the_loss_of_what_takes_estops_is_an_estop_and_it_is_started_again(share
         pytest.param(signal.SIGSTOP, 0.6, marks=pytest.mark.soak),
     ],
 )
-def test_an_estop_without_a_bus_process_is_told_as_owed_and_carried_out_by_the_next_one(
-    shared: SharedDaemon, number, after_s
-):
+def test_an_estop_without_a_bus_process_is_owed_to_the_next_one(shared: SharedDaemon, number, after_s):
     """Of nine e-stops given so all nine were acknowledged, and none was carried out."""
     person = Person(shared.daemon)
     try:

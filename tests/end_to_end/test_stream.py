@@ -160,7 +160,7 @@ def test_silence_brakes_and_holds_then_parks_then_limp(robot):
     assert "silent" in stages(stream)
 
 
-def test_a_command_that_waits_for_a_silent_lease_is_played_instead_of_parking(robot, running):
+def test_a_command_waiting_for_a_silent_lease_is_played_before_parking(robot, running):
     with pytest.raises(RefusedError) as caught, robot.stream("in the way") as stream, running.client() as other:
         stream.send(robot.status().goal_rad)
         said = other.say("wave", when="after", timeout_s=PARK_S + 20)

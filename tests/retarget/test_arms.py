@@ -109,7 +109,7 @@ def test_the_straight_and_the_raised_arm_are_reached_too(family, tmp_path):
 
 
 @pytest.mark.parametrize("family", LEAST_ERROR)
-def test_an_arm_that_cannot_reach_comes_as_near_as_any_pose_of_a_fine_grid(family, tmp_path):
+def test_an_arm_that_cannot_reach_comes_as_near_as_any_pose_of_a_grid(family, tmp_path):
     low, high = -110, 95
     arms = both_arms(made_robot(tmp_path, family, range_deg=(low, high)))
     rng, n = np.random.default_rng(4), arms.n_joints

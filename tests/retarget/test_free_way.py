@@ -85,7 +85,7 @@ def test_from_clear_poses_and_from_slight_contacts_a_way_is_found(name, n_poses)
 
 
 @pytest.mark.parametrize("name", list_robots())
-def test_rest_and_park_pose_of_every_robot_are_joined_by_a_way_that_keeps_the_margin(name):
+def test_a_way_with_margin_joins_rest_and_park_pose_of_every_robot(name):
     robot = load_robot(name)
     contact = SelfContact(robot)
     search = RrtConnect(robot, contact, robot.rest_rad, robot.park_rad)
@@ -106,7 +106,7 @@ def blocked(name: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("name", ["reference", "toddlerbot"])  # the short arms of op2 find it free from everywhere
-def test_where_the_straight_line_goes_through_the_robot_the_way_goes_round_it(name):
+def test_where_a_straight_line_crosses_the_robot_the_way_goes_round(name):
     start, goal = blocked(name)
     way = searched(name, start, goal).way
     assert way is not None and len(way) > 2

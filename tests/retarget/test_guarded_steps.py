@@ -116,7 +116,7 @@ def test_what_ends_the_steps_brakes_on_the_way_that_was_proved():
             assert BODIES["toddlerbot"].clearance_m(np.array(way)).min() > 0.0
 
 
-def test_a_target_within_reach_is_met_exactly_and_one_outside_is_said_to_be_clipped():
+def test_a_target_within_reach_is_met_and_one_outside_counts_as_clipped():
     robot, guard = begun("reference")
     near = robot.rest_rad + np.clip(0.2, None, (robot.position_max_rad - robot.rest_rad) / 2)
     for _ in range(200):
@@ -126,7 +126,7 @@ def test_a_target_within_reach_is_met_exactly_and_one_outside_is_said_to_be_clip
     assert guard.clipped
 
 
-def test_a_robot_that_stands_within_the_margin_may_leave_it_but_not_go_deeper():
+def test_a_robot_within_the_margin_may_leave_it_but_not_go_deeper():
     """It may have been led there by hand while it was limp."""
     robot = ROBOTS["op2"]
     guard = GUARDS["op2"]

@@ -123,9 +123,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 @given(data=st.data())
 @settings(max_examples=examples(200), deadline=None)
-def test_an_absurd_number_anywhere_is_refused_or_leaves_a_robot_whose_figures_are_sound(
-    files: dict[str, Path], data: st.DataObject
-) -> None:
+def test_an_absurd_number_is_refused_or_leaves_sound_figures(files: dict[str, Path], data: st.DataObject) -> None:
     """1e300 as an acceleration or a coupling was taken, and the limiter's sums were no numbers any more."""
     name = data.draw(st.sampled_from(sorted(files)))
     lines = (ROBOTS_DIR / name / "robot.toml").read_text().splitlines()
@@ -163,7 +161,7 @@ def test_a_description_that_mujoco_cannot_read_is_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", list_robots())
-def test_packaged_robots_are_slower_than_their_servos_and_park_without_touching(name: str) -> None:
+def test_packaged_robots_are_slower_than_servos_and_park_without_contact(name: str) -> None:
     robot = load_robot(name)
     for tick_s, servo in zip(JointServoMap(robot).velocity_limit_tick_s, robot.servos, strict=True):
         assert tick_s * 2 * math.pi / servo.model.ticks_per_turn <= servo.model.no_load_speed_rad_s

@@ -93,7 +93,7 @@ ROBOTS = {name: load_robot(name) for name in list_robots()} | {
 @pytest.mark.parametrize("name", ROBOTS)
 @given(data=st.data())
 @settings(max_examples=examples(40))
-def test_nothing_is_off_by_more_than_half_a_tick_and_nothing_leaves_its_limits(name: str, data: st.DataObject) -> None:
+def test_ticks_are_at_most_half_a_tick_off_and_within_limits(name: str, data: st.DataObject) -> None:
     robot = ROBOTS[name]
     servo_map = JointServoMap(robot)
     low, high = servo_map.position_range_rad

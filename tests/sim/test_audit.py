@@ -89,7 +89,7 @@ def hurried(period_s: float, n: int, wait_s: float = 0.0, **options: int) -> boo
     return "hurry" in audit.violations
 
 
-def test_goals_faster_than_the_robots_rate_are_a_violation_unless_they_only_waited() -> None:
+def test_goals_faster_than_the_robots_rate_are_a_violation_unless_queued() -> None:
     assert not hurried(0.01, 500)
     assert hurried(0.005, 100), "twice the rate of the robot's file"
     assert hurried(0.0015, 25, wait_s=0.25), "in process nothing waits"
@@ -109,7 +109,7 @@ def test_cycles_that_are_late_but_never_by_a_period_are_no_burst(late: list[floa
     assert not audit.violations
 
 
-def test_a_goal_lost_on_the_wire_is_a_step_of_the_wires_and_not_of_the_daemons() -> None:
+def test_a_goal_lost_on_the_wire_is_not_a_step_of_the_daemons() -> None:
     step = int(STEP)
     audit = Audit(ROBOT)
     audit.torque(0.0, SERVO.servo_id, True, 2048, 2048)
@@ -123,7 +123,7 @@ def test_a_goal_lost_on_the_wire_is_a_step_of_the_wires_and_not_of_the_daemons()
     assert dict(audit.violations) == {}
 
 
-def test_goals_to_a_tripped_servo_are_counted_after_a_moment_and_asking_it_for_torque_is_a_violation() -> None:
+def test_goals_to_a_tripped_servo_count_and_torque_is_a_violation() -> None:
     audit = Audit(ROBOT)
     for i in range(30):
         audit.goal(0.01 * i, SERVO.servo_id, 2048, False, faulted=True)
@@ -138,9 +138,7 @@ def test_goals_to_a_tripped_servo_are_counted_after_a_moment_and_asking_it_for_t
 
 
 @pytest.mark.parametrize(("answers", "violations"), [(0, 0), (1, 1)])
-def test_torque_asked_of_a_servo_that_has_just_tripped_is_a_violation_once_it_has_said_so(
-    answers: int, violations: int
-) -> None:
+def test_torque_for_a_tripped_servo_is_a_violation_once_it_was_reported(answers: int, violations: int) -> None:
     audit = Audit(ROBOT)
     audit.goal(0.0, SERVO.servo_id, 2048, False)  # pinned
     for _ in range(answers):
@@ -160,7 +158,7 @@ def led_on(alerts: int, for_s: float) -> dict[str, int]:
     return dict(audit.violations)
 
 
-def test_a_servo_that_has_tripped_and_said_so_is_not_led_on_but_may_come_to_rest() -> None:
+def test_a_servo_reported_as_tripped_may_only_come_to_rest() -> None:
     rest_s = JOINT.velocity_limit_rad_s / JOINT.acceleration_limit_rad_s2
     assert led_on(ANSWERS_TOLD, rest_s) == {}
     assert led_on(ANSWERS_TOLD - 1, rest_s + 5.0) == {}, "nobody may have heard it"
@@ -193,7 +191,7 @@ def test_a_trip_is_known_to_the_client_when_whole_answers_have_told_it(
     assert b.bus.audit.writes_in_fault > 0
 
 
-def test_a_servo_stopped_by_its_watchdog_may_refuse_goals_until_it_was_heard() -> None:
+def test_a_servo_stopped_by_its_watchdog_may_refuse_goals_until_read() -> None:
     b = Bench("XM430-W350", "XM430-W350", faults=(Fault("deaf", start_s=1.0, end_s=1.5, servo_id=1),))
     goals = packet.sync_write(116, 4, [(i, (2048).to_bytes(4, "little")) for i in (1, 2)])
     for i in (1, 2):
@@ -256,7 +254,7 @@ def test_a_pose_in_contact_is_counted_and_described():
     assert "mm deep" in report["contact_details"][0]
 
 
-def test_a_contact_over_which_torque_came_on_is_inherited_until_it_ends_or_grows():
+def test_a_contact_from_before_torque_is_inherited_until_it_ends_or_grows():
     contacts, pose = ContactAudit(OP2), poses_of_op2()
     for servo_id, tick in zip(OP2.servo_ids, pose[INSIDE], strict=True):
         contacts.begin(servo_id, tick)

@@ -60,7 +60,7 @@ def test_a_wrong_schedule_is_refused_with_where_and_what_is_allowed(tmp_path: Pa
     assert said in str(caught.value) and str(file) in str(caught.value)
 
 
-def test_a_fault_of_a_servo_that_is_not_there_is_refused_for_it_would_never_strike() -> None:
+def test_a_fault_of_a_servo_that_is_not_there_is_refused() -> None:
     with pytest.raises(FaultFileError, match="fault 2: servo_id: 7; allowed: 1, 2"):
         Bench("XM430-W350", "XL430-W250", faults=(Fault("drop"), Fault("silent", servo_id=7)))
 

@@ -34,7 +34,7 @@ def test_a_cycle_of_twenty_servos_takes_the_time_of_its_bytes(baud: int, fast: b
     assert b.t_s == pytest.approx(wanted_s, rel=1e-9)
 
 
-def test_return_delay_and_turnaround_are_paid_by_each_answer_but_once_in_a_fast_read() -> None:
+def test_each_answer_pays_return_delay_but_a_fast_read_only_once() -> None:
     for fast, answers in ((False, 20), (True, 1)):
         b = Bench(*TWENTY, wire=WireSettings(turnaround_s=20e-6))
         for servo in b.world.all:
@@ -44,7 +44,7 @@ def test_return_delay_and_turnaround_are_paid_by_each_answer_but_once_in_a_fast_
         assert b.t_s == pytest.approx(n_bytes * 1e-5 + answers * 520e-6, rel=1e-9)
 
 
-def test_a_servo_that_is_not_there_costs_the_time_of_its_answer_in_a_group() -> None:
+def test_a_missing_servo_costs_the_time_of_its_answer_in_a_group() -> None:
     b = Bench("XM430-W350", "XM430-W350")
     found = b.ask(packet.sync_read(132, 4, [1, 99, 2]))
     assert [p.servo_id for p in found] == [1, 2]
@@ -74,7 +74,7 @@ def test_talking_into_an_answer_garbles_both() -> None:
     assert PacketDecoder().feed(heard) == []
 
 
-def test_two_servos_with_one_id_garble_each_other_unless_they_say_the_same() -> None:
+def test_two_servos_with_one_id_garble_each_other_unless_alike() -> None:
     b = Bench("XM430-W350", "XM430-W350")
     b.write("id", 1, servo_id=2)
     assert len(b.ask(packet.ping(1))) == 1, "the same bytes at the same time"

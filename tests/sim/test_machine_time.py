@@ -36,7 +36,7 @@ class Machine:
         self.clock.sleep_until(self.clock.now_s() + seconds)
 
 
-def test_time_stands_while_the_host_has_the_machine_and_goes_on_while_a_process_is_stopped(tmp_path: Path) -> None:
+def test_time_stands_while_the_host_runs_but_not_for_a_stopped_process(tmp_path: Path) -> None:
     machine = Machine(tmp_path)
     machine.pass_s(0.5, taken_s=0.5)
     assert machine.time.now_s() == pytest.approx(0.0)

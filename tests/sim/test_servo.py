@@ -131,7 +131,7 @@ def test_indirect_addresses_bring_scattered_bytes_in_one_read(name: str, firmwar
     assert int.from_bytes(data[5:7], "little") == b.read("present_input_voltage")
 
 
-def test_a_write_through_indirect_addresses_is_a_write_and_keeps_its_limits() -> None:
+def test_a_write_through_indirect_addresses_keeps_its_limits() -> None:
     b = Bench()
     for i, target in enumerate([65, 116, 117, 118, 119]):
         b.ask(packet.write(1, 168 + 2 * i, target.to_bytes(2, "little")))
@@ -141,7 +141,7 @@ def test_a_write_through_indirect_addresses_is_a_write_and_keeps_its_limits() ->
     assert (b.read("led"), b.read("goal_position")) == (1, 2100)
 
 
-def test_a_reboot_loses_ram_and_torque_keeps_eeprom_and_is_silent_for_a_while() -> None:
+def test_a_reboot_loses_ram_and_torque_keeps_eeprom_and_takes_a_while() -> None:
     b = Bench()
     for name, value in (("return_delay_time", 10), ("torque_enable", 1), ("position_p_gain", 77), ("led", 1)):
         assert b.write(name, value) == 0
@@ -218,7 +218,7 @@ def test_torque_by_goal_update() -> None:
 
 
 @pytest.mark.parametrize("kind", ["overload", "hot"])
-def test_a_latched_error_drops_torque_shows_in_every_answer_and_needs_a_reboot(kind: str) -> None:
+def test_a_latched_error_drops_torque_is_reported_and_needs_a_reboot(kind: str) -> None:
     b = Bench(faults=(Fault(kind, start_s=1.0),))
     b.write("torque_enable", 1)
     b.wait(1.1)
@@ -294,7 +294,7 @@ def test_any_instruction_feeds_the_watchdog_also_one_for_another() -> None:
     assert b.read("bus_watchdog") == 5
 
 
-def test_the_watchdog_of_the_330_size_flags_but_does_not_stop_and_old_firmware_has_none() -> None:
+def test_the_watchdog_of_the_330_size_flags_but_does_not_stop() -> None:
     b = Bench("XL330-M288")
     for name, value in (("torque_enable", 1), ("bus_watchdog", 5), ("goal_position", 4000)):
         b.write(name, value)
@@ -307,7 +307,7 @@ def test_the_watchdog_of_the_330_size_flags_but_does_not_stop_and_old_firmware_h
     assert old.read("bus_watchdog") == 5 and abs(old.read("present_position") - 3000) <= 3
 
 
-def test_with_a_homing_offset_in_extended_mode_the_trip_itself_moves_the_joint() -> None:
+def test_a_trip_moves_a_joint_with_homing_offset_in_extended_mode() -> None:
     """DynamixelSDK#584."""
     b = Bench()
     for name, value in (("operating_mode", 4), ("homing_offset", 200), ("torque_enable", 1), ("bus_watchdog", 5)):
@@ -420,7 +420,7 @@ def test_an_integral_gain_takes_away_what_friction_left() -> None:
     assert end(400) <= 2
 
 
-def test_a_heavier_proportional_gain_is_a_stiffer_servo_and_feed_forward_takes_lag() -> None:
+def test_more_proportional_gain_stiffens_and_feed_forward_reduces_lag() -> None:
     def lag(**gains: int) -> float:
         b = Bench()
         for name, value in (

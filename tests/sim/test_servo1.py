@@ -101,7 +101,7 @@ def test_in_a_bulk_read_nobody_goes_on_behind_one_who_stays_away(faults: tuple[F
     assert [p.servo_id for p in found] == [1]
 
 
-def test_an_overload_takes_torque_and_its_limit_until_the_limit_is_written_again() -> None:
+def test_an_overload_takes_torque_until_its_limit_is_written_again() -> None:
     b = Bench("AX-12A", faults=(Fault("overload", start_s=1.0),))
     b.write("torque_enable", 1)
     b.wait(1.1)
@@ -112,7 +112,7 @@ def test_an_overload_takes_torque_and_its_limit_until_the_limit_is_written_again
     assert b.write("torque_enable", 1) == 0
 
 
-def test_the_torque_limit_alone_is_in_force_and_one_over_the_owners_max_torque_is_a_violation() -> None:
+def test_a_torque_limit_is_in_force_and_above_max_torque_a_violation() -> None:
     """Max torque is only what the limit begins with when power comes on: who writes all over it undoes what the owner set."""
     b = Bench("AX-12A")
     b.write("max_torque", 300)

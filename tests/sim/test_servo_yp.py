@@ -42,7 +42,7 @@ def test_each_mistake_earns_its_error_and_changes_nothing(
 
 
 @BOTH
-def test_indirect_addresses_are_written_with_torque_off_and_outlast_a_reboot(name: str) -> None:
+def test_indirect_addresses_are_written_without_torque_and_kept(name: str) -> None:
     b = Bench(name)
     start = 256 if name == Y else 168
     wanted = [b.servo.items["present_position"].address + i for i in range(4)]
@@ -62,7 +62,7 @@ def test_a_p_shows_its_ram_alone_through_indirect_addresses() -> None:
     assert b.ask(packet.write(1, 168, (31).to_bytes(2, "little")))[0].error == ErrorCode.DATA_RANGE
 
 
-def test_a_y_keeps_gains_profile_and_whole_turns_over_a_reboot_and_takes_gains_under_torque() -> None:
+def test_a_y_keeps_gains_profile_and_turns_over_a_reboot() -> None:
     b = Bench(Y)
     b.servo.position_tick = 524288 + 1000
     assert b.write("torque_enable", 1) == 0

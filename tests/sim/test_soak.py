@@ -218,7 +218,7 @@ def usage() -> tuple[int, int]:
 
 @pytest.mark.soak
 @pytest.mark.parametrize("seed", SEEDS)
-def test_hours_of_faults_break_no_limit_and_every_recovery_is_armed_by_a_person(seed: int) -> None:
+def test_hours_of_faults_break_no_limit_and_a_person_arms_each_time(seed: int) -> None:
     robot = load_robot(ROBOT)
     faults = schedule(robot, HOURS, seed)
     link = BusLink.create(robot.n_joints, robot.n_servos)

@@ -71,7 +71,7 @@ def test_in_a_fast_read_the_next_servo_goes_on_from_the_and(kind: str, tick: int
 
 
 @pytest.mark.parametrize("kind", ["read", "sync", "bulk"])
-def test_twins_that_begin_at_different_times_leave_noise_and_the_others_are_heard(kind: str) -> None:
+def test_twins_that_answer_at_different_times_garble_only_themselves(kind: str) -> None:
     b = with_a_twin()
     b.world.all[3].write(9, b"\1")  # 2 us of return delay, a fifth of a byte
     assert [p.servo_id for p in PacketDecoder().feed(b.send(READS[kind]))] == ([] if kind == "read" else [2, 3])

@@ -24,7 +24,7 @@ def log_of(q_rad: np.ndarray, period_s: float) -> Log:
     ])  # fmt: skip
 
 
-def test_a_plan_that_keeps_the_limits_has_no_violations_and_goals_of_its_own() -> None:
+def test_a_plan_within_the_limits_has_no_violations_and_its_own_goals() -> None:
     q = swing(ROBOT, 2.0)
     counts = audited_plans(log_of(q, ROBOT.bus.period_s), ROBOT)
     assert counts == {1: (len(q) // 2 * ROBOT.n_servos, 0), 2: (len(q) // 2 * ROBOT.n_servos, 0)}

@@ -161,7 +161,7 @@ def test_a_language_model_can_say_look_and_stop(running):
 
 
 @pytest.mark.parametrize("halt", ["stop", "estop"])
-def test_a_halt_does_not_wait_for_what_is_said_and_ends_what_has_not_begun(running, halt):
+def test_a_halt_waits_for_no_text_and_ends_those_not_begun(running, halt):
     """Answered one after the other, a stop came when the motion was over."""
 
     async def main() -> None:

@@ -90,7 +90,7 @@ def test_a_front_that_dies_while_it_arms_leaves_the_robot_limp(monkeypatch):
 
 
 @pytest.mark.parametrize(("item", "value"), [("drive_mode", 1), ("operating_mode", 1), ("max_position_limit", 2100)])
-def test_a_setting_that_was_changed_since_the_start_is_found_before_torque_comes_on(item, value):
+def test_a_setting_changed_since_the_start_is_found_before_torque(item, value):
     with rig() as r:
         r.arm()
         r.link.request(P)
@@ -150,7 +150,7 @@ def test_one_servo_that_stops_by_its_watchdog_is_a_named_fault(servo_id):
 @pytest.mark.parametrize(("robot", "servo_id", "before"), [
     ("reference", None, None), ("ffw_bg2", None, None), ("reference", 13, BusRequest.ESTOP_HOLD), ("op3", 1, BusRequest.STOP),
 ])  # fmt: skip
-def test_what_stops_by_its_watchdog_in_a_fault_or_a_held_e_stop_gets_no_goals_either(robot, servo_id, before):
+def test_a_servo_stopped_by_its_watchdog_in_a_fault_gets_no_goals(robot, servo_id, before):
     """All of them silent is a fault before the watchdogs run out: found by a soak, after 2.7 hours."""
     with rig(robot, Fault("deaf", 6.0, 6.97, servo_id=servo_id)) as r:
         r.arm()

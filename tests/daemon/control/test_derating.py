@@ -57,7 +57,7 @@ def test_a_moment_of_high_current_slows_nothing_and_the_share_never_jumps():
     assert np.abs(np.diff(shares)).max() <= 0.5 * PERIOD_S + 1e-9
 
 
-def test_a_hot_servo_slows_the_robot_before_it_trips_and_it_comes_to_the_same_end():
+def test_a_hot_servo_slows_the_robot_before_it_trips():
     def play(*faults: Fault) -> SimpleNamespace:
         with rig("reference", *faults, slow_every=5) as r:
             r.arm()

@@ -54,7 +54,7 @@ def parts(name: str) -> tuple[RobotModel, JointServoMap, TurnWatch, SafetyLimite
 @pytest.mark.parametrize("name", [*list_robots(), "paired"])
 @given(data=st.data())
 @settings(max_examples=examples(150), deadline=None)
-def test_from_every_readable_tick_the_first_goal_is_that_tick_or_arming_is_refused_by_name(
+def test_the_first_goal_is_the_tick_that_was_read_or_arming_is_refused(
     name: str, paired: str, data: st.DataObject
 ) -> None:
     robot, ticks, turns, gate = parts(paired if name == "paired" else name)
@@ -122,7 +122,7 @@ def test_a_servo_with_a_wrong_count_of_turns_is_refused_by_name(turns: int) -> N
             assert r.sim.audit.goals == 0
 
 
-def test_a_waist_that_lost_its_power_while_turned_is_refused_until_it_is_led_to_its_park_pose() -> None:
+def test_a_turned_waist_that_lost_power_is_refused_until_led_to_park() -> None:
     """Its two servos stood at 192 degrees and report -168 afterwards: both are within the joint's range."""
     robot = load_robot("toddlerbot")
     start = robot.park_rad.copy()
@@ -147,7 +147,7 @@ def test_a_waist_that_lost_its_power_while_turned_is_refused_until_it_is_led_to_
         r.assert_limits_kept()
 
 
-def test_a_waist_that_was_followed_all_the_time_is_armed_wherever_it_is_turned() -> None:
+def test_a_waist_whose_turns_were_followed_is_armed_anywhere() -> None:
     """An e-stop in a turned pose: its turns were counted without a pause, so they are known; after a power cut they are not."""
     with rig("toddlerbot") as r:
         r.arm()
@@ -180,7 +180,7 @@ def test_a_waist_that_was_followed_all_the_time_is_armed_wherever_it_is_turned()
 
 
 @pytest.mark.parametrize("apart_tick", [1, 7, 20, 40])
-def test_two_servos_of_a_joint_that_disagree_are_led_together_slowly_or_refused(paired: str, apart_tick: int) -> None:
+def test_two_disagreeing_servos_of_a_joint_are_led_together_or_refused(paired: str, apart_tick: int) -> None:
     with rig(paired) as r:
         before = r.sim.servos[20].position_tick
         armed_from(r, 20, before + apart_tick)

@@ -94,7 +94,7 @@ def test_late_cycles_are_skipped_and_counted_not_made_up_for():
 @pytest.mark.parametrize(
     ("request_", "early"), [(BusRequest.ESTOP, True), (BusRequest.ESTOP_HOLD, False), (BusRequest.STOP, False)]
 )
-def test_an_e_stop_that_cuts_waits_for_no_cycle_and_what_brakes_keeps_the_rate(request_, early):
+def test_an_e_stop_that_cuts_waits_for_no_cycle_and_braking_keeps_rate(request_, early):
     robot = load_robot("reference")
     period_s = robot.bus.period_s
     link = BusLink.create(robot.n_joints)

@@ -138,7 +138,7 @@ def blocked(name: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", ["reference", "toddlerbot"])
-def test_where_the_straight_way_to_park_goes_through_the_robot_it_goes_round(name):
+def test_a_way_to_park_goes_round_the_robot_instead_of_through_it(name):
     start = blocked(name)
     with rig(name, start_rad=start) as r:
         r.streamer.rest_rad = start
@@ -146,7 +146,7 @@ def test_where_the_straight_way_to_park_goes_through_the_robot_it_goes_round(nam
         assert_parks(r)
 
 
-def test_without_a_free_way_to_park_it_holds_says_so_and_goes_limp_in_time(monkeypatch):
+def test_without_a_free_way_to_park_it_holds_says_so_and_goes_limp(monkeypatch):
     start = blocked("reference")
     with rig("reference", start_rad=start) as r:
         r.streamer.rest_rad = start

@@ -38,7 +38,7 @@ def test_a_joint_that_is_moved_while_goals_are_pinned_is_pinned_anew(times):
         r.assert_limits_kept()
 
 
-def test_a_joint_that_never_stands_still_while_goals_are_pinned_is_a_named_fault():
+def test_a_joint_that_never_stands_still_while_pinned_is_a_named_fault():
     with rig() as r:
         Pushed(r, 60, 99)
         r.link.request(BusRequest.ARM)
@@ -62,7 +62,7 @@ def test_a_joint_moved_within_the_tolerance_is_no_reason_to_pin_anew():
 
 
 @pytest.mark.parametrize("name", ["reference", "op3", "reachy_2021", "poppy_torso"])
-def test_a_servo_that_trips_while_goals_are_pinned_is_named_and_nobody_gets_torque(name: str) -> None:
+def test_a_servo_that_trips_while_pinned_is_named_and_none_gets_torque(name: str) -> None:
     """A soak of 4.8 hours met it: torque was asked of all, the tripped one among them, and only then was it noticed."""
     with rig(name) as r:
         last = r.robot.servo_ids[-1]
@@ -79,7 +79,7 @@ def test_a_servo_that_trips_while_goals_are_pinned_is_named_and_nobody_gets_torq
 
 
 @pytest.mark.parametrize("probability", [0.05, 0.3])
-def test_a_limp_joint_that_sinks_while_goals_are_pinned_on_a_bad_wire_is_pinned_where_it_came_to_hang(probability):
+def test_a_joint_that_sinks_during_pinning_is_pinned_where_it_hangs(probability):
     """Answers are lost, so pinning takes long enough for an arm to sink: torque came on over a goal that the joint had left."""
     with rig("reference", Fault("drop", 0.0, 1.5, probability)) as r:
         servo = r.sim.servos[ID]
@@ -123,7 +123,7 @@ def test_servos_that_a_goal_wakes_get_none_after_their_power_failed(name, outage
         r.assert_limits_kept()
 
 
-def test_one_servo_that_lost_its_power_gets_no_goal_and_the_others_come_to_rest():
+def test_a_servo_without_power_gets_no_goal_and_the_others_come_to_rest():
     with rig("reachy_2021") as r:
         r.arm()
         servo = r.sim.servos[13]

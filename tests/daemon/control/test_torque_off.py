@@ -81,7 +81,7 @@ def test_an_e_stop_that_holds_brakes_within_limits_and_the_second_cuts(state):
         r.assert_limits_kept()
 
 
-def test_a_reset_makes_limp_what_an_e_stop_holds_and_before_torque_is_on_there_is_nothing_to_hold():
+def test_a_reset_makes_limp_what_an_e_stop_holds():
     with rig() as r:
         r.link.request(BusRequest.ARM)
         r.cycle(2)

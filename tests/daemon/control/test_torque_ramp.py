@@ -31,7 +31,7 @@ def torque_on_s(name: str) -> float:
     [(name, share) for name in ("poppy_torso", "op2") for share in np.linspace(0.0, 1.0, 10).round(3).tolist()]
     + [(name, share) for name in ("reachy_2021", "op3", "toddlerbot") for share in (0.1, 0.5)],
 )
-def test_a_servo_that_trips_at_any_instant_of_the_ramp_stays_limp_and_is_named(name: str, share: float) -> None:
+def test_a_servo_that_trips_anywhere_in_the_ramp_stays_limp_and_is_named(name: str, share: float) -> None:
     """Writing torque_limit clears the alarm of a protocol 1.0 servo, and the next goal switched its torque on again."""
     tripped_s = torque_on_s(name) - 0.002 + share * RAMP_S
     servo_id = SERVOS[name]
@@ -77,7 +77,7 @@ def test_in_a_fault_and_a_held_e_stop_the_ramp_stands_still(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["poppy_torso", "reachy_2021"])
-def test_a_tripped_servo_of_protocol_1_gets_no_goal_in_the_fault_that_follows(name: str) -> None:
+def test_a_tripped_servo_of_protocol_1_gets_no_goal_in_the_fault(name: str) -> None:
     """A goal switches torque on by itself: were the alarm over by then, the servo would come back in a latched fault."""
     with rig(name) as r:
         r.arm()

@@ -123,7 +123,7 @@ def test_what_came_before_an_estop_does_not_undo_it(ctl):
     assert {r.id: r.code for r in replies} == dict.fromkeys(("reset", "arm", "park"), "overtaken")
 
 
-def test_a_reset_that_the_front_got_before_the_estop_is_void_at_the_bus_process(ctl):
+def test_a_reset_received_before_the_estop_is_void_at_the_bus_process(ctl):
     """It was handed over, and the front hands it on after the e-stop was carried out."""
     ctl.ask("reset", "arm")
     ctl.turn(2)
@@ -164,7 +164,7 @@ def test_the_reply_says_that_it_is_carried_out(ctl):
 
 
 @pytest.mark.parametrize("verb", ["stop", "estop"])
-def test_where_no_bus_cycle_has_carried_it_out_the_reply_says_so_and_a_second_event_says_when(ctl, verb):
+def test_a_reply_says_when_no_cycle_has_carried_the_request_out_yet(ctl, verb):
     """Four of four e-stops given within a second of the death of the bus process were acknowledged, and lost."""
     ctl.ask(verb)
     ctl.turn()
@@ -178,7 +178,7 @@ def test_where_no_bus_cycle_has_carried_it_out_the_reply_says_so_and_a_second_ev
     assert isinstance(done, ev.CarriedOut) and done.id == ack.id and done.verb == verb
 
 
-def test_a_frozen_front_keeps_no_stop_from_the_bus_process_and_what_needs_it_is_refused(ctl):
+def test_a_frozen_front_keeps_no_stop_from_the_bus_process(ctl):
     ctl.ask("arm", "status", "stop")
     ctl.turn(3)
     assert ctl.bus_takes() == [BusRequest.STOP]

@@ -208,7 +208,7 @@ def test_from_every_reachable_state_an_estop_reaches_torque_off(asked):
 
 
 @pytest.mark.parametrize("asked", [(E,), (A, E), (R, A, E)], ids=lambda kinds: "-".join(k.name.lower() for k in kinds))
-def test_the_second_word_never_says_more_than_was_done_and_nothing_older_undoes_it(asked):
+def test_a_report_never_says_more_than_was_done_and_no_older_undoes_it(asked):
     for w in reachable(World(left=asked)):
         done = [n for n in w.estops if words_of(w).carried_out(Asker.CTL, Asked(E, n))]
         if done and w.last_reset < max(done):

@@ -59,7 +59,7 @@ def test_lost_parts_of_fast_answers_cost_their_cycle_only(share: float, rate: fl
     assert found >= valid
 
 
-def test_at_a_rate_that_only_fast_reading_allows_one_lost_part_is_one_late_cycle() -> None:
+def test_at_a_rate_only_fast_reads_allow_a_lost_part_is_one_late_cycle() -> None:
     bus, far, clock = group()
     start_s = clock.now_s()
     bus.exchange(GOALS)
@@ -86,7 +86,7 @@ def test_spoilt_parts_are_counted_by_servo_and_leave_the_others_alone() -> None:
     assert all(w[-30:].count(Instruction.FAST_SYNC_READ) for w in far.writes[-5:])
 
 
-def test_where_fast_answers_always_break_off_they_are_tried_more_and_more_rarely() -> None:
+def test_fast_reads_that_always_break_off_are_tried_more_and_more_rarely() -> None:
     """A firmware that answers fast reads when it is asked at start, and not under load."""
     bus, far, clock = group()
     far.spoil = lambda raw, _servo_id: raw[: -PART_BYTES * 10] if raw[4] == 0xFE else raw
@@ -102,7 +102,7 @@ def test_where_fast_answers_always_break_off_they_are_tried_more_and_more_rarely
 
 
 @given(st.lists(st.one_of(st.none(), st.integers(0, N - 1)), max_size=400))
-def test_those_behind_a_break_are_never_silenced_so_long_that_they_would_be_quarantined(
+def test_servos_behind_a_break_are_never_silent_until_quarantine(
     broke: list[int | None],
 ) -> None:
     chained, in_a_row = ChainedReads(), 0

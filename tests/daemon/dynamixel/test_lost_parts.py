@@ -32,7 +32,7 @@ def test_while_the_port_is_gone_nothing_is_valid_and_everything_ages() -> None:
     assert rig.bus.timeouts.tolist() == [0] * 16, "no servo is to blame"
 
 
-def test_a_port_that_goes_while_a_single_servo_is_asked_leaves_nothing_valid() -> None:
+def test_a_port_lost_during_a_single_read_leaves_nothing_valid() -> None:
     """Outside the cycle too: torque off, a poll."""
     rig = bus_rig(Fault("unplug", start_s=1.0))
     for ask in (lambda: rig.bus.poll_item(3, "led"), rig.bus.send_torque_off):
@@ -92,7 +92,7 @@ def test_one_dead_servo_of_two_is_quarantined_as_the_other_answers(names: tuple[
     assert rate_hz(bus, clock, 3000) > 0.95 * before_hz
 
 
-def test_servos_that_die_one_after_the_other_are_quarantined_down_to_the_last() -> None:
+def test_servos_that_die_one_by_one_are_quarantined_down_to_the_last() -> None:
     far, servos, clock = fake(*("XM430-W350",) * 4)
     bus = ServoBus.on_port(far, servos, clock)
     bus.verify()

@@ -67,7 +67,7 @@ def test_a_group_that_knows_fast_sync_reads_is_one_write_and_one_packet(n: int) 
     assert (sync_read(126, 10, bus.ids, fast=True) in request) == (n > 1), "a single servo wins nothing by it"
 
 
-def test_fast_sync_read_is_tried_once_and_left_for_good_where_it_is_not_answered() -> None:
+def test_an_unanswered_fast_sync_read_is_tried_only_once() -> None:
     far, servos, clock = fake(*X20[:4])
     far.servos[3].fast = False
     bus = ServoBus.on_port(far, servos, clock)
@@ -92,7 +92,7 @@ def test_old_firmware_is_not_even_asked_for_it(firmware: int, fast: bool) -> Non
 @pytest.mark.parametrize(
     "names", [X20, ("MX-28",) * 6, ("MX-64-2",) * 6, ("AX-12A",) * 4], ids=["fast", "mx1", "sync", "ax"]
 )
-def test_one_dead_servo_costs_itself_only_and_after_quarantine_nearly_nothing(names: tuple[str, ...]) -> None:
+def test_a_dead_servo_costs_only_itself_and_almost_nothing_in_quarantine(names: tuple[str, ...]) -> None:
     bus, far, clock = bus_of(*names)
 
     def rate_hz(n: int = 1) -> float:
@@ -169,7 +169,7 @@ def test_indirect_windows_stand_where_model_and_firmware_have_them() -> None:
 
 
 @pytest.mark.parametrize("name", ["XM430-W350", "XL330-M288", "AX-12A"])
-def test_a_servo_that_rebooted_is_named_and_its_window_of_zeros_not_believed(name: str) -> None:
+def test_a_rebooted_servo_is_named_and_its_zeros_are_not_believed(name: str) -> None:
     bus, far, _ = bus_of(name, name, name, slow_every=1)
     for s in far.servos.values():
         s.set("present_temperature", 40)
@@ -247,7 +247,7 @@ def test_two_servos_with_one_id_are_named() -> None:
     assert event.servo_id == 2 and "mmmd servo" in event.text
 
 
-def test_an_answer_of_the_last_cycle_that_comes_during_this_one_is_late_not_a_second_servo() -> None:
+def test_a_late_answer_of_the_last_cycle_is_not_a_second_servo() -> None:
     bus, far, _ = bus_of(*("2XL430-W250",) * 3)
     bus.exchange(None)
     far.servos[2].silent = True
@@ -320,7 +320,7 @@ def test_an_unplugged_port_comes_back_by_itself_and_says_so() -> None:
     assert kinds(bus) == [BusEventKind.LOST, BusEventKind.REPLUGGED]
 
 
-def test_the_watchdog_is_armed_where_there_is_one_and_said_where_it_is_of_no_use() -> None:
+def test_the_watchdog_is_armed_where_it_exists_and_reported_where_not() -> None:
     bus, far, _ = bus_of(*ALL_KINDS)
     without = bus.arm_watchdog(10)
     assert set(without) == {3, 4, 5, 6, 7}, "the 330 size, and protocol 1.0"

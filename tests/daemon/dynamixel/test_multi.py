@@ -131,7 +131,7 @@ def test_urls_with_commas_are_several_ports() -> None:
         open_bus("sim://,usb://x", ROBOT, clock)
 
 
-def test_when_one_port_is_lost_the_servos_of_the_other_come_to_rest_within_their_limits() -> None:
+def test_when_a_port_is_lost_the_other_ports_servos_rest_within_limits() -> None:
     ports, clock = two_ports()
     link = BusLink.create(ROBOT.n_joints, ROBOT.n_servos)
     try:

@@ -47,7 +47,7 @@ def test_one_silent_servo_costs_itself_only_and_keeps_its_last_value() -> None:
 
 
 @pytest.mark.parametrize("kind", ["drop", "corrupt"])
-def test_lost_and_broken_replies_lose_only_themselves_and_nothing_gets_out_of_step(kind: str) -> None:
+def test_lost_and_broken_replies_lose_only_themselves(kind: str) -> None:
     rig = bus_rig(Fault(kind, probability=0.05))
     answered = np.zeros(16, int)
     for i in range(200):
@@ -99,7 +99,7 @@ def test_whoever_answers_is_found_behind_silent_ones(n: int, silent: list[int]) 
 
 
 @pytest.mark.parametrize("servo_id", [1, 7, 16])
-def test_a_servo_that_is_held_up_for_longer_than_it_is_waited_for_is_asked_once_more(servo_id: int) -> None:
+def test_a_servo_held_up_beyond_the_timeout_is_read_once_more(servo_id: int) -> None:
     """A machine that stalled for a tenth of a second at its first servo refused to arm: "no answer"."""
     rig = bus_rig(Fault("silent", 0.0, 0.15, servo_id=servo_id))
     rig.bus.verify()

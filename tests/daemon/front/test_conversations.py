@@ -73,7 +73,7 @@ def test_a_text_becomes_what_it_means_and_says_to_what_it_refers(desk):
     )
 
 
-def test_what_keeps_going_loops_and_goes_on_looping_until_a_number_is_named(desk):
+def test_a_continuing_motion_loops_until_a_number_is_named(desk):
     desk.say(Say(text="clap"))
     assert desk.say(Say(text="keep going"), ends="").request.loop
     assert desk.say(Say(text="faster"), ends="").request.loop

@@ -82,7 +82,7 @@ async def soon() -> None:
 
 
 @pytest.mark.parametrize("verb", ["stop", "estop"])
-def test_a_halt_ends_what_came_before_it_and_the_front_pushes_nothing_of_before(verb):
+def test_a_halt_ends_earlier_commands_and_the_front_pushes_none_of_them(verb):
     async def test(front: Front) -> None:
         before = front.link.epoch
         front.link.setpoints.push(np.zeros((3, 2)), 1, 0, before, last=False)

@@ -62,7 +62,7 @@ class Flood:
         self._thread.join(30)
 
 
-def test_13000_messages_at_once_cost_no_frame_of_a_motion_and_hide_no_stop():
+def test_a_flood_of_messages_costs_no_frame_of_a_motion_and_hides_no_stop():
     """The front served all of them before anything else: the robot ran dry, was held as if the front were gone, parked."""
     daemon = RunningDaemon()
     floods: list[Flood] = []

@@ -137,7 +137,7 @@ def test_a_draft_whose_motion_never_comes_is_played_to_its_end(robot):
 
 
 @pytest.mark.parametrize(("mirror", "up"), [(False, "right"), (True, "left")])
-def test_a_text_with_a_prefix_is_generated_from_what_will_have_been_played(robot, running, mirror, up):
+def test_a_text_with_a_prefix_continues_from_the_frames_before_it(robot, running, mirror, up):
     """The generator is shown the last 1.6 s; of a motion that is to be mirrored, their mirror image."""
     with running.client() as other:
         events = other.events_of(requests.Say(id=f"before {up}", text="raise your right arm", seconds=6.0))

@@ -209,7 +209,7 @@ def test_a_generator_that_is_silent_is_a_named_failure(endpoint):
     assert ask(endpoint, call).code == "generator_timeout"
 
 
-def test_a_generator_that_was_started_since_is_not_blamed_for_what_the_one_before_left(endpoint):
+def test_a_restarted_generator_is_not_blamed_for_its_predecessor(endpoint):
     """It was killed right after its start: the supervisor restarts a generator that leaves a text unanswered."""
 
     async def call(client):

@@ -32,7 +32,7 @@ def test_a_shipped_gesture_shows_what_it_is_called(wanted):
     assert all(verdict.values()), verdict
 
 
-def test_shipped_gestures_begin_and_end_near_standing_and_name_their_mirrors():
+def test_shipped_gestures_start_and_end_near_standing_and_name_mirrors():
     names = set(CLIPS)
     for name, clip in CLIPS.items():
         assert distance_deg(standing(), clip.posture.at(np.array([0, len(clip.posture) - 1]))).max() <= 30

@@ -77,7 +77,7 @@ def test_two_starts_at_a_time_leave_the_front_off_the_core(tmp_path: Path) -> No
 
 
 @needs_two_cores
-def test_the_front_keeps_off_the_core_its_threads_too_and_its_children_may_run_anywhere(tmp_path: Path) -> None:
+def test_the_front_and_its_threads_keep_off_the_core_but_not_children(tmp_path: Path) -> None:
     everywhere = os.sched_getaffinity(0)
     seen: list[set[int]] = []
 

@@ -36,7 +36,7 @@ async def heard(feed: LogFeed, found: list[LogEvent], act) -> list[LogEvent]:
     return found
 
 
-def test_lines_of_this_process_and_others_come_in_order_with_level_time_and_cause(tmp_path):
+def test_log_lines_come_in_order_with_level_time_and_cause(tmp_path):
     found: list[LogEvent] = []
 
     def act() -> None:

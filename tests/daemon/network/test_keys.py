@@ -180,7 +180,7 @@ def test_a_key_can_be_allowed_and_taken_back_while_it_runs(secured, tmp_path):
         client.status()
 
 
-def test_a_folder_that_cannot_be_read_keeps_clients_out_and_the_door_goes_on(tmp_path):
+def test_an_unreadable_folder_keeps_clients_out_and_the_door_goes_on(tmp_path):
     class Damaged(KeyFolder):
         broken = True
 
@@ -258,7 +258,7 @@ def test_a_key_may_be_given_in_hexadecimal_or_in_z85():
             checked_key(bad)
 
 
-def test_a_daemon_without_torch_uses_a_generator_over_curve_and_notices_its_loss(tmp_path):
+def test_a_daemon_without_torch_uses_a_remote_generator_over_curve(tmp_path):
     """As on a small board: torch cannot be imported; the generator is another process, behind keys."""
     without = tmp_path / "without_torch"
     without.mkdir()

@@ -40,7 +40,7 @@ def peer(context: zmq.asyncio.Context, kind: int) -> zmq.asyncio.Socket:
     return socket
 
 
-def test_a_subscriber_that_never_reads_costs_the_others_nothing_and_is_counted():
+def test_a_subscriber_that_never_reads_is_counted_at_no_cost_to_others():
     async def main() -> None:
         with bound(zmq.XPUB, zmq.XPUB_NODROP, zmq.XPUB_VERBOSE) as (context, pub):
             deaf, reads, elsewhere = (peer(context, zmq.SUB) for _ in range(3))
@@ -62,7 +62,7 @@ def test_a_subscriber_that_never_reads_costs_the_others_nothing_and_is_counted()
     asyncio.run(main())
 
 
-def test_a_peer_that_never_reads_its_replies_is_counted_and_one_that_is_gone_is_not():
+def test_a_peer_that_reads_no_replies_is_counted_but_not_one_that_left():
     async def main() -> None:
         with bound(zmq.ROUTER, zmq.ROUTER_MANDATORY) as (context, cmd):
             deaf, reads = peer(context, zmq.DEALER), peer(context, zmq.DEALER)

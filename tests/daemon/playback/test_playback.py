@@ -169,7 +169,7 @@ def test_a_motion_that_fits_no_robot_leaves_the_running_one_alone(stream):
         front.run(work)
 
 
-def test_a_segment_that_fits_no_robot_ends_its_command_and_the_robot_holds():
+def test_a_segment_that_cannot_be_played_ends_its_command_and_holds():
     with front_rig() as front:
 
         async def work() -> None:
@@ -199,7 +199,7 @@ def test_a_motion_takes_the_place_of_its_preview():
         front.bus.assert_limits_kept()
 
 
-def test_a_gaze_turns_the_head_of_the_motion_and_of_the_pose_held_after_it():
+def test_a_gaze_turns_the_head_of_the_motion_and_of_the_held_pose():
     with front_rig() as front:
         yaw = front.bus.robot.joint_with_role("head_yaw")
 

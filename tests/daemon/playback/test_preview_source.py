@@ -88,7 +88,7 @@ def test_without_a_motion_the_draft_is_all():
     asyncio.run(run())
 
 
-def test_of_a_long_draft_the_first_frames_are_given_out_first_and_the_others_where_no_motion_has_come():
+def test_a_long_draft_yields_its_first_frames_first():
     async def run():
         score, come = await score_of(LONG)
         draft = posture_of(LONG)

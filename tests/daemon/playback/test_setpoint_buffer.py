@@ -200,7 +200,7 @@ def test_slow_revisions_delay_no_command(bench):
 
 @settings(max_examples=examples(15), deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.lists(st.tuples(st.integers(1, 90), st.integers(0, 3)), min_size=1, max_size=4))
-def test_taking_over_at_any_instant_keeps_limits_and_the_gate_changes_nothing(instants):
+def test_a_takeover_at_any_instant_keeps_limits_without_the_gate(instants):
     bench = Bench()
     try:
         bench.arm()
@@ -293,7 +293,7 @@ def test_a_late_front_brakes_and_the_next_motion_starts_from_there(bench):
 
 
 @pytest.mark.parametrize(("late", "most_jump_rad"), [(0, 0.01), (1, 0.01), (2, 0.02), (7, 0.5)])
-def test_a_front_held_up_just_before_it_hands_over_leaves_out_what_was_played(bench, late, most_jump_rad):
+def test_a_front_held_up_before_a_takeover_leaves_out_played_frames(bench, late, most_jump_rad):
     """The bus process has come some frames beyond the hand-over: what it has played of the old ones is left out of the new."""
     bench.arm()
     old = bench.play(RIGHT)

@@ -69,7 +69,7 @@ def test_arms_of_three_joints_say_how_far_they_are_off():
     assert "its left arm of 3 joints is about" in lacks and "its right arm of 3 joints is about" in lacks
 
 
-def test_a_bow_is_shown_by_a_robot_with_a_waist_and_in_part_by_one_whose_head_stands_for_it():
+def test_a_bow_is_shown_with_a_waist_and_in_part_with_a_head():
     whole = verdict("reference", clip("bow"), "bow")
     assert (whole.shown, whole.missing) == ("shown", "") and whole.seen.startswith("bows")
     head = verdict("op3", clip("bow"), "bow")

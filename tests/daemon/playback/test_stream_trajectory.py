@@ -177,7 +177,7 @@ def test_silence_brakes_and_holds_and_the_next_target_goes_on():
         s.assert_clean()
 
 
-def test_a_stalled_front_brakes_the_robot_and_it_goes_on_from_where_it_stands():
+def test_a_stalled_front_brakes_the_robot_which_resumes_where_it_stands():
     """Frames that were made before the stall lead nowhere any more: their successors begin at the braked goal."""
     with streaming() as s:
         far = reach(s.robot, 1.0)

@@ -234,7 +234,7 @@ def assert_described(schema: dict, message: dict) -> None:
             assert names.get(type(value), "object") in kinds | ({"integer"} if "number" in kinds else set())
 
 
-def test_what_a_daemon_records_says_its_settings_versions_and_losses_and_describes_every_message(tmp_path):
+def test_a_log_holds_settings_versions_losses_and_every_schema(tmp_path):
     daemon = RunningDaemon("--log", str(tmp_path / "run.mcap"), "--idle", "calm")
     try:
         with daemon.until_ready().client() as client:
@@ -269,7 +269,7 @@ def test_what_a_daemon_records_says_its_settings_versions_and_losses_and_describ
     assert status.generator.startswith("ready (checkpoint ")  # which model it was stands in every state
 
 
-def test_messages_that_the_recorder_was_too_slow_for_are_counted_in_the_log(tmp_path, caplog):
+def test_messages_lost_by_a_slow_recorder_are_counted_in_the_log(tmp_path, caplog):
     endpoint = f"ipc://{tmp_path}/events"
     feed = RecorderFeed(endpoint, queue=10)
     context = zmq.Context()

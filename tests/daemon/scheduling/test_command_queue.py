@@ -70,7 +70,7 @@ def test_a_later_stop_from_elsewhere_counts_for_all():
     assert not halts.overtook(said(THERE, 500.1))
 
 
-def test_what_comes_while_a_stop_is_being_served_came_before_it_unless_its_clock_shows_otherwise():
+def test_a_text_received_during_a_stop_is_older_unless_its_clock_denies():
     """Behind a flood of requests that takes longer than the moment after it."""
     halts = halted(HERE, None, ago_s=LONG_AGO_S)
     assert not halts.overtook(said(None, None))
@@ -87,7 +87,7 @@ def test_a_time_that_is_still_to_come_proves_nothing():
 
 
 @pytest.mark.parametrize("ahead_s", [1e3, 1e9, 1e300])
-def test_a_stop_stamped_with_the_far_future_cancels_nothing_that_comes_later(ahead_s):
+def test_a_stop_stamped_far_ahead_cancels_nothing_that_comes_later(ahead_s):
     """One such frame, and every later text of that machine ended in `cancelled`, for as long as the daemon ran."""
     halts = halted(THERE, 500.0 + ahead_s, ago_s=LONG_AGO_S)
     for sent_s in (499.0, 500.1, 900.0):
@@ -98,7 +98,7 @@ def test_a_stop_stamped_with_the_far_future_cancels_nothing_that_comes_later(ahe
     assert halts.overtook(said(THERE, 500.9)) and not halts.overtook(said(THERE, 501.1))
 
 
-def test_a_text_stamped_with_the_far_future_is_not_spared_by_a_stop_that_comes_later():
+def test_a_text_stamped_far_ahead_is_not_spared_by_a_later_stop():
     """A text that came before the stop and says that it was sent after it: by a moment it may have been, by an hour not."""
     halts = halted(THERE, 500.0)
     assert halts.spares(said(THERE, 500.5, ago_s=1.0))

@@ -118,7 +118,7 @@ def test_an_older_one_does_not_set_out_while_a_newer_is_about_to(talk):
     assert not any(isinstance(e, ev.Progress) for e in talk.heard[older])
 
 
-def test_one_whose_time_has_come_ends_those_before_it_and_yields_to_a_newer(talk):
+def test_a_due_command_ends_those_before_it_and_yields_to_a_newer(talk):
     timed = talk.send(Say(text="wave", seconds=3.0, when="at", at_s=time.monotonic() + 0.6))
     before = talk.send(Say(text="left wave", seconds=4.0))
     waits = talk.send(Say(text="wave", when="after"))

@@ -91,7 +91,7 @@ def test_what_is_taken_back_never_arrives_and_the_rest_does_in_order(actions):
 
 
 @pytest.mark.parametrize("kind", [BusRequest.STOP, BusRequest.ESTOP, BusRequest.PARK])
-def test_a_stop_voids_what_was_pushed_before_and_by_who_does_not_know_of_it(link, bus, kind):
+def test_a_stop_voids_frames_pushed_before_it_or_without_knowing_of_it(link, bus, kind):
     epoch = link.epoch
     link.setpoints.push(frames(5), 1, 0, epoch, last=False)
     link.request(kind)
@@ -254,7 +254,7 @@ def test_across_processes_nothing_is_lost_or_torn(link):
     assert rows["goal_rad"].tobytes() == sent.tobytes()
 
 
-def test_another_daemon_leaves_the_memory_of_a_killed_front_whose_bus_process_lives():
+def test_memory_of_a_killed_front_is_left_while_its_bus_process_lives():
     """It removed it; `ctl` then took the bus process for gone, ended, and nobody took an e-stop any more."""
     first = BusLink.create(2)
     gone = subprocess.Popen([sys.executable, "-c", ""])

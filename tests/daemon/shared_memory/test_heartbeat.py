@@ -10,7 +10,7 @@ from daemon.shared_memory.heartbeat import HeartbeatWatch
 from tests.support.rig import lead_to, rig
 
 
-def test_a_beat_that_stands_still_is_lost_after_the_limit_and_back_with_the_next():
+def test_a_still_heartbeat_is_lost_after_the_limit_and_back_with_the_next():
     silence = HeartbeatWatch(0.18, 0.01)
     assert not any(silence.lasts(7) for _ in range(18))
     assert silence.lasts(7) and silence.lasts(7)
@@ -24,9 +24,7 @@ def test_who_has_not_begun_is_waited_for():
 
 @pytest.mark.parametrize("state", ["limp", "holding", "playing", "stopping", "parking"])
 @pytest.mark.parametrize("holds", [False, True])
-def test_the_bus_process_makes_an_estop_of_it_within_a_fifth_of_a_second_and_no_reset_leads_out_before_it_is_back(
-    state, holds
-):
+def test_a_lost_heartbeat_is_an_estop_in_0_2_s_until_it_is_back(state, holds):
     with rig() as r:
         r.link.set_estop_holds(holds)
         r.link.ctl_beats()

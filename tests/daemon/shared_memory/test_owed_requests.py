@@ -124,7 +124,7 @@ def kill() -> None:
 @pytest.mark.parametrize("kind", [BusRequest.ESTOP, BusRequest.ESTOP_HOLD])
 @pytest.mark.parametrize("state", STATES)
 @pytest.mark.parametrize("steps", [1, 2, 3, 8])
-def test_an_e_stop_is_carried_out_by_the_next_process_wherever_this_one_is_killed(state, steps, kind):
+def test_an_e_stop_is_carried_out_by_the_next_process_after_any_kill(state, steps, kind):
     """Killed in a motion, an e-stop given within a second was acknowledged and lost, 4 of 4; all servos kept their torque."""
     with robot() as r:
         r.start(after_loss=False)
@@ -147,7 +147,7 @@ def test_an_e_stop_is_carried_out_by_the_next_process_wherever_this_one_is_kille
 
 @pytest.mark.parametrize("state", STATES)
 @pytest.mark.parametrize("killed_again_at", [None, 2, 3, 40])
-def test_an_e_stop_given_while_no_process_is_there_cuts_torque_before_the_next_one_verifies(state, killed_again_at):
+def test_an_e_stop_without_a_process_cuts_torque_before_verification(state, killed_again_at):
     with robot() as r:
         r.start(after_loss=False)
         r.lead_to(state)
@@ -185,7 +185,7 @@ def test_an_e_stop_given_while_the_bus_starts_cuts_torque_in_the_start(steps):
         assert not r.torque and r.front.carried_out(asked[0]) and r.streamer.state is BusState.ESTOP
 
 
-def test_an_e_stop_on_a_lost_port_is_owed_until_the_port_is_back_and_by_whoever_has_it_then():
+def test_an_e_stop_on_a_lost_port_is_owed_until_the_port_is_back():
     with robot(Fault("unplug", start_s=3.0, end_s=4.0)) as r:
         r.start(after_loss=False)
         r.lead_to("holding")
@@ -216,7 +216,7 @@ def test_torque_off_is_owed_as_well(state):
 
 
 @pytest.mark.parametrize("kind", [BusRequest.ARM, BusRequest.PARK, BusRequest.RESET])
-def test_what_would_move_or_unlatch_is_not_carried_out_by_the_next_process(kind):
+def test_requests_that_move_or_unlatch_are_not_left_to_the_next_process(kind):
     with robot() as r:
         r.start(after_loss=False)
         r.lead_to("holding")
@@ -227,7 +227,7 @@ def test_what_would_move_or_unlatch_is_not_carried_out_by_the_next_process(kind)
         assert r.streamer.state is BusState.FAULT and r.sim.audit.goals == goals
 
 
-def test_a_reset_and_an_arm_from_before_an_e_stop_do_not_undo_it_however_late_they_come():
+def test_a_reset_and_an_arm_from_before_an_e_stop_do_not_undo_it():
     """The front may be held up between taking a request from `ctl` and handing it on."""
     with robot() as r:
         r.start(after_loss=False)

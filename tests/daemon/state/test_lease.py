@@ -54,7 +54,7 @@ def test_before_it_has_begun_no_silence_counts():
     assert LeaseClock(0.2, 5.0).look(1e9) is S.WAITING
 
 
-def test_a_silent_lease_goes_on_with_the_next_target_and_one_that_is_over_does_not():
+def test_a_silent_lease_resumes_with_the_next_target_but_not_an_ended_one():
     clock = begun()
     assert clock.look(13.0) is S.SILENT and clock.target(13.1) and clock.state is S.STREAMING
     assert not clock.target(18.2) and clock.state is S.OVER

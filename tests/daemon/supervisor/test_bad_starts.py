@@ -35,7 +35,7 @@ def test_a_servo_found_in_fault_is_named_and_no_joint_gets_torque(kind, amount, 
         assert r.state is BusState.FAULT and np.abs(measured_rad(r) - before).max() < 0.01
 
 
-def test_a_servo_that_is_moving_when_it_is_armed_is_pinned_where_it_is_then():
+def test_a_servo_that_moves_while_being_armed_is_pinned_where_it_is():
     """Somebody swings the limp arm while the robot is armed: the goal is where the arm is found, and it is led from there."""
     with rig("reference", Fault("push", start_s=0.0, end_s=0.6, servo_id=SERVO, amount=0.25)) as r:
         r.cycle(25)
@@ -55,7 +55,7 @@ def found_beyond(robot, seed: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_robot_found_outside_its_limits_is_led_inwards_slowly_or_by_hand(seed):
+def test_a_robot_outside_its_limits_is_led_inwards_slowly_or_by_hand(seed):
     """Put away folded: each joint comes back slowly and never goes further out; where its servo refuses, it is named."""
     robot = load_robot("reference")
     with rig(start_rad=found_beyond(robot, seed)) as r:

@@ -31,7 +31,7 @@ def aged(path: Path) -> Path:
     return path
 
 
-def test_the_folder_of_a_killed_daemon_goes_with_the_next_start_and_those_of_others_stay(temporary: Path) -> None:
+def test_a_start_removes_the_folders_of_killed_daemons_only(temporary: Path) -> None:
     living = RunFolder()
     (living.path / "log").touch()
     code = (
@@ -60,7 +60,7 @@ def test_the_folder_of_a_killed_daemon_goes_with_the_next_start_and_those_of_oth
 
 
 @pytest.mark.parametrize("kind", ["link", "dangling link", "second name", "pipe", "folder"])
-def test_what_was_put_in_place_of_a_lock_file_is_refused_and_left_as_it_is(temporary: Path, kind: str) -> None:
+def test_a_file_in_place_of_a_lock_is_refused_and_left_as_it_is(temporary: Path, kind: str) -> None:
     """The lock was opened through links: whoever can write to /tmp had root empty and overwrite any file."""
     precious = temporary / "precious"
     precious.write_text("keep me")
@@ -93,7 +93,7 @@ def test_a_port_names_what_is_in_place_of_its_lock_file(temporary: Path) -> None
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="needs root, to be another user who may open the device")
-def test_nobody_else_can_open_a_port_in_use_even_without_asking_for_a_lock(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nobody_opens_a_port_in_use_even_without_a_lock(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("daemon.dynamixel.ports.serial_port.is_pseudo", lambda _fd: False)
     master, slave = os.openpty()
     try:

@@ -160,7 +160,7 @@ def install_below(root: Path) -> None:
     assert result.returncode == 0 and "systemctl" in result.stdout
 
 
-def test_install_service_writes_what_udev_and_the_daemon_read_and_keeps_a_configuration(installed):
+def test_install_service_writes_readable_files_and_keeps_a_configuration(installed):
     assert 'latency_timer}="1"' in (installed / "etc/udev/rules.d/60-mmmd.rules").read_text()
     config = installed / "etc/mmmd/mmmd.toml"
     assert not config_of(resolve({}, config, {})).auto_arm
@@ -169,7 +169,7 @@ def test_install_service_writes_what_udev_and_the_daemon_read_and_keeps_a_config
     assert config.read_text() == 'robot = "op3"\n'
 
 
-def test_the_unit_leaves_the_bus_process_alone_when_the_front_dies_and_never_gives_up(installed):
+def test_the_unit_spares_the_bus_process_of_a_dead_front_and_restarts(installed):
     """systemd.kill(5): `mixed` and `control-group` send SIGKILL to all that is left as soon as the main process is gone."""
     unit = configparser.RawConfigParser()
     unit.read(installed / "etc/systemd/system/mmmd.service")

@@ -20,7 +20,7 @@ HAND = [20, 21]
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_a_takeover_leads_smoothly_into_the_gesture_that_its_words_ask_for(seed: int) -> None:
+def test_a_takeover_leads_smoothly_into_the_gesture_of_its_text(seed: int) -> None:
     """No jump where one gesture ends, no faster than gestures are, and at the end the pose that the gesture alone ends with."""
     clip, n_seen = synthesise_takeover(np.random.default_rng(seed))
     assert SEEN_TOKENS[0] <= n_seen <= SEEN_TOKENS[1] and len(clip.features) <= MAX_TOKENS * FRAMES_PER_TOKEN

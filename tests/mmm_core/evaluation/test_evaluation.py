@@ -87,7 +87,7 @@ def test_standing_still_shows_nothing() -> None:
         assert checks.limb(shown(clip.features)) == ""
 
 
-def test_no_probe_is_a_sentence_of_the_grammar_and_some_words_are_never_said() -> None:
+def test_no_probe_is_a_sentence_of_the_grammar_and_some_words_are_new() -> None:
     """Thousands of drawn captions and every plain phrase: the probes' words stay out of training."""
 
     def plain(text: str) -> str:
@@ -291,7 +291,7 @@ def test_what_a_robot_can_show_is_told_apart_from_what_was_understood() -> None:
     assert without_a_waist["left arm up"] >= {"limb", "side"} and "limb" in without_a_waist["wag your head no"]
 
 
-def test_an_expectation_that_cannot_be_shown_is_counted_in_all_and_not_in_what_can() -> None:
+def test_an_expectation_that_cannot_be_shown_is_counted_only_in_all() -> None:
     standing = synthesise_spec(ClipSpec((Gesture("stand"),)), np.random.default_rng(0))
     assert standing is not None
     still = as_motion(standing.features)

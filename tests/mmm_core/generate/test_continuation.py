@@ -53,7 +53,7 @@ def test_its_frames_are_those_of_one_pass_over_both(engine: Engine, raised: Moti
     assert np.array_equal(whole[32 : 32 + len(made.motion.features)], made.motion.features)
 
 
-def test_the_same_request_gives_the_same_motion_and_another_prefix_another(engine: Engine, raised: Motion) -> None:
+def test_a_request_gives_one_motion_and_another_prefix_another(engine: Engine, raised: Motion) -> None:
     one, again, longer = (continue_motion(engine, raised, s, "wave", seed=5).motion for s in (0.8, 0.8, 1.6))
     assert np.array_equal(one.joints_m, again.joints_m)
     assert len(one.joints_m) != len(longer.joints_m) or not np.array_equal(one.joints_m, longer.joints_m)

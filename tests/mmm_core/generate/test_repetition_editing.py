@@ -134,7 +134,7 @@ def test_the_model_nods_nearly_as_often_as_it_is_told(engine: Engine, count: int
     assert sorted(abs(len(s.frames) - count) for s in found if s is not None)[1] <= 1
 
 
-def test_a_number_that_the_model_has_not_learnt_is_made_unless_one_candidate_is_asked_for(engine: Engine) -> None:
+def test_a_number_not_learnt_is_made_unless_one_candidate_is_wanted(engine: Engine) -> None:
     a, b, plain = (engine.generate("clap twelve times", seed=3, candidates=n).motion for n in (None, 2, 1))
     assert np.array_equal(a.tokens, b.tokens) and not np.array_equal(a.tokens, plain.tokens)
     for n in (None, 2):

@@ -133,7 +133,7 @@ class TestMotion:
         first, second = made.understood.split(", then ")
         assert "left" in first and "right" not in first and "bow" in second
 
-    def test_the_same_seed_gives_the_same_motion_and_candidates_are_of_each_command(self, engine: Engine) -> None:
+    def test_the_same_seed_gives_the_same_motion_and_each_has_candidates(self, engine: Engine) -> None:
         text = "clap, then bow"
         a, b = (engine.generate(text, seed=5).motion for _ in range(2))
         np.testing.assert_array_equal(a.joints_m, b.joints_m)

@@ -46,7 +46,7 @@ def test_what_lies_outside_the_range_is_clipped() -> None:
 
 @needs_vnni
 @torch.inference_mode()
-def test_a_layer_takes_the_range_it_was_shown_and_one_that_saw_nothing_stays() -> None:
+def test_a_layer_takes_the_range_of_its_inputs_and_stays_without_any() -> None:
     model = nn.ModuleDict({"seen": nn.Linear(128, 256), "not_seen": nn.Linear(128, 256), "narrow": nn.Linear(8, 8)})
     x = torch.linspace(-0.5, 2.0, 256).reshape(2, 128)
     convert_to_int8(model, lambda: (model["seen"](x), model["narrow"](torch.ones(1, 8))))
@@ -55,7 +55,7 @@ def test_a_layer_takes_the_range_it_was_shown_and_one_that_saw_nothing_stays() -
 
 
 @needs_vnni
-def test_a_row_does_not_depend_on_its_neighbours_and_is_nearly_the_plain_models() -> None:
+def test_a_row_is_independent_of_others_and_close_to_the_plain_model() -> None:
     torch.manual_seed(1)
     plain = MotionTransformer(TransformerConfig(n_codes=64, width=256, n_self=3, text_dim=128)).eval()
     for parameter in plain.parameters():

@@ -105,7 +105,7 @@ def test_to_stop_that_is_a_stop_like_any_other(text: str) -> None:
     assert means_stop(text)
 
 
-def test_a_conversation_goes_on_from_what_was_meant_and_not_from_what_was_denied() -> None:
+def test_a_conversation_continues_from_the_meaning_and_not_from_a_denial() -> None:
     meant = conversation(["wave", "slower", "with the other hand", "do not bow", "twice more"])
     last = meant[-1]
     assert last.reading.sentences == ("wave with your left hand twice (0.65 times as fast)",)  # type: ignore[union-attr]

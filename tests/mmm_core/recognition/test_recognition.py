@@ -38,7 +38,7 @@ def test_every_family_has_a_sentence_and_words_that_name_it():
     assert np.mean(named) > 0.98
 
 
-def test_what_is_said_is_what_the_motion_shows_whatever_the_text_was_taken_for():
+def test_a_description_follows_the_motion_and_not_the_text():
     """ "no" shook the head and was reported as "yes sir (1.00)"; a head that turned as one that tilts."""
     shaken = motion_of("no", "shake_head", "head", count=2)
     assert said_of(shaken, "no\nyes sir (1.00)").startswith("shakes the head")

@@ -105,7 +105,7 @@ def test_a_fast_reply_that_breaks_off_gives_the_parts_that_came(n: int) -> None:
     assert whole[: int(whole.sum())].all()
 
 
-def test_servos_that_leave_the_checksums_between_empty_are_heard_by_the_last_one() -> None:
+def test_servos_with_empty_checksums_between_are_read_by_the_last_one() -> None:
     """Manual: the CRCs between are for the servos; the controller may check the last alone."""
     ids = [1, 2, 3]
     raw = bytearray(fast_status([Part(i, 0, bytes(10)) for i in ids])[:-2])
@@ -125,7 +125,7 @@ def test_anything_else_is_no_reply(raw: bytes) -> None:
 
 
 @pytest.mark.parametrize("at", range(5))
-def test_what_two_servos_with_one_id_said_at_once_is_not_taken_though_the_last_checksum_is_right(at: int) -> None:
+def test_a_collision_of_two_equal_ids_is_rejected_despite_its_checksum(at: int) -> None:
     """The servos behind go on from what they heard, and what was heard came to us: the last checksum proved it all."""
     ids, n = [3, 1, 2, 9, 7], 5
     raw, crc = fast_status([Part(i, 0, bytes(10)) for i in ids])[:8], 0

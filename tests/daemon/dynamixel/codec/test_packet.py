@@ -272,7 +272,7 @@ def test_the_sdk_sends_a_payload_with_a_header_in_it_unstuffed() -> None:
     assert PacketDecoder().feed(ours)[0].parameters[2:] == bytes(data)
 
 
-def test_the_sdk_says_zero_for_a_servo_that_is_silent_and_drops_the_alert_of_one_that_is_not() -> None:
+def test_the_sdk_reads_zero_for_a_silent_servo_and_drops_alerts() -> None:
     """One silent servo of a group: both are lost, their positions read 0, and the alert bit of the other is gone."""
     wire = _Wire(packet.status(1, packet.ALERT_BIT, struct.pack("<i", 2048)))
     read = GroupSyncRead(wire, Protocol2PacketHandler(), 132, 4)

@@ -95,7 +95,7 @@ def test_a_homing_offset_in_position_mode_keeps_the_watchdog() -> None:
 
 
 @pytest.mark.parametrize("name", ["toddlerbot", "op2"])
-def test_before_torque_ids_and_settings_are_compared_with_five_questions_a_servo(name: str) -> None:
+def test_ids_and_settings_are_compared_with_five_reads_a_servo(name: str) -> None:
     rig = bus_rig(name=name)
     rig.bus.verify()
     sent: list[bytes] = []

@@ -185,7 +185,7 @@ def test_a_baud_that_the_model_has_not_is_refused() -> None:
 # Checks.
 
 
-def test_what_is_wrong_with_the_settings_is_found_and_corrected_only_when_told_to() -> None:
+def test_wrong_settings_are_found_and_corrected_only_on_request() -> None:
     bus, port, _ = wired()
     s = port.servos
     s[1].set("operating_mode", 1)
