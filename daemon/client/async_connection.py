@@ -1,0 +1,75 @@
+"""The sockets of the asyncio client: opened when first needed, every wait for a reply with an end."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Self
+
+import zmq
+import zmq.asyncio
+
+from daemon.client.compositions import REPLY_TIMEOUT_S
+from daemon.client.errors import unexpected
+from daemon.client.lines import Line, within
+from daemon.network.keys import KeyFolder, connect_curve
+from daemon.settings.config import Endpoints
+from daemon.wire.events import Ack, AnyEvent
+from daemon.wire.requests import Request, tag_of
+
+
+class AsyncConnection:
+    """Requests out and events in, over `cmd` and `ctl`, from one event loop.
+
+    Args:
+        endpoints: where the daemon is.
+        timeout_s: longest wait for a reply.
+    """
+
+    def __init__(self, endpoints: Endpoints | None = None, timeout_s: float = REPLY_TIMEOUT_S) -> None:
+        self.endpoints = endpoints or Endpoints()
+        self._timeout_s = timeout_s
+        self._context = zmq.asyncio.Context()
+        self._lines: dict[str, Line] = {}
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Close the sockets; what was not sent yet has 200 ms."""
+        for line in self._lines.values():
+            await line.close()
+        self._context.destroy(linger=200)
+
+    async def _command(self, request: Request) -> Ack:
+        return await self._acknowledged(request, self.endpoints.cmd)
+
+    async def _control(self, request: Request) -> Ack:
+        return await self._acknowledged(request, self.endpoints.ctl)
+
+    async def _acknowledged(self, request: Request, endpoint: str) -> Ack:
+        event = await self._ask(request, endpoint)
+        if not isinstance(event, Ack):
+            raise unexpected(event, tag_of(request))
+        return event
+
+    async def _ask(self, request: Request, endpoint: str) -> AnyEvent:
+        async with self._line(endpoint).asked(request, self._timeout_s) as heard:
+            return await within(heard, self._timeout_s, endpoint, tag_of(request))
+
+    def _line(self, endpoint: str) -> Line:
+        if endpoint not in self._lines:
+            socket = self._context.socket(zmq.DEALER)
+            socket.setsockopt(zmq.IMMEDIATE, 1)
+            self._secure(socket, endpoint)
+            socket.connect(endpoint)
+            self._lines[endpoint] = Line(socket, endpoint)
+        return self._lines[endpoint]
+
+    def _secure(self, socket: zmq.asyncio.Socket, endpoint: str) -> None:
+        if self.endpoints.keys is not None and endpoint.startswith("tcp://"):
+            connect_curve(socket, KeyFolder(self.endpoints.keys), "daemon")
