@@ -8,7 +8,6 @@ ROOT = Path(__file__).parent.parent
 PACKAGES = ("mmm_core", "retarget", "daemon", "sim")
 MOST_LINES = 300
 LONGER = {
-    "mmm_core/corpus/grammar.py": "tables of phrases",
     "mmm_core/language/context.py": "the context between commands and its words",
     "retarget/human/arms.py": "closed forms of three families of arms that share their state",
 }

@@ -10,8 +10,8 @@ def draw_texts(n: int, seed: int, *, outside_share: float = 0.0) -> list[str]:
 
     They are different as long as there are enough.
     """
-    from mmm_core.corpus.grammar import known_commands
     from mmm_core.corpus.outside import OUTSIDE
+    from mmm_core.corpus.plain_commands import known_commands
 
     rng = np.random.default_rng(seed)
     known = sorted(known_commands())

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from mmm_core.corpus.families import FAMILIES
-from mmm_core.corpus.grammar import manner_phrases, plain_phrases
+from mmm_core.corpus.plain_commands import manner_phrases, plain_phrases
 from mmm_core.corpus.synthesis import draw_spec, words_for
 from mmm_core.language.inflection import NUMBERS
 from mmm_core.language.limbs import SAYS_NO_LIMB

@@ -13,7 +13,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from mmm_core.corpus.grammar import PERSONS, REQUESTS
+from mmm_core.corpus.forms import PERSONS, REQUESTS
 from mmm_core.language.inflection import plain, third_person
 
 Text = Callable[[np.random.Generator], str]

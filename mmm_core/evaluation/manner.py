@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from mmm_core.corpus.grammar import plain_phrases, times
 from mmm_core.corpus.heldout import Command
+from mmm_core.corpus.plain_commands import plain_phrases
+from mmm_core.language.inflection import times
 from mmm_core.motion.motion import Motion
 from mmm_core.motion.posture_features import posture_features
 from mmm_core.motion.repetitions import body_path

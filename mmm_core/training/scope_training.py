@@ -14,8 +14,9 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
-from mmm_core.corpus.grammar import caption, known_commands
+from mmm_core.corpus.grammar import caption
 from mmm_core.corpus.outside import OUTSIDE, outside_texts
+from mmm_core.corpus.plain_commands import known_commands
 from mmm_core.corpus.synthesis import draw_spec
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.errors import CheckpointError

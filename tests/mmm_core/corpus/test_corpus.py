@@ -17,7 +17,8 @@ from mmm_core.corpus.cmu import read_clips
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.families.gesture import Words
 from mmm_core.corpus.families.phrases import parse_phrases
-from mmm_core.corpus.grammar import caption, known_commands, plain_phrases
+from mmm_core.corpus.grammar import caption
+from mmm_core.corpus.plain_commands import known_commands, plain_phrases
 from mmm_core.corpus.score import REST_ARM, Score
 from mmm_core.corpus.stream import make_corpus
 from mmm_core.corpus.synthesis import ClipSpec, draw_spec, synthesise, synthesise_spec

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from mmm_core.corpus.families import FAMILIES, Gesture
-from mmm_core.corpus.grammar import base_phrase, known_commands
+from mmm_core.corpus.grammar import base_phrase
 from mmm_core.corpus.heldout import HELD_OUT_VERBS, PROBES, TEST_PROBES, Probe, read_sentences
+from mmm_core.corpus.plain_commands import known_commands
 from mmm_core.corpus.synthesis import ClipSpec, draw_gesture, synthesise, synthesise_spec
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.evaluation.probes import evaluate, judge

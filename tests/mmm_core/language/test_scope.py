@@ -10,9 +10,9 @@ import pytest
 import torch
 from scipy.stats import mannwhitneyu
 
-from mmm_core.corpus.grammar import known_commands
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.corpus.outside import OUTSIDE, outside_texts
+from mmm_core.corpus.plain_commands import known_commands
 from mmm_core.corpus.scope_prompts import SCOPE_DEVELOPMENT, SCOPE_TEST
 from mmm_core.errors import CheckpointError
 from mmm_core.evaluation.scope import auroc, scope_figures

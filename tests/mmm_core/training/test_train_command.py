@@ -20,7 +20,7 @@ import pytest
 import torch
 
 from daemon.cli import main
-from mmm_core.corpus.grammar import known_commands
+from mmm_core.corpus.plain_commands import known_commands
 from mmm_core.errors import CheckpointError, TrainingDataError
 from mmm_core.evaluation.extractors import load_evaluator
 from mmm_core.generate.engine import Engine
