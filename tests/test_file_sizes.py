@@ -9,7 +9,6 @@ PACKAGES = ("mmm_core", "retarget", "daemon", "sim")
 MOST_LINES = 300
 LONGER = {
     "mmm_core/language/context.py": "the context between commands and its words",
-    "retarget/human/arms.py": "closed forms of three families of arms that share their state",
 }
 
 

@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.human.arm_chain import ArmChain
-from retarget.human.bones import Bones, weighted
+from retarget.human.arm_kinematics import ArmKinematics
+from retarget.human.bones import weighted
 from retarget.human.branches import UNSEEN, fill_unseen
 from retarget.human.subproblems import Reach, Turn, angle_about, frame, unit
 from retarget.robot.kinematics import cross, skew
@@ -36,28 +37,19 @@ _SEEN_ACROSS, _SEEN_BENT = 0.15, 0.05
 """Squared sines from which on the first and the third shoulder joint count as fully seen."""
 _SPREAD = {2: 21, 3: 9}
 """Poses for each joint among which a start for the least error is looked for, by number of joints."""
-_EYE = np.eye(3)
 _STRAIGHT = 1e-6
 """Sine below which two directions count as parallel."""
 
 
-class Arms:
-    """G arms of one kind."""
+class Arms(ArmKinematics):
+    """Joint angles of G arms of one kind for directions of their bones."""
 
     def __init__(self, chains: Sequence[ArmChain]) -> None:
-        self.chains = tuple(chains)
-        one = self.chains[0]
-        self.n_joints = len(one.joints)
-        self._n_shoulder, self.eye = self.n_joints - one.has_elbow, np.eye(self.n_joints)
-        self._has_elbow, self._has_offsets = one.has_elbow, bool(one.beside_m.any())
-        self.reaches_all = self._n_shoulder == 3 and one.has_elbow
+        super().__init__(chains)
+        self.eye = np.eye(self.n_joints)
+        self.reaches_all = self._n_shoulder == 3 and self._has_elbow
         self.low, self.high = np.stack([c.low for c in chains])[:, None], np.stack([c.high for c in chains])[:, None]
         self._middle = (self.low + self.high) / 2
-        self.axes = np.stack([c.axes for c in chains])  # (G, n, 3)
-        self._skews = np.array([[skew(a) for a in c.axes] for c in chains])  # (G, n, 3, 3)
-        self._skews_squared = self._skews @ self._skews
-        self._upper_m, self._beside_m = np.stack([c.upper_m for c in chains]), np.stack([c.beside_m for c in chains])
-        self.upper0, self.fore0 = unit(self._upper_m), unit(np.stack([c.fore_m for c in chains]))
         if self.reaches_all:
             a1, a2, a3, a4 = np.moveaxis(self.axes, 1, 0)
             self._elbow_turn = Turn(a4, self.fore0)
@@ -138,65 +130,6 @@ class Arms:
             x[g, :, 2] += in_line[g] * (q[g, :, 0] - x[g, :, 0])
             fill_unseen(x[g, :, 2], straight[g], previous[g, 2])
         return x
-
-    def directions(self, q: Array) -> tuple[Array, Array]:
-        """Unit directions of upper arm and forearm, each (G, M, 3), for angles (G, M, n)."""
-        R = self._rotations(q)
-        shoulder = R[:, :, 0]
-        for j in range(1, self._n_shoulder):
-            shoulder = shoulder @ R[:, :, j]
-        if self._has_offsets:
-            upper = unit(self._levers(R)[0])
-        else:
-            upper = (shoulder @ self.upper0[:, None, :, None])[..., 0]
-        if not self._has_elbow:
-            return upper, upper
-        return upper, (shoulder @ (R[:, :, -1] @ self.fore0[:, None, :, None]))[..., 0]
-
-    def bones(self, q: Array) -> Bones:
-        """Directions of both bones for angles (G, M, n), and how they change."""
-        R = self._rotations(q)
-        turned = above = R[:, :, 0]
-        axes = np.empty((*q.shape, 3))
-        axes[:, :, 0] = self.axes[:, None, 0]
-        for j in range(1, self.n_joints):
-            axes[:, :, j] = (turned @ self.axes[:, None, j, :, None])[..., 0]
-            turned, above = turned @ R[:, :, j], turned
-        fore = (turned @ self.fore0[:, None, :, None])[..., 0]
-        upper = (above @ self.upper0[:, None, :, None])[..., 0] if self._has_elbow else fore
-        slope = np.zeros((*q.shape, 6))
-        n = self._n_shoulder
-        if self._has_offsets:
-            upper, slope[:, :, :n, :3] = self._upper_with_offsets(R, axes)
-        else:
-            slope[:, :, :n, :3] = cross(axes[:, :, :n], upper[:, :, None])
-        slope[..., 3:] = cross(axes, fore[:, :, None])
-        return Bones(upper, fore, slope)
-
-    def _rotations(self, q: Array) -> Array:
-        """(G, M, n, 3, 3) rotation of each joint."""
-        sine, versine = np.sin(q)[..., None, None], (1 - np.cos(q))[..., None, None]
-        return _EYE + sine * self._skews[:, None] + versine * self._skews_squared[:, None]
-
-    def _levers(self, R: Array) -> tuple[Array, list[Array]]:
-        """(G, M, 3) shoulder to elbow, and for each shoulder joint the vector that it turns to move the elbow."""
-        levers: list[Array] = []
-        v: Array = np.broadcast_to(self._upper_m[:, None], (*R.shape[:2], 3))
-        for j in range(self._n_shoulder - 1, -1, -1):
-            beside = self._beside_m[:, None, j]
-            lever = (R[:, :, j] @ (v - beside)[..., None])[..., 0]
-            levers = [lever, *((R[:, :, j] @ w[..., None])[..., 0] for w in levers)]
-            v = lever + beside
-        return v, levers
-
-    def _upper_with_offsets(self, R: Array, axes: Array) -> tuple[Array, Array]:
-        """Direction of the upper arm, (G, M, 3), and its change per radian of each shoulder joint, (G, M, n, 3)."""
-        v, levers = self._levers(R)
-        length = np.linalg.norm(v, axis=-1, keepdims=True)
-        upper = v / length
-        moved = cross(axes[:, :, : len(levers)], np.stack(levers, 2))
-        along = (moved * upper[:, :, None]).sum(-1, keepdims=True)
-        return upper, (moved - along * upper[:, :, None]) / length[:, :, None]
 
     def _every_pair(self, upper: Array, fore: Array) -> tuple[Array, Array]:
         """The four ways of three shoulder axes and an elbow, where bones turn about the shoulder, and what shows."""
