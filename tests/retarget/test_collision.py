@@ -10,9 +10,10 @@ import pytest
 
 from retarget.path.collision import SelfContact
 from retarget.robot.loading import list_robots, load_robot
+from tests.support.robots import ByName, packaged
 
 mujoco: Any = importlib.import_module("mujoco")
-CONTACTS = {name: SelfContact(load_robot(name)) for name in list_robots()}
+CONTACTS = ByName(list_robots(), lambda name: SelfContact(packaged(name)))
 
 
 def measured_m(contact: SelfContact, q_rad: np.ndarray) -> np.ndarray:

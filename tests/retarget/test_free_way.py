@@ -14,11 +14,12 @@ from retarget.path.collision import KEPT, SelfContact
 from retarget.path.limits import JointLimits
 from retarget.path.rrt_connect import RrtConnect
 from retarget.robot.loading import list_robots, load_robot
+from tests.support.robots import ByName, packaged
 from tests.support.sizes import examples
 
-ROBOTS = {name: load_robot(name) for name in ("reference", "toddlerbot", "op2")}
-CONTACTS = {name: SelfContact(robot) for name, robot in ROBOTS.items()}
-BODIES = {name: SelfContact(robot, margin_m=0.0) for name, robot in ROBOTS.items()}
+ROBOTS = ByName(("reference", "toddlerbot", "op2"), packaged)
+CONTACTS = ByName(ROBOTS, lambda name: SelfContact(packaged(name)))
+BODIES = ByName(ROBOTS, lambda name: SelfContact(packaged(name), margin_m=0.0))
 names = st.sampled_from(sorted(ROBOTS))
 seeds = st.integers(0, 2**32 - 1)
 

@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from retarget.path.collision import SelfContact
 from retarget.path.limits import brake
 from retarget.path.safety_filter import SafetyFilter
-from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
+from tests.support.robots import ByName, packaged
 from tests.support.sizes import examples
 
-ROBOTS = {name: load_robot(name) for name in ("reference", "toddlerbot", "op2")}
-GUARDS = {name: SafetyFilter(robot) for name, robot in ROBOTS.items()}
-BODIES = {name: SelfContact(robot, margin_m=0.0) for name, robot in ROBOTS.items()}
+ROBOTS = ByName(("reference", "toddlerbot", "op2"), packaged)
+GUARDS = ByName(ROBOTS, lambda name: SafetyFilter(packaged(name)))
+BODIES = ByName(ROBOTS, lambda name: SelfContact(packaged(name), margin_m=0.0))
 """Without a margin: what it calls contact is contact."""
 
 jumps = st.lists(

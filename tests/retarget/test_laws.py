@@ -16,13 +16,14 @@ from mmm_core.motion.motion import Motion
 from retarget.human.human import read_human
 from retarget.path.paths import JointState
 from retarget.pipeline import BLOCK_FRAMES, Retargeter
-from retarget.robot.loading import list_robots, load_robot
+from retarget.robot.loading import list_robots
 from retarget.robot_to_human import joints_of_path
 from tests.retarget.test_pipeline import at_rest, check_bounds
+from tests.support.robots import ByName, packaged
 from tests.support.sizes import examples
 
-RETARGETERS = {name: Retargeter(load_robot(name)) for name in list_robots()}
-CHECKS = {name: ContactCheck(r.robot) for name, r in RETARGETERS.items()}
+RETARGETERS = ByName(list_robots(), lambda name: Retargeter(packaged(name)))
+CHECKS = ByName(list_robots(), lambda name: ContactCheck(packaged(name)))
 names = st.sampled_from(list(RETARGETERS))
 kinds = st.sampled_from(["noise", "teleport", "smooth"])
 

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from retarget.path.limit_path import limit_path
 from retarget.path.limits import JointLimits, brake, keeps, limit_step
-from retarget.robot.loading import load_robot
+from tests.support.robots import packaged
 from tests.support.sizes import examples
 
-LIMITS = JointLimits.of(load_robot("reference"))
+LIMITS = JointLimits.of(packaged("reference"))
 J = len(LIMITS.position_min_rad)
 seeds = st.integers(0, 2**32 - 1)
 

@@ -20,9 +20,10 @@ from retarget.path.paths import JointPath, JointState
 from retarget.pipeline import BLOCK_FRAMES, Retargeter
 from retarget.robot.kinematics import Kinematics
 from retarget.robot.loading import load_robot
+from tests.support.robots import ByName, packaged
 from tests.support.sizes import examples
 
-RETARGETERS = {name: Retargeter(load_robot(name)) for name in ("reference", "op3")}
+RETARGETERS = ByName(("reference", "op3"), lambda name: Retargeter(packaged(name)))
 kinds = st.sampled_from(["noise", "teleport", "smooth"])
 robots = st.sampled_from(sorted(RETARGETERS))
 RATES_HZ = (20.0, 100.0, 125.0, 200.0)

@@ -7,8 +7,9 @@ import pytest
 
 from retarget.path.collision import SelfContact
 from retarget.robot.loading import list_robots, load_robot
+from tests.support.robots import ByName, packaged
 
-CONTACTS = {name: SelfContact(load_robot(name)) for name in list_robots()}
+CONTACTS = ByName(list_robots(), lambda name: SelfContact(packaged(name)))
 
 
 def splines(name: str, n: int, step_rad: float) -> np.ndarray:

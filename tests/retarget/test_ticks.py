@@ -17,6 +17,7 @@ from retarget.robot.loading import list_robots, load_robot
 from retarget.robot.robot import RobotModel
 from retarget.robot.ticks import JointServoMap
 from tests.retarget.robot_files import joint, write_robot
+from tests.support.robots import ByName, packaged
 from tests.support.sizes import examples
 
 WAIST = (
@@ -41,6 +42,7 @@ PAIR = joint("lift", "left_elbow", "[-60, 60]") .replace(
     "servos = [ { id = 4, model = \"XM430-W350\" }, "
     "{ id = 5, model = \"XM430-W350\", direction = -1, zero_tick = 2000 } ]\nposition_limit_deg",
 )  # fmt: skip
+
 KINDS: dict[str, tuple[str, float, dict[str, float], list[int]]] = {
     # name: (file, protocol, joint angles in degrees, ticks by hand)
     "plain": (joint("a", "left_elbow", "[-60, 60]", '{ id = 1, model = "XM430-W350" }'), 2.0, {"a": 45}, [2560]),
@@ -85,9 +87,7 @@ def small(body: str, protocol: float) -> RobotModel:
         return load_robot(str(write_robot(Path(folder) / "small", body, protocol)))
 
 
-ROBOTS = {name: load_robot(name) for name in list_robots()} | {
-    name: small(body, protocol) for name, (body, protocol, _, _) in KINDS.items()
-}
+ROBOTS = ByName((*list_robots(), *KINDS), lambda name: small(*KINDS[name][:2]) if name in KINDS else packaged(name))
 
 
 @pytest.mark.parametrize("name", ROBOTS)

@@ -16,9 +16,10 @@ from retarget.robot.ticks import JointServoMap
 from sim.audit.audit import ANSWERS_TOLD, TTY_GOALS, Audit
 from sim.audit.contact_audit import ContactAudit
 from sim.faults import Fault
+from tests.support.robots import packaged
 from tests.support.servo_bench import Bench
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 SERVO = ROBOT.servos[2]  # waist_yaw: an XM430 without gear
 JOINT = ROBOT.joints[2]
 TICKS_PER_RAD = 4096 / (2 * math.pi)

@@ -31,10 +31,11 @@ from sim.faults import Fault, FaultSchedule
 from sim.port import SimPort
 from sim.pty import PtyServer
 from sim.world import World
+from tests.support.robots import packaged
 
 pytestmark = pytest.mark.realtime
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 BAUD = ROBOT.bus.baud
 
 

@@ -11,11 +11,11 @@ import pytest
 from daemon.bench.audit_rig import AuditRig
 from daemon.cli import main
 from daemon.shared_memory.bus_link import BusRequest, BusState
-from retarget.robot.loading import load_robot
 from sim.faults import Fault
 from tests.support.rig import swing
+from tests.support.robots import packaged
 
-ROBOT = load_robot("op3")
+ROBOT = packaged("op3")
 
 
 class Drawn:

@@ -6,11 +6,11 @@ import numpy as np
 
 from daemon.demo.main_job import audited_plans
 from daemon.recording.mcap_reading import Log, LoggedCycle
-from retarget.robot.loading import load_robot
 from retarget.robot.ticks import JointServoMap
 from tests.support.rig import swing
+from tests.support.robots import packaged
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 
 
 def log_of(q_rad: np.ndarray, period_s: float) -> Log:

@@ -12,13 +12,13 @@ from daemon.bench.tty_servos import served
 from daemon.control.arming import WATCHDOG_UNITS
 from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState, Readiness
-from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.pty import PtyServer
+from tests.support.robots import packaged
 
 pytestmark = pytest.mark.realtime
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 
 
 class BusProcess:

@@ -17,11 +17,11 @@ from retarget.path.paths import JointState
 from retarget.pipeline import Retargeter
 from tests.retarget.gestures import gesture
 from tests.support.rig import Rig, rig, with_known_turns
-from tests.support.robots import packaged
+from tests.support.robots import ByName, packaged
 from tests.support.sizes import examples
 
 ROBOTS = ("op2", "reference", "toddlerbot")
-BODIES = {name: SelfContact(packaged(name), margin_m=0.0) for name in ROBOTS}
+BODIES = ByName(ROBOTS, lambda name: SelfContact(packaged(name), margin_m=0.0))
 seeds = st.integers(0, 2**32 - 1)
 
 

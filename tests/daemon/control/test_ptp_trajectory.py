@@ -9,9 +9,10 @@ from daemon.control.ptp_trajectory import ACCELERATION_RAD_S2, SPEED_RAD_S, PtpT
 from daemon.control.safety_limiter import SafetyLimiter
 from retarget.path.limits import JointLimits
 from retarget.robot.loading import list_robots, load_robot
+from tests.support.robots import packaged
 from tests.support.sizes import examples
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 LIMITS = JointLimits.of(ROBOT)
 PERIOD_S = ROBOT.bus.period_s
 

@@ -4,10 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from daemon.control.safety_limiter import SafetyLimiter
-from retarget.robot.loading import load_robot
+from tests.support.robots import packaged
 from tests.support.sizes import examples
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 LOW, HIGH = SafetyLimiter(ROBOT).limits.position_min_rad, SafetyLimiter(ROBOT).limits.position_max_rad
 PERIOD_S = ROBOT.bus.period_s
 

@@ -12,13 +12,13 @@ from daemon.dynamixel.servo_bus import ServoBus
 from daemon.dynamixel.setup.checks import check_servos
 from daemon.errors import BusMismatchError, CommandError, LinkLostError, LinkTimeoutError
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
-from retarget.robot.loading import load_robot
 from retarget.robot.ticks import JointServoMap
 from sim.clock import VirtualClock
 from tests.support.rig import swing
+from tests.support.robots import packaged
 from tests.support.servo_emulator import FakePort, FakeServo
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 
 
 def two_ports(*extra_on_b: int, missing: tuple[int, ...] = ()) -> tuple[list[FakePort], VirtualClock]:

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from daemon.front.target_parsing import NAMED_EVERY_S, TargetParser
 from daemon.wire.codec import WireError
-from retarget.robot.loading import load_robot
+from tests.support.robots import packaged
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 SECRET = "of-the-holder-alone"
 N, NAMES = ROBOT.n_joints, ROBOT.joint_names
 

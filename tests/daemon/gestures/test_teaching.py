@@ -29,11 +29,11 @@ from daemon.gestures.teaching import (
 from mmm_core.motion.motion import FPS
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import list_robots, load_robot
+from tests.support.robots import ByName, packaged
 from tests.support.sizes import examples
 
-RETARGETERS = {name: Retargeter(load_robot(name)) for name in ("reference", "op3", "poppy_torso")}
-REFERENCE = RETARGETERS["reference"]
-ROBOT = REFERENCE.robot
+RETARGETERS = ByName(("reference", "op3", "poppy_torso"), lambda name: Retargeter(packaged(name)))
+ROBOT = packaged("reference")
 TICK_RAD = 2 * np.pi / 4096
 seeds = st.integers(0, 2**32 - 1)
 names = st.sampled_from(sorted(RETARGETERS))
@@ -85,7 +85,7 @@ def test_a_pose_may_be_shown_too(name, seed):
 @settings(max_examples=examples(50), deadline=None)
 @given(seeds, st.floats(0.3, 10.0))
 def test_slowing_keeps_the_way_and_the_speed_limit(seed, speed):
-    _, q = led(REFERENCE, seed, speed)
+    _, q = led(RETARGETERS["reference"], seed, speed)
     limit = ROBOT.velocity_limit_rad_s
     slower, times = slowed(q, limit)
     assert (np.abs(np.diff(slower, axis=0)) * FPS <= limit * (1 + 1e-9)).all()
@@ -104,7 +104,7 @@ def test_slowing_keeps_the_way_and_the_speed_limit(seed, speed):
 @given(seeds, st.integers(0, 60), st.integers(0, 60))
 def test_still_ends_are_cut_however_long_they_are(seed, before, after):
     """What is cut is as still as its end, what moves stays, and more of the still ends changes nothing."""
-    _, q = led(REFERENCE, seed)
+    _, q = led(RETARGETERS["reference"], seed)
     q = smoothed(q)
     cut = still_ends_cut(q)
     first = next(k for k in range(len(q)) if np.array_equal(q[k : k + len(cut)], cut))
@@ -163,7 +163,7 @@ def test_a_turned_forearm_is_kept():
     q = np.repeat(ROBOT.rest_rad[None], 40, 0)
     yaw = [ROBOT.joint_names.index(f"{side}_forearm_yaw") for side in ("left", "right")]
     q[:, yaw] += np.array([0.6, -0.4]) * np.linspace(0, 1, 40)[:, None]
-    path = REFERENCE.retarget(on_a_person(REFERENCE.kinematics, q).motion())
+    path = RETARGETERS["reference"].retarget(on_a_person(RETARGETERS["reference"].kinematics, q).motion())
     assert path.q_rad[39, yaw] == pytest.approx(q[-1, yaw], abs=0.02)
 
 
@@ -179,9 +179,9 @@ def test_what_was_beyond_a_limit_or_too_fast_is_told():
     q = np.repeat(ROBOT.rest_rad[None], 60, 0)
     elbow = ROBOT.joint_names.index("right_elbow")
     q[20:40, elbow] = ROBOT.position_max_rad[elbow] + 0.1
-    clipped, notes = inside_positions(q, REFERENCE.limits, ROBOT.joint_names)
+    clipped, notes = inside_positions(q, RETARGETERS["reference"].limits, ROBOT.joint_names)
     assert clipped[:, elbow].max() <= ROBOT.position_max_rad[elbow] and "right_elbow was led 5.8 degrees" in notes[0]
-    said = " ".join(taught_gesture(REFERENCE, t, q).notes)
+    said = " ".join(taught_gesture(RETARGETERS["reference"], t, q).notes)
     assert "right_elbow was led" in said and "times as fast as a joint may be" in said
 
 
@@ -193,14 +193,14 @@ def test_a_recording_with_nothing_in_it_is_refused(moved_rad, frames, says):
     q = np.repeat(ROBOT.rest_rad[None], frames, 0)
     q[frames // 2 :, ROBOT.joint_names.index("right_elbow")] += moved_rad
     with pytest.raises(ClipError, match=says):
-        taught_gesture(REFERENCE, (np.arange(frames) / FPS).tolist(), q)
+        taught_gesture(RETARGETERS["reference"], (np.arange(frames) / FPS).tolist(), q)
 
 
 def test_a_pose_that_moved_is_refused():
     q = np.repeat(ROBOT.rest_rad[None], 40, 0)
     q[:, ROBOT.joint_names.index("right_elbow")] += np.linspace(0, 1, 40)
     with pytest.raises(ClipError, match="hold the arms still"):
-        taught_pose(REFERENCE, (np.arange(40) / FPS).tolist(), q)
+        taught_pose(RETARGETERS["reference"], (np.arange(40) / FPS).tolist(), q)
 
 
 @pytest.mark.parametrize(

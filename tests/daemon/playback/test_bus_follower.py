@@ -9,11 +9,11 @@ from daemon.playback.setpoint_buffer import SetpointBuffer
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from daemon.state.bus_view import BusView
 from daemon.state.machine import RobotState, StateMachine
-from retarget.robot.loading import load_robot
 from sim.clock import VirtualClock
 from tests.support.rig import Rig, lead_to, rig
+from tests.support.robots import packaged
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 
 
 class Front:

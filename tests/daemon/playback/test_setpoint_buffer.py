@@ -24,14 +24,14 @@ from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState
 from daemon.state.bus_view import BusView
 from retarget.errors import RetargetError
 from retarget.path.limits import JointLimits
-from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.port import SimPort
 from tests.support.kinematic import raised_arm
+from tests.support.robots import packaged
 from tests.support.sizes import examples
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 RIGHT = raised_arm("right", 1.0, 1.0, "right")
 LEFT = raised_arm("left", 0.8, 0.9, "left")
 LEFT_POSTURE = posture_of(LEFT)

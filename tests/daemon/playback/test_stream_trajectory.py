@@ -21,11 +21,11 @@ from daemon.state.bus_view import BusView
 from daemon.state.lease import LeaseClock, LeaseState
 from retarget.path.collision import SelfContact
 from retarget.path.safety_filter import SafetyFilter
-from retarget.robot.loading import load_robot
 from tests.support.rig import Rig, rig
+from tests.support.robots import ByName, packaged
 from tests.support.sizes import examples
 
-BODIES = {name: SelfContact(load_robot(name), margin_m=0.0) for name in ("reference", "toddlerbot")}
+BODIES = ByName(("reference", "toddlerbot"), lambda name: SelfContact(packaged(name), margin_m=0.0))
 
 
 class Streaming:

@@ -16,7 +16,6 @@ from daemon.front.metrics import exposition
 from daemon.shared_memory.bus_link import BusLink
 from daemon.state.bus_view import BusView
 from daemon.wire.status import ServoHealth, StateEvent
-from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
@@ -24,8 +23,9 @@ from sim.port import SimPort
 from sim.world import World
 from tests.support.harness import RunningDaemon
 from tests.support.rig import rig
+from tests.support.robots import packaged
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 
 
 def test_what_the_bus_finds_of_a_servo_stands_in_the_shared_memory() -> None:

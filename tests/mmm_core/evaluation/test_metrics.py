@@ -8,8 +8,6 @@ import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
-from sklearn.metrics import top_k_accuracy_score
-from sklearn.metrics.pairwise import paired_euclidean_distances
 
 from mmm_core.errors import EvaluationError
 from mmm_core.evaluation import metrics
@@ -46,6 +44,9 @@ class TestRPrecision:
 
     @given(st.integers(0, 50), st.sampled_from([0.1, 1.0, 4.0]))
     def test_it_is_scikit_learns_top_k_accuracy(self, seed: int, noise: float) -> None:
+        # Here, as it takes half a second and every process of the suite reads this file.
+        from sklearn.metrics import top_k_accuracy_score
+
         texts = rng(seed).normal(size=(32, 6))
         motions = texts + noise * rng(seed + 1).normal(size=(32, 6))
         ours, own = metrics.r_precision(texts, motions, rng(seed)), np.arange(32)
@@ -113,6 +114,8 @@ class TestSpread:
         assert metrics.mm_dist(np.array([[0.0, 0], [1, 1]]), np.array([[3.0, 4], [1, 1]])) == 2.5
 
     def test_mm_dist_is_scikit_learns(self) -> None:
+        from sklearn.metrics.pairwise import paired_euclidean_distances
+
         a, b = rng(1).normal(size=(9, 5)), rng(2).normal(size=(9, 5))
         assert metrics.mm_dist(a, b) == pytest.approx(paired_euclidean_distances(a, b).mean())
 

@@ -19,14 +19,14 @@ from daemon.dynamixel.ports.port import Port
 from daemon.dynamixel.ports.serial_port import SerialPort, open_dxl
 from daemon.errors import CommandError, LinkLostError, PortBusyError, PortMissingError, PortPermissionError
 from daemon.host.clock import RealClock
-from retarget.robot.loading import load_robot
 from sim.bus import SimBus
 from sim.port import SimPort
 from sim.pty import PtyServer
+from tests.support.robots import packaged
 
 pytestmark = pytest.mark.realtime
 
-ROBOT = load_robot("op3")
+ROBOT = packaged("op3")
 BAUD = ROBOT.bus.baud
 
 

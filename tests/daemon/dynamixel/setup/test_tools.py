@@ -35,11 +35,12 @@ from sim.bus import SimBus
 from sim.clock import VirtualClock
 from sim.port import SimPort
 from sim.pty import PtyServer
+from tests.support.robots import packaged
 from tests.support.servo_emulator import FakePort, FakeServo, fake
 
 pytestmark = pytest.mark.realtime
 
-ROBOT = load_robot("reference")
+ROBOT = packaged("reference")
 
 
 def wired(robot: RobotModel = ROBOT) -> tuple[ServoBus, FakePort, VirtualClock]:
