@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import shutil
 import signal
 import subprocess
@@ -220,13 +221,12 @@ def test_an_estop_or_somebody_who_arms_ends_the_recording(taught, servos):
 
 
 def test_a_pose_is_taught_and_gone_through(taught, servos, gestures):
-    daemon, begun = taught
+    daemon, _ = taught
     lead(daemon, servos, [raised(1.0)])
-    with begun("arm_out", "--limp", "--yes", "--pose", "--seconds", "1") as teaching:
-        status, complaints = teaching.ended()
-    assert status == 0, complaints
+    done = daemon.mmmd("gesture", "teach", "arm_out", "--limp", "--yes", "--pose", "--seconds", "1")
+    assert done.returncode == 0, done.stderr
     clip = GestureLibrary(gestures).get("arm_out")
-    assert len(clip.posture) == 20 and "inbetween arm_out@2" in teaching.said
+    assert len(clip.posture) == 20 and "inbetween arm_out@2" in done.stdout
     with daemon.client() as client:
         client.arm()
         client.wait_for("idle", timeout_s=20)
@@ -241,12 +241,11 @@ def test_a_pose_is_taught_and_gone_through(taught, servos, gestures):
 
 def test_the_example_goes_from_one_taught_pose_to_another(taught, servos):
     """docs/examples/inbetween_taught.py: at its end the robot is in the first pose again, and it has been in the second."""
-    daemon, begun = taught
+    daemon, _ = taught
     for name, share in (("arm_low", 0.5), ("arm_high", 1.0)):
         lead(daemon, servos, [raised(share)])
-        with begun(name, "--limp", "--yes", "--pose", "--seconds", "1") as teaching:
-            status, complaints = teaching.ended()
-        assert status == 0, complaints
+        done = daemon.mmmd("gesture", "teach", name, "--limp", "--yes", "--pose", "--seconds", "1")
+        assert done.returncode == 0, done.stderr
     with daemon.client() as client, daemon.client() as watcher:
         client.arm()
         client.wait_for("idle", timeout_s=20)
@@ -267,7 +266,7 @@ def test_the_example_goes_from_one_taught_pose_to_another(taught, servos):
     assert nearest_deg(1.0, arm) < 5 and nearest_deg(0.5, arm[-1:]) < 5
 
 
-def test_nothing_goes_limp_or_is_written_over_unasked(taught, servos, gestures):
+def test_nothing_goes_limp_or_is_written_over_unasked(taught, servos, gestures, monkeypatch):
     """A trunk that would fall, a name that is taken, a no, an end of input: refused before anything changes."""
     daemon, _ = taught
     with daemon.client() as client:
@@ -283,10 +282,8 @@ def test_nothing_goes_limp_or_is_written_over_unasked(taught, servos, gestures):
             (("my_lift", "--limp", "--seconds", "600"), "", 2, "60 at most"),
         ]  # fmt: skip
         for arguments, typed, wanted, says in cases:
-            done = subprocess.run(
-                [*MMMD, "gesture", "teach", *arguments, *daemon.at], capture_output=True, text=True, timeout=60,
-                check=False, **({"stdin": subprocess.DEVNULL} if typed is None else {"input": typed + "\n"}),
-            )  # fmt: skip
+            monkeypatch.setattr(sys, "stdin", io.StringIO("" if typed is None else f"{typed}\n"))
+            done = daemon.mmmd("gesture", "teach", *arguments)
             assert done.returncode == wanted and says in done.stderr, (arguments, done.returncode, done.stderr)
             assert client.status().state in ("idle", "holding") and servos.torque
     assert not gestures.exists()

@@ -38,9 +38,10 @@ class Browser:
     """One page in one browser, which ends with the block."""
 
     def __init__(self, width: int = 1280, height: int = 800) -> None:
+        program = chromium()
         self._folder = tempfile.TemporaryDirectory(prefix="mmmd-chromium-", ignore_cleanup_errors=True)
         command = [
-            chromium(),
+            program,
             *FLAGS,
             f"--user-data-dir={self._folder.name}",
             f"--window-size={width},{height}",

@@ -214,23 +214,23 @@ def test_an_unreadable_folder_keeps_clients_out_and_the_door_goes_on(tmp_path):
 
 
 def test_keys_by_command(tmp_path):
-    folder = str(tmp_path / "k")
-    made = mmmd("keys", "new", "--keys", folder)
+    folder = tmp_path / "k"
+    made = mmmd("keys", "new", "--keys", str(folder))
     assert made.returncode == 0 and len(made.stdout.strip()) == 64
     other = as_hex(zmq.curve_keypair()[0])
-    assert mmmd("keys", "allow", "laptop", other, "--keys", folder).returncode == 0
-    assert mmmd("keys", "trust", "generator", other, "--keys", folder).returncode == 0
-    listed = mmmd("keys", "list", "--keys", folder).stdout
+    assert keys_here("allow", "laptop", other, folder)[2] == 0
+    assert keys_here("trust", "generator", other, folder)[2] == 0
+    listed = keys_here("list", folder)[0]
     assert made.stdout.strip() in listed and listed.count(other) == 2 and "laptop" in listed
-    assert mmmd("keys", "new", "--keys", folder).returncode == 2
-    assert mmmd("keys", "allow", "laptop", "--keys", folder).returncode == 2
-    assert mmmd("keys", "trust", "cat", other, "--keys", folder).returncode == 2
+    assert keys_here("new", folder)[2] == 2
+    assert keys_here("allow", "laptop", folder)[2] == 2
+    assert keys_here("trust", "cat", other, folder)[2] == 2
 
 
 def test_keys_are_exchanged_by_pasting_what_is_printed(tmp_path):
     """Z85 keys hold `<>*?$(){}!#&`: of three that were pasted as the page showed, bash took none."""
     robot, laptop = tmp_path / "robot", tmp_path / "laptop"
-    for _ in range(20):
+    for _ in range(3):  # each pair of Z85 keys holds one of them in 99 of 100 cases
         for folder in (robot, laptop):
             shutil.rmtree(folder, ignore_errors=True)
         printed = {f: keys_here("new", f) for f in (robot, laptop)}
@@ -280,10 +280,10 @@ def test_a_daemon_without_torch_uses_a_remote_generator_over_curve(tmp_path):
         with daemon.client() as client:
             assert client.say("wave with your right hand").done
             client.say("clap your hands", loop=True, wait=False)
-            client.wait_for("moving", timeout_s=5)
+            client.wait_for("moving", timeout_s=60)
             generator.kill()
             generator.wait(5)
-            end_s = time.monotonic() + 10
+            end_s = time.monotonic() + 60
             while client.status().generator.startswith("ready"):
                 assert time.monotonic() < end_s
                 time.sleep(0.05)
