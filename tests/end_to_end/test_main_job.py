@@ -28,7 +28,7 @@ pytestmark = [
 def run(tmp_path_factory):
     """A recorded run of the shipped model; the tests of this module share it."""
     log = tmp_path_factory.mktemp("run") / "run.mcap"
-    daemon = RunningDaemon("--log", str(log), model=True)
+    daemon = RunningDaemon("--log", str(log), robot="reference", model=True)
     daemon.log = log
     try:
         daemon.said_early = said_early(daemon)

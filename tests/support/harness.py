@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
+import functools
 import io
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -20,11 +23,16 @@ from daemon.generator.generated import Generated
 from daemon.scheduling.command_queue import SHADOW_S
 from daemon.settings.config import Endpoints
 from daemon.wire.events import Done
+from retarget.robot.loading import ROBOTS_DIR
 from tests.support.kinematic import KinematicGenerator, generate
 
 Answer = Callable[[str, int, float | None], Generated]
 MMMD = [sys.executable, "-m", "daemon.cli"]
 START_TIMEOUT_S = 80.0
+RATE_HZ = 50
+"""Bus cycles per second of test daemons: half the rate of `reference`, since the bus process is a daemon's dearest."""
+PATIENT = {"MMMD_GENERATE_TIMEOUT_S": "20"}
+"""Seconds until a silent generator is restarted, for a daemon with a model: beside other tests the model may be slow to answer."""
 MOST_CLIPPED_IN_AN_UNDERRUN = 4
 """Where the machine is held up the bus process brakes; frames that were on their way meanwhile, up to 4 of the 10 that are
 queued, are limited until it goes on."""
@@ -36,7 +44,7 @@ class RunningDaemon:
     Args:
         options: of `mmmd run`.
         bus: where the servos are.
-        robot: which.
+        robot: name or folder; None for `slow_reference`.
         model: whether the daemon starts its own generator, with the shipped model.
         answer: of the generator peer to a text.
         tcp: sockets on free ports of this machine instead.
@@ -46,7 +54,7 @@ class RunningDaemon:
         self,
         *options: str,
         bus: str = "sim://",
-        robot: str = "reference",
+        robot: str | None = None,
         model: bool = False,
         answer: Answer = generate,
         tcp: bool = False,
@@ -68,7 +76,7 @@ class RunningDaemon:
             *MMMD,
             "run",
             "--robot",
-            robot,
+            robot or slow_reference(),
             "--bus",
             bus,
             *generator,
@@ -78,7 +86,7 @@ class RunningDaemon:
             *options,
         ]
         # A daemon draws nothing, and MuJoCo would load GLFW in two of its processes.
-        environment = {**os.environ, "MUJOCO_GL": "disable"}
+        environment = {**os.environ, "MUJOCO_GL": "disable", **(PATIENT if model else {})}
         with self.output.open("wb") as out:
             self.process = subprocess.Popen(command, stdout=out, stderr=out, env=environment)
 
@@ -155,6 +163,19 @@ class RunningDaemon:
         if self.peer is not None:
             self.peer.close()
         self._folder.cleanup()
+
+
+@functools.cache
+def slow_reference() -> str:
+    """Folder of a copy of the robot `reference` at `RATE_HZ`, which is removed when this process ends."""
+    folder = Path(tempfile.mkdtemp(prefix="mmmd-test-robot-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    shutil.copytree(ROBOTS_DIR / "reference", folder, dirs_exist_ok=True)
+    file = folder / "robot.toml"
+    usual, slow = "rate_hz = 100", f"rate_hz = {RATE_HZ}"
+    assert usual in file.read_text("utf-8")
+    file.write_text(file.read_text("utf-8").replace(usual, slow), "utf-8")
+    return str(folder)
 
 
 def free_ports(n: int) -> list[int]:

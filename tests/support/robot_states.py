@@ -14,10 +14,10 @@ from daemon.bench.tty_servos import TtyServos
 from daemon.client import Client, NoAnswerError, RefusedError
 from retarget.robot.loading import load_robot
 from sim.faults import Fault, FaultSchedule
-from tests.support.harness import Answer, RunningDaemon
+from tests.support.harness import Answer, RunningDaemon, slow_reference
 from tests.support.kinematic import generate
 
-ROBOT = load_robot("reference")
+ROBOT = load_robot(slow_reference())
 STATES = ("limp", "arming", "idle", "moving", "holding", "parking", "estop")
 ALL_STATES = (*STATES, "fault")
 STAYS = {state: (state,) for state in ALL_STATES} | {

@@ -15,7 +15,7 @@ from daemon.client.errors import stamp
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire import requests
-from tests.support.harness import RunningDaemon, plays_well
+from tests.support.harness import RATE_HZ, RunningDaemon, plays_well
 from tests.support.kinematic import LET_GO
 
 pytestmark = pytest.mark.realtime
@@ -82,7 +82,7 @@ def test_say_is_accepted_moves_and_is_done(robot):
     assert (done.shown, done.seen, done.missing) == ("shown", accepted.understood, "")
     assert 0 < done.first_motion_ms < 2000
     assert done.gate_clipped_frames == 0 and 0 < done.peak_speed_share <= 1
-    assert done.duration_s == pytest.approx(done.frames / 100, abs=0.2)
+    assert done.duration_s == pytest.approx(done.frames / RATE_HZ, abs=0.2)
 
 
 def test_plain_text_from_a_dealer(robot, running, context):

@@ -14,7 +14,7 @@ from daemon.client.errors import stamp
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire.requests import Gesture, Say, tag_of
-from tests.support.harness import RunningDaemon
+from tests.support.harness import RATE_HZ, RunningDaemon
 
 pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
 
@@ -105,13 +105,16 @@ def test_amplitude_scales_the_movement(robot):
 def test_a_loop_goes_on_until_it_is_cancelled(robot, talk):
     talk.send(Say(id="round", text="wave", seconds=1.0, loop=True))
     talk.until("round", ev.Progress)
-    time.sleep(2.5)  # more than two rounds
-    status = robot.status()
-    assert status.state == "moving" and status.command.id == "round"
-    assert status.bus_info["underruns"] == 0
+    before = now = robot.status().bus_info
+    while now["cycles"] < before["cycles"] + 2.5 * RATE_HZ:  # more than two rounds
+        time.sleep(0.1)
+        status = robot.status()
+        assert status.state == "moving" and status.command.id == "round"
+        now = status.bus_info
+    assert 20 * (now["underruns"] - before["underruns"]) < now["cycles"] - before["cycles"]
     robot.cancel("round")
     assert talk.until("round", ev.Cancelled).by == "cancel"
-    robot.wait_for("holding", timeout_s=3)
+    robot.wait_for("holding", timeout_s=20)
 
 
 def test_after_waits_for_its_turn_and_ends_a_loop_gracefully(robot, talk):
@@ -218,7 +221,7 @@ def test_record_keeps_the_newest_motion_as_a_gesture(robot):
     robot.say("wave with your right hand", seconds=1.0)
     assert "my_wave" in robot.record("my_wave").note
     assert any(g.name == "my_wave" and g.own for g in robot.capabilities().gestures)
-    assert robot.gesture("my_wave").done.frames == pytest.approx(robot.say("wave", seconds=1.0).done.frames, abs=60)
+    assert robot.gesture("my_wave").done.frames == pytest.approx(robot.say("wave", seconds=1.0).done.frames, abs=30)
     with pytest.raises(RefusedError, match="no motion of command"):
         robot.record("other", "never said")
 

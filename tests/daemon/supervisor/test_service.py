@@ -123,7 +123,7 @@ def test_a_service_tells_systemd_and_prometheus_and_logs_json(tmp_path):
         assert values['mmmd_state{robot="reference",state="idle"}'] == 1
         assert values['mmmd_state{robot="reference",state="fault"}'] == 0
         assert values['mmmd_events_total{robot="reference",type="done"}'] == 1
-        assert values['mmmd_cycles_total{robot="reference"}'] > 50
+        assert values['mmmd_cycles_total{robot="reference"}'] > 25
         with pytest.raises(urllib.error.HTTPError, match="404"):
             urllib.request.urlopen(f"http://127.0.0.1:{port}/other", timeout=5)
         with socket.create_connection(("127.0.0.1", port), 5) as rude:
