@@ -21,6 +21,8 @@ from daemon.generator.generated import (
     GeneratorError,
     arrays_of,
     generated_of,
+    no_answer,
+    still_loading,
 )
 from daemon.generator.messages import (
     MOST_REQUEST_BYTES,
@@ -79,6 +81,7 @@ class GeneratorClient:
         self.checkpoint_hash = ""
         self.timeouts = 0
         self._lives = 0
+        self._starting_since_s = time.monotonic()
 
     def mark_ready(self, checkpoint_hash: str) -> None:
         """The generator answers."""
@@ -89,6 +92,7 @@ class GeneratorClient:
     def mark_starting(self) -> None:
         """The generator is being started; requests wait for it."""
         self.state, self._down_reason = "starting", ""
+        self._starting_since_s = time.monotonic()
         self._ready.clear()
         self._lives += 1
         self._lose_follows()
@@ -233,10 +237,12 @@ class GeneratorClient:
     async def _until_ready(self, asked: str) -> None:
         began_s = time.monotonic()
         while not self._ready.is_set():
-            if self._down_reason or time.monotonic() - began_s > START_TIMEOUT_S:
+            if self._down_reason:
                 found = f"the generator is {self.state}"
                 do = "see the daemon's output; gestures (`mmmd gesture list`) need no generator"
                 raise GeneratorError("generator_down", asked, found, "a generator that runs", do)
+            if time.monotonic() - began_s > START_TIMEOUT_S:
+                raise still_loading(asked, time.monotonic() - self._starting_since_s)
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._ready.wait(), 0.1)
 
@@ -286,9 +292,3 @@ def _heard(whole: asyncio.Task[Generated]) -> None:
     """Nobody may be waiting for it any more."""
     if not whole.cancelled() and whole.exception() is not None:
         log.warning("a draft goes on without its motion: %s", whole.exception())
-
-
-def no_answer(asked: str, timeout_s: float) -> GeneratorError:
-    """The error of a generator that was silent."""
-    found, do = f"no answer from the generator in {timeout_s:g} s", "it is started again; say it once more"
-    return GeneratorError("generator_timeout", asked, found, "an answer in that time", do)

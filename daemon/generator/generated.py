@@ -25,6 +25,24 @@ class GeneratorError(DaemonError):
         super().__init__(f"{asked}: {found}; allowed: {allowed}; {do}")
 
 
+def no_answer(asked: str, timeout_s: float) -> GeneratorError:
+    """The error of a generator that was silent."""
+    found, do = f"no answer from the generator in {timeout_s:g} s", "it is started again; say it once more"
+    return GeneratorError("generator_timeout", asked, found, "an answer in that time", do)
+
+
+def still_loading(asked: str, loading_s: float) -> GeneratorError:
+    """The error of a text that came before the motion model was loaded.
+
+    Args:
+        asked: what was asked for.
+        loading_s: seconds since the generator was started.
+    """
+    found = f"the motion model has been loading for {loading_s:.0f} s and is not ready yet"
+    do = "send it again in some seconds; gestures (`mmmd gesture list`) need no motion model"
+    return GeneratorError("generator_down", asked, found, "a motion model that is loaded", do)
+
+
 @dataclass(frozen=True)
 class Generated:
     """A motion as the generator gave it.

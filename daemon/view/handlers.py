@@ -13,6 +13,11 @@ from daemon.view.openapi import openapi
 from daemon.view.web_state import WebState
 
 FILE_TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
+_SERVED = (
+    "POST or WebSocket /v1/cmd", "POST or WebSocket /v1/ctl", "WebSocket /v1/pub", "WebSocket /v1/stream", "GET /v1/openapi.json",
+)  # fmt: skip
+"""Addresses for programs, as the answer 404 lists them; the page has others besides."""
+_PAGE = "GET / (the page)"
 _POLICY = "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
 
 
@@ -36,7 +41,14 @@ class BaseHandler(RequestHandler):
             self.refuse(*refused)
 
     def write_error(self, status_code: int, **_: Any) -> None:
-        self.finish({"type": "error", "code": "http", "found": self._reason, "asked": self.request.path})
+        found = self._reason
+        if status_code == 405:
+            served = [
+                m for m in ("GET", "POST") if getattr(type(self), m.lower()) is not getattr(RequestHandler, m.lower())
+            ]
+            found = f"{self.request.method}, which this address does not serve; allowed: {', '.join(served)}"
+            self.set_header("Allow", ", ".join(served))
+        self.finish({"type": "error", "code": "http", "found": found, "asked": self.request.path})
 
     def refuse(self, status: int, why: str, code: str = "forbidden") -> None:
         self.set_status(status)
@@ -90,3 +102,18 @@ class RunHandler(BaseHandler):
             return
         self.set_header("Content-Type", "application/octet-stream")
         self.finish(self.server.run)
+
+
+class UnknownAddressHandler(BaseHandler):
+    """Answers 404 for an address at which nothing is served, with the addresses that are."""
+
+    def initialize(self, page: bool) -> None:
+        self._page = page
+
+    def prepare(self) -> None:
+        super().prepare()
+        if self._finished:
+            return
+        served = (_PAGE, *_SERVED) if self._page else _SERVED
+        elsewhere = "" if self._page else "; `mmmd run --view` and `mmmd view` serve the page"
+        self.refuse(404, f"nothing at this address; served are: {', '.join(served)}{elsewhere}", "unknown_address")

@@ -16,7 +16,14 @@ from tornado.web import RequestHandler as TornadoHandler
 
 from daemon.network.web_access import Access
 from daemon.settings.config import Endpoints, config_error
-from daemon.view.handlers import FILE_TYPES, FileHandler, OpenApiHandler, RobotHandler, RunHandler
+from daemon.view.handlers import (
+    FILE_TYPES,
+    FileHandler,
+    OpenApiHandler,
+    RobotHandler,
+    RunHandler,
+    UnknownAddressHandler,
+)
 from daemon.view.web_sockets import PublishedHandler, RequestHandler, TargetHandler
 from daemon.view.web_state import WebState
 
@@ -63,7 +70,8 @@ class WebServer:
         ]
         self._server = HTTPServer(
             Application(
-                both, server=self._state, websocket_max_message_size=MOST_BYTES, websocket_ping_interval=10, log_function=_unlogged
+                both, server=self._state, default_handler_class=UnknownAddressHandler, default_handler_args={"page": page},
+                websocket_max_message_size=MOST_BYTES, websocket_ping_interval=10, log_function=_unlogged
             ),
             max_body_size=MOST_BYTES, max_header_size=16 * 1024, idle_connection_timeout=60, body_timeout=5,
         )  # fmt: skip

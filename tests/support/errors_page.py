@@ -184,7 +184,7 @@ ANSWERED = (
         "front_silent", "the front is frozen or dead; on ctl, `stop` and `estop` are served without it", "ask again, or start the daemon anew", "daemon/ctl/test_control.py",
     ),
     Answered(
-        "generator_down", "no generator runs", "`mmmd status` says why; gestures need none", "daemon/generator/test_generator.py",
+        "generator_down", "no generator runs, or it still loads the motion model", "send it again in some seconds; `mmmd status` says why; gestures need none", "daemon/generator/test_generator.py",
     ),
     Answered(
         "generator_error", "the model failed", "see the daemon's output", "daemon/front/test_front.py",

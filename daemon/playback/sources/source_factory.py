@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from daemon.errors import ClipError
-from daemon.generator.client import GeneratorClient, no_answer
-from daemon.generator.generated import Generated, GeneratorError
+from daemon.generator.client import GeneratorClient
+from daemon.generator.generated import Generated, GeneratorError, no_answer
 from daemon.gestures.library import GestureLibrary
 from daemon.playback.sources.clip_source import ClipSource, in_full, varied
 from daemon.playback.sources.kept_motions import KeptMotion, KeptMotions

@@ -17,6 +17,7 @@ import zmq.asyncio
 from hypothesis import given
 from hypothesis import strategies as st
 
+from daemon.generator import client as client_module
 from daemon.generator import messages as generation
 from daemon.generator.client import GeneratorClient
 from daemon.generator.generated import Generated, GeneratorError, generated_from, generated_message
@@ -232,6 +233,21 @@ def test_a_generator_that_is_down_fails_at_once(endpoint):
         return caught.value
 
     assert ask(endpoint, call).code == "generator_down"
+
+
+def test_a_text_that_comes_while_the_model_loads_is_told_to_come_again(endpoint, monkeypatch):
+    """It was told that the generator is "starting" and to see the daemon's output, where nothing is wrong."""
+    monkeypatch.setattr(client_module, "START_TIMEOUT_S", 0.2)
+
+    async def call(client):
+        client.mark_starting()
+        with pytest.raises(GeneratorError) as caught:
+            await client.generate("wave", 0, None, 5.0)
+        return caught.value
+
+    error = ask(endpoint, call)
+    assert error.code == "generator_down"
+    assert "has been loading for 0 s" in error.found and error.do.startswith("send it again in some seconds")
 
 
 def test_answers_reach_the_right_asker_in_any_order(endpoint):
