@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from mmm_core.errors import TrainingDataError
 from mmm_core.imports.recordings.common_body import on_common_body
-from mmm_core.imports.recordings.files import read_motion
+from mmm_core.imports.recordings.files import KINDS, read_motion
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.motion.features import features_from_joints, mirror
@@ -44,7 +44,8 @@ def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.
     """Features and sentences of the usable clips of `split`, each followed by its mirror image.
 
     Used: recordings under terms of `FREE_TERMS`, sentences that are not KIT-ML's, upright frames outside `bad_frames`. The
-    recordings are those of `motions_common_skeleton.npz`, or where there is none, TRIAL.bvh or TRIAL.amc (with its .asf).
+    recordings are those of `motions_common_skeleton.npz`, or where there is none, one file of `KINDS` named TRIAL for each
+    trial (an .amc with its .asf beside it).
     A subfolder `more` is read too; of a recording that both hold, the subfolder's copy is used. A line of `clips.jsonl` needs
     `trial` and `captions` alone, and is the whole recording for training then; without `trials.jsonl` all recordings are the
     reader's own. The log says how many clips are left out, and why.
@@ -74,7 +75,9 @@ def _read_folder(folder: Path, split: str, replaced: frozenset[str]) -> Iterator
             label, about = str(clip.get("clip", name)), {} if trials is None else trials.get(name)
             joints = None if about is None else recording(name)
             if about is None or joints is None:
-                allowed = "a trial of trials.jsonl" if trials is not None else f"a recording {name}.bvh or {name}.amc"
+                allowed = (
+                    "a trial of trials.jsonl" if trials is not None else f"a recording {name} of {', '.join(KINDS)}"
+                )
                 raise TrainingDataError(folder, label, f"trial {name!r} is unknown", allowed)
             if clip.get("split", "train") != split or name in replaced:
                 continue
@@ -135,7 +138,7 @@ def _recordings(folder: Path, stack: ExitStack) -> Callable[[str], NDArray[Any] 
 
     @lru_cache(maxsize=1)
     def read(trial: str) -> NDArray[Any] | None:
-        found = next((p for kind in (".bvh", ".amc") if (p := folder / f"{trial}{kind}").is_file()), None)
+        found = next((p for kind in KINDS if (p := folder / f"{trial}{kind}").is_file()), None)
         return None if found is None else on_common_body(found, read_motion(found))
 
     return read

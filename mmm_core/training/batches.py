@@ -19,6 +19,8 @@ from mmm_core.model.vqvae import VqVae
 from mmm_core.training.run import written_whole
 
 ENCODE_BATCH = 64
+CORPUS = "corpus.npz"
+"""File of the training motions in a run's folder."""
 
 
 @dataclass(frozen=True)

@@ -130,10 +130,18 @@ class TransformerRecipe:
 
 @dataclass(frozen=True)
 class ScopeRecipe:
-    """What the classifier behind refusals reads (docs/scope.md): sentences of the corpus, and texts that cannot be done."""
+    """What the classifier behind refusals reads (docs/scope.md).
+
+    Attributes:
+        sentences: number of sentences of the corpus, which can be done.
+        outside: number of texts that cannot be done.
+        own_captions: whether captions of the data folder are texts that can be done, too. Off for recordings of everyday
+            motion: their captions name much that an upper body cannot do.
+    """
 
     sentences: int = 12_000
     outside: int = 10_000
+    own_captions: bool = False
 
 
 @dataclass(frozen=True)

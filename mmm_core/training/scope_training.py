@@ -7,6 +7,8 @@ prompts that choose its thresholds or measure it (docs/scope.md). About two minu
 from __future__ import annotations
 
 import logging
+import math
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +25,7 @@ from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_model, load_text_encoder, save_model
 from mmm_core.language.scope import ScopeClassifier, ScopeIndex, clauses_of
 from mmm_core.model.text import TextEncoder
+from mmm_core.training.batches import CORPUS, Clip, load_clips
 from mmm_core.training.recipe import Recipe, ScopeRecipe
 
 log = logging.getLogger(__name__)
@@ -30,12 +33,22 @@ INDEX_ROWS = 4
 """Known commands of a row of a family that are kept in the index; all twelve and more teach the classifier."""
 HIDDEN, DROPOUT, WEIGHT_DECAY, LEARNING_RATE, EPOCHS, BATCH = 64, 0.3, 0.3, 3e-3, 15, 256
 SEED = 5
+OWN_SHARE = 0.1
+"""Least share of own captions among the texts that can be done: a handful beside thousands would not be learnt."""
 
 
-def build_scope(encoder: TextEncoder, recipe: ScopeRecipe) -> ScopeIndex:
-    """The scope of what the corpus teaches, as `encoder` reads it; the same every time."""
-    commands = sorted(known_commands(INDEX_ROWS))
+def build_scope(encoder: TextEncoder, recipe: ScopeRecipe, own: Sequence[str] = ()) -> ScopeIndex:
+    """The scope of what the corpus teaches, as `encoder` reads it; the same every time.
+
+    Args:
+        encoder: what reads the texts.
+        recipe: how many of them.
+        own: captions of the training data that can be done besides; they are known commands, too.
+    """
+    commands = sorted({*known_commands(INDEX_ROWS), *own})
     inside, outside = scope_sentences(recipe)
+    if own:
+        inside += [*own] * math.ceil(OWN_SHARE * len(inside) / len(own))
     log.info("scope: reading %d texts", len(inside) + len(outside))
     can, cannot = sentence_vectors(inside, encoder), sentence_vectors(outside, encoder)
     vectors = sentence_vectors([*commands, *OUTSIDE], encoder)
@@ -51,8 +64,14 @@ def renew_scope(recipe: Recipe, made: Path, out: Path) -> None:
     model = load_model(made)
     if model.text is not None or model.scope is None:
         raise CheckpointError(made, "scope", "a model without one", "a model of synthesised gestures that reads MiniLM")
-    model.scope = build_scope(load_text_encoder(), recipe.scope)
+    clips = load_clips(made.parent / CORPUS) if recipe.scope.own_captions else []
+    model.scope = build_scope(load_text_encoder(), recipe.scope, own_captions(recipe, clips))
     save_model(out, model)
+
+
+def own_captions(recipe: Recipe, clips: Iterable[Clip]) -> list[str]:
+    """Captions of people's clips, each once, where the recipe counts them among the texts that can be done."""
+    return sorted({c for clip in clips if clip.is_real for c in clip.captions}) if recipe.scope.own_captions else []
 
 
 def scope_sentences(recipe: ScopeRecipe) -> tuple[list[str], list[str]]:

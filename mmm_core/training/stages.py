@@ -33,6 +33,7 @@ from mmm_core.model.vqvae import VqVae
 from mmm_core.motion.features import RestPose
 from mmm_core.motion.motion import FPS, N_FEATURES
 from mmm_core.training.batches import (
+    CORPUS,
     CaptionStates,
     Clip,
     TokenCorpus,
@@ -48,7 +49,7 @@ from mmm_core.training.recipe import Recipe
 from mmm_core.training.refining import refined
 from mmm_core.training.run import Run
 from mmm_core.training.samples import SAMPLE_TEXTS, draw_reconstruction, draw_samples
-from mmm_core.training.scope_training import build_scope
+from mmm_core.training.scope_training import build_scope, own_captions
 from mmm_core.training.start import read_start, start_path
 from mmm_core.training.tokenizer_training import train_tokenizer, tune_decoder
 from mmm_core.training.transformer_training import train_length, train_transformer
@@ -77,7 +78,7 @@ class Stages:
         Raises:
             TrainingDataError: there are none.
         """
-        path = self.run.folder / "corpus.npz"
+        path = self.run.folder / CORPUS
         if not path.is_file() and distributed.rank() == 0:
             clips = [cut_to_tokens(c, np.random.default_rng((self.recipe.seed, i))) for i, c in enumerate(self._made())]
             clips = [c for c in clips if len(c.features) and c.captions]
@@ -87,23 +88,21 @@ class Stages:
             save_clips(path, clips)
         distributed.wait()
         clips = load_clips(path)
-        people = sum(c.is_real for c in clips)
-        log.info("%d clips, %.1f h, %d from people", len(clips), hours_of(clips, self._fps), people)
+        log.info(
+            "%d clips, %.1f h, %d from people", len(clips), hours_of(clips, self._fps), sum(c.is_real for c in clips)
+        )
         return clips
 
     def _made(self) -> list[Clip]:
         synthesised, seed = self.recipe.data.synthesised, self.recipe.seed
-        if self.folder is None:
-            made = make_corpus(synthesised, self.data, seed, os.cpu_count() or 1)
-            return [Clip(c.features, list(c.captions), c.is_real) for c in made]
-        if synthesised and self.folder.n_features != N_FEATURES:
+        if self.folder is not None and synthesised and self.folder.n_features != N_FEATURES:
             found = f"{synthesised} with {self.folder.n_features} features in {self.data}"
             raise TrainingDataError(self.data or Path(), "data.synthesised", found, "0: gestures have 263")
-        made = make_corpus(synthesised, None, seed, os.cpu_count() or 1)
-        return [
-            *(Clip(c.features, list(c.captions), c.is_real) for c in made),
-            *(Clip(e.features, [c.text for c in e.captions], True) for e in self.folder.examples("train")),
-        ]
+        made = make_corpus(synthesised, self.data if self.folder is None else None, seed, os.cpu_count() or 1)
+        clips = [Clip(c.features, list(c.captions), c.is_real) for c in made]
+        if self.folder is not None:
+            clips += [Clip(e.features, [c.text for c in e.captions], True) for e in self.folder.examples("train")]
+        return clips
 
     @cached_property
     def text(self) -> TextEncoder:
@@ -275,7 +274,8 @@ class Stages:
             newest = [] if self.fresh is None else self.fresh.clips(max(0, self.recipe.transformer.schedule.steps - 1))
             tune_decoder(tokenizer, [*self.clips, *newest], how.decoder, self.run)
         text = self.text if isinstance(self.text, ClipText) else None
-        scope = build_scope(self.text, self.recipe.scope) if self.recipe.data.has_gestures and text is None else None
+        has_scope = self.recipe.data.has_gestures and text is None
+        scope = build_scope(self.text, self.recipe.scope, own_captions(self.recipe, self.clips)) if has_scope else None
         return Model(tokenizer, transformer, length, scope, self.provenance(), text, self._rest_pose)
 
     def provenance(self) -> dict[str, object]:

@@ -281,6 +281,23 @@ def test_a_folder_of_ones_own_needs_recordings_and_captions_alone(
         list(read_clips(tmp_path))
 
 
+def test_recordings_may_be_files_of_any_kind_that_is_read(tmp_path: Path) -> None:
+    """A motion of `mmmd generate` and an array of HumanML3D's joints were "unknown": BVH and AMC alone were looked for."""
+    made = synthesise_spec(ClipSpec((Gesture("bow"),)), np.random.default_rng(0))
+    assert made is not None
+    joints = recover(made.features[:40]).joints_m.astype(np.float32)
+    np.savez(tmp_path / "generated.npz", joints=joints, fps=20.0)
+    np.save(tmp_path / "recorded.npy", joints)
+    lines = [json.dumps({"trial": name, "captions": [name]}) for name in ("generated", "recorded")]
+    (tmp_path / "clips.jsonl").write_text("\n".join(lines))
+    (one, _), _, (other, _), _ = read_clips(tmp_path)
+    np.testing.assert_array_equal(one, other)
+
+    (tmp_path / "clips.jsonl").write_text('{"trial": "nobody", "captions": ["bow"]}')
+    with pytest.raises(TrainingDataError, match=r"'nobody' is unknown.*\.npz, \.npy, \.bvh, \.amc"):
+        list(read_clips(tmp_path))
+
+
 def test_clips_are_cut_from_bvh_files_where_there_is_no_array(tmp_path: Path) -> None:
     """The same person of another size, 30 cm higher: on the common body, on the floor, followed by the mirror image."""
     made = synthesise_spec(ClipSpec((Gesture("wave", "right", 3),)), np.random.default_rng(0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +21,10 @@ from mmm_core.generate.engine import Engine
 from mmm_core.inference import checkpoint
 from mmm_core.inference.checkpoint import Model, load_model, load_text_encoder, save_model
 from mmm_core.language.scope import ScopeIndex, clauses_of
-from mmm_core.training.recipe import ScopeRecipe
-from mmm_core.training.scope_training import build_scope, scope_sentences
+from mmm_core.training import scope_training
+from mmm_core.training.batches import Clip
+from mmm_core.training.recipe import Recipe, ScopeRecipe
+from mmm_core.training.scope_training import build_scope, own_captions, scope_sentences
 
 
 def plain(text: str) -> str:
@@ -209,3 +212,25 @@ class TestCheckpoint:
 def test_training_texts_are_the_same_every_time() -> None:
     assert scope_sentences(ScopeRecipe(20, 20)) == scope_sentences(ScopeRecipe(20, 20))
     assert outside_texts(300, np.random.default_rng(1)) != outside_texts(300, np.random.default_rng(2))
+
+
+def test_own_captions_are_in_scope_only_where_the_recipe_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A model trained on recordings of a gesture that the grammar lacks refused the very captions that it was trained on."""
+    known = sorted(known_commands(1))[::20]  # reading all of them takes longer than the rest
+    monkeypatch.setattr(scope_training, "known_commands", lambda *_: set(known))
+    own, encoder = ["milk a cow", "peel a potato"], load_text_encoder()
+    vectors = encoder.encode(own).sentence
+
+    def statuses(captions: Sequence[str]) -> list[str]:
+        scope = build_scope(encoder, ScopeRecipe(200, 400), captions)
+        return [scope.judge(text, vector).status for text, vector in zip(own, vectors, strict=True)]
+
+    assert statuses([]) == ["rejected", "rejected"]
+    assert statuses(own) == ["accepted", "accepted"]
+
+
+def test_captions_of_people_alone_are_own_ones() -> None:
+    features = np.zeros((4, 263), np.float32)
+    clips = [Clip(features, ["milk a cow"], is_real=True), Clip(features, ["bow"], is_real=False)]
+    assert own_captions(Recipe(scope=ScopeRecipe(own_captions=True)), clips) == ["milk a cow"]
+    assert own_captions(Recipe(), clips) == []
