@@ -15,10 +15,13 @@ from typing import Any
 
 import matplotlib
 import matplotlib.pyplot
+import numpy as np
 import pytest
 from mcap.reader import make_reader
 
+from mmm_core.model.tokens import pack_ids
 from tests.support.harness import RunningDaemon
+from tests.support.shipped import shipped_engine
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 TIMEOUT_S = 60.0
@@ -132,6 +135,24 @@ def test_poses_that_nobody_taught_are_named(daemon: RunningDaemon) -> None:
     command = [sys.executable, str(EXAMPLES / "inbetween_taught.py"), "arm_out", "arm_up", *daemon.at]
     done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
     assert done.returncode == 1 and "arm_out" in done.stdout and "your own gestures: none" in done.stdout
+
+
+@pytest.mark.parametrize("recording", [False, True])
+def test_tokens_of_a_motion(recording: bool, tmp_path: Path) -> None:
+    """Tokens of a generated motion are its own; a recording of joints alone is encoded."""
+    motion = shipped_engine().generate("clap three times", seed=7).motion
+    if recording:
+        np.save(tmp_path / "clap.npy", motion.joints_m)
+    else:
+        motion.save_npz(tmp_path / "clap.npz")
+    file = tmp_path / ("clap.npy" if recording else "clap.npz")
+    said = run(sys.executable, str(EXAMPLES / "tokens.py"), str(file), str(tmp_path / "tokens.npy"))
+    tokens, off_mm = np.load(tmp_path / "tokens.npy"), float(said.partition("are ")[2].split()[0])
+    assert tokens.shape == (len(motion.tokens), 3) and tokens.max() < 2048
+    if recording:
+        assert off_mm < 60
+    else:
+        assert off_mm < 0.1 and (pack_ids(tokens, 2048) == motion.tokens).all()
 
 
 @pytest.fixture(scope="module")
