@@ -36,8 +36,8 @@ class FeedbackCycle:
         self.steps: list[Step] = []
         self._begun: tuple[float, int] | None = None
         self._raw = bytearray()
-        self._twice = np.zeros(len(link.ids), np.bool_)
-        self._cycles_twice = np.zeros(len(link.ids), np.int64)
+        self._twice: set[int] = set()
+        self._cycles_twice: dict[int, int] = {}
         self.build_steps()
 
     def begin(self, goal_ticks: NDArray[np.int32] | None) -> None:
@@ -143,22 +143,22 @@ class FeedbackCycle:
         elif valid[row]:
             step.store(row, answer, self._link.reading)  # the first was an earlier cycle's, come late
             self._link.health.came_late(row)
-            self._twice[row] = True
+            self._twice.add(row)
         elif step.store(row, answer, self._link.reading):
             valid[row] = True
 
     def _name_duplicates(self) -> None:
         """Tell of servos that have answered twice in each of the last cycles."""
-        self._cycles_twice = np.where(self._twice, self._cycles_twice + 1, 0)
-        self._twice[:] = False
-        for row in np.flatnonzero(self._cycles_twice == TWICE_CYCLES):
+        self._cycles_twice = {row: self._cycles_twice.get(row, 0) + 1 for row in sorted(self._twice)}
+        self._twice.clear()
+        for row in (row for row, n in self._cycles_twice.items() if n == TWICE_CYCLES):
             servo_id = self._link.ids[row]
             text = f"servo {servo_id} answers twice: two servos have this id; change one (mmmd servo id)"
             self._link.events.add(BusEventKind.DUPLICATE_ID, self._link.clock.now_s(), text, servo_id)
 
     def _judge(self, valid: NDArray[np.bool_]) -> None:
         """Ages, health, quarantine, servos with one id."""
-        if self._twice.any() or self._cycles_twice.any():
+        if self._twice or self._cycles_twice:
             self._name_duplicates()
         link, reading = self._link, self._link.reading
         health, now_s = link.health, link.clock.now_s()

@@ -144,9 +144,9 @@ class HealthTracker:
 
     def probe_due(self, now_s: float) -> int | None:
         """A quarantined servo that should be asked again now."""
-        rows = np.flatnonzero(~self.asked)
-        if not len(rows):
+        if self.asked.all():
             return None
+        rows = np.flatnonzero(~self.asked)
         row = int(rows[np.argmin(self._probe_due_s[rows])])
         return row if now_s >= self._probe_due_s[row] else None
 
