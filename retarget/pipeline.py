@@ -123,19 +123,26 @@ class Retargeter:
         return path
 
     def pieces(
-        self, motion: HumanMotion, start: JointState | None = None, *, settle: bool = True
+        self, motion: HumanMotion, start: JointState | None = None, *, settle: bool = True, first_at_once: bool = False
     ) -> Iterator[tuple[JointPath, int]]:
         """The path of `retarget`, block after block as each is made, and how many frames of the motion each is.
 
         Each begins where the one before ends, and should no other follow there is a free way to brake at its end. All but
         the last are of `BLOCK_FRAMES`.
 
+        Args:
+            motion: as in `retarget`.
+            start: as in `retarget`.
+            settle: as in `retarget`.
+            first_at_once: somebody waits for the first block: where a contact is near it keeps every limit and touches
+                nothing, but shows the motion less well than it could.
+
         Raises:
             MotionError: as in `retarget`.
         """
         wanted, first = self._wanted(motion, start), 0
         poses, begin = wanted.poses, self._begin(wanted.poses.q_rad, start)
-        for block, n, changes in self._blocks(wanted.aims, begin, 1.0 / motion.fps, settle):
+        for block, n, changes in self._blocks(wanted.aims, begin, 1.0 / motion.fps, settle, first_at_once):
             part = poses.part(slice(first, first + n))
             yield self._joint_path(block, part, HumanContacts({}), motion.fps, changes, 1.0), n
             first += n
@@ -168,7 +175,9 @@ class Retargeter:
         comparison = self._compare(poses, contacts, path, fps, interventions, stretch)
         return JointPath(path, self.robot.joint_names, fps, comparison, ends)
 
-    def _blocks(self, poses: Poses, begin: JointState, period: float, settle: bool) -> Iterator[tuple[Array, int, int]]:
+    def _blocks(
+        self, poses: Poses, begin: JointState, period: float, settle: bool, first_at_once: bool = False
+    ) -> Iterator[tuple[Array, int, int]]:
         """Control points for poses, block by block, how many frames each is, and times it was changed.
 
         The first two of a block are the last two of the one before.
@@ -180,7 +189,8 @@ class Retargeter:
             last = T if is_last else first + BLOCK_FRAMES + _AHEAD_FRAMES
             keep = last - first if is_last else BLOCK_FRAMES
             view = posed[max(first - 1, 0) : last]
-            shown = partial(self._poser.shown, poses.part(slice(first, last)))
+            at_once = first_at_once and first == 0
+            shown = None if at_once else partial(self._poser.shown, poses.part(slice(first, last)))
             block, changes = self._planner.plan(view, shown, begin, period, keep, settle and is_last, first > 0)
             block = block if is_last else block[: keep + 2]
             yield block, keep, changes

@@ -36,7 +36,14 @@ class ChunkMaker:
         self._layers, self._retargeter, self._rate_hz = layers, Retargeter(robot), robot.bus.rate_hz
 
     def chunks(
-        self, raw: PoseSequence, start: JointState, before: PoseSequence | None, *, complete: bool, easy: bool = False
+        self,
+        raw: PoseSequence,
+        start: JointState,
+        before: PoseSequence | None,
+        *,
+        complete: bool,
+        easy: bool = False,
+        first_at_once: bool = False,
     ) -> Iterator[Chunk]:
         """The path of poses, chunk by chunk as each is made.
 
@@ -46,6 +53,7 @@ class ChunkMaker:
             before: poses from which the first ones are blended in; None where `raw` continues the path by itself.
             complete: whether the trajectory ends with them, at rest.
             easy: grow out of `before` slowly.
+            first_at_once: somebody waits for the first chunk; as of `Retargeter.pieces`.
 
         Raises:
             MotionError: the motion cannot be retargeted.
@@ -59,7 +67,7 @@ class ChunkMaker:
             posture = faded_in(posture, before, n)
         first, frames = 0, BLOCK_FRAMES / posture.fps * self._rate_hz
         if abs(frames - round(frames)) < 1e-9:
-            paths = self._retargeter.pieces(posture, start, settle=complete)
+            paths = self._retargeter.pieces(posture, start, settle=complete, first_at_once=first_at_once)
         else:  # a block would end between two frames of the bus
             paths = iter([(self._retargeter.retarget(posture, start, settle=complete), len(posture))])
         for path, n in paths:

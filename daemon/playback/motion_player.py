@@ -72,7 +72,7 @@ class MotionPlayer:
         idle = not start.command_id
 
         def chunks_at(splice: Splice) -> Iterator[Chunk]:
-            return self._maker.chunks(raw, splice.state, splice.before, complete=last, easy=idle)
+            return self._maker.chunks(raw, splice.state, splice.before, complete=last, easy=idle, first_at_once=True)
 
         def place(splice: Splice, chunk: Chunk) -> bool:
             if not wanted():

@@ -62,6 +62,20 @@ def test_a_long_motion_keeps_every_bound_across_its_blocks(name: str, seed: int,
     assert CHECKS[name].frames(path.at_rate(100.0)[::4]) == 0
 
 
+@settings(max_examples=examples(7))
+@given(names, st.integers(0, 10_000), kinds)
+def test_a_first_piece_at_once_keeps_every_bound_and_touches_nothing(name: str, seed: int, kind: str) -> None:
+    """It is not made better where contacts are near; the pieces after it go on from it."""
+    r, motion = RETARGETERS[name], random_motion(seed, 60, kind)
+    state = at_rest(r)
+    for path, _ in r.pieces(motion, state, first_at_once=True):
+        for rate_hz in (20.0, 200.0):
+            check_bounds(path, state, r, rate_hz)
+        assert CHECKS[name].frames(path.at_rate(100.0)[::3]) == 0
+        state = end_of(path)
+    assert not state.velocity_rad_s.any()
+
+
 NEARLY_RAD, TICK_THIRD_RAD = 1e-4, 5e-4
 """How near to one place a hold brings a robot whose path keeps clear of itself step by step, and how near its paths then stay."""
 
