@@ -157,22 +157,29 @@ def _turns(ratio: float, linkage: bool) -> str:
 
 
 def _show(console: Any, model: RobotModel, out: Path, text: str, seed: int) -> int:
-    from daemon.pictures.robot_picture import Pose, robot_picture
-    from mmm_core.generate.engine import Engine
-    from retarget.pipeline import Retargeter
-    from retarget.setup.standing_pose import standing_pose
+    """Draw the robot, telling on stderr what takes its time: some seconds, most of it for loading the motion model."""
+    from rich.console import Console
 
-    retargeter = Retargeter(model)
-    poses = [
-        Pose("rest", model.rest_rad),
-        Pose("arms out", standing_pose(retargeter, (0.0, 1.0, 0.0), (0.0, 1.0, 0.0))),
-    ]
-    motion = Engine.load(threads=None).generate(text, seed=seed).motion
-    if len(motion.joints_m):
-        q_rad = retargeter.retarget(motion).q_rad
-        for share in (0.2, 0.4, 0.6, 0.8):
-            frame = round(share * (len(q_rad) - 1))
-            poses.append(Pose(f"{text}, {frame / motion.fps:.1f} s", q_rad[frame]))
-    robot_picture(model, poses, out)
+    with Console(stderr=True).status("loading the motion model for the gesture") as progress:
+        from daemon.pictures.robot_picture import Pose, robot_picture
+        from mmm_core.generate.engine import Engine
+        from retarget.pipeline import Retargeter
+        from retarget.setup.standing_pose import standing_pose
+
+        # int8 would first be calibrated by more motions than the one that is drawn
+        motion = Engine.load(threads=None, precision="fp32").generate(text, seed=seed).motion
+        progress.update(f"fitting {text!r} to {model.name}")
+        retargeter = Retargeter(model)
+        poses = [
+            Pose("rest", model.rest_rad),
+            Pose("arms out", standing_pose(retargeter, (0.0, 1.0, 0.0), (0.0, 1.0, 0.0))),
+        ]
+        if len(motion.joints_m):
+            q_rad = retargeter.retarget(motion).q_rad
+            for share in (0.2, 0.4, 0.6, 0.8):
+                frame = round(share * (len(q_rad) - 1))
+                poses.append(Pose(f"{text}, {frame / motion.fps:.1f} s", q_rad[frame]))
+        progress.update(f"drawing {len(poses)} poses")
+        robot_picture(model, poses, out)
     console.print(f"{out}: drawn")
     return 0
