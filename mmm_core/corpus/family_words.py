@@ -20,7 +20,10 @@ from mmm_core.corpus.plain_commands import manner_phrases, plain_phrases
 from mmm_core.corpus.synthesis import draw_spec, words_for
 from mmm_core.language.inflection import NUMBERS
 from mmm_core.language.limbs import SAYS_NO_LIMB
-from mmm_core.language.word_tables import CORPUS_WORDS_FILE, LIMB_WORDS_FILE, WORD_PAIRS_FILE
+from mmm_core.language.one_gesture import JOINING, stems_of
+from mmm_core.language.reading import read
+from mmm_core.language.spelling import mended
+from mmm_core.language.word_tables import CORPUS_WORDS_FILE, LIMB_WORDS_FILE, ONE_GESTURE_FILE, WORD_PAIRS_FILE
 from mmm_core.language.word_tables import lines as table_lines
 from mmm_core.recognition.named import HIGHEST_LEVEL, WORDS_FILE, content_words
 
@@ -98,6 +101,38 @@ def word_pairs() -> str:
     return "".join(f"{first} => {' '.join(words)}\n" for first, words in following.items())
 
 
+def one_gesture() -> str:
+    """The content of `one_gesture.txt`: phrases of a gesture that the rules of the reader alone would part or deny.
+
+    Left out are standing still, which "do not move" is a denial of all else for, and a side after the other one ("look left and right",
+    "tilt your head one way, then the other"), which is the same in turn.
+    """
+    parted: dict[tuple[str, ...], str] = {}
+    joined = re.compile(rf"[,;:]|\b(?:{'|'.join(word for word in JOINING if word.isalpha())})\b")
+    for name in sorted(FAMILIES.keys() - {"stand"}):
+        phrases = [(d, p) for d in FAMILIES[name].directions or ("",) for _, p in plain_phrases(name, d)]
+        for direction, phrase in phrases:
+            if (
+                re.match("pretend|.*[.!?]", phrase)
+                or not joined.search(phrase)
+                or {"left", "right"} <= set(phrase.split())
+                or re.search(r"\bone (?:side|way|hand|arm|fist)\b.*\b(?:then|and)\b.*\bother\b|\bboth ways\b", phrase)
+            ):
+                continue
+            said = phrase.replace("{n}", "").replace("{D}", direction).replace("{S}", "left").replace("{N}", "three")
+            said = mended(said)
+            stems = stems_of(said)
+            if stems in parted or not _is_parted(said):
+                continue
+            parted[stems] = said
+    return "".join(f"{said}\n" for said in parted.values())
+
+
+def _is_parted(phrase: str) -> bool:
+    reading = read(phrase, by_rules_alone=True)
+    return len(reading.steps) != 1 or len(reading.steps[0]) != 1 or bool(reading.denied)
+
+
 def _words(phrase: str) -> set[str]:
     return set(re.findall(r"[a-z]{2,}", phrase.lower()))
 
@@ -121,3 +156,4 @@ if __name__ == "__main__":
     Path(str(CORPUS_WORDS_FILE)).write_text(corpus_words(), encoding="utf-8")
     Path(str(WORD_PAIRS_FILE)).write_text(word_pairs(), encoding="utf-8")
     Path(str(LIMB_WORDS_FILE)).write_text(limb_words(), encoding="utf-8")
+    Path(str(ONE_GESTURE_FILE)).write_text(one_gesture(), encoding="utf-8")

@@ -32,7 +32,7 @@ _WITH_POSE = re.compile(
 _AND = re.compile(r"\s*,\s*(?:and\s+|but\s+)?(?:also\s+)?|\s+(?:and|plus|but)\s+(?:also\s+)?")
 _FILLER = re.compile(_any("filler"))
 _FRONTED = re.compile(
-    rf"^(?:(?:and|with|using) )+(?:your |the )?(left|right)(?: hand| arm)?,? (?!{_any('place')}\b)(\w.+)$"
+    rf"^(?:(?:and|with|using) )+(?:your |the )?(left|right|other)(?: hand| arm| one)?,? (?!{_any('place')}\b)(\w.+)$"
 )
 _RAISES = re.compile(r"^(?:raise|lift|put up|hold up) (?:your |the )?(?:left|right) (?:hand|arm)(?: up| high)?$")
 _ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
@@ -55,10 +55,27 @@ _ACTS = re.compile(
 _WAY_LAST = re.compile(rf"\b{_any('way')}$")
 _WAY_FIRST = re.compile(rf"^{_any('way')}\b(?! (?:hands?|arms?|fists?|palms?|one|elbow)\b)")
 """'Up and down' and 'back and forth' belong to one command."""
+_RETURNS, _OWN_PART = re.compile(rf"^{_any('returns')}"), re.compile(rf"^{_any('own part')}")
+_SOMEBODY = rf"^(?:{_any('somebody')} )?"
+_SHARES, _PREPARES = re.compile(rf"{_SOMEBODY}{_any('shares')}$"), re.compile(rf"{_SOMEBODY}{_any('prepares')}\b")
+_TAKES, _IT = re.compile(rf"\b{_any('takes')}"), re.compile(rf"^{_any('it')}")
+_RESTS_AT = re.compile(rf"\b{_any('rests at')}\b")
+_OTHER_HAND = re.compile(r"\bother (?:hand|arm|one)\b")
+_PLACE_FIRST = re.compile(
+    r"^(?:directly |diagonally |straight )?(?:at|to|towards?|in|into|below|above|beside|from|(?:left|right|east|west)wards?) |"
+    r"(?:up|down|across|over|back) (?:to|at|towards|across|over|the) |the (?:left|right) (?:only|once|twice|\w+ times|a bit)\b"
+)
+_SIDE_FIRST = re.compile(r"^(left|right) (?=(?:on|behind|over|at|up|down|out) )")
+_OWN_PARTS = re.compile(
+    r"(?:,? )with (?:the (?:palm|forearm|elbow|fist|finger|hand|arm|wrist|thumb)\b|"
+    r"(?:(?:your|their|his|her|its|both|the) )*(?:hands|arms|fists|palms|elbows|forearms) "
+    r"(?:(?:held|raised|stretched|straight|lifted) )*(?:up|raised|out|above|overhead|high|in the air|in front|forward|over (?:your|the) head|wide|together)\b)"
+)
+"""'Clap with your arms up' says where the arms are that clap."""
 _LEFT_OUT = re.compile(rf"{_any('left out')}\b")
 _RAISED_WITH = re.compile(
     r" with (?:your |the )?(?P<side>(?:left|right) )?(?:hand|arm|fist) (?:(?:held|raised|stretched|straight|lifted) )*"
-    r"(?:up|out|high|overhead|raised|over|above|in)\b"
+    r"(?:up|out|high|overhead|raised|over|above|in|to the (?:left|right|front|sides?)|sideways|forward|across|low|at (?:the |your )?(?:hip|shoulder|chest|head|waist|eye) (?:height|level))\b"
 )
 """'Signal with your left arm overhead' says where the arm is that signals."""
 
@@ -99,18 +116,27 @@ def divided(clause: str) -> list[str]:
         first, second = (_imperative(part) for part in pair)
         second = _with_verb(second, first)
         a, b = limbs_of(first), limbs_of(second)
+        if _OWN_PART.match(second) and a & ARMS and b == SOME_ARM:
+            continue
         if _BARE_LIMB.match(first) or _BARE_LIMB.match(second):
             continue
         if _HOLDS.match(second) or (not asked and _RAISES.match(first) and _ONLY_WAVES.match(second)):
             continue
         if a == SOME_ARM and not asked and _WITHOUT_OBJECT.match(first) and _HAND_TO.match(second):
             continue  # "a salute, right hand to the brow" says how
-        if a == SOME_ARM == b and asked:
-            return [_sided(first, "right"), _sided(second, "left")] if "hand" in clause else [first, second]
+        if a == SOME_ARM == b and (asked or _OTHER_HAND.search(second)):
+            sides = ("left", "right") if re.search(r"\bleft\b", first) else ("right", "left")
+            return (
+                [_sided(p, side) for p, side in zip((first, second), sides, strict=True)]
+                if "hand" in clause
+                else [first, second]
+            )
         if not _apart(a, b):
             continue
         if not asked and a | b <= ARMS | SOME_ARM and not (limbs_named(first) and limbs_named(second)):
             continue  # "lift your right hand and swear an oath" is one gesture
+        if not asked and _is_one_gesture(first, second):
+            continue
         of_limbs = any(_ACTS.match(part.strip(" ,.")) for part in pair)  # "drum, your head nodding"
         if (
             not asked
@@ -120,6 +146,25 @@ def divided(clause: str) -> list[str]:
             continue
         return [*divided(_freed(first, b)), *divided(_there(_freed(second, a), first))]
     return [clause]
+
+
+def goes_on(first: str, second: str) -> bool:
+    """Whether two parts are one command: the second is the way back, does something to what the first took, or shares its limb."""
+    return bool(_SHARES.match(first) or _RETURNS.match(second) or (_TAKES.search(first) and _IT.search(second)))
+
+
+def _is_one_gesture(first: str, second: str) -> bool:
+    """Whether the second of two parts only goes on with the first, or is a part of its arm or what its arm got ready for."""
+    if goes_on(first, second):
+        return True
+    a, b = limbs_of(first), limbs_of(second)
+    if _PLACE_FIRST.match(second) or (a == SOME_ARM and _WAY_FIRST.match(second)):
+        return True
+    if not (a | b <= ARMS | SOME_ARM and SOME_ARM in (a, b)):
+        return False
+    if _OWN_PART.match(second) or _OWN_PART.match(first):
+        return True
+    return bool(_PREPARES.match(first)) and not _RESTS_AT.search(first)
 
 
 def same_limbs(clause: str) -> list[str]:
@@ -157,6 +202,8 @@ def _pairs(clause: str) -> list[tuple[tuple[str, str], bool]]:
 def _is_its_own_arm(clause: str, start: int) -> bool:
     """Whether the arm in "... with your left arm overhead" is the one that the words before move: they name no other."""
     raised, moved = _RAISED_WITH.match(clause, start), limbs_of(clause[:start])
+    if moved & (ARMS | SOME_ARM) and _OWN_PARTS.match(clause, start):
+        return True
     if raised is None or not moved & (ARMS | SOME_ARM):
         return False
     return moved == SOME_ARM or not raised["side"] or f"{raised['side'].strip()}_arm" in moved
@@ -184,6 +231,7 @@ def _imperative(part: str) -> str:
     part = _FRONTED.sub(r"\2 with your \1 hand", part.strip(" ,."))
     while (shorter := _FILLER.sub("", part)) != part:
         part = shorter
+    part = _SIDE_FIRST.sub(r"\1 hand ", part)
     if acts := _ACTS.match(part):
         verb = base_of(acts["ing"]) if acts["ing"] else acts["verb"]
         if acts["head"]:
@@ -236,9 +284,8 @@ def _there(clause: str, first: str) -> str:
 def _sided(clause: str, side: str) -> str:
     if re.search(r"\b(?:left|right) (?:hand|arm)\b", clause):
         return clause
-    if re.search(r"\bother (?:hand|arm|one)\b", clause):
-        return re.sub(r"\b(?:your|the)? ?other (hand|arm|one)\b", rf" your {side} hand", clause, count=1).replace(
-            "  ", " "
-        )
-    named, n = re.subn(r"\b(?:your|one|a|the) (hand|arm|fist)\b", rf"your {side} \1", clause, count=1)
+    if _OTHER_HAND.search(clause):
+        other = re.sub(r"\b(?:(?:your|the) )?other (hand|arm|one)\b", rf"your {side} \1", clause, count=1)
+        return other.replace(f"your {side} one", f"your {side} hand")
+    named, n = re.subn(r"(?:^|\b(?:your|one|a|the) )(hand|arm|fist)\b", rf"your {side} \1", clause, count=1)
     return named if n else f"{clause} with your {side} hand"

@@ -43,18 +43,19 @@ NEXT = _any(
     "(?:(?:straight|right|directly|immediately|soon|shortly) )?(?:after|following) (?:all )?(?:that|this|which)",
     "afterwards?", "thereafter", "thereupon", "whereupon",
     "subsequently", r"(?<!\bthe )next(?!\s+to\b)",
-    "later(?: on)?", "finally", "lastly", "at last", "last of all", "in the end", "to (?:finish|end|close|conclude)",
+    "later(?: on)?", "finally", "lastly", "at last", "last of all", "in the end", r"(?<=, |; |\. )last(?=, )",
+    "to (?:finish|end|close|conclude)(?: (?:it |things |this )?off)?(?: (?:with|by|on))?", "(?:with )?(?:that|this) (?:done|finished|over|out of the way)",
     "next up(?! to)", "(?:once|when|as soon as) (?:done|finished|ready)",
     "(?:secondly|thirdly|fourthly)", r"(?<!one )(?<!1 )(?<!\ba )(?:second|third|fourth)(?! \w+)", "(?<!right )now(?! and then)",
-    "(?:then )?straight into",
+    "(?:then )?(?:(?:go|move|get|come|pass) )?(?:straight|right|directly) into(?= an? )",
     r"from there(?: on)?(?:,? (?:you )?(?:go|move|carry|pass|continue|proceed)(?: on)?(?: (?:to|with))?)?",
-    r"(?:after|following) an? (?:short |brief |little |quick )?(?:beat|pause|moment|second|while|breath|bit|rest)", BACK_UP, DONE,
+    r"(?:after|following) an? (?:short |brief |little |quick )?(?:beat|pause|moment|second|while|breath|bit|rest|break)", BACK_UP, DONE,
 )  # fmt: skip
 DIVIDES = _pattern(
     "|".join((
         rf"\s*[,;:.!]*\s*(?<!\w)(?<!\bnow )(?<!now and )(?:and\s+|but\s+)?{NEXT}(?!\w|\s+time)[,:]?\s*",
         r"\s*,?\s*(?:and\s+)?(?:(?:is|are|being)\s+)?(?:immediately\s+)?\bfollowed\s+(?:up\s+)?(?:by|with)\b[,:]?\s*",
-        r"\s*,?\s*(?:and\s+)?\b(?:end|finish|move|wrap|(?:go|carry|proceed|continue)(?=\s+on\s+(?:to|with)\b))(?:\s+(?:off|up|on))?\s+(?:with|by|to|on)\b\s*",
+        r"\s*,?\s*(?:and\s+)?(?<!\bto )(?<!left )(?<!right )(?<!far )(?<!\bthe )\b(?:end|finish|wrap|(?:move|go|carry|proceed|continue)(?=\s+on\s+(?:to|with)\b))(?:\s+(?:off|up|on))?\s+(?:with|by|to|on)\b\s*",
         r"\s*[,.]?\s*(?:and\s+)?\b(?:close|conclude|"
         r"(?:round|top|finish)\s+(?:it |that |things )?off|(?:end|follow)\s+(?:it|that|this|things)(?:\s+up)?)\s+(?:with|by)\b\s*",
         r"\s*,?\s*(?:and\s+)?\bend\s+up\s+(?=\w+ing\b)",
@@ -68,7 +69,7 @@ AND = _pattern(r"\s*,\s*(?:and\s+)?|\s+and\s+")
 A_FIRST_B_LATER = _pattern(rf"(.+?)[,;]\s*(?:and\s+|but\s+)?(.+?),?\s+(?:(?:comes?|goes)\s+)?{NEXT}")
 """Two actions in the text's order, with the words of order at the end."""
 A_BEFORE_B = _pattern(
-    rf"(.+?),?\s+(?:(?:right|just)\s+)?{_any('before', 'prior to', 'precedes', 'ahead of')}\s+(?:{_WHO}\s+)?(.+)"
+    rf"(.+?),?\s+(?:(?:right|just)\s+)?{_any('(?:(?:comes|goes|is) )?before', 'prior to', 'precedes', 'ahead of')}\s+(?!(?:the|your)\s+(?:body|chest|face|eyes|mouth|belly|heart|head|breast)\b)(?:{_WHO}\s+)?(.+)"
 )
 B_AFTER_A = _pattern(
     r"(.+?),?\s+(?:(?:right|just|only|once)\s+)*"
@@ -113,7 +114,12 @@ OPENING = _pattern(
 )  # fmt: skip
 CLOSING = _pattern(
     r"[\s,]*(?:\b(?:comes? |goes )?"
-    + _any("first(?: of all)?", "to (?:begin|start|end|finish) (?:on|with)", "beforehand")
+    + _any(
+        "first(?: of all)?",
+        "before (?:anything|everything|all) else",
+        "to (?:begin|start|end|finish) (?:on|with)",
+        "beforehand",
+    )
     + r"|[,;:.!?]+)\s*$"
 )
 
@@ -123,17 +129,18 @@ LEANS = _pattern(
     rf"^(?:{_MANNER}\s+)*(?:"
     + _any(
         rf"(?:remain|wait|pause|rest)(?: (?:a|for|there|like|so|still|{_NUMBER})\b|$)",
-        "(?:relax|lower|lowers|lowering|drop|drops|release)(?: (?:it|them|again|both|slowly)| (?:your|the|his|her|their|its) "
-        rf"(?:left |right )?{_LIMB})?$",
+        "(?:relax|lower|lowers|lowering|drop|drops|release)(?: (?:it|them|again|slowly)| (?:your|the|his|her|their|its) "
+        rf"{_LIMB})?$",
         "(?:let|stop|stay|stays|staying|return|returns|freeze|repeat|repeats|again|go back|come back|back|down|up)",
         "(?:bring|brings|take|takes|put|puts) .*(?:down|back)", "do(?:es)? (?:it|that|so|the same)",
         "(?:hold|keep)(?:s|ing)?"
         "(?: (?:it|them|that|this|there|on|still|for|the pose|the position|your (?:position|balance)|until)|$)",
         "(?:with|using|to the|the other|other|same)", rf"(?:the )?(?:left|right|same)(?: {_LIMB})?$",
-        "(?:not|no|don't|do not|never|without|instead|but)", rf"(?:{_NUMBER}|{'|'.join(ADVERBS)})(?: more| times?| seconds?)?",
+        "(?:not|no|don't|do not|never|without|instead|but)", rf"{_NUMBER}(?: more| times?| seconds?|$)|(?:{'|'.join(ADVERBS)})(?: more| times?| seconds?)?",
         "a (?:bit|little) (?:more|further|higher|lower|faster|slower)",
         "(?:faster|slower|harder|higher|louder|quicker)", "(?:for|until|at|in|on|as)",
-        r"(?:\S+ ){0,3}(?:it|them|again|likewise|the same|as well|too|nothing)",
+        r"(?!(?:wave|bow|point|nod|salute|look|say \w+|blow .*) (?:to|at|for) )(?:\S+ ){0,3}(?:it|them|again|likewise|the same|as well|too|nothing)",
+        r"(?:straighten(?:s|ing)?|rises?|rising|stands?|standing|comes?|coming|gets?|getting)(?: yourself)?(?: back| right| slowly)* (?:up|upright)(?: again| straight)?$",
     )
     + r"\b)|\b(?:stays?\s+still|rests)\b"
 )  # fmt: skip
@@ -141,7 +148,7 @@ LEANS = _pattern(
 SUBJECT = _pattern(r"^(?:it|he|she|they)\s+(?=\w+s\b)")
 AT_ONCE = _pattern(
     r"\b"
-    + _any("while", "whilst", "as you", "at the same time", "at once", "simultaneously", "meanwhile", "together", "all the while",
+    + _any("while", "whilst", "as you", "at the same time", "at once", "simultaneously", "meanwhile", r"(?<!hands )(?<!palms )(?<!arms )(?<!them )together(?= with\b|\W*$)", "all the while",
            "along with")
     + r"\b"
 )  # fmt: skip
@@ -152,10 +159,10 @@ _ACT = _any(
     "lean", "beckon", "hug", "stretch", "twist", "tilt", "facepalm", "cheer", "pray", "scratch", "rub", "pat", "knock",
     "push", "pull", "throw", "catch", "jab", "box", "flap", "swim", "march", "danc", "drum", "circl", "spread", "open",
     "touch", "cover", "blow", "wip", "stir", "typ", "applau", "conduct", "greet", "swing", "bend", "turn", "reach", "mak",
-    "giv", "tak", "do", "play", "act", "show", "strik", "thumb", "flex", "high", "lower", "put", "let", "bring", "hold", "keep",
+    "giv", "tak", "do", "play", "act", "show", "strik", "thumb", "flex", "high[- ]?fiv", "lower", "put", "let", "bring", "hold", "keep",
     "drop", "place", "extend", "straighten", "sway", "pump", "roll", "nudg", "sink", "glanc", "gaz", "peek", "stare", "shade",
     "cup", "hide", "fist (?:bump|pump)", "hammer", "paint", "brush", "scrub", "pour", "comb", "steer",
-    "uncross", "unfold", "press", "rock", "slump", "yawn", "breath", "conduct", "juggl",
+    "uncross", "unfold", "press", "celebrat", "curts", "uppercut", "hook", "drink", "kiss", "listen", "laugh", "pose", "surrender", "rock", "slump", "yawn", "breath", "conduct", "juggl",
 )  # fmt: skip
 SPEAKS_OF_AN_ACT = _pattern(rf"\b{_ACT}\w*")
 BEGINS_WITH_A_VERB = _pattern(rf"^(?:(?:{_MANNER}|to)\s+)*({_ACT})(?:e|p|s|es|d|ping|ing|ding|t|h)?\b")
@@ -170,6 +177,11 @@ LIMB_FIRST = _pattern(
     r"^(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head|chin|eyes|gaze|shoulders|body|upper body)\s"
 )
 """'Head up', a command without a verb."""
+LIMB_ALONE = _pattern(
+    r"^(?:(?:your |the )?(?:left|right|both)(?: (?:arm|hand|fist)s?)?|(?:your |the )?(?:arms|hands|head)) (?:straight |back )?"
+    r"(?:up|down|left|right|forward|back|out|wide|on (?:your |the )?\w+|to the sides?)$"
+)
+"""A limb with its place, three of which are in turn: "left arm up, right arm up, both down"."""
 LIMB_AND_WAY = _pattern(
     r"^(?:your |the )?(?:(?:left |right )?(?:arm|hand|fist)|arms|hands|head|chin|eyes|gaze) "
     r"(?:up|down|left|right|forward|back|out)$"

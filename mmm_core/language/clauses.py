@@ -10,13 +10,25 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 
 from mmm_core.language import clause_patterns as words
-from mmm_core.language.at_once import are_at_once
-from mmm_core.language.ellipsis import completed
+from mmm_core.language.at_once import are_at_once, goes_on
+from mmm_core.language.count_words import NUMBERS
+from mmm_core.language.ellipsis import completed, is_manner
+from mmm_core.language.requests import everyday
 
 MOST_COMMANDS, MOST_WORDS = 4, 60
 """Most commands and most words of a text that is divided; a longer text stays one command."""
+_ALL_AGAIN = re.compile(
+    r"(?:and )?(?:repeat|again|(?:do|repeat) (?:it|that|them|all|everything|the lot)(?: all)?(?: again)?|the same again|and again)"
+)
+_THE_SAME = re.compile(
+    r"(?:(?:do )?(?:the same|likewise|it|so|that)|one|another|another one|one more)\b(?: (?:with|using|for|on)\b|$)"
+)
+_NOUN = re.compile(
+    rf"(?:an?|another|{'|'.join(NUMBERS)}) (?:\w+ )?(?:nod|bow|wave|clap|shrug|salute|punch|jab|hook|uppercut|yawn|stretch|twist|head ?shake|cheer|hug)(?:e?s)?\b"
+)
 _READS = re.compile(r"[A-Za-z]{2,}")
 
 
@@ -61,6 +73,8 @@ def _divided(text: str) -> list[str]:
     parts: list[str] = []
     for i, span in enumerate(spans):
         clause = span.of(text)
+        if len(parts) > 1 and _ALL_AGAIN.fullmatch(_bare(clause)):
+            return parts * 2 if 2 * len(parts) <= MOST_COMMANDS else parts
         whole = completed(_bare(clause), _bare(parts[-1])) if parts else None
         if whole is None and len(parts) > 1 and _leans(clause):  # "it" may be a limb that was named before
             whole = completed(_bare(clause), ", ".join(map(_bare, parts)))
@@ -86,19 +100,42 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
     """'wave, nod and bow' where every part begins with a verb of its own, or after a comma leaves it out; else the whole."""
     spans = _spans(text, whole, words.AND)
     parts = [_bare(s.of(text)) for s in spans]
-    if len(parts) == 2 and are_at_once(*parts, joined="and" in text[spans[0].end : spans[1].start]):
+    if len(parts) == 2 and _THE_SAME.match(parts[1]) and completed(parts[1], parts[0]):
+        return spans
+    if len(parts) == 2 and goes_on(*parts):
         return [whole]
-    verbs = [
-        words.BEGINS_WITH_A_VERB.match(part)
-        or _is_of_the_same_limb(parts, i)
-        or (i == 0 and len(parts) > 1 and words.LIMB_AND_WAY.match(part) and completed(parts[1], part))
-        or (i and "," in text[spans[i - 1].end : spans[i].start] and completed(part, parts[i - 1]))
-        for i, part in enumerate(parts)
-    ]
-    if not all(verbs) or len({_bare(s.of(text)).lower() for s in spans}) < len(spans):
+    if (
+        len(parts) == 2
+        and not _are_counted(parts)
+        and are_at_once(*parts, joined="and" in text[spans[0].end : spans[1].start])
+    ):
+        return [whole]
+    wholes: list[str] = []  # the parts, each with what it leaves out
+    verbs: list[object] = []
+    for i, part in enumerate(parts):
+        after_comma = i and "," in text[spans[i - 1].end : spans[i].start]
+        filled = completed(part, wholes[-1]) if after_comma and not is_manner(part) else None
+        verbs.append(
+            words.BEGINS_WITH_A_VERB.match(part)
+            or _is_of_the_same_limb(parts, i)
+            or (i == 0 and len(parts) > 1 and words.LIMB_AND_WAY.match(part) and completed(parts[1], part))
+            or filled
+            or everyday(part)
+        )
+        wholes.append(filled or part)
+    if _are_counted(parts) or (len(parts) > 2 and all(map(_NOUN.match, parts))):
+        return spans
+    if len(parts) > 2 and all(map(words.LIMB_ALONE.match, parts)):
+        return spans
+    if not all(verbs) or any(a == b for a, b in pairwise(parts)):
         return [whole]
     prepares = len(spans) == 2 and words.PREPARES.match(parts[0]) and not words.POSES_ANEW.match(parts[1])
     return [whole] if prepares else spans
+
+
+def _are_counted(parts: list[str]) -> bool:
+    """Whether all parts are gestures with an article or a number, and one has a number: "two claps, one nod" is in turn."""
+    return len(parts) > 1 and all(map(_NOUN.match, parts)) and not all(re.match(r"an? ", part) for part in parts)
 
 
 def _is_of_the_same_limb(parts: list[str], i: int) -> bool:

@@ -15,6 +15,7 @@ from functools import cache
 from mmm_core.errors import MmmError
 from mmm_core.language.at_once import is_pose
 from mmm_core.language.commands import PlainCommand, Reading, Steps
+from mmm_core.language.corrections import corrected
 from mmm_core.language.count_words import ADVERBS, NUMBERS
 from mmm_core.language.ellipsis import OTHER, completed
 from mmm_core.language.inflection import singular
@@ -95,7 +96,7 @@ def in_context(text: str, before: Reading | None) -> InContext | None:
     """
     if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return None
-    said = mended(text).strip(" .,!?;:")
+    said = corrected(mended(text).strip(" .,!?;:"))
     if before is None and everyday(said):
         return None
     actions = _actions(said)

@@ -12,12 +12,25 @@ _BUT_NOW = re.compile(
     r"(?P<now>(?:your |the )?(?:left|right|other)(?: one| arm| hand| side| way)?|both(?: arms| hands)?)(?: please)?\W*$"
 )
 
+_I_SAID = re.compile(
+    r"^(?:(?P<before>.+?)[.,;!]+ )??(?:(?:no|hey|oi|wait|sorry|robot|but)[,.! ]+)*"
+    r"(?:(?:i (?:said|say|mean|meant|want(?:ed)?|asked for)|it is|that is|(?:the |your )?)[, ]*)?(?P<now>(?:the |your |to the |with your |with the )?(?:left|right|other)(?: one| arm| hand| side)?)"
+    r"[,.]? (?:and )?not (?:the |your |to the |with your |with the )?(?:left|right|other)(?: one| arm| hand| side)?\W*$"
+)
+"""'I said left, not right', with or without the command that is put right."""
+
 
 def corrected(said: str) -> str:
     """A sentence with what it takes back put right; the sentence itself where it takes nothing back.
 
+    >>> corrected("raise your right arm, I said left, not right".lower())
+    'raise your left arm'
     >>> corrected("raise your left arm. no, not that arm, the other one"), corrected("raise both arms. actually just the left")
     ('raise your right arm', 'raise your left arm')
     """
-    found = _BUT_NOW.match(said)
-    return (completed(found["now"], found["before"]) or said) if found else said
+    found = _BUT_NOW.match(said) or _I_SAID.match(said)
+    if found is None:
+        return said
+    if not found["before"]:
+        return found["now"]
+    return completed(found["now"], found["before"]) or said

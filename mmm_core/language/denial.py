@@ -13,6 +13,8 @@ from functools import partial
 
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.ellipsis import OTHER
+from mmm_core.language.limbs import is_gesture_verb
+from mmm_core.language.requests import everyday
 from mmm_core.language.word_tables import any_of
 
 _any = partial(any_of, "denial")
@@ -24,6 +26,12 @@ _BETWEEN = re.compile(
 _INLINE = re.compile(rf"\s*,?\s*\b(?P<not>{_any('inline')})\s+(?P<what>[^,;:.!]+)")
 _GERUND_FIRST = re.compile(
     r"^\W*(?:instead of|rather than|without) (?P<what>(?:\w+ing)(?: (?:your|the|at|to|with) \w+(?: \w+)?)?|(?:a|an) \w+),? (?=\w)"
+)
+_IN_PLACE_OF = re.compile(r"^\W*(?:instead of|rather than|as opposed to|in place of)\b|^not .+, but\b")
+"""Words of contrast, after which even what is no act is not to be done: "wave instead of just standing there"."""
+_GERUND_CLAUSE = re.compile(r"^\W*(?:instead of|rather than|without|no) (?P<what>\w+ing\b[^,;:.]*), (?P<rest>\w.+)$")
+_ONE_HAND_FOR_THE_OTHER = re.compile(
+    r"^\W*(?:instead of|rather than|in place of) (?P<what>(?:using )?(?:the|your) (?:left|right)(?: hand| arm)?),? (?P<rest>(?:use|with|take|using)\b.+)$"
 )
 _NOT_A_BUT_B = re.compile(
     r"^\W*not (?!only\b)(?P<what>(?:an?|the|your|with|to)? ?[^,;]+?),? but (?:rather |instead )?(?P<rest>.+)$"
@@ -100,9 +108,9 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
     leaves = len(denied)
     side = "" if not leaves else "left" if "left" in denied[-1] else "right"
     text = _KEEP_STILL.sub(" ", text).strip(" ,")
-    for pattern in (_GERUND_FIRST, _NOT_A_BUT_B):
+    for pattern in (_ONE_HAND_FOR_THE_OTHER, _GERUND_CLAUSE, _GERUND_FIRST, _NOT_A_BUT_B):
         found = pattern.match(text)
-        if found and _is_act(found["what"]):
+        if found and (_IN_PLACE_OF.match(found[0]) or _is_act(found["what"])):
             denied.append(found["what"].strip())
             text = found["rest"] if "rest" in pattern.groupindex else text[found.end() :]
             if limb := re.search(r"\b(hand|arm|fist|leg)\b", found["what"]):
@@ -121,7 +129,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 continue
             if _WAVED_ASIDE.match(what) or _DIRECTION_ONLY.match(what):
                 continue
-            if _is_act(what):
+            if _is_act(what) or _IN_PLACE_OF.match(clause):
                 anything |= bool(re.search(r"\b(?:anything|everything|whatever)\b", clause))
                 denied.append(re.sub(r"\s+(?:is|are) (?:fine|ok|okay|good).*$", "", what))
                 continue
@@ -129,7 +137,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         if inline and inline.start() > 0:
             what = inline["what"].strip()
             only = _SIDE_ONLY.match(what)
-            if only or _DIRECTION_ONLY.match(what) or _is_act(what):
+            if only or _DIRECTION_ONLY.match(what) or _is_act(what) or _IN_PLACE_OF.match(inline["not"]):
                 side = only["side"] if only else side
                 denied.append(what)
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()
@@ -164,7 +172,8 @@ def _note(denied: list[str], what: str) -> str:
 
 
 def _is_act(what: str) -> bool:
-    return bool(SPEAKS_OF_AN_ACT.search(what) or _ACTS_ALSO.search(what))
+    named = SPEAKS_OF_AN_ACT.search(what) or _ACTS_ALSO.search(what) or everyday(what)
+    return bool(named or is_gesture_verb(what.partition(" ")[0]))
 
 
 def _with_side(clause: str, side: str) -> str:

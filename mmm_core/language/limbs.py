@@ -79,6 +79,11 @@ def _limb_of_words(clause: str) -> frozenset[str]:
     return TRUNK if _TRUNK_PLACE.search(clause) else frozenset()
 
 
+def is_gesture_verb(word: str) -> bool:
+    """Whether phrases of the corpus begin with a word that tells their limb: "shovel", "knit"."""
+    return word in _limb_words()["verbs"]
+
+
 @cache
 def _limb_words() -> dict[str, dict[str, str]]:
     """The limb of each verb and noun of the table."""

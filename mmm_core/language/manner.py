@@ -48,12 +48,14 @@ _SECOND = re.compile(r"\d ?s|sec")
 _BEFORE_MARK = re.compile(r"\s+([,.])")
 _AT_ENDS = re.compile(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+")
 _TWICE_AND = re.compile(r"\s+(?:and|but)(?=,? (?:and|but)\b)")
+_AFTER_ARTICLE = re.compile(r"\b(an?|the|one|your), +(?=\w)")
 _A_VOWEL = re.compile(r"\ba (?=[aeiou])(?!u\w*[aeiou])")
 _READS, _HIGH = re.compile(r"[a-z]{2,}"), re.compile(r"\b(?:up|high|in the air|overhead)\b")
 _WAVE_NEXT, _NEXT_WORD = re.compile(r"\s*waves?\b"), re.compile(r"\s+(\w+)")
 _ADJECTIVES = frozenset("fast quick slow gentle rapid brisk swift faster slower quicker".split())
 _AFTER_ADJECTIVE = re.compile(
     _GESTURES
+    + "|(?:clapp|wav|nodd|bow|shak|shrugg|punch|drumm|danc|point|salut|box|tapp|knock|flapp|sway)ing"
     + "|and|with|to|at|for|then|now|please|on|in|twice|once|thrice|your|three|two|four|five|the|times|"
     + "left|right|up|down|back|forward|from"
 )
@@ -97,6 +99,7 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     rest = _BEFORE_MARK.sub(r"\1", " ".join(rest.split()))
     rest = _AT_ENDS.sub("", rest)
     rest = _TWICE_AND.sub("", rest)
+    rest = _AFTER_ARTICLE.sub(r"\1 ", rest)
     rest = _A_VOWEL.sub("an ", rest)
     if not _READS.search(rest):
         return clause, Manner()

@@ -19,7 +19,9 @@ from mmm_core.language.denial import without_denial
 from mmm_core.language.ellipsis import with_sides
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
-from mmm_core.language.requests import everyday, restated, rewritten, without_request
+from mmm_core.language.one_gesture import as_said, held_together
+from mmm_core.language.requests import everyday, greeting, restated, rewritten, without_request
+from mmm_core.language.run_on import with_marks
 from mmm_core.language.spelling import mended, normalised
 
 _PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red|need|feed)\b (?:hand|arm|fist)s?\b)\w+ed\b")
@@ -31,12 +33,21 @@ _DO_IT = re.compile(
 _LIMB_OF_ALL = re.compile(
     r"(?P<limb>(?:your |the )?(?:(?:left|right|both) )?(?:arms?|hands?|head|body)): (?P<parts>.+)$"
 )
+_OWN_PART = re.compile(
+    r"\byour (?:(?:left|right) )?(?:hand|arm|head|nose|ear|eye|chin|cheek|shoulder|elbow|belly|hair|back|chest|forehead|mouth|face|neck|brow)s?\b"
+)
+_ACT_ON_IT = re.compile(r"((?!do\b)\w+) (?:it|them)\b")
+"""What a request before the pronoun names: "there is a fly on your nose, scratch it"."""
 _ANYTHING = ("wave your right hand", "clap your hands")
 """What is done where anything but the denied is asked for."""
 
 
-def read(text: str) -> Reading:
+def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     """The commands of a sentence.
+
+    Args:
+        text: the sentence.
+        by_rules_alone: whether phrases that only the corpus shows to be one gesture (`one_gesture`) are parted as well.
 
     >>> [[c.text for c in step] for step in read("turn your head left, then right").steps]
     [['turn your head left'], ['turn your head right']]
@@ -46,19 +57,20 @@ def read(text: str) -> Reading:
     if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return Reading(text, ((PlainCommand(text),),), plain=True)
     said = mended(text)
-    if known := everyday(said):
+    if known := everyday(said) or greeting(said):
         return _known(text, known)
-    bare = without_request(said)
-    if known := everyday(bare):
+    held = said if by_rules_alone else held_together(said)
+    bare = without_request(held)
+    if known := everyday(bare) or greeting(bare):
         return _known(text, known)
-    bare, first_hand = _hand_first(restated(corrected(_referring(bare, said))))
+    bare, first_hand = _hand_first(restated(corrected(_referring(with_marks(bare), held))))
     denial = without_denial(rewritten(bare))
     if denial.denied and not denial.rest and not denial.anything:
-        return Reading(text, (), denial.denied)
+        return Reading(text, (), _shown(denial.denied))
     if denial.anything and not denial.rest:
         does = next(c for c in _ANYTHING if c.split()[0] not in " ".join(denial.denied))
-        return Reading(text, ((_command(does),),), denial.denied)
-    rest = without_request(denial.rest) if denial.denied else denial.rest
+        return Reading(text, ((_command(does),),), _shown(denial.denied))
+    rest = rewritten(without_request(denial.rest)) if denial.denied else denial.rest
     steps: list[tuple[PlainCommand, ...]] = []
     notes: list[str] = []
     rest, hand = _for_all(rest)
@@ -67,7 +79,11 @@ def read(text: str) -> Reading:
         steps += _steps(clause + hand if hand and limbs_of(clause) == SOME_ARM else clause, notes)
     if _is_plain(text, said, steps):
         return Reading(text, ((replace(steps[0][0], text=normalised(text)),),), plain=True)
-    return Reading(text, tuple(steps), denial.denied, tuple(notes))
+    return Reading(text, tuple(steps), _shown(denial.denied), tuple(notes))
+
+
+def _shown(denied: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(as_said(what) for what in denied)
 
 
 def _referring(bare: str, said: str) -> str:
@@ -76,6 +92,9 @@ def _referring(bare: str, said: str) -> str:
     side = re.search(r"\b(?:on|to|from|by) (?:your|the) (left|right)\b(?! (?:hand|arm))", before)
     if side and re.search(r"\b(?:that way|over there|in that direction)\b", bare):
         return re.sub(r"\b(?:that way|over there|in that direction)\b", f"to the {side[1]}", bare, count=1)
+    part = _OWN_PART.search(before) if said.endswith(bare) else None
+    if part is not None and (pronoun := _ACT_ON_IT.match(bare)):
+        return f"{pronoun[1]} {part[0]}{bare[pronoun.end() :]}"
     act = re.search(
         r"\b(?:can not|can|could|cannot|how to|how you|whether you|if you) ((?:never |ever )?\w+.*?)(?=,|\.|$)", before
     )
@@ -140,7 +159,7 @@ def _steps(clause: str, notes: list[str]) -> list[tuple[PlainCommand, ...]]:
 def _command(clause: str) -> PlainCommand:
     rest, manner = manner_of(clause)
     bare = _PAST.sub(lambda m: base_of(m[0]), without_request(rest))
-    words = rewritten(everyday(bare) or bare)
+    words = as_said(rewritten(everyday(bare) or bare))
     return PlainCommand(words, manner, limbs_of(words))
 
 

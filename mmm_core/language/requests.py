@@ -7,13 +7,14 @@ from functools import cache, lru_cache
 
 from mmm_core.language.at_once import base_of
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
-from mmm_core.language.word_tables import REMEMBERED, WAY, Rule, RuleTable, lines, pairs, replaced, substitutions
+from mmm_core.language.limbs import is_gesture_verb
+from mmm_core.language.word_tables import LIMB, REMEMBERED, WAY, Rule, RuleTable, lines, pairs, replaced, substitutions
 
 _ACT = (
     r"(?:also |just |please |can you |could you )*(?:wave|nod|bow|clap|shrug|salute|point|punch|shake|cross|fold|raise|lift|look|lean|beckon|hug|stretch|twist|tilt|cheer|pray|scratch|rub|pat|"
     r"knock|push|pull|throw|catch|flap|march|dance|drum|circle|spread|open|touch|cover|blow|wipe|stir|applaud|conduct|greet|swing|bend|turn|reach|make|give|take|do|"
     r"play|act|show|strike|flex|lower|put|hold|shade|celebrate|throw|welcome|thank|say|tell|hush|call|flex|pretend|move|bring|let us see you|sway|duck|facepalm|signal|hammer|paint|brush|drum|box|drink|eat|pour|kiss|listen|yawn|climb|swim|steer|type|juggle|flip|rotate|rock|slump|relax|drop|place|"
-    r"extend|straighten|uncross|roll|bob|wag|tip|incline|motion|gesture|indicate|demonstrate|perform|imitate|mime|box|jab|row|saw|sow)\b"
+    r"extend|straighten|uncross|roll|bob|wag|tip|incline|motion|gesture|indicate|demonstrate|perform|imitate|mime|box|jab|row|saw|sow|stand)\b"
 )
 _STORY = (
     (
@@ -28,14 +29,32 @@ _ASKS = (
     r"(?:(?:can|could|would|will|might) you|(?:might|may|could|can|must|should|would) (?:i|we) (?:please |just |kindly |also )*(?:trouble|ask|beg|request|invite|persuade|bother|get|have) you to|"
     r"(?:i|we) (?:(?:would|do|really|just|only|simply|also|am|was|were) )*wonder(?:ing)?(?: if| whether) you (?:would|could|might|can|will)|"
     r"(?:i|we|they|he|she|everybody|everyone|the \w+|my \w+)(?: would| do| really| just| now| simply| only| all)* (?:like|love|want|need|wish|expect|ask|beg|prefer|ought|likes|loves|wants|needs)(?: to (?:see|have|watch))? you(?: to)?|"
-    r"if you (?:could|would|might|were to)|(?:i|we) (?:am|was|are|were|have been) (?:just |only |really )*(?:hoping|thinking|wishing|counting on it)(?: that| if| whether)? you (?:could|might|would|can|will)|it would be (?:\w+ ){1,3}(?:if you (?:could|would)|to see you|to have you)|(?:perhaps|maybe) you (?:could|would|might|can|should)|(?:i|we) (?:think|believe|guess|suggest|propose|recommend|insist)(?: that)? you (?:should|could|might|ought to|had better|must)?|"
+    r"if you (?:could|would|might|were to)|(?:i|we) (?:am|was|are|were|have been) (?:just |only |really )*(?:hoping|thinking|wishing|counting on it)(?: that| if| whether)? you (?:could|might|would|can|will)|it would be (?:\w+ ){1,3}(?:if you (?:could|would)|to see you|to have you)|(?:perhaps|maybe) you (?:could|would|might|can|should)|(?:i|we|he|she|they|everyone|(?:the|my|our) \w+(?: \w+)?) (?:thinks?|believes?|guess|suggests?|proposes?|recommends?|insists?|says?|said|told (?:me|us))(?: that)? you (?:should|could|might|ought to|had better|must)?|"
     r"(?:so|therefore|and|now) (?:please|kindly|just|do)|(?:so|and) be (?:so )?(?:kind|good|nice|an? \w+)(?: enough)?(?: as)? (?:to|and)|do (?:just|please|kindly)|please|go ahead and|why do not you|how about you|"
     r"let (?:me|us) see you|the time has come (?:for you )?to|it is (?:now )?time (?:for you )?to|your (?:job|task|turn|part) (?:now )?is (?:simply |just )?to|what about|how about)[, ]+"
 )
 """Words that ask for something in the middle of a sentence."""
+_ALL = r"(?:,? (?:to )?(?:you|all|everyone|everybody|every one|guys|folks|people|kids|children|friends?|my friends?|ladies and gentlemen|team|class|lads|girls|boys|world|robot|there|again|now|then|for now|of you|too|sir|mister|grandma|grandpa|mum|dad|mom|me|us|please|very much|so much|today|tonight|right now))*"
+"""Who is spoken to after an everyday phrase, for its table."""
+_HERE = r"(?: (?:in here|out here|here|outside|inside|out there|in there|over there|today|tonight|this (?:morning|evening|afternoon)|now|in this (?:room|place|house|hall)))*"
+_SO = r"(?:so |too |very |really |pretty |a bit |a little |quite |rather |awfully |terribly |getting |bloody |ever so |all |still )*"
+MOST_WORDS_OF_TALK = 8
+"""Most words of a sentence that its beginning alone says the gesture of."""
+_TALK = re.compile(
+    r"(?![\w'-]| (?:is|are|was|were|what|how|why|when|where|can|could|would|will|do|does|did)\b)[^,.;:!?]*"
+)
+_NAMES_AN_ACT = re.compile(
+    rf"\b(?:left|right|up|down|forwards?|backwards?|both|{LIMB}|head|eyes|shoulders?|body|then|but|not|never|while|before|after|\w+ly|twice|times)\b"
+)
+"""Words by which what follows asks for something of its own."""
 _END, _MARKS = re.compile(r"[\s,.!?;:]+$"), re.compile(r"\s*[,.!?;:]+\s*")
 _WORD = re.compile(r"[a-z]{2,}")
-_GERUND_FIRST = re.compile(r"^(?:you )?(\w+ing)\b(?= (?:your|the|to|at|with|me|down|up|and|goodbye|a|an)\b|$)")
+_JOINED_GERUND = re.compile(
+    r"(\b(?:and|then|or) )((?:clapp|nodd|wav|bow|shrugg|salut|point|look|lean|shak|rais|lower|turn|touch)ing)\b"
+)
+_GERUND_FIRST = re.compile(
+    r"^(?:you )?(\w+ing)\b(?= (?:your|the|to|at|with|me|down|up|and|goodbye|a|an|first|once|twice|then|before|left|right|forward|back|\w+ times)\b|$)"
+)
 
 
 @cache
@@ -83,9 +102,13 @@ def _gerund_request(rest: str) -> str:
     """A request whose verb is a gerund as a command: "shaking your head" -> "shake your head"."""
     found = _GERUND_FIRST.match(rest)
     _, comma, after = rest.partition(", ")
-    if found is None or not SPEAKS_OF_AN_ACT.match(found[1]) or (comma and SPEAKS_OF_AN_ACT.match(after)):
+    if found is None or not _is_verb(base_of(found[1])) or (comma and SPEAKS_OF_AN_ACT.match(after)):
         return rest  # "looking left, wave" is at once
-    return base_of(found[1]) + rest[found.end() :]
+    return base_of(found[1]) + _JOINED_GERUND.sub(lambda m: f"{m[1]}{base_of(m[2])}", rest[found.end() :])
+
+
+def _is_verb(word: str) -> bool:
+    return bool(SPEAKS_OF_AN_ACT.match(word)) or is_gesture_verb(word)
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -96,10 +119,52 @@ def everyday(said: str) -> str:
     ('wave your right hand', 'wave your right hand')
     """
     bare = _END.sub("", said).strip()
+    if parts := _said_again(bare):
+        return parts
     bare = bare if "," in bare else _MARKS.sub(" ", bare)
-    table = substitutions("everyday")
+    table = _everyday()
     possible = (table.rules[number] for number in table.possible(bare))
     return next((rule.words for rule in possible if rule.pattern.fullmatch(bare)), "")
+
+
+def greeting(said: str) -> str:
+    """The plain command that the beginning of a short sentence means, whatever it talks of then; "" where it means none.
+
+    >>> greeting("thank you for coming"), greeting("hello, raise your arm")
+    ('bow politely', '')
+    """
+    bare = _END.sub("", said).strip()
+    if len(bare.split(None, MOST_WORDS_OF_TALK)) > MOST_WORDS_OF_TALK:
+        return ""
+    for number in substitutions("openings").possible(bare):
+        rule = substitutions("openings").rules[number]
+        found = rule.pattern.match(bare)
+        if found is not None and (talk := _TALK.match(bare, found.end())):
+            others = [part for part in _MARKS.split(bare[talk.end() :]) if part]
+            known = all(everyday(part) or greeting(part) for part in others)
+            return rule.words if known and not any(map(_names_an_act, (talk[0], *others))) else ""
+    return ""
+
+
+def _names_an_act(talk: str) -> bool:
+    named = _NAMES_AN_ACT.search(talk) or SPEAKS_OF_AN_ACT.search(talk)
+    return bool(named) or any(map(is_gesture_verb, _WORD.findall(talk)))
+
+
+def _said_again(bare: str) -> str:
+    """The command that each of several everyday phrases means: "shoo, go away"; "" where they mean different ones."""
+    parts = [part for part in _MARKS.split(bare) if part] if _MARKS.search(bare) else []
+    meant = {everyday(part) for part in parts} if len(parts) > 1 else set()
+    return meant.pop() if len(meant) == 1 else ""
+
+
+@cache
+def _everyday() -> RuleTable:
+    """Everyday phrases, each line a whole."""
+    return RuleTable(
+        Rule(re.compile(pattern.replace("@ALL", _ALL).replace("@HERE", _HERE).replace("@SO", _SO)), words)
+        for pattern, words in pairs("everyday")
+    )
 
 
 @cache

@@ -160,6 +160,8 @@ def _is_right(word: str) -> bool:
     """Whether a word or what it is inflected from is spelt right, or too short or strange to be judged."""
     if len(word) < 3 or "'" in word or not word.isascii() or word in _right():
         return True
+    if re.search("i(?:es|ed|er|ly)$", word) and f"{word[: word.rindex('i')]}y" in _right():
+        return True  # "buries"
     ending = _ENDINGS.search(word)
     stem = word[: ending.start()] if ending else ""
     if ending is not None and ending[0] in ("s", "es") and stem[-1:] == "s":

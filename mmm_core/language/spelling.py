@@ -18,10 +18,13 @@ _RESTART = re.compile(
     rf"\b(\w+(?: \w+){{0,2}}),? (?:{_FILLER}|i mean|sorry|no wait)(?:,|\.{{2,}})? (?=\1\b)", re.IGNORECASE
 )
 _STUTTER = re.compile(r"\b(the|your|to|with|a|and|then|left|right|hand|arm|raise|turn|look|wave|lift|put|clap|nod|bow|shrug|point)(?:,|\.{2,}|-)? (?=\1\b)(?!\1 (?:and|then) \1)", re.IGNORECASE)  # fmt: skip
+_TWICE = re.compile(r"\b((?:\w+ ){2,}\w+) \1\b")
+"""A command said again in the same breath: "lift your right arm lift your right arm"."""
 _PAUSES = re.compile(rf"\b(?:{_FILLER}|i mean|sorry|no wait)\b")
 """Words that a restart has."""
 _FILLERS = re.compile(
-    rf"(?:^|(?<=[\s,.]))(?:{_FILLER}|you know|i mean|kinda|sorta)(?:\s*,|\s*\.{{2,}})?(?:\s+|$)", re.IGNORECASE
+    rf"(?:^|(?<=[\s,.]))(?:{_FILLER}|(?<!do )(?<!did )you know(?! how\b)|i mean|kinda|sorta)(?:\s*,|\s*\.{{2,}})?(?:\s+|$)",
+    re.IGNORECASE,
 )
 _DRAWN_OUT = re.compile(r"([a-z])\1{2,}", re.IGNORECASE)
 _MARKS = str.maketrans({"’": "'", "‘": "'", "“": '"', "”": '"', "–": "-", "—": ", ", "…": "... ", "´": "'", "`": "'"})  # noqa: RUF001
@@ -54,6 +57,8 @@ def mended(text: str) -> str:
     if _PAUSES.search(said) is not None:
         said = _RESTART.sub("", said)
     said = _FILLERS.sub("", said)
+    if len(set(words := said.split())) < len(words) - 2:
+        said = _TWICE.sub(r"\1", said)
     if _repeats(said):
         said = _STUTTER.sub("", said)
     said = _homophones(said)

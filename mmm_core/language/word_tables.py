@@ -14,6 +14,7 @@ from mmm_core.language.needed_letters import letters_of, needed_letters
 _FOLDER = files("mmm_core.language").joinpath("words")
 CORPUS_WORDS_FILE = _FOLDER.joinpath("corpus_words.txt")
 LIMB_WORDS_FILE = _FOLDER.joinpath("limb_words.txt")
+ONE_GESTURE_FILE = _FOLDER.joinpath("one_gesture.txt")
 WORD_PAIRS_FILE = _FOLDER.joinpath("word_pairs.txt")
 
 REMEMBERED = 2048

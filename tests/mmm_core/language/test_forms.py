@@ -31,7 +31,7 @@ class TestWhatIsRead:
             ("lift your left hand, turn it over, let it sink",
              "lift your left hand; turn your left palm up and down; lower your left hand"),
             ("Point first to the door on your left, then to the window on your right",
-             "point first to the door on your left; point to the window on your right"),
+             "point to the door on your left; point to the window on your right"),
             ("lift both arms, clap above your head and lower them", "lift both arms; clap above your head; lower both arms"),
             ("keep your arms down and look left", "look to the left"),
             ("don't use your right hand to wave", "wave with your left hand"),

@@ -1,0 +1,42 @@
+"""Marks between commands that are said without any: "wave bow clap" -> "wave, bow, clap", "once you have waved bow".
+
+Transcripts of speech and hasty messages have no commas. A command ends where a word that may end one ("left", "twice", a gesture)
+stands before a verb that begins one, or before a limb of its own ("left arm up right arm up").
+"""
+
+from __future__ import annotations
+
+import re
+
+from mmm_core.language.word_tables import LIMB, any_of
+
+_ENDS, _BEGINS = any_of("run_on", "ends"), any_of("run_on", "begins")
+_LIMB = any_of("run_on", "limb")
+_BETWEEN = re.compile(rf"(?<![-\w])(?P<end>{_ENDS}) (?={_BEGINS}\b(?!-))")
+_LIMB_NEXT = re.compile(rf"\b(?P<end>{any_of('run_on', 'limb ends')}) (?={_LIMB} {any_of('run_on', 'limb goes')}\b)")
+_BARE_LIMB = re.compile(
+    rf"(?:^|.*(?:[,.;:]|\b(?:then|and)) )(?:(?:with|using|use|your|the|both|left|right|other) )*(?:{LIMB}|head|shoulders)$"
+)
+_NO_VERB = re.compile(rf"\b{any_of('run_on', 'noun follows')} (?:\w+ )?$")
+_COMMAND = re.compile(
+    rf"(?:^|[,.;:]\s*|\b(?:then|and|please|robot|now|ok|first) )(?:{_BEGINS}|{_LIMB}|{any_of('run_on', 'after')})\b"
+)
+
+
+def with_marks(said: str) -> str:
+    """A sentence in lower case with commas between commands that follow each other without a word or mark.
+
+    >>> with_marks("wave bow clap"), with_marks("look left look right"), with_marks("give me a head shake")
+    ('wave, bow, clap', 'look left, look right', 'give me a head shake')
+    """
+    if not _COMMAND.match(said):
+        return said
+    for pattern in (_BETWEEN, _LIMB_NEXT):
+        marked, at = "", 0
+        for found in pattern.finditer(said):
+            before = said[: found.end("end")]
+            if not _NO_VERB.search(said[: found.start("end")]) and not _BARE_LIMB.match(before):
+                marked += f"{said[at : found.end('end')]},"
+                at = found.end("end")
+        said = marked + said[at:]
+    return said

@@ -1,0 +1,133 @@
+"""Contrast, words before a command, sides put right, orders told backwards and manner, each with what looks like it and is none."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmm_core.language.context import InContext, conversation
+from mmm_core.language.denial import without_denial
+from mmm_core.language.reading import read
+from mmm_core.language.spelling import mended
+
+
+def said(text: str) -> str:
+    """The commands that are read and what is denied, as one line: "wave | not: bow"."""
+    reading = read(text)
+    return "; ".join(reading.sentences) + (f" | not: {', '.join(reading.denied)}" if reading.denied else "")
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("wave instead of bowing", "wave | not: bowing"),
+        ("wave instead of just standing there", "wave | not: just standing there"),
+        ("instead of standing around, wave", "wave | not: standing around"),
+        ("nod rather than saying yes", "nod | not: saying yes"),
+        ("wave rather than whatever you were doing", "wave | not: whatever you were doing"),
+        ("bow in place of the wave", "bow | not: the wave"), ("wave with your left hand instead", "wave with your left hand"),
+        ("instead of the left hand use the right hand and wave", "wave with your right hand | not: the left hand"),
+        ("bow, no wait, wave instead", "wave"), ("stop clapping, start waving", "wave | not: clapping"),
+        ("wave with anything but your right hand", "wave with your left hand | not: your right hand"),
+        ("don't wave with both hands, one is enough", "wave with one hand"), ("no pressure, wave", "wave"),
+        ("do not panic, wave", "wave"),
+        # and what looks like it
+        ("no rush, wave", "wave (0.62 times as fast)"), ("don't rush, wave", "wave (0.62 times as fast)"),
+        ("do not shoot", "do not shoot"), ("tell me not to worry", "tell me not to worry"),
+        ("never say never", "never say never"),
+    ],
+)  # fmt: skip
+def test_contrast(text: str, read_as: str) -> None:
+    assert said(text) == read_as
+
+
+@pytest.mark.parametrize("text", ["no rush", "never say never", "do not shoot", "no worries", "do not panic"])
+def test_nothing_is_denied(text: str) -> None:
+    assert not without_denial(text).denied
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("your task: wave", "wave"), ("Your mission: salute", "salute"), ("all I ask is: bow", "bow"),
+        ("all I ask is a bow", "a bow"),
+        ("all I want is for you to bow", "bow"), ("my only wish: clap", "clap"),
+        ("one request: raise your left hand", "raise your left hand"),
+        ("make believe you are rowing a boat", "row a boat"), ("let's pretend you are driving a car", "drive a car"),
+        ("mime how you open a door", "open a door"), ("today's exercise: twist to the left", "twist to the left"),
+        ("the next move is a bow", "a bow"), ("your turn to wave", "wave"),
+        # and what looks like it
+        ("mime opening a door", "mime opening a door"), ("play the piano", "play the piano"),
+        ("imitate a bird", "imitate a bird"),
+        ("hush: cautioning me not to wake the baby", "hush: cautioning me not to wake the baby"),
+    ],
+)  # fmt: skip
+def test_words_before_a_command(text: str, read_as: str) -> None:
+    assert said(text) == read_as
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("raise your right arm. I said left, not right", "raise your left arm"),
+        ("wave with your right hand. no, left, not right!", "wave with your left hand"),
+        ("raise your hand. The left one, not the right", "raise your left hand"),
+        ("ok so lift your left no wait your right arm lift your right arm", "lift your right arm"),
+        # and what looks like it
+        ("look left, not right", "look to the left | not: right"),
+        ("point to the left, not the right", "point to the left | not: the right"),
+        ("clap your hands and wave your hands", "clap your hands; wave your hands"),
+    ],
+)  # fmt: skip
+def test_a_side_is_put_right(text: str, read_as: str) -> None:
+    assert said(text) == read_as
+
+
+def test_a_side_is_put_right_in_the_next_text() -> None:
+    """'I said left, not right' was read as a command of its own, "left"."""
+    *_, last = conversation(["raise your right arm", "I said left, not right"])
+    assert isinstance(last, InContext) and last.reading.sentences == ("raise your left arm",)
+
+
+@pytest.mark.parametrize("word", ["buries", "hurries", "tidied", "prettier"])
+def test_words_in_y_may_be_inflected(word: str) -> None:
+    """'buries' became "carries" or "buried": another gesture."""
+    assert mended(f"she {word} it") == f"she {word} it"
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("nod and after the nod wave", "nod; wave"), ("clap, then after a short break bow", "clap; bow"),
+        ("salute before anything else, then clap", "salute; clap"), ("first of all wave, and to finish off, bow", "wave; bow"),
+        ("nod prior to bowing", "nod; bow"), ("your last move should be a bow, start by waving", "wave; a bow"),
+        ("shrug. That done, salute.", "shrug; salute"), ("finish by clapping but begin by nodding", "nod; clap"),
+        ("when you're through with waving, clap", "wave; clap"),
+        ("after nodding and before clapping, salute", "nod; clap; salute"),
+        ("bow, then again but deeper", "bow; bow deeper"),
+        ("clap three times, nod the same number", "clap three times; nod three times"),
+        ("wave slowly, then quickly", "wave (0.62 times as fast); wave (1.6 times as fast)"),
+        ("point left with one hand and right with the other", "point left with your left hand + point right with your right hand"),
+        ("look both ways before you cross", "look to the left; look to the right"),
+        ("Over there, look, on your left!", "look to the left"),
+        ("look up, then left, then down", "look up; look to the left; look down"),
+        # and what looks like it
+        ("finish the drink", "finish the drink"),
+    ],
+)  # fmt: skip
+def test_order(text: str, read_as: str) -> None:
+    assert said(text) == read_as
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("super fast clapping please", "clap (1.8 times as fast)"), ("wave like mad", "wave (1.7 times as fast)"),
+        ("take ages to raise your left arm", "raise your left arm (0.55 times as fast)"),
+        ("wave small", "wave (0.6 times as large)"),
+        ("a slow, deep bow", "a deep bow (0.62 times as fast)"),
+        # and what looks like it
+        ("point at the small dog", "point at the small dog"), ("take a long time out", "take a long time out"),
+    ],
+)  # fmt: skip
+def test_manner(text: str, read_as: str) -> None:
+    assert said(text) == read_as
