@@ -49,7 +49,14 @@ def read_pairs(folder: Path, splits: Sequence[Split]) -> list[Pair]:
         whole = features[: min(len(features) // FRAMES_PER_TOKEN, MAX_TOKENS) * FRAMES_PER_TOKEN]
         pairs += [Pair(whole, c.text, c.tokens, number) for c in captions]
     if not pairs:
-        raise TrainingDataError(folder, ", ".join(splits), "no pair of motion and caption", "a folder with this split")
+        held = (
+            '"split": "test" in lines of clips.jsonl'
+            if folder_rest_pose(folder) == "mmmd"
+            else "a folder with this split"
+        )
+        raise TrainingDataError(
+            folder, ", ".join(splits), "no pair of motion and caption", f"{held}, or another --split"
+        )
     return pairs
 
 

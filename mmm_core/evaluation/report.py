@@ -12,7 +12,7 @@ import torch
 from mmm_core.errors import CheckpointError, EvaluationError
 from mmm_core.evaluation import paper
 from mmm_core.evaluation.extractors import load_evaluator, load_published
-from mmm_core.evaluation.metrics import Interval
+from mmm_core.evaluation.metrics import POOL, Interval
 from mmm_core.evaluation.pairs import Pair, pairs_for
 from mmm_core.evaluation.protocol import Progress
 from mmm_core.evaluation.reader import Reader
@@ -134,6 +134,8 @@ def sizes(reader: Reader, pairs: Sequence[Pair]) -> dict[str, Any]:
     n, n_texts = len({p.motion for p in pairs}), len({p.text for p in pairs})
     width = reader.evaluator.config.embedding
     said = [f"{n} motions with {n_texts} different captions; the literature measures 4,400 (HumanML3D)"]
+    if n < POOL:
+        said.append(f"R-precision is not measured: its pools are of {POOL} motions")
     if n < 10 * width:
         said.append(f"FID in {width} dimensions is biased upwards by so few, see the line of halves")
     if n_texts < n // 2:

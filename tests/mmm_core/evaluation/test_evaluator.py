@@ -227,6 +227,21 @@ def humanml3d_model(path: Path, n_features: int = 263) -> Engine:
     return Engine.load(path, threads=None)
 
 
+def test_a_split_that_a_folder_lacks_is_told_how_it_is_made(tmp_path: Path) -> None:
+    """ "Expected a folder with this split" told nobody that a line of clips.jsonl decides."""
+    np.save(tmp_path / "stand.npy", standing(40).astype(np.float32))
+    (tmp_path / "clips.jsonl").write_text('{"trial": "stand", "captions": ["stand"]}')
+    with pytest.raises(TrainingDataError, match=r'"split": "test" in lines of clips\.jsonl, or another --split'):
+        read_pairs(tmp_path, ["val", "test"])
+
+
+@pytest.mark.parametrize(("n", "missing"), [(31, True), (32, False)])
+def test_few_motions_are_told_that_they_fill_no_pool(n: int, missing: bool) -> None:
+    pairs = [Pair(np.zeros((4, 263), np.float32), f"text {i}", (), i) for i in range(n)]
+    said = report.sizes(report.load_reader()[0], pairs)["caveat"]
+    assert ("R-precision is not measured" in said) == missing
+
+
 class TestWhatFits:
     def test_a_repeat_takes_each_motion_once_with_one_of_its_captions(self) -> None:
         pairs = [Pair(np.zeros((40, 263), np.float32), f"{m}{c}", (), m) for m in range(5) for c in range(3)]
