@@ -32,12 +32,14 @@ class Clip:
         captions: sentences for what follows its seen tokens.
         is_real: whether a person made it.
         n_seen: tokens at its beginning that show another motion, which it goes on from: given, not learnt.
+        n_rest: tokens of rest added behind its own end; below 0, the number of its last tokens that are cut off.
     """
 
     features: NDArray[np.float32]
     captions: list[str]
     is_real: bool
     n_seen: int = 0
+    n_rest: int = 0
 
 
 def cut_to_tokens(clip: Clip, generator: np.random.Generator) -> Clip:
@@ -105,6 +107,7 @@ class TokenCorpus:
         captions: the encoded captions.
         is_real: for each clip.
         n_seen: for each clip, as of `Clip`; None where it is 0 for all.
+        n_rest: for each clip, as of `Clip`; None where it is 0 for all.
     """
 
     ids: list[Tensor]
@@ -112,10 +115,17 @@ class TokenCorpus:
     captions: CaptionStates
     is_real: NDArray[np.bool_]
     n_seen: NDArray[np.int64] | None = None
+    n_rest: NDArray[np.int64] | None = None
 
     def seen(self, rows: Sequence[int] | NDArray[np.int64]) -> NDArray[np.int64]:
         """Seen tokens of the clips at `rows`."""
         return np.zeros(len(rows), np.int64) if self.n_seen is None else self.n_seen[np.asarray(rows)]
+
+    def own_lengths(self) -> NDArray[np.int64]:
+        """Tokens of each clip's own motion: without those seen before it and the rest added behind it."""
+        n_tokens = np.array([len(ids) for ids in self.ids], np.int64)
+        n_rest = 0 if self.n_rest is None else self.n_rest
+        return n_tokens - self.seen(range(len(self.ids))) - n_rest
 
 
 def encode_clips(clips: Sequence[Clip], tokenizer: Tokenizer | VqVae) -> list[Tensor]:

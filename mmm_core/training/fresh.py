@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import logging
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +27,7 @@ from mmm_core.errors import TrainingDataError
 from mmm_core.language.mirroring import canonical
 from mmm_core.model.text import TextEncoder
 from mmm_core.model.tokenizer import Tokenizer
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.model.vqvae import VqVae
 from mmm_core.motion.features import mirror
 from mmm_core.training.batches import CaptionStates, Clip, TokenCorpus, encode_clips
@@ -36,6 +37,10 @@ log = logging.getLogger(__name__)
 WEIGHTS_FILE = "families.json"
 REPEATED = 1.9
 """Least weight of a family that repeats something, where nothing is known of how badly it does."""
+CUT_SHARE = 1 / 7
+"""Share of the clips of another length that end before their gesture does."""
+MOST_REST_TOKENS = 16
+"""Most tokens of rest behind a gesture: 3.2 s."""
 DIRECTED = 1.7
 """Factor for families with directions: each of them has its own motion to learn. Drawn more rarely, they lost 13 points."""
 
@@ -56,6 +61,7 @@ class FreshRecipe:
         takeover_share: share of clips that begin in the middle of another gesture, whose tokens are given and not learnt; what
             follows is one gesture without any chance.
         deterministic_share: share of the others that show one gesture without any chance (`mmm_core.corpus.deterministic`).
+        other_length_share: share of those that are longer than their gesture, with rest behind it, or end a little before it does.
     """
 
     clips: int = 0
@@ -68,6 +74,7 @@ class FreshRecipe:
     single_share: float = SINGLE_SHARE
     takeover_share: float = 0.0
     deterministic_share: float = 0.0
+    other_length_share: float = 0.0
 
 
 def usual_weights() -> dict[str, float]:
@@ -117,11 +124,27 @@ def _make(how: FreshRecipe, rng: np.random.Generator, weights: Mapping[str, floa
     if how.takeover_share and rng.random() < how.takeover_share:
         return _read_from_one_side(*synthesise_takeover(rng, weights), how.captions)
     if how.deterministic_share and rng.random() < how.deterministic_share:
-        return _read_from_one_side(synthesise_deterministic(rng, weights), 0, how.captions)
+        clip = _read_from_one_side(synthesise_deterministic(rng, weights), 0, how.captions)
+        return at_another_length(clip, rng) if rng.random() < how.other_length_share else clip
     made = synthesise(rng, 0.0 if rng.random() < how.free_share else BEAT_S, weights, how.single_share)
     if rng.random() >= how.canonical_share:
         return Clip(made.features, made.captions[: how.captions], is_real=False)
     return _read_from_one_side(made, 0, how.captions)
+
+
+def at_another_length(clip: Clip, rng: np.random.Generator) -> Clip:
+    """The clip with rest behind it, or in one of seven draws without its last one or two tokens.
+
+    Where each sentence has one length, a model learns the gesture from the length beside the words: "hold up your hand" at
+    3.0 s, the length of every clip that stands still, stood still.
+    """
+    n = len(clip.features) // FRAMES_PER_TOKEN
+    if rng.random() < CUT_SHARE:
+        n_rest = -int(rng.integers(1, 3))
+        return replace(clip, features=clip.features[: (n + n_rest) * FRAMES_PER_TOKEN], n_rest=n_rest)
+    n_rest = min(1 + int(rng.integers(0, MOST_REST_TOKENS)), MAX_TOKENS - n)
+    rest = np.repeat(clip.features[-1:], n_rest * FRAMES_PER_TOKEN, axis=0)
+    return replace(clip, features=np.concatenate([clip.features, rest]), n_rest=n_rest)
 
 
 def _read_from_one_side(made: SynthClip, n_seen: int, n_captions: int) -> Clip:
@@ -134,13 +157,14 @@ def _read_from_one_side(made: SynthClip, n_seen: int, n_captions: int) -> Clip:
 
 @dataclass(frozen=True)
 class Round:
-    """What a round's clips are trained by: ids of each, rows of its captions, the captions, and its seen tokens."""
+    """What a round's clips are trained by: ids of each, rows of its captions, the captions, its seen tokens and those of rest."""
 
     ids: list[Tensor]
     caption_rows: list[list[int]]
     captions: list[str]
     states: CaptionStates
     n_seen: list[int]
+    n_rest: list[int]
 
 
 class FreshClips:
@@ -179,12 +203,13 @@ class FreshClips:
             with written_whole(path) as partial:
                 torch.save({"ids": made.ids, "caption_rows": made.caption_rows, "captions": made.captions,
                             "words": made.states.words, "n_words": torch.from_numpy(made.states.n_words),
-                            "sentences": made.states.sentences, "n_seen": made.n_seen}, partial)  # fmt: skip
+                            "sentences": made.states.sentences, "n_seen": made.n_seen, "n_rest": made.n_rest}, partial)  # fmt: skip
         distributed.wait()
         kept = torch.load(path, weights_only=True)
         states = CaptionStates(kept["words"], kept["n_words"].numpy(), kept["sentences"])
-        n_seen = kept.get("n_seen") or [0] * len(kept["ids"])  # rounds of runs before there were takeovers
-        return Round(kept["ids"], kept["caption_rows"], kept["captions"], states, n_seen)
+        none = [0] * len(kept["ids"])  # rounds of runs before there were takeovers or rest
+        n_seen, n_rest = kept.get("n_seen") or none, kept.get("n_rest") or none
+        return Round(kept["ids"], kept["caption_rows"], kept["captions"], states, n_seen, n_rest)
 
     def _made(self, k: int) -> Round:
         clips = self._clips(k)
@@ -193,7 +218,8 @@ class FreshClips:
         rows = [[row[c] for c in clip.captions] for clip in clips]
         log.info("round %d: %d clips, %d captions", k, len(clips), len(captions))
         states = CaptionStates.encode(captions, self._encoder)
-        return Round(encode_clips(clips, self._tokenizer), rows, captions, states, [clip.n_seen for clip in clips])
+        ids = encode_clips(clips, self._tokenizer)
+        return Round(ids, rows, captions, states, [clip.n_seen for clip in clips], [clip.n_rest for clip in clips])
 
     def clips(self, step: int) -> list[Clip]:
         """The motions of the newest round at `step`, made again: a round keeps their ids alone."""
@@ -205,10 +231,11 @@ class FreshClips:
     def _together(self, rounds: Sequence[Round]) -> TokenCorpus:
         """One corpus of the rounds and of people's clips."""
         parts = [(r.ids, r.caption_rows, r.states) for r in rounds]
-        n_seen = [n for r in rounds for n in r.n_seen]
+        n_seen, n_rest = [n for r in rounds for n in r.n_seen], [n for r in rounds for n in r.n_rest]
         if self._people is not None:
             parts.append((self._people.ids, self._people.caption_rows, self._people.captions))
             n_seen += self._people.seen(range(len(self._people.ids))).tolist()
+            n_rest += [0] * len(self._people.ids)
         ids, rows, first = [], [], 0
         for part_ids, part_rows, states in parts:
             ids += part_ids
@@ -220,4 +247,4 @@ class FreshClips:
         )  # fmt: skip
         n_people = 0 if self._people is None else len(self._people.ids)
         is_real = np.arange(len(ids)) >= len(ids) - n_people
-        return TokenCorpus(ids, rows, states, is_real, np.array(n_seen, np.int64))
+        return TokenCorpus(ids, rows, states, is_real, np.array(n_seen, np.int64), np.array(n_rest, np.int64))

@@ -195,15 +195,15 @@ def train_length(
 ) -> LengthClassifier:
     """A length predictor trained by cross-entropy on each caption and its clip's tokens, from `start` or from nothing.
 
-    Tokens at a clip's beginning that show another motion do not count. People's clips are cut from recordings, so their
-    length says little; they are used only where there is nothing else.
+    Neither the tokens of another motion at a clip's beginning nor the rest added behind it count. People's clips are cut from
+    recordings, so their length says little; they are used only where there is nothing else.
     """
     torch.manual_seed(schedule.seed)
     predictor = LengthClassifier(corpus.captions.words.shape[1])
     if start is not None:
         predictor.load_state_dict(start.state_dict())
     taken = corpus.is_real if corpus.is_real.all() else ~corpus.is_real
-    n_tokens = [len(ids) - n for ids, n in zip(corpus.ids, corpus.seen(range(len(corpus.ids))).tolist(), strict=True)]
+    n_tokens = corpus.own_lengths().tolist()
     pairs = [(row, n_tokens[i]) for i, rows in enumerate(corpus.caption_rows) if taken[i] for row in rows]
     device = run.torch_device
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,8 +12,10 @@ from mmm_core.corpus.beat import BEAT_S
 from mmm_core.corpus.deterministic import synthesise_deterministic, usual_count, words_given
 from mmm_core.corpus.families import FAMILIES, Gesture
 from mmm_core.corpus.synthesis import ClipSpec, synthesise_spec
+from mmm_core.inference.checkpoint import load_model, load_text_encoder
 from mmm_core.language.count_words import count_asked
-from mmm_core.training.fresh import FreshRecipe, make_round, usual_weights
+from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
+from mmm_core.training.fresh import FreshClips, FreshRecipe, at_another_length, make_round, usual_weights
 
 
 @pytest.mark.parametrize(
@@ -74,3 +77,23 @@ def test_a_round_has_them_as_often_as_asked() -> None:
     assert [c.captions for c in first] == [c.captions for c in again]
     assert all(np.array_equal(a.features, b.features) for a, b in zip(first, again, strict=True))
     assert all(1 <= len(c.captions) <= 2 and not c.n_seen for c in first)
+
+
+def test_clips_of_another_length_keep_their_gesture(tmp_path: Path) -> None:
+    plain, longer = (
+        FreshRecipe(clips=12, first=12, deterministic_share=1.0, other_length_share=share, captions=1)
+        for share in (0.0, 1.0)
+    )
+    rng = np.random.default_rng(2)
+    clips = make_round(plain, 5, 0, usual_weights())
+    for clip in clips * 3:
+        other = at_another_length(clip, rng)
+        n, m = len(clip.features), len(other.features)
+        assert m - n == other.n_rest * FRAMES_PER_TOKEN != 0 and m // FRAMES_PER_TOKEN <= MAX_TOKENS
+        assert np.array_equal(other.features[: min(n, m)], clip.features[: min(n, m)])
+        assert (other.features[n:] == clip.features[-1]).all()
+    model, encoder = load_model(), load_text_encoder()
+    corpus, again = (FreshClips(longer, tmp_path, model.tokenizer, encoder, 3).corpus(0) for _ in range(2))
+    n_tokens = np.array([len(ids) for ids in corpus.ids])
+    assert (corpus.own_lengths() != n_tokens).all() and (corpus.own_lengths() >= 1).all()
+    assert corpus.own_lengths().tolist() == again.own_lengths().tolist()
