@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from array import array
 from collections import Counter, defaultdict
 from itertools import pairwise
 from pathlib import Path
@@ -16,14 +17,22 @@ from pathlib import Path
 import numpy as np
 
 from mmm_core.corpus.families import FAMILIES
+from mmm_core.corpus.outside import OUTSIDE
 from mmm_core.corpus.plain_commands import manner_phrases, plain_phrases
 from mmm_core.corpus.synthesis import draw_spec, words_for
 from mmm_core.language.inflection import NUMBERS
+from mmm_core.language.known_phrases import key_of
 from mmm_core.language.limbs import SAYS_NO_LIMB
 from mmm_core.language.one_gesture import JOINING, stems_of
 from mmm_core.language.reading import read
 from mmm_core.language.spelling import mended
-from mmm_core.language.word_tables import CORPUS_WORDS_FILE, LIMB_WORDS_FILE, ONE_GESTURE_FILE, WORD_PAIRS_FILE
+from mmm_core.language.word_tables import (
+    CORPUS_WORDS_FILE,
+    KNOWN_PHRASES_FILE,
+    LIMB_WORDS_FILE,
+    ONE_GESTURE_FILE,
+    WORD_PAIRS_FILE,
+)
 from mmm_core.language.word_tables import lines as table_lines
 from mmm_core.recognition.named import HIGHEST_LEVEL, WORDS_FILE, content_words
 
@@ -128,6 +137,19 @@ def one_gesture() -> str:
     return "".join(f"{said}\n" for said in parted.values())
 
 
+def known_phrases() -> bytes:
+    """The content of `known_phrases.bin`: a hash of each phrase of the corpus that `OUTSIDE` has not, ascending, in four bytes each."""
+    keys: set[int | None] = set()
+    for name in sorted(FAMILIES):
+        for direction in FAMILIES[name].directions or ("",):
+            keys |= {
+                key_of(re.sub(r"\{[Sn]\}|\{N\}", "", p.replace("{D}", direction)))
+                for _, p in plain_phrases(name, direction)
+            }
+    keys -= {None, *map(key_of, OUTSIDE)}
+    return array("I", sorted(key for key in keys if key is not None)).tobytes()
+
+
 def _is_parted(phrase: str) -> bool:
     reading = read(phrase, by_rules_alone=True)
     return len(reading.steps) != 1 or len(reading.steps[0]) != 1 or bool(reading.denied)
@@ -157,3 +179,4 @@ if __name__ == "__main__":
     Path(str(WORD_PAIRS_FILE)).write_text(word_pairs(), encoding="utf-8")
     Path(str(LIMB_WORDS_FILE)).write_text(limb_words(), encoding="utf-8")
     Path(str(ONE_GESTURE_FILE)).write_text(one_gesture(), encoding="utf-8")
+    Path(str(KNOWN_PHRASES_FILE)).write_bytes(known_phrases())

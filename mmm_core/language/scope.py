@@ -3,7 +3,8 @@
 A small classifier reads the untouched sentence vector: trained on the corpus's own sentences against texts of things that
 cannot be done (`mmm_core.corpus.outside`, `mmm_core.training.scope_training`). The margin by which
 the text lies nearer to a known command than to any text outside is added to its log-odds. The score is that sum as a
-probability; the nearest known command says how the text was understood (`mmm_core.language.meaning`). A text of several
+probability; a phrase of the corpus itself is sure (`mmm_core.language.known_phrases`). The nearest known command says how the
+text was understood (`mmm_core.language.meaning`). A text of several
 clauses, some of them out of scope, is degraded to the others.
 Method, thresholds and figures: docs/scope.md.
 """
@@ -17,6 +18,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mmm_core.language.known_phrases import is_known_phrase
 from mmm_core.language.meaning import Meanings
 from mmm_core.motion.motion import Status
 
@@ -115,6 +117,8 @@ class ScopeIndex:
         if self.classifier is None:
             return _by_cosine(nearest, float(known.max()), impossible, other)
         score = self._score(sentence, float(known.max()) - other)
+        if score < DEGRADE_BELOW and is_known_phrase(text):
+            score = DEGRADE_BELOW
         if score < REJECT_BELOW:
             like = f"it is like '{impossible}', " if other > float(known.max()) - 0.1 else ""
             reason = (

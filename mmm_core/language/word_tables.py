@@ -13,6 +13,7 @@ from mmm_core.language.needed_letters import letters_of, needed_letters
 
 _FOLDER = files("mmm_core.language").joinpath("words")
 CORPUS_WORDS_FILE = _FOLDER.joinpath("corpus_words.txt")
+KNOWN_PHRASES_FILE = _FOLDER.joinpath("known_phrases.bin")
 LIMB_WORDS_FILE = _FOLDER.joinpath("limb_words.txt")
 ONE_GESTURE_FILE = _FOLDER.joinpath("one_gesture.txt")
 WORD_PAIRS_FILE = _FOLDER.joinpath("word_pairs.txt")

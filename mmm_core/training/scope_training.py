@@ -23,6 +23,7 @@ from mmm_core.corpus.synthesis import draw_spec
 from mmm_core.corpus.withheld import is_withheld
 from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import load_model, load_text_encoder, save_model
+from mmm_core.language.known_phrases import is_known_phrase
 from mmm_core.language.scope import ScopeClassifier, ScopeIndex, clauses_of
 from mmm_core.model.text import TextEncoder
 from mmm_core.training.batches import CORPUS, Clip, load_clips
@@ -87,6 +88,7 @@ def scope_sentences(recipe: ScopeRecipe) -> tuple[list[str], list[str]]:
         said = caption(list(spec.gestures), spec.parallel, rng)
         inside += [said, *(clauses_of(said) if rng.random() < 0.3 else [])]
     outside = [*OUTSIDE, *outside_texts(recipe.outside, rng)]
+    outside = [t for t in outside if not is_known_phrase(t)]  # "play hide and seek" is a gesture, too
     return [t for t in inside if not is_withheld(t)], [t for t in outside if not is_withheld(t)]
 
 
