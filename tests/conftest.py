@@ -47,11 +47,27 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Files with whole daemons first: they take longest and mostly wait; what only computes fills the processors at the end."""
+    """Files with whole daemons first: they take longest and mostly wait; what only computes fills the processors at the end.
+
+    In a file the tests that share something come last: a daemon that they share would run while the others wait.
+    """
     waiting = {item.path for item in items if item.get_closest_marker("realtime")}
     gc.freeze()
     gc.enable()
-    items.sort(key=lambda item: (item.path not in waiting, "end_to_end" not in item.path.parts))
+    place = {path: k for k, path in enumerate(dict.fromkeys(item.path for item in items))}
+    items.sort(
+        key=lambda item: (
+            item.path not in waiting, "end_to_end" not in item.path.parts, place[item.path], _shares(item)
+        )
+    )  # fmt: skip
+
+
+def _shares(item: pytest.Item) -> bool:
+    """Whether a test uses a fixture of its module."""
+    if not isinstance(item, pytest.Function):
+        return False
+    known = item._fixtureinfo.name2fixturedefs  # pytest tells the scope of a fixture nowhere else
+    return any(fixture.scope == "module" for found in known.values() for fixture in found)
 
 
 @pytest.hookimpl(tryfirst=True)

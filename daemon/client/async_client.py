@@ -14,7 +14,6 @@ from collections.abc import AsyncGenerator, Coroutine
 from typing import Any, Literal, Unpack
 
 import zmq
-import zmq.asyncio
 
 from daemon.client.async_controls import AsyncControlCalls
 from daemon.client.compositions import (
