@@ -23,7 +23,7 @@ _LEADING = re.compile(
     r"^(?:while|whilst|as you(?: are)?|at the same time as)\s+(?:you are |you )?(?P<first>[^,]+),\s*(?P<second>.+)$"
 )
 _WITH_LEADING = re.compile(
-    rf"^with (?P<first>(?:your |both |the )*(?:left |right )?{LIMB} {_any('held first')}\b[^,]*),\s*(?P<second>\w.+)$"
+    rf"^with (?P<first>(?:your |both |the |one )*(?:left |right )?{LIMB} {_any('held first')}\b[^,]*),\s*(?P<second>\w.+)$"
 )
 _WITH_POSE = re.compile(
     rf"\s*,?\s+with (?P<pose>(?:(?:your|both|one|the|a) )*(?:left |right )?{LIMB} (?:{_any('held')} )*"
@@ -39,7 +39,9 @@ _ONLY_WAVES = re.compile(r"^wave\b(?!.*\b(?:hand|arm|left|right|other)\b)")
 """'Raise your left hand and wave' is one gesture."""
 _WITHOUT_OBJECT = re.compile(r"(?:an?|one)\b|[a-z]+$")
 _HAND_TO = re.compile(r"(?:your |the )?(?:left|right) (?:hand|arm) to\b")
-_BARE_LIMB = re.compile(rf"^(?:with )?(?:your |the |both |left |right |other )*(?:{LIMB}|head|body|eyes|face)$")
+_BARE_LIMB = re.compile(
+    rf"^(?:with )?(?:your |the |both |left |right |other )*(?:{LIMB}|head|body|eyes|face|chin|nose|mouth|ears?|cheeks?|neck|hair|forehead|shoulders?|chest|heart|belly|stomach|hips?|back|knees?)$"
+)
 """A limb of which nothing is said is no command."""
 _HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)s?\b.*\b(?:seconds?|secs?)\b")
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")

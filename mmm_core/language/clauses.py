@@ -15,7 +15,7 @@ from itertools import pairwise
 from mmm_core.language import clause_patterns as words
 from mmm_core.language.at_once import are_at_once, goes_on
 from mmm_core.language.count_words import NUMBERS
-from mmm_core.language.ellipsis import completed, is_manner
+from mmm_core.language.ellipsis import OTHER, completed, is_manner
 from mmm_core.language.requests import everyday
 
 MOST_COMMANDS, MOST_WORDS = 4, 60
@@ -23,6 +23,11 @@ MOST_COMMANDS, MOST_WORDS = 4, 60
 _ALL_AGAIN = re.compile(
     r"(?:and )?(?:repeat|again|(?:do|repeat) (?:it|that|them|all|everything|the lot)(?: all)?(?: again)?|the same again|and again)"
 )
+_ALL_WITH = re.compile(
+    r"(?:and )?(?:do )?(?:the (?:very )?same|likewise|(?:repeat|do) (?:it|that|this|all of (?:it|that)|everything)(?: again)?)(?: again)? "
+    r"(?:with|using|for|on) (?:the |your )?(left|right|other)(?: (?:hand|arm|one|side))?"
+)
+"""'Raise your right arm, lower it, then do the same with the left.'"""
 _THE_SAME = re.compile(
     r"(?:(?:do )?(?:the same|likewise|it|so|that)|one|another|another one|one more)\b(?: (?:with|using|for|on)\b|$)"
 )
@@ -75,6 +80,12 @@ def _divided(text: str) -> list[str]:
         clause = span.of(text)
         if len(parts) > 1 and _ALL_AGAIN.fullmatch(_bare(clause)):
             return parts * 2 if 2 * len(parts) <= MOST_COMMANDS else parts
+        if (
+            len(parts) > 1
+            and (again := _ALL_WITH.fullmatch(_bare(clause)))
+            and (others := _other_side(parts, again[1]))
+        ):
+            return [*parts, *others]
         whole = completed(_bare(clause), _bare(parts[-1])) if parts else None
         if whole is None and len(parts) > 1 and _leans(clause):  # "it" may be a limb that was named before
             whole = completed(_bare(clause), ", ".join(map(_bare, parts)))
@@ -85,6 +96,14 @@ def _divided(text: str) -> list[str]:
         else:
             parts.append(clause)
     return parts
+
+
+def _other_side(parts: list[str], wanted: str) -> list[str]:
+    """Commands of one side on the other; none where they name no side, two, or the one that is wanted."""
+    sides = {side for part in parts for side in re.findall(r"\b(?:left|right)\b", part)}
+    if len(sides) != 1 or sides == {wanted}:
+        return []
+    return [re.sub(r"\b(?:left|right)\b", lambda m: OTHER[m[0]], part) for part in parts]
 
 
 def _spans(text: str, whole: _Span, between: re.Pattern[str]) -> list[_Span]:

@@ -127,6 +127,8 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         return forms.AT_PLACE.sub(clause, before)
     if forms.PLACE.match(clause) and (limb := forms.LIMB_SUBJECT.match(before)):
         return f"{limb['limb']} {clause}"
+    if clause.startswith("at ") and forms.TARGET.match(clause) and (verb := forms.LOOKS.match(before)):
+        return f"{verb[0]} {clause}"
     if forms.TARGET.match(clause) and forms.AT_TARGET.search(before):
         return forms.AT_TARGET.sub(clause if clause.startswith("at ") else f"at {clause}", before)
     if moved := _other_object(clause, before):

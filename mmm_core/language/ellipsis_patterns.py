@@ -67,6 +67,7 @@ COUNTED_LAST = re.compile(
 WAY_WITH = re.compile(
     r"^(?:to the )?(?:left|right|up|down|forward|ahead|straight ahead|back) (?:with|using) (?:your |the )?(?:left|right|other)\b.*$"
 )
+LOOKS = re.compile(r"^(?:look|point|glance|gaze)\b(?! at\b)")
 LOOKS_AT = re.compile(r"^(look|point|glance|gaze) at\b")
 POINTS = re.compile(r"^(?:point|punch|reach|wave|swing|push|stretch|lean|look)\b")
 SAID_TIMES = re.compile(r"\b(?:once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?)\b")

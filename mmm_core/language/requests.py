@@ -43,6 +43,10 @@ MOST_WORDS_OF_TALK = 8
 _TALK = re.compile(
     r"(?![\w'-]| (?:is|are|was|were|what|how|why|when|where|can|could|would|will|do|does|did)\b)[^,.;:!?]*"
 )
+_GOES_ON = re.compile(
+    r"(?:i|you|we|he|she|it|they|that|this|there|the|my|your|our|his|her|an?|what an?|so|very|not|everybody|everyone)\b|\w+$"
+)
+"""Beginnings of talk that asks for nothing: "quiet please, we are filming"."""
 _NAMES_AN_ACT = re.compile(
     rf"\b(?:left|right|up|down|forwards?|backwards?|both|{LIMB}|head|eyes|shoulders?|body|then|but|not|never|while|before|after|\w+ly|twice|times)\b"
 )
@@ -136,12 +140,12 @@ def greeting(said: str) -> str:
     bare = _END.sub("", said).strip()
     if len(bare.split(None, MOST_WORDS_OF_TALK)) > MOST_WORDS_OF_TALK:
         return ""
-    for number in substitutions("openings").possible(bare):
-        rule = substitutions("openings").rules[number]
+    for number in _openings().possible(bare):
+        rule = _openings().rules[number]
         found = rule.pattern.match(bare)
         if found is not None and (talk := _TALK.match(bare, found.end())):
             others = [part for part in _MARKS.split(bare[talk.end() :]) if part]
-            known = all(everyday(part) or greeting(part) for part in others)
+            known = all(_GOES_ON.match(part) or everyday(part) or greeting(part) for part in others)
             return rule.words if known and not any(map(_names_an_act, (talk[0], *others))) else ""
     return ""
 
@@ -156,6 +160,12 @@ def _said_again(bare: str) -> str:
     parts = [part for part in _MARKS.split(bare) if part] if _MARKS.search(bare) else []
     meant = {everyday(part) for part in parts} if len(parts) > 1 else set()
     return meant.pop() if len(meant) == 1 else ""
+
+
+@cache
+def _openings() -> RuleTable:
+    """Beginnings of social sentences."""
+    return RuleTable(Rule(re.compile(pattern.replace("@SO", _SO)), words) for pattern, words in pairs("openings"))
 
 
 @cache

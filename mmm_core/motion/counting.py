@@ -52,7 +52,7 @@ def with_counts(
 
 
 def counted(features: NDArray[np.float32], count: int, opening_frames: int = 0) -> NDArray[np.float32]:
-    """Features (T, 263) with `count` strokes; as they are where these are not seen afterwards.
+    """Features (T, 263) with `count` strokes; as they are where they have as many, or where these are not seen afterwards.
 
     Args:
         features: of our definition (`rest_pose` "mmmd").
@@ -60,6 +60,8 @@ def counted(features: NDArray[np.float32], count: int, opening_frames: int = 0) 
         opening_frames: frames at the beginning that stay.
     """
     strokes = strokes_of(motion_of(features))
+    if strokes is not None and len(strokes.frames) == count:
+        return features
     for places in [] if strokes is None else _orders(strokes, count, opening_frames):
         if len(places) <= LONGEST_FRAMES:
             joined = _joined(features, places)

@@ -110,8 +110,18 @@ def test_words_in_y_may_be_inflected(word: str) -> None:
         ("look both ways before you cross", "look to the left; look to the right"),
         ("Over there, look, on your left!", "look to the left"),
         ("look up, then left, then down", "look up; look to the left; look down"),
+        ("hold your left arm out and wave with the other", "hold your left arm out + wave with your right hand"),
+        ("raise your right arm, lower it, then do the same with the left",
+         "raise your right arm; lower your right arm; raise your left arm; lower your left arm"),
+        ("point up, then at yourself", "point up; point at yourself"),
+        ("touch your head, shoulders and hips", "touch your head; touch your shoulders; touch your hips"),
+        ("wave your left hand, then stop and wave the right", "wave your left hand; wave your right hand"),
+        ("with one arm raised, look to the left", "raise your right arm + look to the left"),
+        ("point at yourself with your left and at me with your right",
+         "point at yourself with your left hand + point at me with your right hand"),
         # and what looks like it
-        ("finish the drink", "finish the drink"),
+        ("finish the drink", "finish the drink"), ("look up at me", "look up at me"),
+        ("touch your nose and your chin", "touch your nose and your chin"),
     ],
 )  # fmt: skip
 def test_order(text: str, read_as: str) -> None:

@@ -12,12 +12,12 @@ import pytest
 from mmm_core.corpus.heldout import read_sentences
 from mmm_core.language.manner import _rules
 from mmm_core.language.needed_letters import letters_of, needed_letters
-from mmm_core.language.requests import _everyday, _frames, _sentences
+from mmm_core.language.requests import _everyday, _frames, _openings, _sentences
 from mmm_core.language.spelling import mended
 from mmm_core.language.word_tables import Rule, RuleTable, replaced, substitutions
 
 TABLES: dict[str, Callable[[], RuleTable]] = {
-    "everyday": _everyday, "openings": lambda: substitutions("openings"), "rewrites": lambda: substitutions("rewrites"),
+    "everyday": _everyday, "openings": _openings, "rewrites": lambda: substitutions("rewrites"),
     "homophones": lambda: substitutions("homophones"), "front": lambda: _frames()[0], "back": lambda: _frames()[1],
     "sentences": _sentences, "tempo": lambda: _rules("tempo"), "size": lambda: _rules("size"),
 }  # fmt: skip

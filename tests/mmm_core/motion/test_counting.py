@@ -51,6 +51,12 @@ def test_repeated_and_cut_strokes_leave_the_beginning_and_no_jump(text: str, cou
     assert fastest(shown) <= 1.3 * fastest(features), "no seam is a jump"
 
 
+def test_a_motion_that_has_as_many_strokes_stays() -> None:
+    """All its strokes were replaced by one of them, again and again."""
+    features = generated("clap four times").features
+    assert counted(features, strokes_in(features), OPENING) is features
+
+
 def test_a_motion_that_stands_still_stays() -> None:
     still = np.repeat(generated("nod four times").features[:1], 40, 0)
     assert counted(still, 3, OPENING) is still
