@@ -88,6 +88,22 @@ def test_a_side_is_put_right_in_the_next_text() -> None:
     assert isinstance(last, InContext) and last.reading.sentences == ("raise your left arm",)
 
 
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        ("brb", "brb"),
+        ("wave pls :)", "wave please"),
+        ("idk", "i do not know"),
+        ("gr8 job", "great job"),
+        ("hii", "hi"),
+        ("at 4:30", "at 4:30"),
+    ],
+)
+def test_chat(text: str, plain: str) -> None:
+    """'brb' became "bob", and "hii" "hip"."""
+    assert mended(text) == plain
+
+
 @pytest.mark.parametrize("word", ["buries", "hurries", "tidied", "prettier"])
 def test_words_in_y_may_be_inflected(word: str) -> None:
     """'buries' became "carries" or "buried": another gesture."""
@@ -119,6 +135,10 @@ def test_words_in_y_may_be_inflected(word: str) -> None:
         ("with one arm raised, look to the left", "raise your right arm + look to the left"),
         ("point at yourself with your left and at me with your right",
          "point at yourself with your left hand + point at me with your right hand"),
+        ("clap, and when you have clapped, bow", "clap; bow"), ("wave first; the bow comes after", "wave; the bow"),
+        ("I want to see a bow, but a wave before it", "a wave; a bow"),
+        ("nod three times and clap once after that", "nod three times; clap once"),
+        ("wave and bow, but the bow first", "bow; wave"),
         # and what looks like it
         ("finish the drink", "finish the drink"), ("look up at me", "look up at me"),
         ("touch your nose and your chin", "touch your nose and your chin"),
