@@ -33,7 +33,7 @@ def test_captions_of_one_gesture_are_one_command(seed: int) -> None:
     assert len(parted) <= PARTED_AT_MOST * len(captions), parted
 
 
-def test_each_phrase_of_the_table_is_one_command_and_would_be_parted_without_it() -> None:
+def test_each_phrase_of_the_table_needs_it_to_be_one_command() -> None:
     for phrase in lines(TABLE):
         known, by_rules = read(phrase), read(phrase, by_rules_alone=True)
         assert [len(step) for step in known.steps] == [1] and not known.denied, phrase
