@@ -29,6 +29,7 @@ _GERUND_FIRST = re.compile(
 )
 _IN_PLACE_OF = re.compile(r"^\W*(?:instead of|rather than|as opposed to|in place of)\b|^not .+, but\b")
 """Words of contrast, after which even what is no act is not to be done: "wave instead of just standing there"."""
+_ALWAYS_DENIES = re.compile(rf"{_IN_PLACE_OF.pattern}|without (?:moving|using)$")
 _GERUND_CLAUSE = re.compile(r"^\W*(?:instead of|rather than|without|no) (?P<what>\w+ing\b[^,;:.]*), (?P<rest>\w.+)$")
 _ONE_HAND_FOR_THE_OTHER = re.compile(
     r"^\W*(?:instead of|rather than|in place of) (?P<what>(?:using )?(?:the|your) (?:left|right)(?: hand| arm)?),? (?P<rest>(?:use|with|take|using)\b.+)$"
@@ -137,7 +138,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
         if inline and inline.start() > 0:
             what = inline["what"].strip()
             only = _SIDE_ONLY.match(what)
-            if only or _DIRECTION_ONLY.match(what) or _is_act(what) or _IN_PLACE_OF.match(inline["not"]):
+            if only or _DIRECTION_ONLY.match(what) or _is_act(what) or _ALWAYS_DENIES.match(inline["not"]):
                 side = only["side"] if only else side
                 denied.append(what)
                 clause = (clause[: inline.start()] + clause[inline.end() :]).strip()

@@ -29,6 +29,11 @@ def said(text: str) -> str:
         ("bow, no wait, wave instead", "wave"), ("stop clapping, start waving", "wave | not: clapping"),
         ("wave with anything but your right hand", "wave with your left hand | not: your right hand"),
         ("don't wave with both hands, one is enough", "wave with one hand"), ("no pressure, wave", "wave"),
+        ("nod without moving your shoulders", "nod | not: your shoulders"),
+        ("don't raise both arms, only the right", "raise your right arm"), ("forget what I said, just wave", "wave"),
+        ("lift only your left arm", "lift your left arm"), ("nothing but a nod", "a nod"),
+        ("don't bow yet, first wave", "wave | not: bow yet"),
+        ("can't you wave", "wave"), ("isn't it time to bow", "bow"), ("wave, though not too fast", "wave (0.75 times as fast)"),
         ("do not panic, wave", "wave"),
         # and what looks like it
         ("no rush, wave", "wave (0.62 times as fast)"), ("don't rush, wave", "wave (0.62 times as fast)"),
