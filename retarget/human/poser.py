@@ -193,6 +193,7 @@ class Poser:
             x = closed
             for _ in range(_REST_STEPS):
                 x = self._calmer(arms, x, arms.bones(x), (upper, fore), weights, _CHOICE_PULL, before)
+                x = arms.within_limits(x, upper, fore, weights)  # where a joint is cut off the others make up for it
             return x, cut
         bones = arms.bones(closed)
         shown = bones.upper, bones.fore
@@ -201,7 +202,7 @@ class Poser:
             bones = arms.bones(x)
         lost = np.zeros(0)
         for _ in range(_REST_STEPS):
-            x = self._calmer(arms, x, bones, shown, None, _REST_PULL, before)
+            x = np.clip(self._calmer(arms, x, bones, shown, None, _REST_PULL, before), arms.low, arms.high)
             bones = arms.bones(x)
             lost = np.maximum(np.abs(bones.upper - shown[0]), np.abs(bones.fore - shown[1])).max(-1)
             if lost.max() < _SEEN_RAD:
@@ -218,7 +219,10 @@ class Poser:
         pull: float,
         before: Array,
     ) -> Array:
-        """(G, T, n) one Gauss-Newton step from angles `x` with `bones` towards directions `wanted` and little movement."""
+        """(G, T, n) one Gauss-Newton step from angles `x` with `bones` towards directions `wanted` and little movement.
+
+        The angles may lie outside the limits.
+        """
         hessian = bones.hessian(weights) + arms.eye * _NEARBY
         linear = (hessian @ x[..., None])[..., 0] + bones.towards(*wanted, weights)
-        return np.minimum(np.maximum(least_moving(LeastSquares(hessian, linear, pull), before), arms.low), arms.high)
+        return least_moving(LeastSquares(hessian, linear, pull), before)
