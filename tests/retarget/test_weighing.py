@@ -141,7 +141,7 @@ def raised() -> HumanPose:
 
 @pytest.mark.parametrize("name", ["op3", "op2"])
 def test_where_a_joint_is_at_its_limit_the_others_make_up_for_it(name: str) -> None:
-    """A step to beyond the limit was cut off and the elbow stayed as it suited the angle beyond: raised hands were 18 degrees off."""
+    """Steps beyond a limit were cut off and the elbow stayed as it suited the angle beyond: raised hands were 18 degrees off."""
     made, read = poser(name), raised()
     poses = made.solve(read, None)
     limits, right = JointLimits.of(load_robot(name)), list(made.chains[1].joints)
