@@ -31,7 +31,9 @@ pytestmark = pytest.mark.realtime
 @pytest.fixture(scope="module")
 def daemon(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningDaemon]:
     """A daemon with HTTP that records into `daemon.log`, which is whole once it has ended."""
-    running = RunningDaemon("--http", "127.0.0.1:0", "--log", str(tmp_path_factory.mktemp("log") / "run.mcap"))
+    log = tmp_path_factory.mktemp("log") / "run.mcap"
+    options = ("--http", "127.0.0.1:0", "--log", str(log))
+    running = RunningDaemon(*options, robot="reference")  # the notebook takes the rate of the robot of that name
     try:
         yield running.until_ready()
     finally:
