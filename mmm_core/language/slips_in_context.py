@@ -28,7 +28,8 @@ _BEFORE_VERBS = frozenset(
 _STAYS = frozenset(
     (
         "when where while than that what who whom whose which why how if for from but because until unless since though about into "
-        "she he we they it its is was were are has have does did will would should must may might much many more most very too yet"
+        "she he we they it its is was were are has have does did will would should must may might much many more most very too yet "
+        "one two three four five six seven eight nine ten eleven twelve"
     ).split()
 )
 """Words by which the sense of a sentence hangs; they are never taken for slips."""
