@@ -42,7 +42,7 @@ def held_together(said: str) -> str:
     while at < len(stems):
         phrase = next((p for p in known.get(stems[at], ()) if tuple(stems[at : at + len(p)]) == p), ())
         last = at + len(phrase) - 1
-        for m, following in zip(tokens[at:last], [*stems[at + 1 : last + 1]], strict=True) if phrase else ():
+        for m, following in zip(tokens[at : last + 1], [*stems[at + 1 : last + 1], ""], strict=True) if phrase else ():
             if m[0] in _HIDDEN and not (m[0] == "with" and following == "S"):
                 hides.append(m)
         at += max(1, len(phrase))
@@ -81,9 +81,13 @@ def stem(word: str) -> str:
 
 @cache
 def _phrases() -> dict[str, Sequence[tuple[str, ...]]]:
-    """The stems of each phrase by its first one, the longest phrase first."""
+    """The stems of each phrase by its first one, the longest phrase first.
+
+    The hand at a phrase's end is left out: "play ducks and drakes three times with your left hand".
+    """
     found: defaultdict[str, list[tuple[str, ...]]] = defaultdict(list)
     for line in lines(TABLE):
         stems = stems_of(line)
+        stems = stems[:-3] if stems[-3:] == ("with", "S", "hand") else stems
         found[stems[0]].append(stems)
     return {first: sorted(several, key=len, reverse=True) for first, several in found.items()}
