@@ -64,7 +64,7 @@ class Flood:
 
 def test_a_flood_of_messages_costs_no_frame_of_a_motion_and_hides_no_stop():
     """The front served all of them before anything else: the robot ran dry, was held as if the front were gone, parked."""
-    daemon = RunningDaemon()
+    daemon = RunningDaemon(robot="reference")
     floods: list[Flood] = []
     try:
         with daemon.until_ready().client() as client:

@@ -235,7 +235,7 @@ def assert_described(schema: dict, message: dict) -> None:
 
 
 def test_a_log_holds_settings_versions_losses_and_every_schema(tmp_path):
-    daemon = RunningDaemon("--log", str(tmp_path / "run.mcap"), "--idle", "calm")
+    daemon = RunningDaemon("--log", str(tmp_path / "run.mcap"), "--idle", "calm", robot="reference")
     try:
         with daemon.until_ready().client() as client:
             assert client.say("wave", seconds=0.8).done
