@@ -12,6 +12,7 @@ from mmm_core.language.word_tables import LIMB, any_of
 
 _ENDS, _BEGINS = any_of("run_on", "ends"), any_of("run_on", "begins")
 _LIMB = any_of("run_on", "limb")
+_ANY_LIMB = re.compile(rf"\b(?:{LIMB}|head|shoulders)\b")
 _BETWEEN = re.compile(rf"(?<![-\w])(?P<end>{_ENDS}) (?={_BEGINS}\b(?!-))")
 _LIMB_NEXT = re.compile(rf"\b(?P<end>{any_of('run_on', 'limb ends')}) (?={_LIMB} {any_of('run_on', 'limb goes')}\b)")
 _BARE_LIMB = re.compile(
@@ -28,6 +29,8 @@ def with_marks(said: str) -> str:
 
     >>> with_marks("wave bow clap"), with_marks("look left look right"), with_marks("give me a head shake")
     ('wave, bow, clap', 'look left, look right', 'give me a head shake')
+    >>> with_marks("left arm up right arm up"), with_marks("hold up your left hand to say stop")
+    ('left arm up, right arm up', 'hold up your left hand to say stop')
     """
     if not _COMMAND.match(said):
         return said
@@ -35,7 +38,8 @@ def with_marks(said: str) -> str:
         marked, at = "", 0
         for found in pattern.finditer(said):
             before = said[: found.end("end")]
-            if not _NO_VERB.search(said[: found.start("end")]) and not _BARE_LIMB.match(before):
+            is_particle = pattern is _LIMB_NEXT and not _ANY_LIMB.search(said[at : found.start("end")])
+            if not is_particle and not _NO_VERB.search(said[: found.start("end")]) and not _BARE_LIMB.match(before):
                 marked += f"{said[at : found.end('end')]},"
                 at = found.end("end")
         said = marked + said[at:]

@@ -52,7 +52,7 @@ _COMMON = 0.72
 def without_slips(said: str) -> str:
     """A text in lower case with its slips mended.
 
-    >>> without_slips("shurg yourleft sholder"), without_slips("move it for ward")
+    >>> without_slips("shurg yourleft shoulder"), without_slips("move it for ward")
     ('shrug your left shoulder', 'move it forward')
     """
     if _is_foreign(said):

@@ -34,7 +34,7 @@ def normalised(text: str) -> str:
     """Text with one form of each quote and dash, single blanks, and no letters drawn out.
 
     >>> normalised("wave  —  sloooowly")
-    'wave , slowly'
+    'wave , sloowly'
     """
     plain = unicodedata.normalize("NFKC", text).translate(_MARKS)
     plain = _DRAWN_OUT.sub(_shortened, plain)

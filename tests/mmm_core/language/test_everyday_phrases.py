@@ -53,11 +53,11 @@ PHRASES = {
     'wave me away with your right hand': (
         'off with you', 'get lost', 'leave us alone', 'go on, get out of here', 'please leave',
     ),
-    'hold up your right hand to say stop': (
+    'make a stop sign with your right hand': (
         'back off', 'not so close', 'hang on a sec', 'give me a minute', 'stop right where you are, sir',
         'just a second please', 'wait for me',
     ),
-    'hold up both hands to say stop': (
+    'make a stop sign with both hands': (
         'hold your horses', 'stay calm everyone', 'chill out', 'everybody calm down please', 'no need to get upset',
     ),
     'put your right finger to your lips': (
@@ -202,10 +202,10 @@ SOCIAL = {
     'wave me away with your right hand': (
         'please go away now', 'get out of my kitchen',
     ),
-    'hold up your right hand to say stop': (
+    'make a stop sign with your right hand': (
         "hold on, I'm not ready", "wait a second, I'm coming", 'one moment please, sir',
     ),
-    'hold up both hands to say stop': (
+    'make a stop sign with both hands': (
         "stay calm, it's only a drill", "don't get angry",
     ),
     'put your right finger to your lips': (
@@ -292,7 +292,7 @@ def test_a_phrase_means_a_gesture(text: str, command: str) -> None:
         ("maybe you could wave", "wave"), ("say hello with your left hand", "wave your left hand"),
         ("wave goodbye to her with your left hand", "wave goodbye with your left hand"),
         ("hello what is the weather like", "hello what is the weather like"), ("no hands", ""),
-        ("not so fast", "hold up both hands to say stop"),
+        ("not so fast", "make a stop sign with both hands"),
         ("thank you, now nod", "bow politely; nod"), ("yes, but slowly", "nod your head (0.62 times as fast)"),
         ("raise your hand and say hello", "raise your hand and say hello"), ("cover your eyes", "cover your eyes"),
         ("gotta go, bye", "wave your right hand"), ("shoo, go away", "wave me away with your right hand"),

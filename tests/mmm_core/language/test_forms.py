@@ -23,7 +23,7 @@ class TestWhatIsRead:
             ("left hand on your heart and salute with the right",
              "put your left hand on your heart + salute with your right hand"),
             ("arms wide and nod", "hold your arms out to the sides + nod"),
-            ("left fist up, right palm forward", "raise your left hand + hold up your right hand to say stop"),
+            ("left fist up, right palm forward", "raise your left hand + make a stop sign with your right hand"),
             ("bwo deeply", "bow deeply"), ("shurg your shoulders", "shrug your shoulders"), ("nod plz", "nod"),
             ("clap ur hnads", "clap your hands"), ("clap, but do not bow", "clap"),
             ("not that arm, the other one: raise your left", "raise your left hand"),
