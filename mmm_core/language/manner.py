@@ -88,7 +88,7 @@ def manner_of(clause: str) -> tuple[str, Manner]:
     """A clause in lower case without its words of manner, and the manner.
 
     >>> manner_of("nod very slowly"), manner_of("give a tiny bow")
-    (('nod', Manner(tempo=0.55..., size=1.0, hold_s=0.0)), ('give a bow', Manner(tempo=1.0, size=0.55, hold_s=0.0)))
+    (('nod', Manner(tempo=0.55..., size=1.0, hold_s=0.0)), ('give a bow', Manner(tempo=1.0, size=0.55..., hold_s=0.0)))
     """
     rest, tempo = _factor(clause, "tempo", FASTEST)
     rest, size = _factor(rest, "size", LARGEST)
