@@ -115,7 +115,7 @@ OPENING = _pattern(
 CLOSING = _pattern(
     r"[\s,]*(?:\b(?:comes? |goes )?"
     + _any(
-        "first(?: of all)?",
+        "(?:at )?first(?: of all)?",
         "before (?:anything|everything|all) else",
         "to (?:begin|start|end|finish) (?:on|with)",
         "beforehand",

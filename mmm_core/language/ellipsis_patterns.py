@@ -33,7 +33,7 @@ AGAIN = re.compile(
 )
 ANOTHER = re.compile(r"^(?:and |then |now )*(?:again|once more|another(?: one)?|one more(?: time)?|the same again)$")
 ONLY_MANNER = re.compile(
-    r"^(?:but |and |only )*(?:(?:a (?:bit|little|lot)|much|very|really|even|more|again) )*(?:slow(?:ly|er)?|fast(?:er)?|quick(?:ly|er)?|gently|softly|loud(?:ly|er)?|quiet(?:ly|er)?|big(?:ger)?|small(?:er)?|large(?:r)?|wide(?:r|ly)?|deep(?:er|ly)?)$"
+    r"^(?:but |and |only )*(?:(?:a (?:bit|little|lot)|much|very|really|even|more|again) )*(?:slow(?:ly|er)?|fast(?:er)?|quick(?:ly|er)?|gently|softly|big(?:ger)?|small(?:er)?|large(?:r)?|wide(?:r|ly)?|deep(?:er|ly)?)$"
 )
 MANNER_FIRST = re.compile(
     r"^(?P<how>(?:very |really )?(?:slowly|quickly|fast|gently|briskly|rapidly)|a (?:lot|little|bit)|slightly|way|far|deeply) (?P<rest>.+)$"

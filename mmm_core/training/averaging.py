@@ -34,10 +34,25 @@ def average_models(paths: Sequence[Path], out: Path) -> None:
         if (module := mean.modules.get(part)) is not None:
             module.load_state_dict(_mean([m.modules[part].state_dict() for m in models]))
     mean.provenance = {
-        "average_of": [{"sha256": file_hash(p), **m.provenance} for p, m in zip(paths, models, strict=True)],
+        "average_of": _told_once([(file_hash(path), m.provenance) for path, m in zip(paths, models, strict=True)]),
         "data": "; ".join(dict.fromkeys(str(m.provenance.get("data", "not stated")) for m in models)),
     }
     save_model(out, mean, half=mean.text is None)
+
+
+def _told_once(models: Sequence[tuple[str, Mapping[str, object]]]) -> list[dict[str, object]]:
+    """Each model's hash with its provenance, which is left out where it stands already: of the same model or a start."""
+    told: set[object] = set()
+    for _, provenance in models:
+        start = provenance.get("start")
+        while isinstance(start, Mapping):
+            told.add(start.get("sha256"))
+            start = start.get("start")
+    found: list[dict[str, object]] = []
+    for sha256, provenance in models:
+        found.append({"sha256": sha256} if sha256 in told else {"sha256": sha256, **provenance})
+        told.add(sha256)
+    return found
 
 
 def _mean(states: Sequence[Mapping[str, Tensor]]) -> dict[str, Tensor]:

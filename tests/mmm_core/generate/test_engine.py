@@ -153,6 +153,7 @@ def test_a_tensor_of_another_shape_is_named_with_both_shapes(tmp_path: Path) -> 
 def test_the_checkpoint_says_where_it_comes_from() -> None:
     provenance = load_model().provenance
     assert "data" in provenance
-    for trained in provenance.get("average_of", [provenance]):
+    told = [model for model in provenance.get("average_of", [provenance]) if model.keys() != {"sha256"}]
+    for trained in told or pytest.fail("no model of the mean is told of"):
         assert {"recipe", "seed", "clips", "data", "revision"} <= trained.keys()
     json.dumps(provenance)
