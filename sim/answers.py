@@ -123,6 +123,6 @@ def _answers_fast(servo: SimServo) -> bool:
 
 
 def _part(servo: SimServo, access: Access) -> Part:
-    """What it adds to the answer of a fast read."""
+    """The part of a fast read's answer that a servo sends."""
     error, data = servo.read(access.address, access.length)
     return Part(access.servo_id, error | servo.alert(), data.ljust(access.length, b"\0"))

@@ -15,7 +15,7 @@ _EMPTY_WORDS = frozenset((
     "a", "an", "the", "your", "you", "me", "i", "for", "with", "using", "please", "now", "just", "and", "next", "ok", "hey", "um",
     "thanks", "robot", "do", "give", "show", "make", "perform", "want",
 ))  # fmt: skip
-"""Words that a command does not become another one by."""
+"""Words that may be added to a command or left out of it, and its meaning stays."""
 
 
 _DIGITS = dict(zip("12345678", NUMBERS[1:], strict=True))

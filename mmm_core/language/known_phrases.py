@@ -26,7 +26,7 @@ _SAYS_NOTHING = frozenset(
         "some with using hand hands arm arms time times"
     ).split()
 ) | {*NUMBERS, *ADVERBS}
-"""Words that a command does not become another one by."""
+"""Words that may be added to a command or left out of it, and the model still knows its gesture."""
 
 
 def key_of(text: str) -> int | None:

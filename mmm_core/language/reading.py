@@ -37,7 +37,7 @@ _OWN_PART = re.compile(
     r"\byour (?:(?:left|right) )?(?:hand|arm|head|nose|ear|eye|chin|cheek|shoulder|elbow|belly|hair|back|chest|forehead|mouth|face|neck|brow)s?\b"
 )
 _ACT_ON_IT = re.compile(r"((?!do\b)\w+) (?:it|them)\b")
-"""What a request before the pronoun names: "there is a fly on your nose, scratch it"."""
+"""A part of the robot that a sentence names before a pronoun stands for it: "there is a fly on your nose, scratch it"."""
 _ANYTHING = ("wave your right hand", "clap your hands")
 """What is done where anything but the denied is asked for."""
 

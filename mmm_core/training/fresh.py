@@ -157,7 +157,15 @@ def _read_from_one_side(made: SynthClip, n_seen: int, n_captions: int) -> Clip:
 
 @dataclass(frozen=True)
 class Round:
-    """What a round's clips are trained by: ids of each, rows of its captions, the captions, its seen tokens and those of rest."""
+    """The clips of a round, as the transformer trains on them.
+
+    Attributes:
+        ids: of each clip.
+        caption_rows: for each clip the rows of its captions in `states`.
+        captions: all captions.
+        states: their text states.
+        n_seen, n_rest: of each clip, as of `Clip`.
+    """
 
     ids: list[Tensor]
     caption_rows: list[list[int]]

@@ -130,7 +130,7 @@ class TransformerRecipe:
 
 @dataclass(frozen=True)
 class ScopeRecipe:
-    """What the classifier behind refusals reads (docs/scope.md).
+    """The texts that the scope classifier is trained on (docs/scope.md).
 
     Attributes:
         sentences: number of sentences of the corpus, which can be done.

@@ -1,4 +1,4 @@
-"""The checkpoint that a recipe goes on from: read, and refused where its sizes, text encoder or body are others."""
+"""Reads the checkpoint that a recipe starts from. One with other sizes, another text encoder or another body is refused."""
 
 from __future__ import annotations
 

@@ -61,8 +61,8 @@ class BlockPlanner:
     ) -> tuple[Array, int]:
         """Control points for poses (T, J), safe to cut off and brake after `keep` frames; times they were changed.
 
-        When `continued`, the first pose is the one before the block. `shown` is the cost of its frames; without it a path
-        that a contact was near to is not made better, and comes in a third of the time.
+        When `continued`, the first pose is the one before the block. `shown` is the cost of its frames; without it the path
+        comes sooner, and is not made better where a contact is near.
         """
         before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
         eased, interventions = self._avoidance.push_out(posed, begin.position_rad)

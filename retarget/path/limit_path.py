@@ -62,7 +62,7 @@ class Angles:
         self._target_rad: Array = q_rad[:, joints].T[..., None]  # (G, T, 1)
 
     def around(self, first: int, q_rad: Array | None) -> Sequence[QuadraticCost]:
-        """The same costs for every path."""
+        """The squared distances from the poses wanted, whatever the path `q_rad` is."""
         target = self._target_rad[:, first : None if q_rad is None else first + len(q_rad)]
         return (QuadraticCost(self._joints, np.ones((*target.shape, 1)), target),)
 

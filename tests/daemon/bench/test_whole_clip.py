@@ -52,7 +52,7 @@ def test_the_best_keeps_every_bound_and_margin(robot_name):
 
 
 def _missed(retargeter: Retargeter, poses: Poses, q_rad: np.ndarray) -> float:
-    """What the program makes least: with the weights that each frame gives the bones, on arms of few joints not all alike."""
+    """The error that the program minimises: each frame weighs the bones, and on arms of few joints not all bones count alike."""
     return float((retargeter.missed(poses, q_rad) ** 2).sum())
 
 

@@ -236,7 +236,7 @@ def test_a_generator_that_is_down_fails_at_once(endpoint):
 
 
 def test_a_text_that_comes_while_the_model_loads_is_told_to_come_again(endpoint, monkeypatch):
-    """It was told that the generator is "starting" and to see the daemon's output, where nothing is wrong."""
+    """The refusal said that the generator is "starting" and named the daemon's output, where nothing is wrong."""
     monkeypatch.setattr(client_module, "START_TIMEOUT_S", 0.2)
 
     async def call(client):

@@ -1,4 +1,4 @@
-"""What the web server answers where nothing is served, and to a method that an address does not have. No daemon is needed."""
+"""The web server's answers to unknown addresses (404) and to methods that an address does not have (405). No daemon is needed."""
 
 from __future__ import annotations
 

@@ -171,7 +171,8 @@ PHRASES = {
         'time for a stretch',
     ),
 }  # fmt: skip
-"""What each of several phrases means. The last third was written after the rules for the others, before those for themselves."""
+"""Each command, and the phrases that mean it. The last third was written after the rules for the first two thirds
+and before its own rules."""
 
 
 SOCIAL = {

@@ -1,4 +1,4 @@
-"""What the corpus says word for word is in scope, and nothing else becomes so."""
+"""The corpus's own phrases are in scope, and no other text gets into scope by them."""
 
 from __future__ import annotations
 

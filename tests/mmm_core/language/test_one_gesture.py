@@ -24,7 +24,7 @@ def said(text: str) -> str:
 
 @pytest.mark.parametrize("seed", [11, 12])
 def test_captions_of_one_gesture_are_one_command(seed: int) -> None:
-    """Of 2,368 captions 79 were read as several commands or as a denial."""
+    """Before the table, the reader took 79 of 2,368 captions for several commands or for a denial."""
     captions: list[str] = []
     for name in FAMILIES:
         rng = np.random.default_rng((seed, zlib.crc32(name.encode())))
