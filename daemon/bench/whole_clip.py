@@ -50,11 +50,14 @@ class WholeClip:
     Attributes:
         errors_deg: (4, T) direction errors, in the order of `retarget.path.report.BONES`.
         control_rad: (N, J) control points of the path that has them.
+        cost: half the squared error as the retargeter weighs bones in each frame, and the penalty of contacts; unlike the
+            degrees, of which an arm of few joints gives up some to show the hand, this is the quantity that is minimised.
         lack_m: metres that the nearest pair of bodies lacks of its margin in the worst frame, 0 where it lacks none.
     """
 
     errors_deg: Array
     control_rad: Array
+    cost: float
     lack_m: float
 
 
@@ -62,7 +65,7 @@ def best_of_clip(retargeter: Retargeter, poses: Poses, path: JointPath, *, conta
     """The least squared direction error of all paths for `poses` that begin where `path` begins.
 
     Head and waist go where `path` moves them; the arms are free. The program is not convex: it is begun from `path`, and once
-    more from the poses themselves, and the better end counts.
+    more from the poses themselves, and the end of less cost counts.
 
     Args:
         retargeter: the robot.
@@ -72,7 +75,7 @@ def best_of_clip(retargeter: Retargeter, poses: Poses, path: JointPath, *, conta
     """
     program = _Program(retargeter, poses, path, contact=contact)
     found = [program.solve(start) for start in program.starts()]
-    return min(found, key=lambda w: (w.lack_m > _MOST_LACK_M, float((w.errors_deg**2).sum())))
+    return min(found, key=lambda w: (w.lack_m > _MOST_LACK_M, w.cost))
 
 
 class _Program:
@@ -144,7 +147,7 @@ class _Program:
         control = self._all(best)
         frames = self._frames(control)
         errors_deg = self._retargeter.direction_errors_deg(self._poses, frames)
-        return WholeClip(errors_deg, control, float(self._lacks(frames).max(initial=0.0)))
+        return WholeClip(errors_deg, control, cost, float(self._lacks(frames).max(initial=0.0)))
 
     def _frames(self, control: Array) -> Array:
         """(T, J) poses in the frames of (N + 2, J) control points."""
