@@ -1,6 +1,6 @@
 """Figures of a recorded run, as a notebook would begin: `python docs/examples/log_figures.py run.mcap`, from `mmmd run --log`.
 
-A robot of your own is given by its file: `python docs/examples/log_figures.py run.mcap my_robot.toml`. The log names the robot alone.
+The log only names its robot, so a robot of your own is given by its file: `log_figures.py run.mcap my_robot.toml`.
 The arrays are plain NumPy: `pandas.DataFrame(goal_deg, columns=robot.joint_names, index=time_s)` goes on from here.
 """
 
@@ -17,7 +17,7 @@ from retarget.robot.ticks import JointServoMap
 
 
 def main(file: Path, robot_file: str = "") -> None:
-    """Print how far, how fast and how well each joint moved; `robot_file` is of the robot that was recorded, unless it is a packaged one."""
+    """Print how far, how fast and how well each joint moved. `robot_file` is needed where the robot is not a packaged one."""
     log = read_log(file)
     robot = load_robot(robot_file or log.metadata["robot"])
     time_s = np.array([c.t_mono_ns for c in log.cycles]) * 1e-9
