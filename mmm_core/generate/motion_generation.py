@@ -23,12 +23,12 @@ from mmm_core.generate.result import GenerationResult, StageTimer, no_motion, un
 from mmm_core.generate.sequence import (
     COMMAND_STRIDE,
     TOGETHER_STRIDE,
-    TRANSITION_TOKENS,
     Step,
     joined,
     steps_of,
     stretches_of,
 )
+from mmm_core.generate.transitions import TRANSITION_TOKENS
 from mmm_core.language.count_words import count_asked
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.sampling import FirstStep, SamplingSettings, empty_row, fill, pseudo_log_likelihood

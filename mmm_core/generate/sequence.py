@@ -1,14 +1,12 @@
-"""Steps done one after another in one motion: a row of ids for each, and generated transitions between them.
+"""Steps done one after another in one motion: a row of ids for each, and transitions between them (`transitions.py`).
 
-A text of several commands (`mmm_core.language.reading`) and a story (`mmm_core.generate.story`) both use it. Transitions:
-MMM (arXiv 2312.03596) sec. 3.3, a few masked tokens filled with the end of one motion and the beginning of the next as
-context.
+A text of several commands (`mmm_core.language.reading`) and a story (`mmm_core.generate.story`) both use it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import torch
@@ -16,14 +14,12 @@ from torch import Tensor
 
 from mmm_core.generate.interpretation import Interpreted, ReadCommand
 from mmm_core.generate.motion_model import MotionModel
+from mmm_core.generate.transitions import TRANSITION_TOKENS, transitions
 from mmm_core.language.manner import Manner
-from mmm_core.model.sampling import fill
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, tokens_for_frames
 from mmm_core.motion.performing import Stretch
 
-TRANSITION_TOKENS = 2
-"""Tokens generated between two commands: 0.4 s, as in the released model."""
 FEWEST_TOKENS = 4
 """Tokens that a command among several keeps at least, however short the whole motion is to be."""
 COMMAND_STRIDE = 15_485_863
@@ -137,29 +133,3 @@ def joined(engine: MotionModel, steps: Sequence[Step], rows: Sequence[Tensor], s
     for hole, row in zip(between, rows[1:], strict=True):
         ids = torch.cat([ids, hole, row])
     return ids
-
-
-def transitions(engine: MotionModel, rows: Sequence[Tensor], texts: Sequence[TextStates], seed: int) -> list[Tensor]:
-    """(2, C) ids between neighbouring rows, filled in one step and one batch.
-
-    The text is that of the left row; half of each row is the context.
-    """
-    if len(rows) < 2:
-        return []
-    transformer = engine.model.transformer
-    holes = [transition_row(a, b, transformer.ids.mask) for a, b in pairwise(rows)]
-    settings = replace(engine.settings, steps=1)
-    filled = fill(transformer, TextStates.stacked(list(texts[:-1])), holes, [seed] * len(holes), settings)
-    return [new[(row == transformer.ids.mask).any(-1)] for new, row in zip(filled, holes, strict=True)]
-
-
-def transition_row(left: Tensor, right: Tensor, mask_id: int) -> Tensor:
-    """The end of `left`, [MASK]s, the beginning of `right`."""
-    hole = left.new_full((TRANSITION_TOKENS, left.shape[1]), mask_id)
-    return torch.cat([left[len(left) - _half(left) :], hole, right[: _half(right)]])
-
-
-def _half(ids: Tensor) -> int:
-    """Tokens of a row that serve as context: half of them, one less in the longest rows, so that both halves and the hole fit."""
-    half = len(ids) // 2
-    return half - 1 if 2 * half >= MAX_TOKENS - 1 else half

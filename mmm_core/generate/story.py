@@ -27,8 +27,8 @@ from mmm_core.generate.sequence import (
     joined,
     steps_of,
     stretches_of,
-    transitions,
 )
+from mmm_core.generate.transitions import transitions
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.model.sampling import empty_row, fill
 from mmm_core.model.streaming_decoder import StreamingDecoder
