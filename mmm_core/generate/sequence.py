@@ -1,6 +1,6 @@
-"""Steps done one after another in one motion: a row of ids for each, and transitions between them (`transitions.py`).
+"""Arranges steps one after another in one motion: a row of ids for each, and transitions between them (`transitions.py`).
 
-A text of several commands (`mmm_core.language.reading`) and a story (`mmm_core.generate.story`) both use it.
+Texts of several commands (`mmm_core.language.reading`) and stories (`mmm_core.generate.story`) use this module.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, tokens_for_frame
 from mmm_core.motion.performing import Stretch
 
 FEWEST_TOKENS = 4
-"""Tokens that a command among several keeps at least, however short the whole motion is to be."""
+"""Tokens of a command among several at least, however short the requested motion is."""
 COMMAND_STRIDE = 15_485_863
 """Distance between the seeds of a text's steps."""
 TOGETHER_STRIDE = 1_299_709
@@ -34,8 +34,8 @@ class Step:
 
     Attributes:
         commands: one or more.
-        n_tokens: length of their motion.
-        own_tokens: length of each command's own motion; empty where they are all `n_tokens`.
+        n_tokens: length of the step's motion.
+        own_tokens: length of each command's own motion; empty where all have `n_tokens`.
     """
 
     commands: tuple[ReadCommand, ...]
@@ -43,13 +43,13 @@ class Step:
     own_tokens: tuple[int, ...] = ()
 
     def tokens_of(self, k: int) -> int:
-        """Length of the k-th command's own motion: a pose lasts as long as the step, a stroke no longer than it would alone."""
+        """Length of the k-th command's own motion. A pose lasts as long as the step, a gesture no longer than it would alone."""
         is_whole = len(self.commands) == 1 or not self.own_tokens or self.commands[k].is_pose
         return self.n_tokens if is_whole else min(self.n_tokens, self.own_tokens[k])
 
     @property
     def manner(self) -> Manner:
-        """The manner of the step: the strongest that one of its commands names."""
+        """The manner of the step: the strongest tempo, size and hold among its commands."""
         manners = [c.manner for c in self.commands]
         return Manner(
             max((m.tempo for m in manners), key=lambda f: abs(f - 1)),
@@ -59,7 +59,7 @@ class Step:
 
     @property
     def words(self) -> str:
-        """The words of its commands."""
+        """The words of the step's commands."""
         return " and ".join(c.text for c in self.commands)
 
     @property
@@ -69,7 +69,7 @@ class Step:
 
     @property
     def states(self) -> TextStates:
-        """States of its first command."""
+        """Encoder states of the step's first command."""
         return self.commands[0].states
 
 
@@ -102,9 +102,9 @@ def steps_of(engine: MotionModel, read: Interpreted, n_frames: int | None) -> li
 
 
 def stretches_of(steps: Sequence[Step], n_tokens: Sequence[int]) -> list[Stretch]:
-    """Frames of a motion in the manner of each step, given the lengths of its rows.
+    """The frames and the manner of each step, given the lengths of the steps' rows.
 
-    A transition goes with the step that it leads to.
+    A transition has the manner of the step after it.
     """
     found: list[Stretch] = []
     for i, (n, step) in enumerate(zip(n_tokens, steps, strict=False)):
@@ -115,7 +115,7 @@ def stretches_of(steps: Sequence[Step], n_tokens: Sequence[int]) -> list[Stretch
 
 
 def _before_tempo(n_frames: int, manner: Manner) -> int:
-    """Frames that a motion has before its tempo brings it to `n_frames`."""
+    """Frames to generate for a motion that has `n_frames` once its tempo is applied."""
     return max(FRAMES_PER_TOKEN, min(MAX_TOKENS * FRAMES_PER_TOKEN, round(n_frames * manner.tempo)))
 
 

@@ -1,8 +1,8 @@
-"""Tokens between two motions that follow each other: body parts that end where they begin again keep still, others are generated.
+"""Makes the tokens between two consecutive motions: a body part that ends one where it begins the next keeps still.
 
-MMM (arXiv 2312.03596) sec. 3.3 generates two tokens with the end of one motion and the beginning of the next as context. The
-shipped model moves arms there that should rest: between 80 pairs of commands a wrist left the straight way by more than 10 cm
-in 20, since the text of the motion before is the condition of the tokens between.
+The other body parts are generated. MMM (arXiv 2312.03596) sec. 3.3 generates two tokens with the end of one motion and the
+beginning of the next as context. The shipped model would move arms there that should rest, since these tokens are conditioned
+on the text of the first motion: in 20 of 80 pairs of commands a wrist left the straight path by more than 10 cm.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from mmm_core.motion.repetitions import body_path
 TRANSITION_TOKENS = 2
 """Tokens between two commands: 0.4 s, as in the released model."""
 STILL_M = 0.1
-"""Metres between the end of one motion and the beginning of the next up to which a body part keeps still."""
+"""Metres between a body part at the end of one motion and at the beginning of the next up to which it keeps still."""
 _SEEN_TOKENS = 4
-"""Tokens of either motion that are decoded to see where its parts are."""
+"""Tokens at the end and at the beginning of the two motions that are decoded to locate the body parts."""
 _PART_COLUMNS = {"left_arm": slice(0, 3), "right_arm": slice(3, 6), "rest": slice(6, 12)}
 """Columns of `body_path` that say where a body part is: wrists, head and trunk."""
 
 
 def transitions(engine: MotionModel, rows: Sequence[Tensor], texts: Sequence[TextStates], seed: int) -> list[Tensor]:
-    """(2, C) ids between neighbouring rows, filled in one step and one batch where a part has to move.
+    """(2, C) ids between neighbouring rows; the ids of parts that have to move are filled in one step and one batch.
 
     Args:
-        engine: the model; one that was imported generates every token, as its paper has it.
+        engine: the model; an imported one generates the ids of all parts, as in its paper.
         rows: ids (L, C) of each motion; half of each row is the context.
         texts: states of the rows' texts; the condition of a transition is that of its left row.
         seed: of the transitions.
@@ -68,7 +68,7 @@ def transition_row(left: Tensor, right: Tensor, mask_id: int) -> Tensor:
 
 
 def _half(ids: Tensor) -> int:
-    """Tokens of a row that serve as context: half of them, one less in the longest rows, so that both halves and the hole fit."""
+    """Tokens of a row that serve as context: half of them, or one less in the longest rows, so that the transition fits too."""
     half = len(ids) // 2
     return half - 1 if 2 * half >= MAX_TOKENS - 1 else half
 
