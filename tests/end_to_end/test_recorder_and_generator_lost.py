@@ -66,8 +66,7 @@ def test_the_generator_killed_and_frozen_in_each_state_is_started_again(states):
                 within(12, "noticed", lambda: not client.status().generator.startswith("ready"))
                 if state in ("limp", "idle", "moving", "holding"):
                     assert client.gesture("nod").done  # the library needs no generator
-            client.reset()
-            client.wait_for("limp", timeout_s=5)
+            bring_to(client, "limp")
             within(60, "back", lambda: client.status().generator.startswith("ready"))
             client.arm()
             assert client.say("nod twice").done

@@ -132,8 +132,7 @@ def test_a_wrong_baud_and_other_servos_show_a_table(tty, tmp_path):
     assert "expected" in other and "found" in other
 
 
-def test_a_text_moves_over_a_tty_a_second_daemon_is_refused_sigterm_parks(tty):
-    """The second daemon learns who has the port, and that the sockets are taken."""
+def test_a_text_moves_over_a_tty_and_sigterm_parks(tty):
     url = tty.url(baud_of("op3"))
     daemon = RunningDaemon(robot="op3", bus=url)
     try:
@@ -143,9 +142,6 @@ def test_a_text_moves_over_a_tty_a_second_daemon_is_refused_sigterm_parks(tty):
         assert "first servo frame" in said.stdout and "done" in said.stdout
         message = refused("--robot", "op3", "--bus", url)
         assert str(tty.link) in message or str(tty.link.resolve()) in message
-        message = refused("--cmd", daemon.endpoints.cmd)
-        assert daemon.endpoints.cmd in message and "already in use" in message
-        assert daemon.mmmd("say", "wave", "--no-wait").returncode == 0
         assert daemon.terminate() == 0
         assert "parking -> limp" in daemon.said
     finally:
@@ -155,9 +151,12 @@ def test_a_text_moves_over_a_tty_a_second_daemon_is_refused_sigterm_parks(tty):
 
 
 def test_ctrl_c_during_a_motion_parks_too_and_the_command_is_cancelled():
+    """Before that, a second daemon on the same sockets is refused."""
     daemon = RunningDaemon()
     try:
         daemon.until_ready()
+        message = refused("--cmd", daemon.endpoints.cmd)
+        assert daemon.endpoints.cmd in message and "already in use" in message
         said = subprocess.Popen([*MMMD, "say", "wave", "--seconds", "5", *daemon.at], stdout=subprocess.PIPE, text=True)
         with daemon.client() as client:
             client.wait_for("moving", timeout_s=20)
