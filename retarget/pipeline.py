@@ -123,12 +123,18 @@ class Retargeter:
         return path
 
     def pieces(
-        self, motion: HumanMotion, start: JointState | None = None, *, settle: bool = True, first_at_once: bool = False
+        self,
+        motion: HumanMotion,
+        start: JointState | None = None,
+        *,
+        settle: bool = True,
+        first_at_once: bool = False,
+        block_frames: int = BLOCK_FRAMES,
     ) -> Iterator[tuple[JointPath, int]]:
-        """The path of `retarget`, block after block as each is made, and how many frames of the motion each is.
+        """The path, block after block as each is made, and how many frames of the motion each is.
 
-        Each begins where the one before ends, and should no other follow there is a free way to brake at its end. All but
-        the last are of `BLOCK_FRAMES`.
+        Each begins where the one before ends, and should no other follow there is a free way to brake at its end. With
+        `BLOCK_FRAMES` it is the path of `retarget`.
 
         Args:
             motion: as in `retarget`.
@@ -136,13 +142,16 @@ class Retargeter:
             settle: as in `retarget`.
             first_at_once: somebody waits for the first block: where a contact is near it keeps every limit and touches
                 nothing, but shows the motion less well than it could.
+            block_frames: frames of all blocks but the last, 1 or more.
 
         Raises:
             MotionError: as in `retarget`.
         """
         wanted, first = self._wanted(motion, start), 0
         poses, begin = wanted.poses, self._begin(wanted.poses.q_rad, start)
-        for block, n, changes in self._blocks(wanted.aims, begin, 1.0 / motion.fps, settle, first_at_once):
+        for block, n, changes in self._blocks(
+            wanted.aims, begin, 1.0 / motion.fps, settle, first_at_once, block_frames
+        ):
             part = poses.part(slice(first, first + n))
             yield self._joint_path(block, part, HumanContacts({}), motion.fps, changes, 1.0), n
             first += n
@@ -176,8 +185,9 @@ class Retargeter:
         return JointPath(path, self.robot.joint_names, fps, comparison, ends)
 
     def _blocks(
-        self, poses: Poses, begin: JointState, period: float, settle: bool, first_at_once: bool = False
-    ) -> Iterator[tuple[Array, int, int]]:
+        self, poses: Poses, begin: JointState, period: float, settle: bool, first_at_once: bool = False,
+        block_frames: int = BLOCK_FRAMES,
+    ) -> Iterator[tuple[Array, int, int]]:  # fmt: skip
         """Control points for poses, block by block, how many frames each is, and times it was changed.
 
         The first two of a block are the last two of the one before.
@@ -185,9 +195,9 @@ class Retargeter:
         posed, T, first = poses.q_rad, len(poses.q_rad), 0
         while first < T:
             # A block is solved with some frames after it in view; a rest that is hardly longer is part of it.
-            is_last = first + BLOCK_FRAMES + _AHEAD_FRAMES >= T
-            last = T if is_last else first + BLOCK_FRAMES + _AHEAD_FRAMES
-            keep = last - first if is_last else BLOCK_FRAMES
+            is_last = first + block_frames + _AHEAD_FRAMES >= T
+            last = T if is_last else first + block_frames + _AHEAD_FRAMES
+            keep = last - first if is_last else block_frames
             view = posed[max(first - 1, 0) : last]
             at_once = first_at_once and first == 0
             shown = None if at_once else partial(self._poser.shown, poses.part(slice(first, last)))

@@ -20,8 +20,20 @@ from retarget.robot_to_human import joints_of_path
 
 FADE_FRAMES = 8
 """Frames of posture (0.4 s) over which a motion grows out of the poses before it."""
+_LEAST_BLOCK, _MOST_BLOCK = 12, 36
+"""Frames of a block: with fewer, limits would be kept with less of the motion in view, with more the first takes longer."""
+_WHOLE = 1e-9
 _EASY_DEG_S = 60.0
 """Degrees a second at most with which idle movements lead back to standing."""
+
+
+def block_frames(fps: float, rate_hz: float) -> int | None:
+    """Frames of a block that ends with a frame of the bus, the number nearest to the retargeter's own; None where there is none."""
+    for n in sorted(range(_LEAST_BLOCK, _MOST_BLOCK + 1), key=lambda n: abs(n - BLOCK_FRAMES)):
+        frames = n / fps * rate_hz
+        if abs(frames - round(frames)) < _WHOLE:
+            return n
+    return None
 
 
 class ChunkMaker:
@@ -65,11 +77,13 @@ class ChunkMaker:
                 far_deg = float(distance_deg(before[-1:], posture[:1])[0])
                 n = max(n, math.ceil(far_deg / _EASY_DEG_S * posture.fps))
             posture = faded_in(posture, before, n)
-        first, frames = 0, BLOCK_FRAMES / posture.fps * self._rate_hz
-        if abs(frames - round(frames)) < 1e-9:
-            paths = self._retargeter.pieces(posture, start, settle=complete, first_at_once=first_at_once)
-        else:  # a block would end between two frames of the bus
+        first, n = 0, block_frames(posture.fps, self._rate_hz)
+        if n is None:
             paths = iter([(self._retargeter.retarget(posture, start, settle=complete), len(posture))])
+        else:
+            paths = self._retargeter.pieces(
+                posture, start, settle=complete, first_at_once=first_at_once, block_frames=n
+            )
         for path, n in paths:
             is_last = first + n >= len(posture)
             yield Chunk(path, posture[first:], raw[first:], is_last, is_last and complete)
