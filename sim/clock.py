@@ -1,35 +1,35 @@
-"""Virtual time, which moves only when a caller waits. Its clock can be made to jump, as a machine's clock can; true time cannot."""
+"""Virtual time: moves only when somebody waits. Its clock may be made to jump, as a machine's can; its time cannot."""
 
 from __future__ import annotations
 
 
 class VirtualClock:
-    """A `Clock` whose sleep ends at once, at the requested time."""
+    """A `Clock` that jumps to where it is told to sleep."""
 
     def __init__(self, start_s: float = 0.0) -> None:
         self.true_s = start_s
-        """Seconds of true time, by which the servos run."""
+        """Time as the servos have it."""
         self._ahead_s = 0.0
 
     def now_s(self) -> float:
-        """Seconds that the clock shows."""
+        """What the clock shows."""
         return self.true_s + self._ahead_s
 
     def sleep_until(self, t_s: float) -> None:
-        """Advance to the moment at which the clock shows `t_s`."""
+        """Jump to when the clock shows `t_s`."""
         self.true_s = max(self.true_s, t_s - self._ahead_s)
 
     def sleep_until_true(self, t_s: float) -> None:
-        """Advance to a time `t_s` of the servos."""
+        """Jump to a time of the servos."""
         self.true_s = max(self.true_s, t_s)
 
     def jump(self, by_s: float) -> None:
-        """Make the clock show `by_s` seconds more from now on."""
+        """From now on the clock shows `by_s` more."""
         self._ahead_s += by_s
 
 
 class TrueTime:
-    """The true time behind a virtual clock, by which the servos run: the clock may jump, true time does not."""
+    """The time that a virtual clock's servos have: what the clock shows may jump, time does not."""
 
     def __init__(self, clock: VirtualClock) -> None:
         self._clock = clock
@@ -39,5 +39,5 @@ class TrueTime:
         return self._clock.true_s
 
     def sleep_until(self, t_s: float) -> None:
-        """Advance to time `t_s`."""
+        """Let time go on to `t_s`."""
         self._clock.sleep_until_true(t_s)

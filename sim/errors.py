@@ -13,11 +13,11 @@ from daemon.errors import CommandError, ConfigError, DaemonError
 
 
 class SimError(DaemonError):
-    """Base of the simulator's errors."""
+    """Anything the simulator cannot do."""
 
 
 class FaultFileError(SimError, ConfigError):
-    """A fault schedule that cannot be used; the text has the place, the value found and the allowed ones."""
+    """A fault schedule that cannot be used: where, what was found, what is allowed."""
 
     def __init__(self, path: Path | str, where: str, found: str, allowed: str) -> None:
         self.path, self.where, self.found, self.allowed = path, where, found, allowed
@@ -25,7 +25,7 @@ class FaultFileError(SimError, ConfigError):
 
 
 class SimSettingError(SimError, CommandError):
-    """A simulator setting outside its allowed values."""
+    """A setting outside what is allowed."""
 
     def __init__(self, setting: str, found: str, allowed: str) -> None:
         self.setting, self.found, self.allowed = setting, found, allowed

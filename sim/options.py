@@ -1,4 +1,4 @@
-"""Makes simulators from text settings: the options of `mmmd sim` and of `sim://` URLs."""
+"""Simulators from words: what `mmmd sim` and `sim://` URLs may say."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ BODIES = ("plain", "mujoco")
 
 
 def wire_settings(latency_ms: str = "0", pieces: str = "", *, turnaround_us: float = 0.0) -> WireSettings:
-    """Settings of wire and adapter from text.
+    """Wire and adapter.
 
     Raises:
-        SimSettingError: a value is no number, or one that no wire can have.
+        SimSettingError: no number, or one that no wire can have.
     """
     try:
         latency_s = float(latency_ms) * 1e-3
@@ -40,17 +40,17 @@ def world_of(
     factory: bool = False,
     start_rad: Sequence[float] | None = None,
 ) -> World:
-    """The simulated world of a robot.
+    """A robot's world.
 
     Args:
-        robot: the robot.
-        faults: the fault schedule; None for no faults.
+        robot: whose.
+        faults: what goes wrong.
         body: "plain" or "mujoco".
         factory: servos as from the box (57,600 baud, 500 us return delay) but for their ids.
         start_rad: (J,) pose to begin in; the park pose when None.
 
     Raises:
-        SimSettingError: `body` is neither of these.
+        SimSettingError: another body.
     """
     if body not in BODIES:
         raise SimSettingError("body", f"'{body}'", ", ".join(BODIES))
@@ -67,10 +67,10 @@ def world_of(
 
 
 def servo_ids_of(text: str, robot: RobotModel) -> list[int]:
-    """Servo ids from a text such as "1-4,7".
+    """Ids out of "1-4,7".
 
     Raises:
-        SimSettingError: the text has no ids, or one that the robot does not have.
+        SimSettingError: no ids, or one that the robot does not have.
     """
     ids: list[int] = []
     for part in text.split(","):

@@ -20,7 +20,7 @@ from daemon.bench.motions import bench_motions
 from daemon.bench.retarget import causal_path, with_common_limits, wrist_speed_m_s
 from mmm_core.motion.motion import FPS, Motion
 from retarget.human.human import read_human
-from retarget.path.collision import Allowed, SelfContact
+from retarget.path.collision import SelfContact
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import list_robots, load_robot
 from retarget.robot.robot import RobotModel
@@ -35,11 +35,9 @@ _BLUE, _ORANGE, _GREY, _RED = "#3b6ea8", "#d98032", "#8a8a8a", "#b03a3a"
 class _Untouchable(SelfContact):
     """A robot that may go through itself: what is left of the error then is reach and limits."""
 
-    def along(self, control_rad: Array, allowed: Allowed | None = None) -> NDArray[np.bool_]:
-        return np.zeros(len(control_rad) - 2, bool)
-
-    def frames(self, q_rad: Array, share: float = 1.0) -> NDArray[np.bool_]:
-        return np.zeros(len(q_rad), bool)
+    def __init__(self, robot: RobotModel) -> None:
+        super().__init__(robot)
+        self._margin_m = np.full_like(self._margin_m, -np.inf)
 
 
 @dataclass(frozen=True)

@@ -108,8 +108,7 @@ class _Solver:
         self._gradient = gradient
         self._bound, self._soft, self._rooms = bound, soft, rooms
         self._shape, self._n_boxes = gradient.shape, 3 * gradient.size
-        self._outer = rooms.grows[:, :, None] * rooms.grows[:, None]
-        self._points, self._first_of = np.unique(rooms.point, return_index=True)
+        self._take_rooms()
         self._fixed = _banded_boxes(weights)
         quarter = hessian / 4
         own = quarter.copy()
@@ -152,22 +151,43 @@ class _Solver:
         dz: Array = weight * (self._along(dx) + left)
         return dx, (aim - s * dz) / z - s, dz
 
+    def _take_rooms(self) -> None:
+        """Lay the rows of rooms out by control point, all as many, (N, M, 2 n): for the point before, then for itself."""
+        rooms, (N, n) = self._rooms, self._shape
+        first: Indices = np.asarray(np.searchsorted(rooms.point, np.arange(N, dtype=np.int64)), np.int64)
+        place: Indices = np.arange(len(rooms.point), dtype=np.int64) - first[rooms.point]
+        self._wide = int(place.max(initial=-1)) + 1
+        self._place: Indices = rooms.point * self._wide + place
+        grows = np.zeros((N * self._wide, 2, n))
+        grows[self._place] = rooms.share[:, :, None] * rooms.grows[:, None]
+        self._grows = grows.reshape(N, self._wide, 2 * n)
+
+    def _spread(self, y: Array) -> Array:
+        """(N, M) what belongs to each row of rooms (R,), laid out like them, and 0."""
+        N = self._shape[0]
+        every = np.zeros(N * self._wide)
+        every[self._place] = y
+        return every.reshape(N, self._wide)
+
     def _along(self, x: Array) -> Array:
         """The rows' values: differences, the same negated, and the loss of room."""
         boxes = _differences(x).ravel()
-        point, (before, here) = self._rooms.point, self._rooms.share.T
-        moved = here[:, None] * x[point] + before[:, None] * x[point - 1]
-        room = -np.vecdot(self._rooms.grows, moved)
-        return np.concatenate([boxes, -boxes, room])
+        if not self._wide:
+            return np.concatenate([boxes, -boxes])
+        both = np.zeros((len(x), 2, x.shape[1]))
+        both[1:, 0], both[:, 1] = x[:-1], x
+        room = (self._grows @ both.reshape(len(x), -1, 1)).ravel()[self._place]
+        return np.concatenate([boxes, -boxes, -room])
 
     def _back(self, y: Array) -> Array:
         """The rows' transpose."""
         m = self._n_boxes
         x = _summed((y[:m] - y[m : 2 * m]).reshape(3, *self._shape))
-        if len(self._rooms.point):
-            moved = y[2 * m :, None] * self._rooms.grows
-            x -= self._at_points(self._rooms.share[:, 1, None] * moved)
-            x[:-1] -= self._at_points(self._rooms.share[:, 0, None] * moved)[1:]
+        if self._wide:
+            n = self._shape[1]
+            moved = (self._spread(y[2 * m :])[:, None] @ self._grows)[:, 0]
+            x -= moved[:, n:]
+            x[:-1] -= moved[1:, :n]
         return x
 
     def _normal(self, weight: Array) -> Array:
@@ -175,19 +195,13 @@ class _Solver:
         m = self._n_boxes
         boxes = (weight[:m] + weight[m : 2 * m]).reshape(3, *self._shape)
         band = self._fixed + _banded_boxes(boxes)
-        if len(self._rooms.point):
-            before, here = self._rooms.share.T
-            each = weight[2 * m :, None, None] * self._outer
-            own = self._at_points(here[:, None, None] ** 2 * each)
-            own[:-1] += self._at_points(before[:, None, None] ** 2 * each)[1:]
-            _add_blocks(band, own, self._at_points((before * here)[:, None, None] * each))
+        if self._wide:
+            n = self._shape[1]
+            each = np.swapaxes(self._grows * self._spread(weight[2 * m :])[..., None], 1, 2) @ self._grows
+            own = each[:, n:, n:]
+            own[:-1] += each[1:, :n, :n]
+            _add_blocks(band, own, each[:, n:, :n])
         return band.reshape(-1, band.shape[-1])
-
-    def _at_points(self, each: Array) -> Array:
-        """(N, ...) the sums of (R, ...) at the control points that they are of."""
-        every = np.zeros((self._shape[0], *each.shape[1:]))
-        every[self._points] = np.add.reduceat(each, self._first_of)
-        return every
 
 
 def _differences(x: Array) -> Array:

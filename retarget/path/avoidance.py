@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.path.collision import SelfContact
+from retarget.path.least_distances import LeastDistances
 from retarget.path.limits import JointLimits
 from retarget.robot.robot import RobotModel
 
@@ -46,16 +47,21 @@ class Avoidance:
         self._rest_rad = robot.rest_rad
         self._mobility = np.array([j.role.startswith(("left_", "right_")) for j in robot.joints], np.float64)
 
-    def push_out(self, wanted_rad: Array, before_rad: Array) -> tuple[Array, int]:
-        """Poses (T, J) clear of the robot, each near the wanted one; how many stretches of them were changed."""
+    def push_out(self, wanted_rad: Array, before_rad: Array, least: LeastDistances | None = None) -> tuple[Array, int]:
+        """Poses (T, J) clear of the robot, each near the wanted one; how many stretches of them were changed.
+
+        `least` has the distances in the wanted poses, where they are known.
+        """
+        least = least or self._contact.least(wanted_rad)
         clear = wanted_rad.copy()
-        touching = self._contact.frames(clear, 1.0)
+        touching = self._contact.touching(least)
         some = np.flatnonzero(touching)
         if len(some):
-            clear[some], free = self._pushed_out(clear[some], _AIM_M)
+            clear[some], free = self._pushed_out(clear[some], _AIM_M, least.part(some))
             lost = some[~free]
             if len(lost):  # too deep to see the way out: come from between the clear poses before and after
-                clear[lost] = self._from_between(wanted_rad[lost], _between(clear, lost, before_rad))
+                between = _between(clear, lost, before_rad)
+                clear[lost] = self._from_between(wanted_rad[lost], between, least.part(lost))
         return clear, stretches(touching)
 
     def push(self, eased_rad: Array, path_rad: Array, hit: NDArray[np.bool_], strength: float) -> Array:
@@ -67,7 +73,7 @@ class Avoidance:
         poses = np.stack([(c0 + c1) / 2, (c0 + 6 * c1 + c2) / 8, (c1 + c2) / 2], 1)  # (S, 3, J)
         clearance = self._contact.clearance_m(poses.reshape(-1, path_rad.shape[1])).reshape(-1, 3)
         worst = poses[np.arange(len(segments)), clearance.argmin(1)]
-        out = self._pushed_out(worst, _PUSHED_ON_M)[0] - worst
+        out = self._pushed_out(worst, _PUSHED_ON_M, self._contact.least(worst))[0] - worst
         for k, push in zip(segments, out, strict=True):  # segment k runs from frame k - 1 to frame k
             for t in {min(max(int(k) - 1, 0), T - 1), min(int(k), T - 1)}:
                 pushes[t] = _larger(pushes[t], push)
@@ -84,28 +90,28 @@ class Avoidance:
         changed = changed + strength * near * (self._rest_rad - changed)
         return np.clip(changed, self._low, self._high)
 
-    def _from_between(self, wanted_rad: Array, between_rad: Array) -> Array:
+    def _from_between(self, wanted_rad: Array, between_rad: Array, least: LeastDistances) -> Array:
         """Poses (n, J) near the wanted ones: head and waist from between clear poses, where that is enough, else all joints.
 
         A head turned against a shoulder would otherwise hold both arms up, which have no part in it.
         """
-        q, free = self._pushed_out(np.where(self._mobility > 0, wanted_rad, between_rad), _AIM_M)
+        q, free = self._pushed_out(np.where(self._mobility > 0, wanted_rad, between_rad), _AIM_M, least)
         if not free.all():
-            q[~free] = self._come_near(wanted_rad[~free], between_rad[~free])
+            q[~free] = self._come_near(wanted_rad[~free], between_rad[~free], least.part(np.flatnonzero(~free)))
         return q
 
-    def _come_near(self, wanted_rad: Array, from_rad: Array) -> Array:
+    def _come_near(self, wanted_rad: Array, from_rad: Array, least: LeastDistances) -> Array:
         """Poses (n, J) as near the wanted ones as steps from others lead, pushed out of contact after each step."""
-        q, free = self._pushed_out(from_rad, _AIM_M)
+        q, free = self._pushed_out(from_rad, _AIM_M, least)
         for _ in range(_COME_STEPS):
             step = np.minimum(np.maximum(wanted_rad - q, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
-            ahead, clear = self._pushed_out(q + step, _AIM_M)
+            ahead, clear = self._pushed_out(q + step, _AIM_M, least)
             nearer = clear | ~free
             q[nearer] = ahead[nearer]
             free |= clear
         return q
 
-    def _pushed_out(self, q_rad: Array, aim_m: float) -> tuple[Array, NDArray[np.bool_]]:
+    def _pushed_out(self, q_rad: Array, aim_m: float, least: LeastDistances) -> tuple[Array, NDArray[np.bool_]]:
         """Poses (T, J) moved little until they keep the margin and `aim_m` more, and which of them keep the margin.
 
         The worst pair of each is pushed apart by the movement that costs least, again and again.
@@ -115,9 +121,11 @@ class Avoidance:
         rows = np.arange(len(q))
         free = np.zeros(len(q), bool)
         for _ in range(_PUSHES):
-            lack, way = self._contact.worst(q[rows], aim_m)
+            lack, way, least_m = self._contact.worst(q[rows], aim_m, least.at(q[rows]))
             free[rows] = lack <= aim_m
-            rows, lack, way = rows[lack > 0], lack[lack > 0, None], way[lack > 0]
+            some = lack > 0
+            least = LeastDistances(q[rows[some]], least_m[some], least.sweep_m)
+            rows, lack, way = rows[some], lack[some, None], way[some]
             if not len(rows):
                 break
             way = way * self._mobility

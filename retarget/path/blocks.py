@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from retarget.path.avoidance import STRENGTHS, Avoidance, stretches
 from retarget.path.collision import Allowed, SelfContact
 from retarget.path.control_points import braking, controls_near, held, hits_of_frames, joined
+from retarget.path.least_distances import LeastDistances
 from retarget.path.limit_path import Objective, kept
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointState
@@ -65,11 +66,12 @@ class BlockPlanner:
         comes sooner, and is not made better where a contact is near.
         """
         before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
-        eased, interventions = self._avoidance.push_out(posed, begin.position_rad)
+        least = self._contact.least(posed)
+        eased, interventions = self._avoidance.push_out(posed, begin.position_rad, least)
         allowed = self._contact.allowed_from(begin.position_rad)
-        path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
+        path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
         if self._refiner and shown and (interventions or hit.any()):
-            better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed)
+            better = self._refined(self._refiner, path, shown, len(posed), period, keep, settle, allowed, least)
             if better is not None:
                 return better, interventions + (stretches(hit) if hit.any() else 0)
         for strength in STRENGTHS:
@@ -77,18 +79,18 @@ class BlockPlanner:
                 break
             interventions += stretches(hit)
             eased = self._avoidance.push(eased, path, hits_of_frames(hit, len(path)), strength)
-            path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
+            path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
         if hit.any() and allowed is not None:  # it begins too near itself to turn to the motion: away from there first
             eased = eased.copy()
             eased[:_AWAY_FRAMES] = self._avoidance.push_out(begin.position_rad[None], begin.position_rad)[0]
-            path, hit = self._limited(eased, posed, before, begin, period, keep, settle, allowed)
+            path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
         if hit.any():
             path = self._stop_before_contact(path, hit, period, allowed)
         return path, interventions
 
     def _refined(
         self, refiner: Refiner, path: Array, shown: Shown, n_frames: int, period: float, keep: int, settle: bool,
-        allowed: Allowed | None,
+        allowed: Allowed | None, least: LeastDistances,
     ) -> Array | None:  # fmt: skip
         """A path that shows more and touches nothing, from one of the limiter; None where none was found."""
         stop = braking(path, period, self._limits)
@@ -99,12 +101,12 @@ class BlockPlanner:
         def cut(control: Array) -> Array:
             return self._settled(control, n_frames + 2, period) if settle else control[: n_frames + 2]
 
-        def touching(control: Array) -> NDArray[np.bool_]:
+        def touching(control: Array, least: LeastDistances) -> NDArray[np.bool_]:
             found, hit = cut(control), np.zeros(len(control) - 2, bool)
             if settle:
-                of_path = self._contact.along(found, allowed)
+                of_path, _ = self._contact.along_near(found, allowed, least)
             else:
-                of_path = self._cut_hits(found, period, keep, n_frames, allowed)
+                of_path, _ = self._cut_hits(found, period, keep, n_frames, allowed, least)
                 if keep < n_frames and of_path[keep - 1]:
                     hit[max(keep - _AROUND_CUT, 0) : keep + _AROUND_CUT] = True
             n = min(len(hit), len(of_path))
@@ -112,7 +114,7 @@ class BlockPlanner:
             hit[n - 1] |= of_path[n:].any()
             return hit
 
-        control = refiner.refine(start, shown, n_frames, period, touching)
+        control = refiner.refine(start, shown, n_frames, period, touching, least)
         if control is None:
             return None
         inside = kept(control[2:], control[1], (control[1] - control[0]) / period, self._limits, period)
@@ -124,16 +126,16 @@ class BlockPlanner:
         return int(np.ceil((limits.velocity_rad_s / (limits.acceleration_rad_s2 * period)).max())) + 1
 
     def _cut_hits(
-        self, points: Array, period: float, keep: int, n_frames: int, allowed: Allowed | None
-    ) -> NDArray[np.bool_]:
-        """Which segments touch when the path brakes at its end, or after `keep` frames."""
-        hit = self._contact.along(np.concatenate([points, braking(points, period, self._limits)]), allowed)
+        self, points: Array, period: float, keep: int, n_frames: int, allowed: Allowed | None, least: LeastDistances
+    ) -> tuple[NDArray[np.bool_], LeastDistances]:
+        """Which segments touch when the path brakes at its end, or after `keep` frames; and bounds of distances on it."""
+        whole = np.concatenate([points, braking(points, period, self._limits)])
+        hit, least = self._contact.along_near(whole, allowed, least)
         if keep < n_frames:
             cut = points[: keep + 2]
-            hit[keep - 1] |= self._contact.along(
-                np.concatenate([cut[-2:], braking(cut, period, self._limits)]), allowed
-            ).any()
-        return hit
+            stop = np.concatenate([cut[-2:], braking(cut, period, self._limits)])
+            hit[keep - 1] |= self._contact.along_near(stop, allowed, least.part(slice(keep, None)))[0].any()
+        return hit, least
 
     def _settled(self, points: Array, least: int, period: float) -> Array:
         """Control points (N, J) up to where the robot first stands after `least` of them, at rest at their end."""
@@ -157,9 +159,9 @@ class BlockPlanner:
 
     def _limited(
         self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, keep: int, settle: bool,
-        allowed: Allowed | None,
-    ) -> tuple[Array, NDArray[np.bool_]]:  # fmt: skip
-        """Control points of a path near `eased` (T, J) that keeps every limit, and which segments touch.
+        allowed: Allowed | None, least: LeastDistances,
+    ) -> tuple[Array, NDArray[np.bool_], LeastDistances]:  # fmt: skip
+        """Control points of a path near `eased` (T, J) that keeps every limit, which segments touch, and bounds of distances.
 
         What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
         touches when the path brakes after `keep` frames or at its end counts too.
@@ -177,5 +179,5 @@ class BlockPlanner:
         points = np.concatenate([[before], joined(wanted, before, position, period, self._limits, objective_from)])
         if settle:
             points = self._settled(points, len(points) - _SETTLE_FRAMES, period)
-            return points, self._contact.along(points, allowed)
-        return points, self._cut_hits(points, period, keep, len(eased), allowed)
+            return points, *self._contact.along_near(points, allowed, least)
+        return points, *self._cut_hits(points, period, keep, len(eased), allowed, least)

@@ -1,7 +1,4 @@
-"""Distances from boxes to capsules and to boxes, many at once.
-
-The distance of a point to a box is convex along a line: the nearest point of a capsule's axis is found by halving.
-"""
+"""Distances from boxes to capsules and to boxes, many at once."""
 
 from __future__ import annotations
 
@@ -9,11 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-_HALVINGS = 8
+_LEAST = 1e-12
+_STEEP = 1e9
+"""Metres: steeper than any slope."""
 
 
-def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array) -> Array:
-    """(n,) distance of n capsules' axes to boxes, at most `half_m` / 256 less than it is; 0 or less where one goes through.
+def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array) -> tuple[Array, Array]:
+    """Distance (n,) of n capsules' axes to boxes, and which way (n, 3) they are from there; both 0 where one goes through.
+
+    Half the squared distance of a point on the axis is convex, and its slope a line between the planes of the box's faces: the
+    nearest point lies where the slope between the last plane at which it falls and the first at which it rises is 0.
 
     Args:
         offset: (n, 3) centre of the capsule in the box's own axes.
@@ -21,19 +23,31 @@ def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array)
         half_m: (n,) its half length; 0 for a sphere.
         box_half_m: (n, 3) half edges of the box.
     """
-    at, reach = np.zeros(len(offset)), half_m
-    point = offset
-    for _ in range(_HALVINGS if half_m.any() else 0):
-        beyond = point - np.minimum(np.maximum(point, -box_half_m), box_half_m)
-        reach = reach / 2
-        at = at - np.sign(np.einsum("ni,ni->n", beyond, axis)) * reach
-        point = offset + at[:, None] * axis
-    beyond = point - np.minimum(np.maximum(point, -box_half_m), box_half_m)
-    return np.sqrt(np.einsum("ni,ni->n", beyond, beyond)) - reach
+    o, a, h = offset.T, axis.T, box_half_m.T  # (3, n): the longest axis last
+    along = np.where(np.abs(a) < _LEAST, _LEAST, a)
+    at = np.empty((8, len(half_m)))
+    at[0], at[1] = -half_m, half_m
+    at[2:5], at[5:] = (-h - o) / along, (h - o) / along
+    np.minimum(np.maximum(at, -half_m, out=at), half_m, out=at)
+    slope = (a[:, None] * _beyond(o[:, None] + a[:, None] * at, h[:, None])).sum(0)  # (8, n)
+    rises, falls = slope > 0, slope < 0
+    low, high = np.where(rises, -half_m, at).max(0), np.where(falls, half_m, at).min(0)
+    fall, rise = np.where(rises, -_STEEP, slope).max(0), np.where(falls, _STEEP, slope).min(0)
+    # Where it only rises or only falls both are the end that is nearest, and where it is 0 all between is.
+    nearest = low - fall / np.where(rise > fall, rise - fall, 1.0) * (high - low)
+    beyond = _beyond(o + a * nearest, h)
+    return np.sqrt((beyond * beyond).sum(0)), beyond.T
 
 
-def box_to_box(offset: Array, turn1: Array, half1_m: Array, turn2: Array, half2_m: Array) -> Array:
-    """(n,) not more than the distance of n pairs of boxes: that of either to the other's bounds along its own axes.
+def _beyond(point: Array, half_m: Array) -> Array:
+    """From the nearest point of a box to a point."""
+    return point - np.minimum(np.maximum(point, -half_m), half_m)
+
+
+def box_to_box(offset: Array, turn1: Array, half1_m: Array, turn2: Array, half2_m: Array) -> tuple[Array, Array]:
+    """Not more than the distance of n pairs of boxes, (n,): that of either to the other's bounds along its own axes.
+
+    And which way, (n, 3), that is from the first to the second; 0 where no such axis parts them.
 
     Args:
         offset: (n, 3) centre of the second less centre of the first.
@@ -43,7 +57,11 @@ def box_to_box(offset: Array, turn1: Array, half1_m: Array, turn2: Array, half2_
         half2_m: (n, 3).
     """
     between = np.abs(turn1.transpose(0, 2, 1) @ turn2)
-    apart1 = np.abs(offset[:, None] @ turn1)[:, 0] - half1_m - (between @ half2_m[..., None])[..., 0]
-    apart2 = np.abs(offset[:, None] @ turn2)[:, 0] - half2_m - (half1_m[:, None] @ between)[:, 0]
-    apart = np.maximum(np.stack([apart1, apart2]), 0.0)
-    return np.sqrt(np.einsum("sni,sni->sn", apart, apart).max(0))
+    along1, along2 = (offset[:, None] @ turn1)[:, 0], (offset[:, None] @ turn2)[:, 0]
+    apart1 = np.maximum(np.abs(along1) - half1_m - (between @ half2_m[..., None])[..., 0], 0.0)
+    apart2 = np.maximum(np.abs(along2) - half2_m - (half1_m[:, None] @ between)[:, 0], 0.0)
+    far1, far2 = np.vecdot(apart1, apart1), np.vecdot(apart2, apart2)
+    first = (far1 > far2)[:, None]
+    way = np.where(first, np.copysign(apart1, along1), np.copysign(apart2, along2))
+    turn = np.where(first[..., None], turn1, turn2)
+    return np.sqrt(np.maximum(far1, far2)), (turn @ way[..., None])[..., 0]

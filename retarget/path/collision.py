@@ -10,15 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from retarget.path.continuous_bounds import Known, Spans
-from retarget.path.distances import MARGIN_M, MEASURED_M, Array, Indices, PairDistances, Placed
+from retarget.path.distances import MARGIN_M, Array, Indices, Placed
+from retarget.path.least_distances import LeastDistances
+from retarget.path.slopes import PairSlopes
 from retarget.robot.description import mujoco
-from retarget.robot.kinematics import cross
 from retarget.robot.robot import RobotModel
 
 KEPT = 0.8
 """Share of the margin that is proved for every instant of a path."""
 _FROM_WITHIN = 0.1
 """A path that begins within a margin may come nearer by this share of it while it turns away."""
+_EACH = 5
+"""Poses of which one is measured for bounds of the distances in the others."""
 _DEEPEST = 8
 """Halvings of a segment after which it counts as touching; distances that near and movements that small do not occur."""
 _ROUNDING_M = 1e-6
@@ -26,19 +29,32 @@ Allowed = tuple[Array, Array]
 """(P,) metres that each pair keeps at the borders of segments, and at every instant."""
 
 
-class SelfContact(PairDistances):
+class SelfContact(PairSlopes):
     """Where one robot comes near itself."""
 
     def __init__(self, robot: RobotModel, margin_m: float = MARGIN_M) -> None:
         super().__init__(robot, margin_m)
         self._sweep_m = self._sweeps()
         above = self._above[self._model.geom_bodyid]
-        self._spans = Spans(self._pairs, above, self._half_m, self._radii_m, self._sweep_m)
-        self._bounded = self._exact & self._spans.known
+        self._spans = Spans(self._pairs, above, *self._extents_m(), self._sweep_m)
+        self._bounded = self._spans.known
 
     def frames(self, q_rad: Array, share: float = KEPT) -> NDArray[np.bool_]:
         """(T,) whether each frame of (T, J) comes closer to itself than a share of the margin, what paths keep of it."""
         return np.asarray((self.distances_m(q_rad) < share * self._margin_m).any(1), bool)
+
+    def least(self, q_rad: Array) -> LeastDistances:
+        """Lower bounds of all distances in poses (T, J), exact where less than the margin; quick where poses are near the next."""
+        placed = self._placed(q_rad, with_joints=False)
+        least_m = self._bounds(q_rad, placed)
+        of = np.flatnonzero((least_m < self._margin_m).any(0))
+        if len(of):
+            least_m[:, of] = self._distances(q_rad, placed, of, least_m[:, of]).distance_m
+        return LeastDistances(q_rad, least_m, self._sweep_m)
+
+    def touching(self, least: LeastDistances) -> NDArray[np.bool_]:
+        """(T,) whether each frame of `least` comes closer to itself than its margin."""
+        return np.asarray((least.least_m < self._margin_m).any(1), bool)
 
     def clearance_m(self, q_rad: Array) -> Array:
         """(T,) smallest distance of each frame of (T, J)."""
@@ -61,58 +77,6 @@ class SelfContact(PairDistances):
         touching = self._pairs[self.distances_m(q_rad[None])[0] < self._margin_m]
         bodies = self._model.geom_bodyid[touching]
         return sorted({(str(self._model.body(a).name), str(self._model.body(b).name)) for a, b in bodies})
-
-    def worst(self, q_rad: Array, aim_m: float) -> tuple[Array, Array]:
-        """What the worst pair of each pose (T, J) lacks of its margin and `aim_m` more, (T,), and the way out, (T, J).
-
-        The way out is how its distance grows with each joint.
-        """
-        beyond, way = self.nearest(q_rad, self._every)
-        return aim_m - beyond, way
-
-    def nearest(self, q_rad: Array, of: Indices) -> tuple[Array, Array]:
-        """What lies between the nearest of some pairs beyond its margin, (T,), and how that grows with each joint, (T, J)."""
-        placed = self._placed(q_rad, with_joints=True)
-        distance, s, t = self._distances(q_rad, placed, of)
-        beyond = distance - self._margin_m[of]
-        rows, worst = np.arange(len(q_rad)), beyond.argmin(1)
-        return beyond.min(1), self._ways(q_rad, placed, rows, of[worst], beyond[rows, worst], (s, t), worst)
-
-    def near(self, q_rad: Array, within_m: float) -> tuple[Indices, Array, Array]:
-        """Pairs with less than `within_m` beyond their margin in poses (T, J).
-
-        Returns:
-            Of each the pose (R,), what lies beyond the margin (R,), and how that grows with each joint (R, J).
-        """
-        placed = self._placed(q_rad, with_joints=True)
-        distance, s, t = self._distances(q_rad, placed, self._every)
-        beyond = distance - self._margin_m
-        rows, pair = np.nonzero(beyond < within_m)
-        return rows, beyond[rows, pair], self._ways(q_rad, placed, rows, pair, beyond[rows, pair], (s, t), pair)
-
-    def _ways(
-        self, q_rad: Array, placed: Placed, rows: Indices, pair: Indices, beyond_m: Array,
-        along: tuple[Array, Array], column: Indices,
-    ) -> Array:  # fmt: skip
-        """(R, J) how the distances of R pairs, each in the pose of its row, grow with each joint.
-
-        `along` is where on each axis they are taken, (T, n), with R columns of them.
-        """
-        s, t = (x[rows, column, None] for x in along)
-        a, b = self._pairs[pair].T
-        point1 = placed.centre[rows, a] + s * placed.axis[rows, a]
-        point2 = placed.centre[rows, b] + t * placed.axis[rows, b]
-        apart = point2 - point1  # of segments, which have a direction even where capsules overlap
-        for i in np.flatnonzero(~self._exact[pair] & (beyond_m < MEASURED_M)):
-            self._place(q_rad[rows[i]])
-            overlap = self._measured(int(pair[i])) < 0
-            point1[i], point2[i] = self._points[:3], self._points[3:]
-            apart[i] = (point1[i] - point2[i]) if overlap else (point2[i] - point1[i])
-        normal = apart / np.maximum(np.linalg.norm(apart, axis=1, keepdims=True), 1e-9)
-        lever = ((point1 + point2) / 2)[:, None] - placed.anchor[rows]
-        turned = np.einsum("tji,ti->tj", cross(placed.joint_axis[rows], lever), normal)
-        body = self._model.geom_bodyid
-        return turned * (self._above[body[b]] - self._above[body[a]])
 
     def pairs_between(self, some: Indices, others: Indices) -> Indices:
         """Which pairs have one shape of `some` and one of `others`."""
@@ -144,30 +108,44 @@ class SelfContact(PairDistances):
 
         `allowed` is that of a pose within a margin in which a path began: nobody could ever leave such a pose otherwise.
         """
+        return self.along_near(control_rad, allowed, None)[0]
+
+    def along_near(
+        self, control_rad: Array, allowed: Allowed | None, least: LeastDistances | None
+    ) -> tuple[NDArray[np.bool_], LeastDistances]:
+        """The same near frames of which lower bounds are known; and those of its own frames, from the second border on."""
         margin_m, kept_m = (self._margin_m, KEPT * self._margin_m) if allowed is None else allowed
-        known = self._known((control_rad[:-1] + control_rad[1:]) / 2, self._every)
-        border = known.distance
-        touching = np.asarray((border < margin_m).any(1), bool)
-        hit = touching[:-1] | touching[1:]
+        q_rad = (control_rad[:-1] + control_rad[1:]) / 2
+        placed = self._placed(q_rad, with_joints=False)
+        least_m = self._bounds(q_rad, placed) if least is None else least.at(q_rad, -1)
         step_rad = np.abs(control_rad[1:] - control_rad[:-1])
-        step = step_rad @ self._sweep_m.T  # (N - 1, P)
         # Speed changes in a straight line, so a segment moves by no more than the mean of the speeds at its ends.
-        near = np.asarray(border[:-1] + border[1:] - (step[:-1] + step[1:]) / 2 < 2 * kept_m, bool) & ~hit[:, None]
-        segment, of = np.flatnonzero(near.any(1)), np.flatnonzero(near.any(0))
+        step = step_rad @ self._sweep_m.T  # (N - 1, P)
+        moves = (step[:-1] + step[1:]) / 2
+        every = np.asarray(least_m[:-1] + least_m[1:] - moves < 2 * kept_m, bool).any(0) | (least_m < margin_m).any(0)
+        of = np.flatnonzero(every)
+        known = self._known_of(q_rad, placed, of, least_m[:, of])
+        border = least_m[:, of] = known.distance
+        found = LeastDistances(q_rad[1:], least_m[1:], self._sweep_m)
+        touching = np.asarray((border < margin_m[of]).any(1), bool)
+        hit = touching[:-1] | touching[1:]
+        near = np.asarray(border[:-1] + border[1:] - moves[:, of] < 2 * kept_m[of], bool) & ~hit[:, None]
+        segment, some = np.flatnonzero(near.any(1)), np.flatnonzero(near.any(0))
         if not len(segment):
-            return hit
+            return hit, found
         # From here on only those pairs that may come near, each half of a segment moving by half of its fastest.
+        of, known, near = of[some], known.of(some), near[segment][:, some]
         moved = np.maximum(step[:-1], step[1:])
         bend_rad = np.abs(control_rad[2:] - 2 * control_rad[1:-1] + control_rad[:-2])
         bent = self._spans.bends_m(step_rad, bend_rad, moved)[segment][:, of]
-        moved, near, kept_m, margin_m = moved[segment][:, of], near[segment][:, of], kept_m[of], margin_m[of]
-        known, ends = known.of(of), np.stack([segment, segment + 1])
+        moved, kept_m, margin_m = moved[segment][:, of], kept_m[of], margin_m[of]
+        ends = np.stack([segment, segment + 1])
         u = np.tile((0.0, 1.0), (len(segment), 1))
         for _ in range(_DEEPEST):
             near = self._still_near(near, known, ends, of, bent, kept_m)
             unsure = near.any(1) & ~hit[segment]
             if not unsure.any():
-                return hit
+                return hit, found
             segment, u, ends, near = segment[unsure], u[unsure], ends[:, unsure], near[unsure]
             moved, bent = moved[unsure], bent[unsure]
             middle = u.mean(1)
@@ -181,7 +159,7 @@ class SelfContact(PairDistances):
             moved, bent = np.concatenate([moved, moved]) / 2, np.concatenate([bent, bent]) / 4
             near &= known.distance[ends[0]] + known.distance[ends[1]] - moved < 2 * kept_m
         hit[segment[near.any(1)]] = True
-        return hit
+        return hit, found
 
     def clear_along(self, way_rad: Array, share: float = KEPT, first_slack_m: Array | None = None) -> bool:
         """Whether straight lines from pose to pose of (N, J) keep a share of every margin at every instant.
@@ -207,7 +185,7 @@ class SelfContact(PairDistances):
             u, first, last = u[segment], first[segment][:, pairs], last[segment][:, pairs]
             middle = u.mean(1)
             q = _on_lines(way_rad, middle)
-            between = self._distances(q, self._placed(q, with_joints=False), of)[0] - kept_m[of]
+            between = self._distances(q, self._placed(q, with_joints=False), of).distance_m - kept_m[of]
             if (between <= 0).any():
                 return False
             u = np.concatenate([np.stack([u[:, 0], middle], 1), np.stack([middle, u[:, 1]], 1)])
@@ -215,8 +193,19 @@ class SelfContact(PairDistances):
         return False
 
     def _known(self, q_rad: Array, of: Indices) -> Known:
-        placed = self._placed(q_rad, with_joints=False)
-        return Known(placed.centre, placed.axis, placed.turn, *self._distances(q_rad, placed, of))
+        return self._known_of(q_rad, self._placed(q_rad, with_joints=False), of, None)
+
+    def _known_of(self, q_rad: Array, placed: Placed, of: Indices, least_m: Array | None) -> Known:
+        found = self._distances(q_rad, placed, of, least_m)
+        return Known(placed.centre, placed.turn, found.distance_m, self._apart(placed, of, found))
+
+    def _bounds(self, q_rad: Array, placed: Placed) -> Array:
+        """(T, P) lower bounds of distances in poses (T, J) of which each is near the next: some are measured."""
+        frames = np.arange(len(q_rad))
+        some = frames[min(_EACH // 2, len(frames) - 1) :: _EACH]
+        nearest = np.minimum(frames // _EACH, len(some) - 1)
+        measured = self._distances(q_rad[some], placed.of(some), self._every).distance_m
+        return measured[nearest] - np.abs(q_rad - q_rad[some[nearest]]) @ self._sweep_m.T
 
     def _still_near(
         self, near: NDArray[np.bool_], known: Known, ends: Indices, of: Indices, bent: Array, kept_m: Array
@@ -226,6 +215,13 @@ class SelfContact(PairDistances):
         least = self._spans.least_m(known, ends[:, span], at, of[at]) - bent[span, at]
         near[span, at] = least < kept_m[at]
         return near
+
+    def _extents_m(self) -> tuple[Array, Array]:
+        """(geoms, 3) half edges of boxes and half lengths of capsules, and (geoms,) the radii of what is no box."""
+        box: NDArray[np.bool_] = np.asarray(self._model.geom_type == int(mujoco.mjtGeom.mjGEOM_BOX), bool)[:, None]
+        along_axis = np.zeros_like(self._box_half_m)
+        along_axis[:, 2] = self._half_m
+        return np.where(box, self._box_half_m, along_axis), np.where(box[:, 0], 0.0, self._radius_m)
 
     def _sweeps(self) -> Array:
         """(P, J) metres that the shapes of each pair move against each other at most, per radian of each joint."""

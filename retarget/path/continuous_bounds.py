@@ -1,8 +1,8 @@
-"""How near two capsules can come between two poses: a bound from below, to second order in what the joints move.
+"""How near two shapes can come between two poses: a bound from below, to second order in what the joints move.
 
-In the frame of the last body that carries both capsules take any fixed direction n. Along n they are apart by the least,
-over their ends, of n . (b - a), which is not more than their distance. Between two instants h apart the ends' accelerations
-are at most A, so that this keeps above its smaller value at both instants less A h^2 / 8. A point r from the axes of
+In the frame of the last body that carries both shapes take any fixed direction n. Along n they are apart by the least,
+over their points, of n . (b - a), which is not more than their distance. Between two instants h apart the points'
+accelerations are at most A, so that this keeps above its smaller value at both instants less A h^2 / 8. A point r from the axes of
 joints that turn by w and are accelerated by w' has at most sum(w) sum(r w) + sum(r w'): its second derivatives by two
 joints are a1 x (a2 x r), not longer than the reach of the outer one, which is the shorter reach of both.
 
@@ -23,27 +23,23 @@ _LEAST_M = 1e-9
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of R poses and n pairs of capsules.
+    """What is known of R poses and n pairs of shapes.
 
     Attributes:
-        centre: (R, geoms, 3) centres of all capsules.
-        axis: (R, geoms, 3) their unit axes.
-        turn: (R, geoms, 9) rotations of all shapes.
+        centre: (R, geoms, 3) centres of all shapes.
+        turn: (R, geoms, 9) their rotations.
         distance: (R, n) of each pair.
-        s: (R, n) where on the first axis of each pair it is taken, from the centre.
-        t: (R, n) where on the second.
+        apart: (R, n, 3) about from the first to the second of each pair where they are nearest, of any length.
     """
 
     centre: Array
-    axis: Array
     turn: Array
     distance: Array
-    s: Array
-    t: Array
+    apart: Array
 
     def of(self, pairs: Indices) -> Known:
         """The bounds of some of the pairs."""
-        return Known(self.centre, self.axis, self.turn, self.distance[:, pairs], self.s[:, pairs], self.t[:, pairs])
+        return Known(self.centre, self.turn, self.distance[:, pairs], self.apart[:, pairs])
 
     def and_also(self, more: Known) -> Known:
         """These poses, then those."""
@@ -53,17 +49,18 @@ class Known:
 class Spans:
     """Bounds of a robot's P pairs of shapes between poses."""
 
-    def __init__(self, pairs: Indices, above: Array, half_m: Array, radii_m: Array, sweep_m: Array) -> None:
+    def __init__(self, pairs: Indices, above: Array, half_m: Array, round_m: Array, sweep_m: Array) -> None:
         """Read which joints part each pair.
 
         Args:
             pairs: (P, 2) shapes.
             above: (geoms, J) 1 where a joint moves a shape.
-            half_m: (geoms,) half lengths of the capsules.
-            radii_m: (P,) sum of both radii.
+            half_m: (geoms, 3) half edges of the boxes; of a capsule its half length along its axis.
+            round_m: (geoms,) what rounds them: radii of capsules.
             sweep_m: (P, J) reach of each pair from each joint that parts it.
         """
-        self._pairs, self._half_m, self._radii_m, self._sweep_m = pairs, half_m, radii_m, sweep_m
+        self._pairs, self._half_m, self._sweep_m = pairs, half_m, sweep_m
+        self._radii_m = round_m[pairs].sum(1)
         a, b = pairs.T
         self._parting: Array = (above[a] != above[b]).astype(np.float64)
         beside = (above[None] == (above[a] * above[b])[:, None]).all(2)  # shapes fixed to what carries both
@@ -94,15 +91,18 @@ class Spans:
             pair: (K,) the same among all pairs.
         """
         a, b = self._pairs[pair].T
-        axis_a, axis_b = known.axis[rows, a], known.axis[rows, b]  # (2, K, 3)
-        offset = known.centre[rows, b] - known.centre[rows, a]
-        apart = offset + known.t[rows, at][..., None] * axis_b - known.s[rows, at][..., None] * axis_a
-        apart /= np.maximum(np.sqrt(np.vecdot(apart, apart)), _LEAST_M)[..., None]
+        apart = known.apart[rows, at]  # (2, K, 3)
+        apart = apart / np.maximum(np.sqrt(np.vecdot(apart, apart)), _LEAST_M)[..., None]
         # The mean direction, as the body that carries both sees it, turned back for each of the poses.
         turn = known.turn[rows, self._carrier[pair]].reshape(*rows.shape, 3, 3)
         seen = (apart[..., None, :] @ turn)[..., 0, :].sum(0)
         seen /= np.maximum(np.sqrt(np.vecdot(seen, seen)), _LEAST_M)[:, None]
         along = (turn @ seen[..., None])[..., 0]
-        half_a, half_b = self._half_m[a], self._half_m[b]
-        ends = half_a * np.abs(np.vecdot(along, axis_a)) + half_b * np.abs(np.vecdot(along, axis_b))
+        offset = known.centre[rows, b] - known.centre[rows, a]
+        ends = self._half_along(known, rows, a, along) + self._half_along(known, rows, b, along)
         return (np.vecdot(along, offset) - ends).min(0) - self._radii_m[pair]
+
+    def _half_along(self, known: Known, rows: Indices, of: Indices, along: Array) -> Array:
+        """(2, K) how far shapes reach from their centres along unit directions (2, K, 3), without what rounds them."""
+        turn = known.turn[rows, of].reshape(*rows.shape, 3, 3)
+        return np.vecdot(np.abs((along[..., None, :] @ turn)[..., 0, :]), self._half_m[of])

@@ -41,6 +41,27 @@ class Placed:
     joint_axis: Array
     anchor: Array
 
+    def of(self, poses: Indices) -> Placed:
+        """The shapes in some of the poses."""
+        return Placed(self.centre[poses], self.axis[poses], self.turn[poses], self.joint_axis[:0], self.anchor[:0])
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Distances of n pairs in T poses, and where they are taken.
+
+    Attributes:
+        distance_m: (T, n).
+        along: twice (T, n): metres from the centre of each capsule of a pair, or of one round a shape, along its axis.
+        points_m: nearest points, both in (6,), of those that MuJoCo measured, by pose and column.
+        others: poses and columns (R,), and (R, 3) about which way the shapes are apart, of those that boxes were measured.
+    """
+
+    distance_m: Array
+    along: tuple[Array, Array]
+    points_m: dict[tuple[int, int], Array]
+    others: list[tuple[Indices, Indices, Array]]
+
 
 class PairDistances:
     """Distances of pairs of shapes of one robot, and the margin that each pair keeps."""
@@ -48,7 +69,6 @@ class PairDistances:
     def __init__(self, robot: RobotModel, margin_m: float = MARGIN_M) -> None:
         self._model: Any = description_spec(robot).compile()
         self._data: Any = mujoco.MjData(self._model)
-        self._points = np.zeros(6)
         joints = [self._model.joint(name) for name in robot.joint_names]
         self._address = np.array([j.qposadr[0] for j in joints])
         self._joint_ids = np.array([j.id for j in joints])
@@ -63,10 +83,10 @@ class PairDistances:
 
     def distances_m(self, q_rad: Array) -> Array:
         """(T, P) distance of each pair in each pose (T, J): exact where small, else not more than the true one."""
-        return self._distances(q_rad, self._placed(q_rad, with_joints=False), self._every)[0]
+        return self._distances(q_rad, self._placed(q_rad, with_joints=False), self._every).distance_m
 
-    def _distances(self, q_rad: Array, placed: Placed, of: Indices) -> tuple[Array, Array, Array]:
-        """Distances (T, n) of n pairs, and for capsules where along each axis they are taken."""
+    def _distances(self, q_rad: Array, placed: Placed, of: Indices, least_m: Array | None = None) -> Measured:
+        """Distances (T, n) of n pairs, of which lower bounds may be known, (T, n)."""
         # All inner products of centres and axes by one multiplication, then those of each pair.
         vectors = np.concatenate([placed.centre, placed.axis], 1)
         products: Array = (vectors @ vectors.transpose(0, 2, 1)).reshape(len(q_rad), vectors.shape[1] ** 2)
@@ -75,12 +95,16 @@ class PairDistances:
         half1, half2 = self._half_lengths_m[:, of]
         squared, s, t = nearest_along(aa + bb - 2 * ab, cosine, axis_a - axis_ab, axis_ba - axis_b, half1, half2)
         distance = np.sqrt(squared) - self._radii_m[of]
+        if least_m is not None:
+            np.maximum(distance, least_m, out=distance)
+        found = Measured(distance, (s, t), {}, [])
         if not self._all_exact:
-            self._measure(q_rad, placed, of, distance)
-        return distance, s, t
+            self._measure(q_rad, placed, of, found)
+        return found
 
-    def _measure(self, q_rad: Array, placed: Placed, of: Indices, distance: Array) -> None:
-        """Make distances (T, n) of pairs that are no capsules exact where they are small."""
+    def _measure(self, q_rad: Array, placed: Placed, of: Indices, found: Measured) -> None:
+        """Make distances of pairs that are no capsules exact where they are small."""
+        distance = found.distance_m
         small_m = self._margin_m[of] + MEASURED_M
         t, p = np.nonzero((distance < small_m) & ~self._exact[of])
         if not len(t):
@@ -88,29 +112,30 @@ class PairDistances:
         pair = of[p]
         both = self._both_boxes[pair]
         if both.any():
-            self._bound_boxes(placed, t[both], p[both], pair[both], distance)
+            self._bound_boxes(placed, t[both], p[both], pair[both], found)
         deep = np.ones(len(t), bool)
         beside = self._box[pair] >= 0
         if beside.any():
-            deep[beside] = self._beside_boxes(placed, t[beside], p[beside], pair[beside], distance)
+            deep[beside] = self._beside_boxes(placed, t[beside], p[beside], pair[beside], found)
         left = deep & (distance[t, p] < small_m[p])
         at = -1
         for i, k, g in zip(t[left].tolist(), p[left].tolist(), pair[left].tolist(), strict=True):
             if i != at:
                 self._place(q_rad[i])
                 at = i
-            distance[i, k] = self._measured(g)
+            distance[i, k], found.points_m[i, k] = self._measured(g)
 
-    def _bound_boxes(self, placed: Placed, t: Indices, p: Indices, pair: Indices, distance: Array) -> None:
-        """Write nearer bounds of the distances of boxes to boxes, `pair` (n,) in poses `t`, into `distance` at (t, p)."""
+    def _bound_boxes(self, placed: Placed, t: Indices, p: Indices, pair: Indices, found: Measured) -> None:
+        """Write nearer bounds of the distances of boxes to boxes, `pair` (n,) in poses `t`, into `found` at (t, p)."""
         a, b = self._pairs[pair].T
         turn_a, turn_b = (placed.turn[t, g].reshape(-1, 3, 3) for g in (a, b))
         offset = placed.centre[t, b] - placed.centre[t, a]
-        apart = box_to_box(offset, turn_a, self._box_half_m[a], turn_b, self._box_half_m[b])
-        distance[t, p] = np.where(apart > 0, np.maximum(distance[t, p], apart), distance[t, p])
+        apart, way = box_to_box(offset, turn_a, self._box_half_m[a], turn_b, self._box_half_m[b])
+        found.distance_m[t, p] = np.where(apart > 0, np.maximum(found.distance_m[t, p], apart), found.distance_m[t, p])
+        found.others.append((t, p, way))
 
     def _beside_boxes(
-        self, placed: Placed, t: Indices, p: Indices, pair: Indices, distance: Array
+        self, placed: Placed, t: Indices, p: Indices, pair: Indices, found: Measured
     ) -> NDArray[np.bool_]:
         """Write distances of capsules to boxes, as `_bound_boxes`; (n,) whether MuJoCo still knows better.
 
@@ -120,9 +145,25 @@ class PairDistances:
         turn = placed.turn[t, box].reshape(-1, 3, 3)  # columns are the box's axes
         offset = (placed.centre[t, other] - placed.centre[t, box])[:, None] @ turn
         axis = placed.axis[t, other][:, None] @ turn
-        apart = capsule_to_box(offset[:, 0], axis[:, 0], self._half_m[other], self._box_half_m[box])
-        distance[t, p] = np.maximum(distance[t, p], apart - self._radius_m[other])
+        apart, way = capsule_to_box(offset[:, 0], axis[:, 0], self._half_m[other], self._box_half_m[box])
+        found.distance_m[t, p] = np.maximum(found.distance_m[t, p], apart - self._radius_m[other])
+        way = np.where((box == self._pairs[pair, 0])[:, None], way, -way)  # from the first of the pair to the second
+        found.others.append((t, p, (turn @ way[..., None])[..., 0]))
         return ~self._exact_geom[other] | (apart <= 0)
+
+    def _apart(self, placed: Placed, of: Indices, found: Measured) -> Array:
+        """(T, n, 3) about which way the second shape of each of n pairs is from the first where they are nearest."""
+        (a, b), (s, t) = self._pairs[of].T, found.along
+        apart = placed.centre[:, b] - placed.centre[:, a]
+        apart += t[..., None] * placed.axis[:, b] - s[..., None] * placed.axis[:, a]
+        for pose, column, way in found.others:
+            some = (way != 0).any(1)
+            apart[pose[some], column[some]] = way[some]
+        for at, points in found.points_m.items():
+            way = points[3:] - points[:3]
+            if way.any():
+                apart[at] = way
+        return apart
 
     def _placed(self, q_rad: Array, *, with_joints: bool) -> Placed:
         """Capsules, and joints where asked for, in poses (T, J)."""
@@ -146,16 +187,17 @@ class PairDistances:
         self._data.qpos[self._address] = q_rad
         mujoco.mj_kinematics(self._model, self._data)
 
-    def _measured(self, pair: int) -> float:
-        """MuJoCo's distance of a pair in the pose set; the nearest points are left in `_points`."""
-        a, b = self._pair_list[pair]
-        return float(mujoco.mj_geomDistance(self._model, self._data, a, b, _FARTHEST_M, self._points))
+    def _measured(self, pair: int) -> tuple[float, Array]:
+        """MuJoCo's distance of a pair in the pose set, and the nearest points, both in (6,)."""
+        (a, b), points = self._pair_list[pair], np.zeros(6)
+        return float(mujoco.mj_geomDistance(self._model, self._data, a, b, _FARTHEST_M, points)), points
 
     def _shapes(self) -> None:
         """A capsule for each shape: itself, or one round it."""
         model = self._model
         kinds, size = model.geom_type, model.geom_size
-        self._half_m, radius, self._box_half_m = np.zeros(model.ngeom), model.geom_rbound.copy(), size
+        self._half_m, radius = np.zeros(model.ngeom), model.geom_rbound.copy()
+        self._box_half_m: Array = np.asarray(size, np.float64)
         along = np.full(model.ngeom, 2)
         exact = np.isin(kinds, _CAPSULE_TYPES)
         for g in range(model.ngeom):

@@ -14,17 +14,19 @@ from numpy.typing import NDArray
 
 from retarget.path.arm_program import ArmProgram, Frames, Rooms, Steady
 from retarget.path.collision import KEPT, SelfContact
+from retarget.path.least_distances import LeastDistances
 from retarget.path.limits import JointLimits
+from retarget.path.slopes import NearPairs
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-Hits = NDArray[np.bool_]
+Touching = Callable[[Array, LeastDistances], NDArray[np.bool_]]
 Shown = Callable[[Array], tuple[Array, Array]]
 """Half the squared error of frames (T, J) linearised: hessian (T, J, J) and how fast it falls (T, J)."""
 _TRUST_RAD = (0.4, 0.2, 0.1, 0.1, 0.1)
 """Radians that a control point may move in each round."""
 _NEAR_M = 0.03
-"""Metres beyond its margin within which a pair is part of the program."""
+"""Metres beyond its margin within which a pair is part of the program, in a frame; between frames a third of it."""
 _MOST_PAIRS = 4
 """Pairs of each pose that are part of it, the nearest."""
 _AIM_M = 0.001
@@ -58,7 +60,13 @@ class Refiner:
         self._contact, self._limits, self._joints = contact, limits, joints
 
     def refine(
-        self, control_rad: Array, shown: Shown, n_frames: int, period_s: float, touching: Callable[[Array], Hits]
+        self,
+        control_rad: Array,
+        shown: Shown,
+        n_frames: int,
+        period_s: float,
+        touching: Touching,
+        least: LeastDistances,
     ) -> Array | None:
         """Control points that show more than the given ones and touch nothing; None where none were found.
 
@@ -67,18 +75,17 @@ class Refiner:
             shown: the cost of frames (T, J).
             n_frames: T; frames after them have hardly any weight.
             period_s: between control points.
-            touching: which of the N - 2 segments of such control points touch.
+            touching: which of the N - 2 segments of such control points touch, given bounds of distances in their frames.
+            least: bounds of distances in frames near those of `control_rad`.
         """
         control, joints, N = control_rad.copy(), self._joints, len(control_rad) - 2
         program = self._program(control, period_s)
         more_m = np.full(N, _AIM_M)
         for k in range(len(_TRUST_RAD) + 1):
-            frames = (control[1:-1] + control[2:]) / 2
-            between = (control[:-2] + 6 * control[1:-1] + control[2:]) / 8
-            pose, room_m, grows = self._contact.near(np.concatenate([frames, between]), _NEAR_M)
+            near, least = self._near(control, least)
             if k:
-                lacks = pose[room_m < np.where(pose < N, 0.0, -_BETWEEN_M)]
-                hit = np.isin(np.arange(N), lacks % N) if len(lacks) else touching(control)
+                lacks = near.pose[near.room_m < np.where(near.pose < N, 0.0, -_BETWEEN_M)]
+                hit = np.isin(np.arange(N), lacks % N) if len(lacks) else touching(control, least)
                 if not hit.any():
                     return control
                 more_m[hit] += _MORE_M
@@ -86,14 +93,23 @@ class Refiner:
                 more_m[1:][hit[:-1] & ~hit[1:]] += _MORE_M
             if k == len(_TRUST_RAD):
                 break
-            rooms = self._rooms(pose, room_m, grows, more_m)
-            change = program.change(
-                control[2:, joints], self._costs(shown, frames, n_frames), rooms, _STEADY, _TRUST_RAD[k]
-            )
+            rooms = self._rooms(near, more_m)
+            costs = self._costs(shown, least.q_rad, n_frames)
+            change = program.change(control[2:, joints], costs, rooms, _STEADY, _TRUST_RAD[k])
             if change is None:
                 break
             control[2:, joints] += change
         return None
+
+    def _near(self, control: Array, least: LeastDistances) -> tuple[NearPairs, LeastDistances]:
+        """The near pairs of N frames and of the N poses between them; and bounds of distances in the frames."""
+        frames = (control[1:-1] + control[2:]) / 2
+        between = (control[:-2] + 6 * control[1:-1] + control[2:]) / 8
+        within_m = np.repeat((_NEAR_M, _NEAR_M / 3), len(frames))
+        least_m = least.at(frames)
+        of_between = LeastDistances(frames, least_m, least.sweep_m).at(between)
+        near = self._contact.near(np.concatenate([frames, between]), within_m, np.concatenate([least_m, of_between]))
+        return near, LeastDistances(frames, near.least_m[: len(frames)], least.sweep_m)
 
     def _program(self, control: Array, period_s: float) -> ArmProgram:
         limits, joints = self._limits, self._joints
@@ -119,15 +135,15 @@ class Refiner:
         hessian[:, range(n), range(n)] += _LEAST
         return Frames(hessian, fall)
 
-    def _rooms(self, pose: Indices, room_m: Array, grows: Array, more_m: Array) -> Rooms:
+    def _rooms(self, near: NearPairs, more_m: Array) -> Rooms:
         """The rows of N frames and of the N poses between them, which count as their control points."""
-        N = len(more_m)
-        some = np.flatnonzero(((pose < N) | (room_m < _NEAR_M / 3)) & (_rank(pose, room_m) < _MOST_PAIRS))
+        N, pose, room_m = len(more_m), near.pose, near.room_m
+        some = np.flatnonzero(_rank(pose, room_m) < _MOST_PAIRS)
         some = some[np.argsort(pose[some] % N, kind="stable")]
         point, is_frame = pose[some] % N, pose[some] < N
         share = np.where(is_frame[:, None], 0.5, (0.0, 1.0))
         share[point == 0, 0] = 0.0  # what comes before it is known
-        return Rooms(point, share, grows[some][:, self._joints], room_m[some] - more_m[point], _STIFFNESS)
+        return Rooms(point, share, near.grows(some)[:, self._joints], room_m[some] - more_m[point], _STIFFNESS)
 
 
 def _rank(pose: Indices, room_m: Array) -> Indices:

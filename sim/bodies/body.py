@@ -1,4 +1,4 @@
-"""The contract of a body, which the servos move, and the plain body, in which every shaft turns independently.
+"""What the servos turn: the contract of a body, and the plain one in which every shaft turns for itself.
 
 Angles are those of the servos' output shafts, in radians from tick 0, so that a body knows no registers. With the plain
 body a servo carries nothing but its own rotor: without profile it follows a goal with about a first-order lag.
@@ -18,38 +18,38 @@ Array = NDArray[np.float64]
 
 
 class Body(Protocol):
-    """Shafts that turn under the servos' torques."""
+    """Shafts that take torque and turn."""
 
     position_rad: Array
     """(S,) angle of each shaft; write it only while nothing steps."""
     velocity_rad_s: Array
-    """(S,) velocity of each shaft, rad/s."""
+    """(S,) speed of each shaft."""
 
     @property
     def at_rest(self) -> bool:
-        """Whether every shaft would stay where it is under unchanged torques."""
+        """Whether, with the same torques, nothing would move."""
         ...
 
     @property
     def self_contacts(self) -> int:
-        """Number of steps so far in which the robot touched itself."""
+        """Steps so far in which the robot touched itself."""
         ...
 
     def step(self, torque_nm: Array, blocked: NDArray[np.bool_], step_s: float) -> None:
-        """Advance by `step_s` seconds under (S,) torques; a blocked shaft does not turn."""
+        """Move on by `step_s` under (S,) torques; a blocked shaft does not turn."""
         ...
 
     def place(self, shaft: int, position_rad: float) -> None:
-        """Set one shaft to a position, at rest."""
+        """Put one shaft somewhere, at rest."""
         ...
 
     def push(self, joint: int | None, amount: float) -> None:
-        """Set an external torque (N m) on one shaft, on all when None; it stays until the next call."""
+        """An external torque (N m) on one shaft, on all when None; stays until it is changed."""
         ...
 
 
 class PlainBody:
-    """Independent shafts, each with its rotor's inertia and friction."""
+    """Shafts apart from each other, each with its rotor's inertia and friction."""
 
     self_contacts = 0
 
@@ -63,11 +63,11 @@ class PlainBody:
 
     @property
     def at_rest(self) -> bool:
-        """Whether no shaft turns and friction held all of them in the last step."""
+        """Nothing turns, and friction held it in the last step."""
         return not np.count_nonzero(self.velocity_rad_s)
 
     def step(self, torque_nm: Array, blocked: NDArray[np.bool_], step_s: float) -> None:
-        """Integrate by semi-implicit Euler; friction may stop a shaft but never reverse it."""
+        """Semi-implicit Euler; friction may stop a shaft but never turn it round."""
         rate = self._per_inertia * step_s
         velocity = self.velocity_rad_s + (torque_nm + self._push_nm - self._damping * self.velocity_rad_s) * rate
         slowed = np.maximum(np.abs(velocity) - self._friction_nm * rate, 0.0)
@@ -77,10 +77,10 @@ class PlainBody:
         self.position_rad = self.position_rad + self.velocity_rad_s * step_s
 
     def place(self, shaft: int, position_rad: float) -> None:
-        """Set one shaft to a position, at rest."""
+        """Put one shaft somewhere, at rest."""
         self.position_rad[shaft] = position_rad
         self.velocity_rad_s[shaft] = 0.0
 
     def push(self, joint: int | None, amount: float) -> None:
-        """Set an external torque in N m on one shaft, or on all."""
+        """An external torque in N m on one shaft, or on all."""
         self._push_nm[slice(None) if joint is None else joint] = amount

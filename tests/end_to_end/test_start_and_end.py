@@ -132,7 +132,7 @@ def test_a_wrong_baud_and_other_servos_show_a_table(tty, tmp_path):
     assert "expected" in other and "found" in other
 
 
-def test_a_text_moves_over_a_tty_and_sigterm_parks(tty):
+def test_a_text_moves_over_a_tty_and_a_second_daemon_learns_the_owner(tty):
     url = tty.url(baud_of("op3"))
     daemon = RunningDaemon(robot="op3", bus=url)
     try:
@@ -143,20 +143,30 @@ def test_a_text_moves_over_a_tty_and_sigterm_parks(tty):
         message = refused("--robot", "op3", "--bus", url)
         assert str(tty.link) in message or str(tty.link.resolve()) in message
         assert daemon.terminate() == 0
-        assert "parking -> limp" in daemon.said
     finally:
         daemon.close()
     assert tty.close() == 0  # its audit found no violation
     assert tty.audit.exists()
 
 
-def test_ctrl_c_during_a_motion_parks_too_and_the_command_is_cancelled():
-    """Before that, a second daemon on the same sockets is refused."""
+def test_sigterm_parks_and_a_second_daemon_on_the_same_sockets_is_refused():
     daemon = RunningDaemon()
     try:
         daemon.until_ready()
+        assert daemon.mmmd("say", "wave", "--no-wait").returncode == 0
         message = refused("--cmd", daemon.endpoints.cmd)
         assert daemon.endpoints.cmd in message and "already in use" in message
+        assert daemon.terminate() == 0
+        assert "parking -> limp" in daemon.said
+        assert '"violations": 0' in daemon.audit.read_text()
+    finally:
+        daemon.close()
+
+
+def test_ctrl_c_during_a_motion_parks_too_and_the_command_is_cancelled():
+    daemon = RunningDaemon()
+    try:
+        daemon.until_ready()
         said = subprocess.Popen([*MMMD, "say", "wave", "--seconds", "5", *daemon.at], stdout=subprocess.PIPE, text=True)
         with daemon.client() as client:
             client.wait_for("moving", timeout_s=20)
@@ -164,8 +174,6 @@ def test_ctrl_c_during_a_motion_parks_too_and_the_command_is_cancelled():
         out, _ = said.communicate(timeout=20)
         assert "cancelled by shutdown" in out and said.returncode == 1
         assert daemon.ended() == 0
-        assert "parking -> limp" in daemon.said
-        assert '"violations": 0' in daemon.audit.read_text()
     finally:
         daemon.close()
 

@@ -38,8 +38,7 @@ def test_distances_are_exact_where_small_and_never_too_large(name: str) -> None:
     assert (ours <= theirs + 1e-6).all()
     small = (theirs > 0) & (theirs < contact._margin_m)
     assert small.any(), "no pose comes near itself: nothing was tested"
-    # A box is met by a capsule's axis to a 256th of its half length.
-    np.testing.assert_allclose(ours[small], theirs[small], atol=5e-4)
+    np.testing.assert_allclose(ours[small], theirs[small], atol=1e-5)
     np.testing.assert_array_equal(ours < 0, theirs < 0)
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -9,6 +12,7 @@ from retarget.path.collision import SelfContact
 from retarget.robot.loading import list_robots, load_robot
 from tests.support.robots import ByName, packaged
 
+mujoco: Any = importlib.import_module("mujoco")
 CONTACTS = ByName(list_robots(), lambda name: SelfContact(packaged(name)))
 
 
@@ -21,7 +25,10 @@ def splines(name: str, n: int, step_rad: float) -> np.ndarray:
 
 
 def bounds_m(contact: SelfContact, control: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(n, P) second-order and first-order bounds of each segment's distances, and the least of 41 samples."""
+    """(n, P) second-order and first-order bounds of each segment's distances, and the least of 21 samples.
+
+    Of pairs of capsules the samples are exact; of others each is MuJoCo's where a bound is near it or above it.
+    """
     n, pairs = len(control), contact._every
     ends = (control[:, :-1] + control[:, 1:]) / 2
     known = contact._known(ends.reshape(2 * n, -1), pairs)
@@ -30,10 +37,14 @@ def bounds_m(contact: SelfContact, control: np.ndarray) -> tuple[np.ndarray, np.
     bent = np.stack([contact._spans.bends_m(step[i], bend[i : i + 1], moved[i : i + 1])[0] for i in range(n)])
     row, pair = (i.ravel() for i in np.meshgrid(np.arange(n), pairs, indexing="ij"))
     least = contact._spans.least_m(known, np.stack([2 * row, 2 * row + 1]), pair, pair).reshape(n, -1)
-    u = np.linspace(0, 1, 41)[None, :, None]
+    u = np.linspace(0, 1, 21)[None, :, None]
     c0, c1, c2 = (control[:, i, None] for i in range(3))
     place = (c0 + c1) / 2 + (c1 - c0) * u + (c2 - 2 * c1 + c0) * (u * u / 2)
-    true = contact._known(place.reshape(-1, place.shape[2]), pairs).distance.reshape(n, 41, -1).min(1)
+    samples = contact._known(place.reshape(-1, place.shape[2]), pairs).distance.reshape(n, 21, -1)
+    for i, k, p in zip(*np.nonzero((samples < (least - bent)[:, None] + 1e-3) & ~contact._exact), strict=True):
+        contact._place(place[i, k])
+        samples[i, k, p] = mujoco.mj_geomDistance(contact._model, contact._data, *contact._pair_list[p], 3.0, None)
+    true = samples.min(1)
     first_order = (known.distance[::2] + known.distance[1::2] - moved) / 2
     return least - bent, first_order, true
 
@@ -42,9 +53,11 @@ def bounds_m(contact: SelfContact, control: np.ndarray) -> tuple[np.ndarray, np.
 @pytest.mark.parametrize("step_rad", [0.03, 0.15, 0.5])
 def test_a_bound_between_poses_is_not_above_any_distance_there(name: str, step_rad: float) -> None:
     contact = CONTACTS[name]
-    second, _, true = bounds_m(contact, splines(name, 120, step_rad))
+    second, _, true = bounds_m(contact, splines(name, 60, step_rad))
     some = contact._bounded
-    assert (second[:, some] <= true[:, some] + 1e-9).all()
+    assert some.all()
+    # How deep boxes are in each other MuJoCo knows to some millimetres only, so there the sign has to be right.
+    assert ((second <= true + 1e-6) | ((second <= 0) & (true <= 0)))[:, some].all()
 
 
 @pytest.mark.parametrize("name", ["reference", "poppy_torso"])

@@ -26,7 +26,7 @@ def test_a_block_ends_with_a_frame_of_the_bus(rate_hz: float, frames: int | None
     assert block_frames(20, rate_hz) == frames
 
 
-def test_a_bus_whose_rate_fits_no_usual_block_gets_its_first_chunk_as_soon() -> None:
+def test_a_bus_of_an_odd_rate_gets_its_first_chunk_as_soon() -> None:
     """33 cycles a second and blocks of 1.2 s: such a robot waited until the whole motion was retargeted.
 
     Blocks of a second fit. One chunk goes on from the other within the limits, as the bus sends them.
