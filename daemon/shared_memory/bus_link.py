@@ -1,7 +1,7 @@
 """Memory shared between front and bus process: setpoints down, requests down, cycles up. No locks.
 
 One file in memory (`memory_files.py`), mapped by both, with two rings of one writer each (`rings.py`). Requests are words
-(`request_words.py`): an e-stop never queues behind anything, and is owed until a cycle has carried it out.
+(`request_words.py`): an e-stop never queues behind another request, and stays pending until a cycle has carried it out.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Readiness(IntEnum):
     READY = 1
     FAILED = 2
     REFUSED = 3
-    """What was asked for cannot be: the URL of the bus names an option or a value that there is not."""
+    """The bus URL names an unknown option or value."""
 
 
 class BusLink:
@@ -82,11 +82,11 @@ class BusLink:
         epochs: the halts that void setpoints.
 
     Args:
-        path: of the file.
-        n_joints: of the robot.
-        n_servos: of the robot.
-        owner: whether to make the file, and to remove it in the end.
-        asker: as whom this end asks the bus process for something.
+        path: path of the file.
+        n_joints: number of the robot's joints.
+        n_servos: number of the robot's servos.
+        owner: whether to create the file, and to remove it in the end.
+        asker: the process for which this end sends requests to the bus process.
     """
 
     def __init__(self, path: Path, n_joints: int, n_servos: int, *, owner: bool, asker: Asker = Asker.FRONT) -> None:
@@ -109,7 +109,7 @@ class BusLink:
         self.cycles = CycleRing(self._words, parts[2].view(cycles))
         self._text = parts[3]
         self.health: NDArray[np.void] = parts[4].view(HEALTH)
-        """(S,) state and counters of each servo; the bus process writes them in every cycle, anybody reads."""
+        """(S,) state and counters of each servo; the bus process writes them in every cycle, any process may read them."""
         self._requests = RequestWords(parts[5].view(np.uint64))
         self._asking = threading.Lock()
         self.epochs = Epochs(self._requests)
@@ -121,7 +121,7 @@ class BusLink:
 
     @classmethod
     def create(cls, n_joints: int, n_servos: int | None = None) -> BusLink:
-        """New shared memory, see `create_file`."""
+        """New shared memory in a file of `create_file`."""
         return cls(create_file(), n_joints, n_servos or n_joints, owner=True)
 
     @classmethod
@@ -138,20 +138,20 @@ class BusLink:
 
     @property
     def epoch(self) -> int:
-        """The epoch of the setpoints that the front pushes now."""
+        """Epoch of the setpoints that the front pushes now."""
         return self.epochs.of_front
 
     def new_number(self) -> int:
-        """The number of a request that is asked for now."""
+        """A number for a request that is made now."""
         return self._requests.next_number(self._asker, time.monotonic_ns())
 
     def request(self, kind: BusRequest, *, stay_s: float = 0.0, number: int | None = None) -> Asked:
-        """Ask the bus process for something; a stop of any kind also voids every setpoint pushed before.
+        """Send a request to the bus process; a halt of any kind also voids every setpoint pushed before.
 
         Args:
             kind: the request.
-            stay_s: seconds in the park pose after which a `PARK` goes limp.
-            number: of a request that was asked for before now; None takes a new one.
+            stay_s: seconds in the park pose after which `PARK` makes the robot limp.
+            number: number of a request that was made earlier; None takes a new one.
         """
         with self._asking:  # threads of one process
             if kind is BusRequest.PARK:
@@ -159,43 +159,43 @@ class BusLink:
             return self._requests.ask(self._asker, kind, self.new_number() if number is None else number)
 
     def carried_out(self, asked: Asked) -> bool:
-        """Whether a bus cycle has carried out what this end has asked for."""
+        """Whether a bus cycle has carried out this end's request."""
         return self._requests.carried_out(self._asker, asked)
 
     def overtaken(self, asked: Asked) -> bool:
-        """Whether a halt that came after it has made a request void."""
+        """Whether a later halt has made a request void."""
         return self._requests.overtaken(asked)
 
     def owes(self, *kinds: BusRequest) -> bool:
-        """Whether something of these kinds was asked for that no bus cycle has carried out."""
+        """Whether a request of these kinds is pending: made, and carried out by no bus cycle."""
         return any(self._requests.owes(kind) for kind in kinds)
 
     def heartbeat(self) -> None:
-        """Say that the front is alive."""
+        """Record the time of the front's heartbeat."""
         self._words[_Word.HEARTBEAT_NS] = time.monotonic_ns()
 
     def set_estop_holds(self, holds: bool) -> None:
-        """Whether an e-stop brakes and holds."""
+        """Set whether an e-stop brakes and holds instead of cutting torque."""
         self._words[_Word.ESTOP_HOLDS] = int(holds)
 
     def show_robot_state(self, index: int) -> None:
-        """Place of the robot's state in `daemon.state.machine.RobotState`, for the process that serves `ctl`."""
+        """Publish the robot's state, as its index in `daemon.state.machine.RobotState`, for the ctl process."""
         self._words[_Word.ROBOT_STATE] = index
 
     @property
     def bus_lives(self) -> bool:
-        """Whether a bus process has these requests to carry out, be it frozen."""
+        """Whether a bus process exists that can carry out requests, even a frozen one."""
         return is_held(self.path)
 
-    # The side of the process that serves `ctl`.
+    # The ctl process's side.
 
     def ctl_beats(self) -> None:
-        """Say that somebody takes e-stops."""
+        """Record the time of the ctl process's heartbeat: somebody takes e-stops."""
         self._words[_Word.CTL_BEAT_NS] = time.monotonic_ns()
 
     @property
     def ctl_beat(self) -> int:
-        """Changes as long as somebody takes e-stops; 0 before."""
+        """Monotonic time of the ctl process's last heartbeat, nanoseconds; 0 before the first."""
         return int(self._words[_Word.CTL_BEAT_NS])
 
     @property
@@ -205,7 +205,7 @@ class BusLink:
 
     @property
     def robot_state(self) -> int:
-        """State of the robot as the front has shown it, see `show_robot_state`."""
+        """Index of the robot's state, as published by `show_robot_state`."""
         return int(self._words[_Word.ROBOT_STATE])
 
     @property
@@ -215,7 +215,7 @@ class BusLink:
 
     @property
     def text(self) -> str:
-        """Why it failed or is in fault."""
+        """Why the bus process failed to start, or is in fault."""
         return bytes(self._text[: int(self._words[_Word.TEXT_LENGTH])]).decode("utf-8", "replace")
 
     @property
@@ -225,7 +225,7 @@ class BusLink:
 
     @property
     def derating(self) -> tuple[float, int, int]:
-        """Share of full speed, its cause (`daemon.control.derating.DeratedBy`), and the id of the servo that needs it most."""
+        """Share of full speed, its cause (`daemon.control.derating.DeratedBy`), and the id of the servo with the least margin."""
         words = (_Word.SPEED_PERMILLE, _Word.DERATED_BY, _Word.DERATED_SERVO)
         permille, by, servo_id = (int(self._words[word]) for word in words)
         return (permille / 1000 if permille else 1.0), by, servo_id
@@ -233,12 +233,12 @@ class BusLink:
     # Bus process's side.
 
     def hold(self) -> None:
-        """Show, to the end of this process, that there is one to carry out requests."""
+        """Mark, to the end of this process, that a bus process exists to carry out requests."""
         self._held = hold(self.path)
 
     @property
     def park_stay_s(self) -> float:
-        """Seconds that the robot stays in the park pose with torque, by the newest `PARK`."""
+        """Seconds that the robot stays in the park pose with torque, set by the newest `PARK`."""
         return int(self._words[_Word.PARK_STAY_MS]) / 1000
 
     def take_setpoint(self) -> Setpoint | None:
@@ -247,20 +247,20 @@ class BusLink:
 
     @property
     def cut_asked(self) -> bool:
-        """Whether an e-stop that cuts torque waits to be taken."""
+        """Whether an e-stop that cuts torque has not been taken yet."""
         return self._requests.waits(BusRequest.ESTOP)
 
     @property
     def estop_asked(self) -> bool:
-        """Whether an e-stop of either kind waits to be taken."""
+        """Whether an e-stop of either kind has not been taken yet."""
         return any(self._requests.waits(kind) for kind in ESTOPS)
 
     def take_request(self) -> Asked | None:
-        """The oldest request that is neither taken nor void; owed to who asked until it is `done`."""
+        """The oldest request that is neither taken nor void; it stays pending until `done`. None without one."""
         return self._requests.take()
 
     def done(self, taken: Asked) -> None:
-        """A cycle has carried out a request."""
+        """Record that a cycle has carried out a request."""
         self._requests.done(taken)
 
     @property
@@ -269,7 +269,7 @@ class BusLink:
         return (time.monotonic_ns() - int(self._words[_Word.HEARTBEAT_NS])) * 1e-9
 
     def set_ready(self, readiness: Readiness, text: str = "") -> None:
-        """Tell the front how the start went."""
+        """Report the result of the start to the front."""
         self.set_text(text)
         self._words[_Word.READY] = readiness
 
@@ -280,10 +280,10 @@ class BusLink:
         self._words[_Word.TEXT_LENGTH] = len(data)
 
     def set_realtime(self, fifo: bool, locked: bool) -> None:
-        """Tell the front which rights the bus process got."""
+        """Report to the front whether the bus process got FIFO priority and locked memory."""
         self._words[_Word.REALTIME], self._words[_Word.MEMORY_LOCKED] = int(fifo), int(locked)
 
     def set_derating(self, share: float, by: int, servo_id: int) -> None:
-        """Tell the front how fast the robot may move, and why."""
+        """Report the derating to the front: share of full speed, its cause, and the servo concerned."""
         self._words[_Word.SPEED_PERMILLE] = max(1, round(1000 * share))
         self._words[_Word.DERATED_BY], self._words[_Word.DERATED_SERVO] = by, servo_id

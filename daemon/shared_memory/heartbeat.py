@@ -1,15 +1,15 @@
-"""Whether another process has stopped to beat, judged by one's own steps: who was held up as well has missed no beat."""
+"""Detects a missing heartbeat of another process, counted in one's own steps: a watcher that was held up itself counts no miss."""
 
 from __future__ import annotations
 
 
 class HeartbeatWatch:
-    """Counts the steps in which a beat stood still.
+    """Counts the steps in which a heartbeat did not change.
 
-    The clock alone would not do: a machine that stands still for a second holds up both sides.
+    The clock alone does not suffice: a machine that stands still for a second holds up both sides.
 
     Args:
-        limit_s: seconds of steps after which the other side is lost.
+        limit_s: seconds of steps without a heartbeat after which the other process is lost.
         step_s: seconds that a step takes.
     """
 
@@ -19,7 +19,7 @@ class HeartbeatWatch:
         self._beat: int = 0
 
     def lasts(self, beat: int) -> bool:
-        """One more step: whether the other side is lost. A beat of 0 has not begun, and is waited for."""
+        """Whether the other process is lost. Call once a step; a beat of 0 has not begun yet and is waited for."""
         stands_still = beat == self._beat and beat != 0
         self._steps = self._steps + 1 if stands_still else 0
         self._beat = beat

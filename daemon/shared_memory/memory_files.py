@@ -1,4 +1,4 @@
-"""Files of shared memory: where they lie, which a running bus process holds, and which a killed daemon left behind."""
+"""Files of shared memory: their folder, the lock of a running bus process, and the removal of files of killed daemons."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _PREFIX = "mmmd-link-"
 
 
 def create_file() -> Path:
-    """A new file, in /dev/shm where there is one; files that killed daemons left there are removed."""
+    """Path of a new file, in /dev/shm where there is one; files that killed daemons left there are removed."""
     folder = "/dev/shm" if os.access("/dev/shm", os.W_OK) else tempfile.gettempdir()
     _remove_orphans(Path(folder))
     fd, name = tempfile.mkstemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=folder)
@@ -21,7 +21,7 @@ def create_file() -> Path:
 
 
 def hold(path: Path) -> int:
-    """Lock a file to the end of this process; the descriptor that holds the lock."""
+    """Lock a file to the end of this process; returns the descriptor that holds the lock."""
     fd = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
     fcntl.flock(fd, fcntl.LOCK_EX)
     return fd
@@ -43,7 +43,7 @@ def is_held(path: Path) -> bool:
 
 
 def _remove_orphans(folder: Path) -> None:
-    """Remove shared memory whose owner, named in the file name, is no more."""
+    """Remove files whose owner, a process named in the file name, has ended."""
     for path in folder.glob(f"{_PREFIX}*-*"):
         owner = path.name.removeprefix(_PREFIX).partition("-")[0]
         if not owner.isdigit():
@@ -51,7 +51,7 @@ def _remove_orphans(folder: Path) -> None:
         try:
             os.kill(int(owner), 0)
         except ProcessLookupError:
-            if is_held(path):  # its bus process still has the robot, and `ctl` looks for that by this file
+            if is_held(path):  # its bus process still has the robot, and the ctl process detects that by this file
                 continue
             with suppress(OSError):  # another user's
                 path.unlink()

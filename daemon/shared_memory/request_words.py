@@ -1,7 +1,7 @@
-"""Requests to the bus process as words of shared memory: each stays asked for until a bus cycle has carried it out.
+"""Requests to the bus process as words of shared memory: each stays pending until a bus cycle has carried it out.
 
-Two processes ask: the one that serves `ctl` and the front. Each kind of request has two words for each of them: the number
-of the newest one asked, which only the asker writes and only raises, and the number of the newest one carried out, which only
+Two processes make requests: the ctl process and the front. Each kind of request has two words for each of them: the number
+of the newest request made, which only its asker writes and only raises, and the number of the newest one carried out, which only
 the bus process writes. A request is pending while the two differ, so it outlives the bus process that it was meant for,
 and no writer can undo what another has written. Numbers are the monotonic time of asking: they put the requests
 of both askers in one order, in which a halt voids what was asked before it, carried out or not. Sans-I/O.
@@ -19,7 +19,7 @@ Words = NDArray[np.uint64]
 
 
 class BusRequest(IntEnum):
-    """What may be asked of the bus process; the value is the place of its words."""
+    """Kinds of requests to the bus process; the value is the column of their words."""
 
     ARM = 0
     PARK = 1
@@ -30,11 +30,11 @@ class BusRequest(IntEnum):
     TORQUE_OFF = 6
     ESTOP_HOLD = 7
     FAULT = 8
-    """The front has told a fault while the bus process was silent: it latches it when it is back."""
+    """The front reported a fault while the bus process was silent; the bus process latches it when it is back."""
 
 
 class Asker(IntEnum):
-    """Who asks; the value is the row of its words."""
+    """Processes that make requests; the value is the row of their words."""
 
     CTL = 0
     FRONT = 1
@@ -42,9 +42,10 @@ class Asker(IntEnum):
 
 ESTOPS = (BusRequest.ESTOP, BusRequest.ESTOP_HOLD)
 HALTS = (BusRequest.STOP, BusRequest.PARK, BusRequest.TORQUE_OFF, *ESTOPS)
-"""They end what is played: every setpoint pushed before is void."""
+"""Requests that end the running motion: every setpoint pushed before is void."""
 LASTING = (BusRequest.STOP, BusRequest.TORQUE_OFF, *ESTOPS, BusRequest.FAULT, BusRequest.SHUTDOWN)
-"""What a bus process that starts still owes. The others would move the robot, or unlatch it, long after they were asked for."""
+"""Requests that a starting bus process still has to carry out. Others would move the robot, or unlatch it, long after they were
+made."""
 
 _MOVES = (BusRequest.ARM, BusRequest.PARK)
 _VOIDS: dict[BusRequest, tuple[BusRequest, ...]] = {
@@ -53,7 +54,7 @@ _VOIDS: dict[BusRequest, tuple[BusRequest, ...]] = {
     BusRequest.FAULT: (*_MOVES, BusRequest.RESET),
     BusRequest.STOP: _MOVES,
 }
-"""What each halt makes void of all that was asked before it: it must not be undone by it, whenever that is looked at."""
+"""Earlier requests that each halt makes void, so that none of them undoes the halt when it is read afterwards."""
 
 N_WORDS = 2 * len(Asker) * len(BusRequest)
 
@@ -63,8 +64,8 @@ class Asked:
     """One request.
 
     Attributes:
-        kind: what is asked.
-        number: when it was asked: twice the monotonic time in nanoseconds, plus the asker, so that no two are equal.
+        kind: kind of the request.
+        number: twice the monotonic time of the request in nanoseconds, plus the asker, so that no two are equal.
     """
 
     kind: BusRequest
@@ -72,7 +73,7 @@ class Asked:
 
 
 class RequestWords:
-    """Both ends of the words.
+    """Reads and writes the words, for both ends.
 
     Args:
         words: (N_WORDS,) in shared memory, zeros at first.
@@ -84,45 +85,45 @@ class RequestWords:
         self._last_number = 0
         self._taken: Words = np.where(np.isin(np.arange(len(BusRequest)), LASTING), self._done, self._asked)
 
-    # Who asks.
+    # The askers' side.
 
     def next_number(self, asker: Asker, now_ns: int) -> int:
-        """A number above all that `asker` has given."""
+        """A number above all that `asker` has used."""
         last = max(int(self._asked[asker].max()), self._last_number)
         self._last_number = max(2 * now_ns, 2 * (last // 2 + 1)) + asker
         return self._last_number
 
     def ask(self, asker: Asker, kind: BusRequest, number: int) -> Asked:
-        """Ask for `kind`; a number below that of a newer one of its kind is covered by that one."""
+        """Make a request; a newer request of its kind with a higher number covers it."""
         self._asked[asker, kind] = max(number, int(self._asked[asker, kind]))
         return Asked(kind, number)
 
     def carried_out(self, asker: Asker, asked: Asked) -> bool:
-        """Whether a bus cycle has carried out a request, or one of its kind that came after it."""
+        """Whether a bus cycle has carried out a request, or a later one of its kind."""
         return int(self._done[asker, asked.kind]) >= asked.number
 
     def overtaken(self, asked: Asked) -> bool:
-        """Whether a halt that was asked for after it has made a request void."""
+        """Whether a later halt has made a request void."""
         return any(self._newest(halt) > asked.number for halt, void in _VOIDS.items() if asked.kind in void)
 
     def halts(self, asker: Asker) -> dict[BusRequest, int]:
-        """The newest number of each halt that `asker` has asked for."""
+        """The newest number of each halt that `asker` has requested."""
         return {kind: int(self._asked[asker, kind]) for kind in HALTS}
 
-    # The bus process.
+    # The bus process's side.
 
     def owes(self, kind: BusRequest) -> bool:
-        """Whether no bus cycle has carried out the newest request of a kind."""
+        """Whether a request of a kind is pending: no bus cycle has carried out the newest."""
         return bool((self._asked[:, kind] != self._done[:, kind]).any())
 
     def waits(self, kind: BusRequest) -> bool:
-        """Whether a request of a kind has not been taken by this process."""
+        """Whether this process has not taken the newest request of a kind."""
         return bool((self._asked[:, kind] != self._taken[:, kind]).any())
 
     def take(self) -> Asked | None:
-        """The oldest request that was not taken by this process and is not void; None when there is none.
+        """The oldest request that this process has not taken and that is not void; None when there is none.
 
-        It is owed until `done`: should this process end before, the next one takes it again.
+        The request stays pending until `done`: should this process end before, the next one takes it again.
         """
         waiting = np.argwhere(self._asked != self._taken)
         asked = sorted((int(self._asked[asker, kind]), int(asker), BusRequest(int(kind))) for asker, kind in waiting)
@@ -136,7 +137,7 @@ class RequestWords:
         return None
 
     def done(self, taken: Asked) -> None:
-        """A cycle has carried out `taken`, and with it all of its kind that were asked for before."""
+        """Record that a cycle has carried out `taken`, and with it all earlier requests of its kind."""
         for asker in Asker:
             asked = min(int(self._asked[asker, taken.kind]), taken.number)
             self._done[asker, taken.kind] = max(asked, int(self._done[asker, taken.kind]))
@@ -148,8 +149,8 @@ class RequestWords:
 class Epochs:
     """Epochs of setpoints: each halt begins one, and setpoints of an older epoch are thrown away.
 
-    The front pushes setpoints of the epoch that it knows of. So a halt asked for on `ctl` voids also those that the front pushes
-    before it has been told.
+    The front pushes setpoints of the epoch that it knows. A halt requested on `ctl` therefore also voids setpoints that the front
+    pushes before it knows of the halt.
     """
 
     def __init__(self, requests: RequestWords) -> None:
@@ -157,24 +158,24 @@ class Epochs:
         self._known: dict[BusRequest, int] = dict.fromkeys(HALTS, 0)
 
     def now(self) -> int:
-        """The epoch after all halts, whoever knows of them."""
+        """The epoch after all halts, whether or not the front knows of them."""
         return sum(sum(self._requests.halts(asker).values()) for asker in Asker)
 
     @property
     def of_front(self) -> int:
-        """The epoch after the halts that the front has asked for or knows of."""
+        """The epoch after the halts that the front has requested or knows of."""
         return sum(self._requests.halts(Asker.FRONT).values()) + sum(self._known.values())
 
     def know_of(self, halt: Asked) -> None:
-        """The front has been told of a halt that was asked for on `ctl`, and pushes nothing of before it any more."""
+        """Record that the front knows of a halt requested on `ctl`, and pushes no setpoints of an earlier epoch any more."""
         self._known[halt.kind] = max(halt.number, self._known[halt.kind])
 
     def knows_of(self, halt: Asked) -> bool:
-        """Whether the front has been told of a halt."""
+        """Whether the front knows of a halt."""
         return halt.number <= self._known[halt.kind]
 
     @property
     def unknown_halts(self) -> list[Asked]:
-        """Halts that were asked for on `ctl` and not yet told to the front."""
+        """Halts requested on `ctl` of which the front does not know yet."""
         halts = self._requests.halts(Asker.CTL).items()
         return [Asked(kind, number) for kind, number in halts if number > self._known[kind]]

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 N_SETPOINTS = 256
 N_CYCLES = 4096
 _UNREAD = 64
-"""Slots of the cycle ring that a reader leaves alone, as the bus process may be filling them."""
+"""Slots of the cycle ring that a reader leaves alone, because the bus process may be filling them."""
 
 
 class RingWord(IntEnum):
@@ -30,9 +30,9 @@ class RingWord(IntEnum):
 
 
 def setpoint_dtype(n_joints: int) -> np.dtype[np.void]:
-    """One setpoint: which plan and frame, whether it ends the plan, and (J,) radians.
+    """Type of one setpoint: plan and frame, whether it ends the plan, and (J,) radians.
 
-    Where `instead` is not 0 the setpoint and those after it are left out: the one of that number is next.
+    Where `instead` is not 0, this setpoint and those after it are left out: the setpoint with that number comes next.
     """
     return np.dtype([
         ("epoch", "u8"), ("plan_id", "u8"), ("instead", "u8"), ("frame", "u4"), ("last", "u1"), ("_", "V3"),
@@ -41,9 +41,9 @@ def setpoint_dtype(n_joints: int) -> np.dtype[np.void]:
 
 
 def cycle_dtype(n_joints: int, n_servos: int) -> np.dtype[np.void]:
-    """One bus cycle: what was wanted, what the gate let through, what was written and what was measured.
+    """Type of the record of one bus cycle: setpoints, goals after the gate, ticks written, and measurements.
 
-    `t_mono_ns` is when the goals were given to the ports, before the answers were waited for.
+    `t_mono_ns` is the time at which the goals were given to the ports, before the answers were waited for.
     """
     return np.dtype([
         ("cycle", "u8"), ("t_mono_ns", "i8"), ("plan_id", "u8"), ("frame", "u4"), ("state", "u1"), ("last", "u1"),
@@ -68,8 +68,8 @@ class SetpointRing:
     """Setpoints that the front pushes and the bus process takes.
 
     Args:
-        words: of shared memory.
-        slots: (N_SETPOINTS,) of `setpoint_dtype`.
+        words: words of shared memory.
+        slots: (N_SETPOINTS,) slots of `setpoint_dtype`.
     """
 
     def __init__(self, words: NDArray[np.uint64], slots: NDArray[np.void]) -> None:
@@ -80,13 +80,13 @@ class SetpointRing:
 
     @property
     def queued_frames(self) -> int:
-        """Setpoints pushed that are still to be taken."""
+        """Number of setpoints pushed and not yet taken."""
         tail = int(self._words[RingWord.POPPED])
         self._left_out = [(first, end) for first, end in self._left_out if end > tail]
         return int(self._words[RingWord.PUSHED]) - tail - sum(end - max(first, tail) for first, end in self._left_out)
 
     def push(self, q_rad: Array, plan_id: int, first_frame: int, epoch: int, *, last: bool) -> int:
-        """Append setpoints (N, J) as far as there is room; returns how many. `last` marks the final one of the plan."""
+        """Append setpoints (N, J), radians, as far as there is room; returns how many. `last` marks the final one of the plan."""
         head = int(self._words[RingWord.PUSHED])
         n = min(len(q_rad), N_SETPOINTS - (head - int(self._words[RingWord.POPPED])))
         for i in range(n):
@@ -98,10 +98,10 @@ class SetpointRing:
         return n
 
     def take_back(self, n: int) -> int:
-        """Leave out the last `n` setpoints pushed; how many of them the bus process had come to already.
+        """Leave out the last `n` setpoints pushed; returns how many of them the bus process had already reached.
 
-        None of them may have been left out before. Each slot names the setpoint to go on from, the last slot first: wherever
-        the bus process is just then, it leaves out the setpoints that it has not come to.
+        None of them may have been left out before. Each slot names the setpoint to continue with, the last slot first: wherever the
+        bus process is then, it leaves out the setpoints that it has not reached.
         """
         head = int(self._words[RingWord.PUSHED])
         for index in range(head - 1, head - n - 1, -1):
@@ -114,7 +114,7 @@ class SetpointRing:
     # The bus process.
 
     def take(self, epoch_now: Callable[[], int]) -> Setpoint | None:
-        """The next setpoint of the current epoch, past those of other epochs; None when there is none."""
+        """The next setpoint of the current epoch, skipping those of other epochs; None when there is none."""
         tail, head = int(self._words[RingWord.POPPED]), int(self._words[RingWord.PUSHED])
         epoch = epoch_now()  # after the indices: no setpoint below `head` is of a newer epoch and would be lost
         found: Setpoint | None = None
@@ -135,11 +135,11 @@ class SetpointRing:
 
 
 class CycleRing:
-    """Records of bus cycles, which the bus process writes and anybody reads.
+    """Records of bus cycles, which the bus process writes and any process reads.
 
     Args:
-        words: of shared memory.
-        slots: (N_CYCLES,) of `cycle_dtype`.
+        words: words of shared memory.
+        slots: (N_CYCLES,) slots of `cycle_dtype`.
     """
 
     def __init__(self, words: NDArray[np.uint64], slots: NDArray[np.void]) -> None:
@@ -163,7 +163,7 @@ class CycleRing:
         return int(self._words[RingWord.CYCLES])
 
     def since(self, index: int) -> tuple[NDArray[np.void], int, int]:
-        """Copies of the cycles from `index` on, the index to go on from, and how many were lost to slow reading."""
+        """Copies of the cycles from `index` on, the index to continue from, and how many were lost because of slow reading."""
         n = self.count
         first = max(index, n - (N_CYCLES - _UNREAD))
         rows = np.arange(first, n) % N_CYCLES

@@ -1,4 +1,4 @@
-"""The bus process as the front sees it: its newest cycle and what that says about the robot."""
+"""The bus process as the front sees it: the newest cycle, and the robot's state in it."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ class BusView:
     """Reads the cycles of the bus process. `update` belongs to one thread; the rest may be read from any.
 
     Attributes:
-        state: what the bus process is doing; limp before its first cycle.
-        goal_rad: (J,) what the servos were last told.
-        goals_s: when they were told it, on the monotonic clock; 0 before the first cycle.
-        present_rad: (J,) what they last measured.
+        state: state of the bus process; LIMP before its first cycle.
+        goal_rad: (J,) last goals sent to the servos, radians.
+        goals_s: monotonic time at which these goals were sent, seconds; 0 before the first cycle.
+        present_rad: (J,) last measured joint angles, radians.
         valid: (S,) whether each servo's last reading is from the newest cycle.
-        error: (S,) error bits of the last replies.
-        effort: (S,) current of each servo in mA, or load in percent where it measures none; `health` names the unit.
+        error: (S,) error bits of each servo's last reply.
+        effort: (S,) current of each servo in mA, or load in percent for a servo that measures no current; `health` names the unit.
         at_rest: whether the last cycle moved no goal.
-        silent_s: age of the newest cycle at the last update, before the first since the first look for one. Not of now: a front
-            that was held up between looking and judging would take its own pause for the bus process's.
-        passed: states of the cycles that the last update brought, each once, in order.
-        index: cycles published so far, as far as they have been read.
-        lost: cycles that were overwritten before they were read.
+        silent_s: age of the newest cycle at the last update, seconds; before the first cycle, time since the first update. The
+            age now would be wrong: a front that was held up between update and judgement would count its own pause.
+        passed: states in the cycles of the last update, in order, each run of equal states once.
+        index: number of cycles read so far, lost ones included.
+        lost: number of cycles that were overwritten before they were read.
     """
 
     def __init__(self, link: BusLink, robot: RobotModel, clock: Clock = REAL_CLOCK) -> None:
@@ -63,11 +63,11 @@ class BusView:
         self.underruns = 0
 
     def update(self) -> tuple[NDArray[Any], int]:
-        """Cycles since the last call, and how many were lost between."""
+        """Read the cycles since the last call; returns them, and how many were lost before they could be read."""
         looked_s = self._clock.now_s()
         records, self.index, lost = self._link.cycles.since(self.index)
         self.lost += lost
-        if len(records) or self._last_cycle_s is None:  # None: the bus process is ready, its first cycle is to come
+        if len(records) or self._last_cycle_s is None:  # None: the bus process is ready, and no cycle has come yet
             self._last_cycle_s = self._clock.now_s()
         self.silent_s = max(0.0, looked_s - self._last_cycle_s)
         if len(records):
@@ -84,13 +84,13 @@ class BusView:
         return records, lost
 
     def begin(self, state: BusState = BusState.LIMP) -> None:
-        """The bus process has just said that it is ready, in `state`: its silence counts from here."""
-        self.update()  # what one before it has published is not its own
+        """Count silence from now on, because the bus process has just reported that it is ready, in `state`."""
+        self.update()  # skip the cycles of an earlier bus process
         self.state, self.at_rest = state, True
         self.silent_s, self._last_cycle_s = 0.0, self._clock.now_s()
 
     def health(self) -> list[ServoHealth]:
-        """Each servo as the bus process sees it now; none before its first cycle."""
+        """Health of each servo as the bus process sees it now; empty before its first cycle."""
         if not self._link.cycles.count:
             return []
         return [
@@ -110,11 +110,11 @@ class BusView:
 
     @property
     def message(self) -> str:
-        """Why the bus process is in fault, as it says itself."""
+        """The bus process's own text of its fault."""
         return self._link.text
 
     def counters(self) -> dict[str, Any]:
-        """What `status` tells about the bus process."""
+        """Figures of the bus process for `status`."""
         share, by, servo_id = self._link.derating
         fifo, locked = self._link.has_realtime
         invalid = [self._robot.servo_ids[i] for i in np.flatnonzero(~self.valid)] if self.index else []

@@ -1,6 +1,6 @@
-"""A lease's life as one transition table, and the clock that moves it. Sans-I/O: told the time, never asks for it.
+"""A lease's life as one transition table, and the clock that moves it. No I/O: each call is given the time.
 
-Silence decelerates to a hold, lasting silence ends the lease (the robot then parks and goes limp).
+Silence brakes the robot to a hold; lasting silence ends the lease (the robot then parks and goes limp).
 """
 
 from __future__ import annotations
@@ -9,17 +9,17 @@ from enum import Enum
 
 
 class LeaseState(Enum):
-    """What a lease that has begun is doing."""
+    """States of a lease that has begun."""
 
     WAITING = "waiting"  # no target has come yet
     STREAMING = "streaming"
-    SILENT = "silent"  # braking, or standing, until a target comes
-    RELEASED = "released"  # its holder gave it back: on the way to the last target
+    SILENT = "silent"  # the robot brakes, or stands, until a target comes
+    RELEASED = "released"  # given back by its holder: the robot moves to the last target
     OVER = "over"  # silent for too long
 
 
 class LeaseEvent(Enum):
-    """What moves it."""
+    """Events that change a lease's state."""
 
     TARGET = "target"
     SILENCE = "silence"
@@ -39,15 +39,15 @@ TRANSITIONS: dict[LeaseState, dict[LeaseEvent, LeaseState]] = {
 
 
 class LeaseClock:
-    """One lease in time.
+    """Follows one lease through time.
 
     Args:
-        silence_s: without a target for so long it is silent.
-        park_s: for so long it is over.
+        silence_s: seconds without a target after which the lease is silent.
+        park_s: seconds without a target after which the lease is over.
 
     Attributes:
-        state: what it is doing.
-        last_s: when the last target came; before the first one, when the lease began.
+        state: state of the lease.
+        last_s: time of the last target, seconds; before the first target, the beginning of the lease.
     """
 
     def __init__(self, silence_s: float, park_s: float) -> None:
@@ -56,11 +56,11 @@ class LeaseClock:
         self.last_s = float("inf")
 
     def begin(self, now_s: float) -> None:
-        """The robot is ready: silence counts from here."""
+        """Count silence from now on, because the robot is ready."""
         self.last_s = now_s
 
     def target(self, now_s: float) -> bool:
-        """A target came; false when the lease takes none any more."""
+        """Note a target; returns whether the lease still takes targets."""
         self.look(now_s)
         self._move(LeaseEvent.TARGET)
         if self.state is LeaseState.STREAMING:
@@ -68,11 +68,11 @@ class LeaseClock:
         return self.state is LeaseState.STREAMING
 
     def release(self) -> None:
-        """Its holder gives it back."""
+        """Release the lease for its holder."""
         self._move(LeaseEvent.RELEASE)
 
     def look(self, now_s: float) -> LeaseState:
-        """The state at a time."""
+        """Update and return the state at a time."""
         silent_s = now_s - self.last_s
         if silent_s >= self.park_s:
             self._move(LeaseEvent.LONG_SILENCE)

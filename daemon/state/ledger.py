@@ -1,4 +1,4 @@
-"""What became of every command: who asked, which events it had, that it ends exactly once. Sans-I/O."""
+"""The ledger of all commands: sender, events so far, and exactly one end each. No I/O."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from daemon.wire.events import Accepted, Progress
 from daemon.wire.requests import Command, tag_of
 
 KEPT = 1024
-"""Commands that are remembered, so that the same id is the same command; beyond them those that ended first are forgotten."""
+"""Commands that are remembered, so that a repeated id means the same command; the command that ended first is forgotten first."""
 KEPT_SCENES = 8
-"""Newest scenes of a story, or newest news of a lease, that a later asker hears of."""
+"""Newest scenes of a story, or newest events of a lease, that a later asker receives."""
 LEASE_NEWS = ("held", "silent", "streaming", "bad_target")
-"""Stages that come any number of times."""
+"""Stages of a lease's events that may come any number of times."""
 
 
 @dataclass(frozen=True)
 class Route:
-    """Where a reply goes.
+    """Address of the peer that receives a reply.
 
     Attributes:
         frames: the ROUTER's address frames, with the empty delimiter of a REQ peer.
-        once: a REQ peer, which takes exactly one reply for each request.
+        once: whether the peer is a REQ socket, which takes exactly one reply for each request.
     """
 
     frames: tuple[bytes, ...]
@@ -38,7 +38,7 @@ class Route:
 
 
 def split_route(frames: list[bytes]) -> tuple[Route, list[bytes]]:
-    """The sender and what it sent, from the frames of a ROUTER socket."""
+    """The sender's route and the frames that it sent, from the frames of a ROUTER socket."""
     if len(frames) >= 3 and frames[1] == b"":
         return Route(tuple(frames[:2]), once=True), frames[2:]
     return Route(tuple(frames[:1]), once=False), frames[1:]
@@ -50,12 +50,12 @@ class Entry:
 
     Attributes:
         id: id of the command.
-        request: what is to be done: what was asked, or what that means after an earlier command.
-        routes: who hears of it.
-        events: what has happened so far.
-        ended: whether its last event is out.
-        t_received_ns: when the text arrived, monotonic.
-        asked: what was asked.
+        request: the request to carry out: the one received, or its meaning after an earlier command.
+        routes: peers that receive its events.
+        events: its events so far.
+        ended: whether its last event was sent.
+        t_received_ns: monotonic time at which the request arrived, nanoseconds.
+        asked: the request as received.
         refers_to: id of the earlier command that the text refers to, else empty.
     """
 
@@ -68,16 +68,16 @@ class Entry:
     refers_to: str = ""
 
     def __post_init__(self) -> None:
-        """Keep what was asked."""
+        """Keep the request as received."""
         self.asked = self.request
 
     @property
     def accepted(self) -> bool:
-        """Whether it was accepted."""
+        """Whether the command was accepted."""
         return any(isinstance(event, Accepted) for event in self.events)
 
     def keep(self, event: Event) -> None:
-        """Remember an event for those who ask later; of what has any number only the newest."""
+        """Remember an event for later askers; of scenes and lease events only the newest are kept."""
         if _any_number(event):
             many = [e for e in self.events if _any_number(e)]
             if len(many) >= KEPT_SCENES:
@@ -86,20 +86,20 @@ class Entry:
 
     @property
     def deadline_s(self) -> float:
-        """When its motion has to begin at the latest, monotonic."""
+        """Monotonic time by which its motion has to begin, seconds; infinite without a deadline."""
         wanted_s = self.request.deadline_s
         return float("inf") if wanted_s is None else self.t_received_ns * 1e-9 + wanted_s
 
 
 class Ledger:
-    """All commands the daemon knows.
+    """Keeps all commands that the daemon knows.
 
     Args:
-        send: called with each route and event that is due.
+        send: called with each route and the event to send to it.
         publish: called once with each event.
 
     Attributes:
-        counts: events so far, by type.
+        counts: number of events so far, by type.
     """
 
     def __init__(self, send: Callable[[Route, Event], None], publish: Callable[[Event], None]) -> None:
@@ -116,10 +116,10 @@ class Ledger:
         return event
 
     def open(self, request: Command, route: Route, t_received_ns: int) -> Entry | None:
-        """A new command; None when the id is known, in which case the sender hears what happened so far and what comes.
+        """The entry of a new command; None when its id is known: the sender then receives the events so far and those to come.
 
         Raises:
-            WireError: the id stands for something else.
+            WireError: the id belongs to another request.
         """
         known = self._entries.get(request.id) if request.id else None
         if known is not None:
@@ -136,7 +136,7 @@ class Ledger:
         return entry
 
     def emit(self, entry: Entry, event: Event) -> None:
-        """Send an event of a command to all who hear of it; nothing follows the event that ends it."""
+        """Send an event of a command to all its routes; nothing follows the event that ends it."""
         if entry.ended:
             return
         event.id = entry.id
@@ -172,5 +172,5 @@ def _any_number(event: Event) -> bool:
 
 
 def _without_stamp(request: Command) -> Command:
-    """What was asked, whenever and as whichever message it was sent."""
+    """The request without number, time and clock, which differ between two sendings of one request."""
     return msgspec.structs.replace(request, seq=None, t_mono=None, clock=None)

@@ -1,6 +1,6 @@
-"""The robot's states as one transition table. Sans-I/O.
+"""The robot's states as one transition table. No I/O.
 
-The bus process is the truth: its reports move the state. A command is allowed where the table has an entry for it and
+Reports of the bus process move the state. A command is allowed where the table has an entry for it and
 is refused elsewhere; the entry is the state it leads to once the bus process has carried it out.
 """
 
@@ -13,7 +13,7 @@ from daemon.wire.showing import in_words
 
 
 class RobotState(Enum):
-    """What people are told about the robot."""
+    """States of the robot as people see them."""
 
     LIMP = "limp"  # torque off
     ARMING = "arming"  # torque on over a pinned goal, slow move to the rest pose
@@ -63,7 +63,7 @@ _ALWAYS = {
 }  # fmt: skip
 
 TRANSITIONS: dict[RobotState, dict[Trigger, RobotState]] = {
-    # Arming may be over between two looks at the bus process; motion and parking from limp may not.
+    # Arming may begin and end between two reports of the bus process; motion and parking from limp may not.
     _S.LIMP: {
         **_ALWAYS, _T.SAY: _S.ARMING, _T.ARM: _S.ARMING, _T.PARK: _S.LIMP, _T.STOP: _S.LIMP, _T.TORQUE_OFF: _S.LIMP,
         _T.RESET: _S.LIMP, _T.BUS_LIMP: _S.LIMP, _T.BUS_ARMING: _S.ARMING, _T.BUS_HOLDING: _S.IDLE, _T.BUS_STOPPED: _S.IDLE,
@@ -125,10 +125,10 @@ class ImpossibleTransitionError(DaemonError):
 
 
 class StateMachine:
-    """The robot's state, moved by reports; says which commands are allowed.
+    """Holds the robot's state, which reports move, and decides which commands are allowed.
 
     Attributes:
-        state: the state.
+        state: the robot's state.
         must_arm: whether an e-stop, a fault or `torque off` came since the last explicit `arm`; then `say` does not arm.
     """
 
@@ -137,10 +137,10 @@ class StateMachine:
         self.must_arm = not auto_arm
 
     def check(self, command: Trigger) -> RobotState:
-        """The state `command` leads to from here.
+        """The state to which `command` leads from the present one.
 
         Raises:
-            CommandRefusedError: it is not allowed here.
+            CommandRefusedError: the present state does not allow the command.
         """
         allowed = tuple(t.value for t in COMMANDS if self._allows(t))
         if not self._allows(command):
@@ -149,18 +149,18 @@ class StateMachine:
         return TRANSITIONS[self.state][command]
 
     def armed_by_person(self) -> None:
-        """An explicit `arm` was given."""
+        """Note an explicit `arm`, after which commands may arm again."""
         self.must_arm = False
 
     def limp_by_person(self) -> None:
-        """An explicit `torque off` was given: somebody may have the arms in his hands."""
+        """Note an explicit `torque off`: only a person may arm next, because somebody may have the arms in their hands."""
         self.must_arm = True
 
     def report(self, report: Trigger) -> bool:
-        """Follow a report of the bus process; true when the state changed.
+        """Follow a report of the bus process; returns whether the state changed.
 
         Raises:
-            ImpossibleTransitionError: it cannot follow this state; the state stays.
+            ImpossibleTransitionError: the report cannot follow the present state, which stays.
         """
         following = TRANSITIONS[self.state].get(report)
         if following is None or report not in REPORTS:

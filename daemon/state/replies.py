@@ -1,4 +1,4 @@
-"""Events that tell how a command went, from what is known where it went so."""
+"""Builds the events that report how a command ended."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from daemon.wire.showing import in_words
 
 
 class NotPlayableError(Exception):
-    """A command that has come to its end before it was played; `event` tells how."""
+    """A command ended before it was played; `event` says how."""
 
     def __init__(self, event: Rejected | Failed) -> None:
         self.event = event
@@ -35,12 +35,12 @@ def refusal(request_id: str, error: CommandRefusedError) -> Rejected:
 
 
 def refused_later(error: CommandRefusedError) -> Failed:
-    """The event of an accepted command for which the robot did not get, or stay, ready."""
+    """The event of an accepted command that fails because the robot did not become, or stay, ready."""
     return failed("wrong_state", f"the robot is {in_words(error.state.value)}", ", ".join(error.allowed), error.do)
 
 
 def too_late(entry: Entry, found: str) -> NotPlayableError:
-    """The end of a command that cannot begin in time: rejected, or failed once it was accepted."""
+    """The error of a command that cannot begin in time: its event is `rejected`, or `failed` once it was accepted."""
     kind = Failed if entry.accepted else Rejected
     asked = f"{tag_of(entry.request)} within {entry.request.deadline_s:g} s"
     do = "leave out the deadline, or ask when the robot is free"
@@ -48,28 +48,28 @@ def too_late(entry: Entry, found: str) -> NotPlayableError:
 
 
 def generator_failed(error: GeneratorError, state: str) -> Failed:
-    """The event of a command for which the generator, which is in `state`, gave no motion."""
+    """The event of a command for which the generator, in `state`, gave no motion."""
     found = error.found if state in error.found else f"{error.found} (generator: {state})"
     return Failed(code=error.code, asked=error.asked, found=found, allowed=error.allowed, do=error.do)
 
 
 def ending(plan_id: int, by: str, failure: Failed | None) -> Cancelled | Failed:
-    """The event that ends a command; each gets its own, for the ledger fills in its id."""
+    """The event that ends a command: a copy of `failure`, or `cancelled` without one. The ledger fills in the command's id."""
     return Cancelled(plan_id=plan_id, by=by) if failure is None else msgspec.structs.replace(failure, plan_id=plan_id)
 
 
 def as_failure(event: Rejected | Failed) -> Failed:
-    """The event of a command that was accepted before this came."""
+    """A rejection as the failure of a command that was already accepted."""
     return Failed(code=event.code, asked=event.asked, found=event.found, allowed=event.allowed, do=event.do)
 
 
 def failed(code: str, found: str, allowed: str, do: str) -> Failed:
-    """A command that could not be carried out."""
+    """The event of a command that could not be carried out."""
     return Failed(code=code, asked="say", found=found, allowed=allowed, do=do)
 
 
 def lease_held(lease: Entry) -> Rejected:
-    """The event of a lease that somebody else has."""
+    """The event of a lease request while somebody else holds a lease."""
     since_s = time.monotonic() - lease.t_received_ns * 1e-9
     return Rejected(
         code="lease_held", asked="lease", found=f"{lease.request.words} holds lease {lease.id!r} since {since_s:.1f} s",
@@ -78,7 +78,7 @@ def lease_held(lease: Entry) -> Rejected:
 
 
 def lease_silent(park_s: float, targets: int) -> Failed:
-    """The event of a lease whose holder sends no more: it has broken what a lease promises, so this is no `done`."""
+    """The event of a lease whose holder sends no more targets: the holder broke the lease's terms, so it ends in `failed`."""
     return Failed(
         code="lease_silent", asked="lease", found=f"no target for {park_s:g} s, after {targets}",
         allowed="targets at least as often as the lease says, or `release`", do="the robot parks; ask for a new lease",
