@@ -1,4 +1,8 @@
-"""Answers of simulated servos on the wire: one status packet, one after another, or one packet of many parts.
+"""Answers of simulated servos on the wire: one status packet, several in a row, or one packet of many parts.
+
+Where the manual is silent we chose: in a sync or bulk read the next servo waits for as long as a missing answer would take (on
+protocol 1.0 for ever, as it waits for the packet itself); a fast read ends at the first silent servo, because the next ones cannot
+continue its checksum.
 
 Where the manual is silent: in a sync or bulk read the next servo waits for the time of an answer that does not come (on protocol
 1.0 for ever, for it waits for the packet itself); a fast read ends at the first servo that is silent, for the next ones cannot
@@ -31,7 +35,7 @@ class Answers:
         self._wire, self._world = wire, world
 
     def send(self, servo: SimServo, servo_id: int, error: int, parameters: bytes, t_s: float, baud: int) -> float:
-        """Put one status packet of `servo_id` on the wire; the time it ends, or would have ended."""
+        """Put one status packet of `servo_id` on the wire; return the time at which it ends, or would have ended."""
         byte_s = 0.0 if self._wire.settings.no_wire_delay else 10 / baud
         status = packet.status if servo.model.protocol == 2.0 else packet1.status
         start_s = t_s + self._pause_s(servo)
@@ -56,7 +60,7 @@ class Answers:
         return servo.memory.get("return_delay_time") * RETURN_DELAY_UNIT_S + self._wire.settings.turnaround_s
 
     def group(self, p: Packet, protocol: float, by_id: dict[int, list[SimServo]], t_s: float, baud: int) -> None:
-        """One status packet after another, in the order asked; on protocol 1.0 each waits for the packet before its own."""
+        """Send one status packet after another, in the order requested; on protocol 1.0 each waits for the one before."""
         for access in accesses_of(p, protocol):
             ends_s = [
                 self.send(servo, access.servo_id, *servo.read(access.address, access.length), t_s, baud)
@@ -69,7 +73,7 @@ class Answers:
             t_s = max(ends_s, default=t_s + (11 + access.length) * byte_s)
 
     def fast(self, p: Packet, by_id: dict[int, list[SimServo]], t_s: float, baud: int) -> None:
-        """One packet to which each servo adds its part; those with one id talk at once."""
+        """Send one packet to which each servo adds its part; servos with the same id send at once."""
         turns: list[list[SimServo]] = []
         parts: list[list[Part]] = []
         accesses = accesses_of(p, 2.0)
@@ -80,7 +84,7 @@ class Answers:
             turns.append(able)
             parts.append([_part(servo, access) for servo in able])
             if len(turns) == 1 and len({self._pause_s(servo) for servo in able}) > 1:
-                break  # two begin at different times: nobody can make out a packet to go on with
+                break  # two parts begin at different times: no servo can continue such a packet
         if not turns:
             return
         length = 1 + sum(4 + access.length for access in accesses)
@@ -88,7 +92,7 @@ class Answers:
         start_s = t_s + self._pause_s(turns[0][0])
         if not self._world.faults.strikes_packets and all(
             len(said) == 1 for said in shares
-        ):  # nothing comes between them
+        ):  # no other packet comes between the parts
             self._world.faults.packet += len(turns)
             for (servo,), (part,) in zip(turns, parts, strict=True):
                 if (part.error & ALERT_BIT and servo.is_faulted) or servo.watchdog_tripped:
@@ -112,13 +116,13 @@ class Answers:
 
 
 def answers(servo: SimServo, kind: int) -> bool:
-    """Whether the status return level lets it answer."""
+    """Whether the servo's status return level lets it answer."""
     level = servo.memory.get("status_return_level")
     return level == 2 or kind == Instruction.PING or (level == 1 and kind == Instruction.READ)
 
 
 def _answers_fast(servo: SimServo) -> bool:
-    """Whether it takes part in a fast read."""
+    """Whether the servo takes part in a fast read."""
     return servo.model.has_fast_sync(servo.firmware) and answers(servo, Instruction.READ)
 
 

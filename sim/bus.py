@@ -1,4 +1,8 @@
-"""Simulated servos on one half-duplex wire: bytes in, answers out, each byte in its time.
+"""Simulated servos on one half-duplex wire: instruction bytes in, answers out, each byte at its time.
+
+Modelled are the time of every byte, half duplex with collisions, answers in order, every instruction. Not modelled: see the list in
+docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). `answers.py` has the answers of several
+servos to one packet.
 
 What is modelled: time of every byte, half duplex with collisions, answers in order, every instruction. Not modelled: see
 the list in docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). How several servos
@@ -22,22 +26,22 @@ from sim.wire.wire import Wire, WireSettings
 from sim.world import World
 
 _BAUD_TOLERANCE = 0.03
-"""A byte's last bit is still read right; 57,600 baud is 57,142 on a servo of protocol 1.0 (e-manual, "Baud Rate")."""
+"""Share by which two bauds may differ with a byte's last bit still read right; 57,600 baud is 57,142 on protocol 1.0 (e-manual)."""
 _READS = (Instruction.SYNC_READ, Instruction.BULK_READ)
 _FAST_READS = (Instruction.FAST_SYNC_READ, Instruction.FAST_BULK_READ)
 _GROUP_WRITES = (Instruction.SYNC_WRITE, Instruction.BULK_WRITE)
 
 
 class SimBus:
-    """Servos of a robot behind real packets on one wire. Time comes from outside.
+    """Servos of a robot that exchange real packets on one wire. Time is passed in.
 
     Args:
-        robot: whose servos.
+        robot: the robot.
         faults, start_rad: of the world made here when `world` is None; see `World`.
         world: servos that are shared with other wires.
         servo_ids: those on this wire; all when None.
         wire: how wire and adapter behave.
-        baud: what the servos are set to; as the world made them when None.
+        baud: baud to which the servos are set; unchanged when None.
     """
 
     def __init__(
@@ -56,7 +60,7 @@ class SimBus:
         mine = None if servo_ids is None else set(servo_ids)
         self.on_wire = [s for s in self.world.all if mine is None or s.spec.servo_id in mine]
         self.servos = {k: s for k, s in self.world.servos.items() if mine is None or k in mine}
-        """By the id in the robot's file."""
+        """Servos on this wire, by their id in the robot's file."""
         self.wire = Wire(wire)
         self._answers = Answers(self.wire, self.world)
         self._instructions = Instructions(self.world.audit)
@@ -90,12 +94,12 @@ class SimBus:
         return self.world.audit
 
     def set_baud(self, baud: int) -> None:
-        """Set every servo's baud, as a tool would have."""
+        """Set every servo's baud directly, as another tool would have done before."""
         for servo in self.on_wire:
             servo.set_baud(baud)
 
     def receive(self, data: bytes, t_s: float, baud: int, *, patient: bool = False) -> None:
-        """The client sends `data` at `t_s`; answers are put on the wire. `patient`: see `Wire.talk`."""
+        """Receive `data` that the client sends at `t_s`; answers are put on the wire. `patient`: see `Wire.talk`."""
         with self.world.lock:
             self.world.advance(t_s)
             start_s, byte_s, heard = self.wire.talk(t_s, data, baud, patient=patient)
@@ -117,7 +121,7 @@ class SimBus:
                 at = end
 
     def _hear_damaged(self, servo_id: int | None, protocol: float, t_s: float, baud: int) -> None:
-        """A packet with a wrong checksum: the servo it seems to be for says so, and does nothing."""
+        """Handle a packet with a wrong checksum: the servo with its id answers with an error, and does nothing."""
         if servo_id is None or servo_id == BROADCAST_ID:
             return
         self.world.advance(t_s)
@@ -126,7 +130,7 @@ class SimBus:
                 self._answers.send(servo, servo_id, servo.errors.checksum, b"", t_s, baud)
 
     def _hear(self, p: Packet, protocol: float, t_s: float, baud: int) -> None:
-        """One instruction packet, heard by the servos of its protocol and baud."""
+        """Handle one instruction packet, which reaches the servos of its protocol and baud."""
         self.world.advance(t_s)
         listening = self._listening(protocol, t_s, baud)
         by_id: dict[int, list[SimServo]] = {}
@@ -153,7 +157,7 @@ class SimBus:
             self._answer_one(p, listening, by_id, t_s, baud)
 
     def _note_lost(self, data: bytes, t_s: float) -> None:
-        """Goals that a collision took are steps that the daemon made all the same: the audit counts from them."""
+        """Report goals lost in a collision to the audit: the daemon has made these steps, and the audit counts from them."""
         for protocol, decoder in ((2.0, packet.PacketDecoder()), (1.0, packet1.PacketDecoder(answers=False))):
             for p in decoder.feed(data):
                 if p.instruction in _GROUP_WRITES:
@@ -161,7 +165,7 @@ class SimBus:
                         self._instructions.missed(self.on_wire, access, t_s)
 
     def _listening(self, protocol: float, t_s: float, baud: int) -> list[SimServo]:
-        """Servos that hear and understand what is said now."""
+        """Servos that receive and understand a packet sent now."""
         low, high = baud * (1 - _BAUD_TOLERANCE), baud * (1 + _BAUD_TOLERANCE)
         listening = [
             s
@@ -177,7 +181,10 @@ class SimBus:
     def _answer_one(
         self, p: Packet, listening: list[SimServo], by_id: dict[int, list[SimServo]], t_s: float, baud: int
     ) -> None:
-        """The servo that is meant; one with this as its second id obeys in silence.
+        """Let the addressed servo answer; a servo with this secondary id obeys without an answer.
+
+        The answer carries the id that was addressed, also when the packet changed the servo's id or baud (manual of RX-28, examples
+        7 and 8).
 
         It answers as who was asked, also when it has been given another id or baud (manual of RX-28, examples 7 and 8).
         """
@@ -191,7 +198,7 @@ class SimBus:
                 self._answers.send(servo, p.servo_id, error, parameters, t_s, baud)
 
     def _answer_all(self, p: Packet, by_id: dict[int, list[SimServo]], t_s: float, baud: int) -> None:
-        """A broadcast: everybody obeys, and only a ping is answered, by one id after another."""
+        """Handle a broadcast: every servo obeys; only a ping is answered, by one id after another."""
         for servo_id in sorted(by_id):
             ends_s: list[float] = []
             for servo in by_id[servo_id]:
@@ -202,7 +209,7 @@ class SimBus:
 
 
 def _packet_ends(data: bytes | bytearray, *, with_1: bool) -> list[int]:
-    """Where packets seem to end, and the end of all: what follows an instruction is heard after it."""
+    """Offsets at which packets seem to end, and the end of the data: servos receive the bytes packet by packet."""
     ends: list[int] = []
     at = 0
     while (at := data.find(b"\xff\xff", at)) >= 0:

@@ -13,11 +13,11 @@ from daemon.errors import CommandError, ConfigError, DaemonError
 
 
 class SimError(DaemonError):
-    """Anything the simulator cannot do."""
+    """Base of the simulator's errors."""
 
 
 class FaultFileError(SimError, ConfigError):
-    """A fault schedule that cannot be used: where, what was found, what is allowed."""
+    """A fault schedule that cannot be used; the text has the place, the value found and the allowed ones."""
 
     def __init__(self, path: Path | str, where: str, found: str, allowed: str) -> None:
         self.path, self.where, self.found, self.allowed = path, where, found, allowed
@@ -25,7 +25,7 @@ class FaultFileError(SimError, ConfigError):
 
 
 class SimSettingError(SimError, CommandError):
-    """A setting outside what is allowed."""
+    """A simulator setting outside its allowed values."""
 
     def __init__(self, setting: str, found: str, allowed: str) -> None:
         self.setting, self.found, self.allowed = setting, found, allowed

@@ -1,4 +1,4 @@
-"""Faults on a schedule: what goes wrong, when, where, how often; drawn from a seed, so that the same goes wrong again.
+"""Faults on a schedule: the kind, the time, the place and the repetition of each; drawn from a seed, so that they can be repeated.
 
 A TOML file of [[fault]] tables. By time (`start_s`, `end_s`), by packet (`first_packet`, `last_packet`: status packets
 counted from 1), by servo (`servo_id`), by probability (of each packet, from `seed`). Kinds that happen at an instant happen
@@ -65,7 +65,7 @@ _ONLY_FOR = {
     "every_s": tuple(INSTANT_KINDS),
     "path": ("unplug",),
 }
-"""Kinds that know a key; with any other it would be passed over in silence."""
+"""For each key the kinds of faults that it applies to; with another kind the key is refused, as it would have no effect."""
 
 
 class Fault(msgspec.Struct, forbid_unknown_fields=True):
@@ -73,13 +73,13 @@ class Fault(msgspec.Struct, forbid_unknown_fields=True):
 
     Attributes:
         kind: one of `KINDS`.
-        start_s, end_s: from when to when, seconds after the simulator started.
-        probability: of each packet, for kinds that strike packets.
+        start_s, end_s: seconds after the simulator's start at which the fault begins and ends.
+        probability: probability for each packet, 0 to 1, for kinds that strike packets.
         servo_id: only this servo; None for all.
         first_packet, last_packet: only these status packets, counted from 1.
-        amount: how much; see the kind. None for its default.
-        every_s: instants happen again after so long, until `end_s`.
-        path: for unplug: the link under which the tty comes back.
+        amount: size of the fault in the unit of its kind; None for the kind's default.
+        every_s: seconds after which an instant fault repeats, until `end_s`.
+        path: link under which the tty comes back after an unplug.
     """
 
     kind: str
@@ -94,7 +94,7 @@ class Fault(msgspec.Struct, forbid_unknown_fields=True):
     path: str | None = None
 
     def strikes_packet(self, number: int) -> bool:
-        """Whether it is meant for status packet `number`."""
+        """Whether the fault applies to status packet `number`."""
         return self.first_packet <= number and (self.last_packet is None or number <= self.last_packet)
 
 
@@ -107,7 +107,7 @@ class _Table(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def _problem(fault: Fault) -> tuple[str, str, str] | None:
-    """(key, found, allowed) of the first thing wrong with a fault; None when nothing is."""
+    """(key, found, allowed) of the first wrong value of a fault; None when all are valid."""
     for key in ("start_s", "end_s", "probability", "amount", "every_s"):
         value = getattr(fault, key)
         if value is not None and math.isnan(value):
@@ -141,7 +141,7 @@ class FaultSchedule:
     """The faults in force at a time. Same seed, same faults.
 
     Attributes:
-        struck: how often each kind has struck so far.
+        struck: number of times that each kind has struck so far.
     """
 
     faults: tuple[Fault, ...] = ()
@@ -156,7 +156,7 @@ class FaultSchedule:
         self.random = random.Random(self.seed)
         self.packet = 0
         self.strikes_packets = False
-        """Whether any fault of the wire is in force: without one a packet need not be looked at."""
+        """Whether any fault of the wire is in force; without one no packet has to be examined."""
         self._waiting = sorted(self.faults, key=lambda f: f.start_s, reverse=True)
         self._now: dict[str, list[Fault]] = {}
         self._repeats: list[tuple[float, Fault]] = []
@@ -186,7 +186,7 @@ class FaultSchedule:
             raise FaultFileError(path, error.where, error.found, error.allowed) from None
 
     def check_servos(self, known: Collection[int]) -> None:
-        """Refuse faults of servos that are not there: they would never strike.
+        """Refuse faults of servos that do not exist: they would never strike.
 
         Raises:
             FaultFileError: a `servo_id` that is not among the `known` ones.
@@ -197,7 +197,7 @@ class FaultSchedule:
                 raise FaultFileError("fault schedule", f"fault {i}: servo_id", str(fault.servo_id), allowed)
 
     def begin(self, t_s: float) -> list[Fault]:
-        """Faults that begin by `t_s` and have not been handed out; instants again when they repeat."""
+        """Faults that begin by `t_s` and were not returned before; an instant fault again each time that it repeats."""
         if t_s < self._next_s and t_s < self._ends_s:
             return []
         begun: list[Fault] = []
@@ -228,7 +228,7 @@ class FaultSchedule:
         return begun
 
     def active(self, kind: str, t_s: float, servo_id: int | None = None) -> Fault | None:
-        """The fault of this kind that strikes now, or None; one with a probability is drawn anew at each call."""
+        """The fault of this kind that strikes now, or None; a fault with a probability is drawn again at each call."""
         for fault in self._now.get(kind, ()):
             mine = fault.servo_id is None or fault.servo_id == servo_id
             if mine and fault.start_s <= t_s < fault.end_s and fault.strikes_packet(max(1, self.packet)):
@@ -239,7 +239,7 @@ class FaultSchedule:
         return None
 
     def in_force(self, kind: str) -> Sequence[Fault]:
-        """Faults of a kind that lasts, as of the last `begin`."""
+        """Faults of a lasting kind that were in force at the last `begin`."""
         return self._now.get(kind, ())
 
 

@@ -1,4 +1,4 @@
-"""Simulators from words: what `mmmd sim` and `sim://` URLs may say."""
+"""Makes simulators from text settings: the options of `mmmd sim` and of `sim://` URLs."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ BODIES = ("plain", "mujoco")
 
 
 def wire_settings(latency_ms: str = "0", pieces: str = "", *, turnaround_us: float = 0.0) -> WireSettings:
-    """Wire and adapter.
+    """Settings of wire and adapter from text.
 
     Raises:
-        SimSettingError: no number, or one that no wire can have.
+        SimSettingError: a value is no number, or one that no wire can have.
     """
     try:
         latency_s = float(latency_ms) * 1e-3
@@ -40,17 +40,17 @@ def world_of(
     factory: bool = False,
     start_rad: Sequence[float] | None = None,
 ) -> World:
-    """A robot's world.
+    """The simulated world of a robot.
 
     Args:
-        robot: whose.
-        faults: what goes wrong.
+        robot: the robot.
+        faults: the fault schedule; None for no faults.
         body: "plain" or "mujoco".
         factory: servos as from the box (57,600 baud, 500 us return delay) but for their ids.
         start_rad: (J,) pose to begin in; the park pose when None.
 
     Raises:
-        SimSettingError: another body.
+        SimSettingError: `body` is neither of these.
     """
     if body not in BODIES:
         raise SimSettingError("body", f"'{body}'", ", ".join(BODIES))
@@ -67,10 +67,10 @@ def world_of(
 
 
 def servo_ids_of(text: str, robot: RobotModel) -> list[int]:
-    """Ids out of "1-4,7".
+    """Servo ids from a text such as "1-4,7".
 
     Raises:
-        SimSettingError: no ids, or one that the robot does not have.
+        SimSettingError: the text has no ids, or one that the robot does not have.
     """
     ids: list[int] = []
     for part in text.split(","):

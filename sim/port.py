@@ -1,4 +1,4 @@
-"""The simulated servos in process, as a `Port`: with the real clock, or in virtual time that never waits."""
+"""The simulated servos in the same process, as a `Port`: with the real clock, or in virtual time without waiting."""
 
 from __future__ import annotations
 
@@ -33,11 +33,13 @@ class SimPort:
             raise FaultFileError("fault schedule", "kind", "clock_jump with the real clock", "virtual time")
 
     def write(self, data: bytes) -> None:
-        """Hand bytes to the servos; a servo at another baud hears only noise."""
+        """Send bytes to the servos; a servo at another baud receives only noise."""
         self.bus.receive(data, self._present(), self.baud)
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Bytes that have arrived, waiting at most `timeout_s` for the first.
+        """Bytes that have arrived; waits at most `timeout_s` for the first.
+
+        The call also waits for the rest of a burst that ends in time, for fewer wake-ups: callers request whole groups.
 
         Waits for the rest of a burst that ends in time: fewer wake-ups, and the caller asks for whole groups anyway.
         """
@@ -56,7 +58,7 @@ class SimPort:
         return wire.take(t_s, max_bytes)
 
     def close(self) -> None:
-        """Write the audit once."""
+        """Write the audit's report, at the first call only."""
         if self._audit_file is not None and not self._closed:
             self._audit_file.write_text(json.dumps(self.bus.audit.report(), indent=1))
         self._closed = True
@@ -65,7 +67,7 @@ class SimPort:
         """Seconds since the simulator started.
 
         Raises:
-            LinkLostError: unplugged or closed.
+            LinkLostError: the port is unplugged or closed.
         """
         t_s = self._time.now_s() - self._start_s
         if self.bus.faults.faults:

@@ -1,4 +1,8 @@
-"""The simulated servos behind a real tty: anything that opens a serial port can talk to them, in real time.
+"""The simulated servos behind a real tty: any program that opens a serial port can talk to them, in real time.
+
+A pty neither delays bytes nor has a baud; the simulator keeps the wire's time itself and reads from the tty the speed that the
+client has set: at another baud the servos stay silent. When unplugged, the tty is gone (its client reads EIO) and comes back as
+another one, under the same link or another.
 
 A pty paces nothing and knows no baud; the simulator keeps the wire's time itself and reads the speed the client has set
 from the tty: at another baud the servos stay silent. Unplugged, the tty is gone (its client reads EIO) and comes back as
@@ -25,11 +29,11 @@ from sim.steal_time import machine_time
 log = logging.getLogger(__name__)
 
 _IDLE_S = 0.05
-"""Longest step of the servos' time in seconds, so that watchdogs run out when nobody talks."""
+"""Seconds of the longest step of the servos' time, so that watchdogs run out when no client sends."""
 
 
 class PtyServer:
-    """Serves a `SimBus` on a pseudo terminal, with a link at a path of choice. Clients may come and go."""
+    """Serves a `SimBus` on a pseudo terminal, with a link at a chosen path. Clients may come and go."""
 
     def __init__(self, bus: SimBus, link: Path | None = None, baud: int | None = None) -> None:
         self.bus, self.link = bus, link
@@ -39,7 +43,7 @@ class PtyServer:
         if baud is not None:
             bus.set_baud(baud)
         self.baud = baud or bus.robot.bus.baud
-        """Taken for a speed that the system cannot name."""
+        """Bits per second assumed where the system cannot name the tty's speed."""
         self.overruns = 0
         """Bytes lost because the client did not read."""
         self._master, self._slave, self.device = -1, -1, ""
@@ -77,7 +81,7 @@ class PtyServer:
         os.write(self._wake_w, b"x")
 
     def close(self) -> None:
-        """Remove the link and the tty."""
+        """Close the tty and remove the link."""
         self._unplug()
         for fd in (self._wake_r, self._wake_w):
             with contextlib.suppress(OSError):
@@ -87,12 +91,12 @@ class PtyServer:
         return machine_time().now_s() - self._start_s
 
     def _pause_s(self, now_s: float) -> float:
-        """Until the next bytes are due."""
+        """Seconds until the next bytes are due."""
         ready_s = self.bus.wire.ready_s() if self._master >= 0 else None
         return _IDLE_S if ready_s is None else min(_IDLE_S, max(0.0, ready_s - now_s))
 
     def _deliver(self) -> None:
-        """Hand over what is due."""
+        """Write the bytes that are due to the client."""
         with self.bus.world.lock:
             now_s = self._now_s()
             ready_s = self.bus.wire.ready_s()
@@ -106,7 +110,7 @@ class PtyServer:
         self.overruns += len(data) - written
 
     def _follow_plug(self, now_s: float) -> None:
-        """Take the tty away, or bring another, as the fault schedule says."""
+        """Remove the tty, or open another, as the fault schedule says."""
         fault = self.bus.faults.active("unplug", now_s)
         if fault is not None and self._master >= 0:
             log.info("%.3f s: unplugged: %s is gone", now_s, self.device)
@@ -120,7 +124,7 @@ class PtyServer:
         """Open a tty and let the link point to it.
 
         Raises:
-            CommandError: something else is at the link's path.
+            CommandError: a file that is no link is at the link's path.
         """
         if link is not None and link.exists() and not link.is_symlink():
             raise CommandError(f"--link {link}: exists and is no link; choose another path")
@@ -143,6 +147,6 @@ class PtyServer:
         self._master = self._slave = -1
 
     def _client_baud(self) -> int:
-        """Speed that the client has set; the servos' own where the system cannot tell."""
+        """Baud that the client has set; the servos' own where the system cannot tell."""
         speed = tty_speed(self._slave)
         return self.baud if speed is None else speed

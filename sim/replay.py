@@ -1,4 +1,8 @@
-"""A run from its log again: what the simulated servos do with its goals, beside what the log says the servos did.
+"""Replays a log on simulated servos and compares their positions with the logged ones.
+
+The goals of the log are sent by the daemon's own bus driver at the log's times, in either protocol, to servos that start where the
+logged servos stood when torque came on. The positions read back are compared, and for each servo also the lag: the delay of the
+goals that explains its positions best, in the log and in the simulation.
 
 The goals of the log go out over the daemon's own bus driver at the log's times, in either protocol, to servos that stand
 where those of the log stood when torque came on. Compared are the positions read back. For each servo also the lag: the
@@ -25,9 +29,9 @@ Array = NDArray[np.float64]
 
 _LAGS_MS = np.arange(0.0, 200.0, 2.0)
 _BEFORE_S = 0.05
-"""From torque on to the first goal of the log."""
+"""Seconds from torque on to the first goal of the log."""
 _LEAST_TRAVEL_TICK = 20.0
-"""A servo that moved less has no lag to speak of."""
+"""Ticks of travel below which a servo gets no lag."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ class Stretch:
 
     Attributes:
         t_s: (T,) seconds from its start.
-        goal_tick, present_tick: (T, S) what the servos were told, and where they said they were.
+        goal_tick, present_tick: (T, S) goals that were sent, and positions that the servos reported.
     """
 
     t_s: Array
@@ -46,10 +50,10 @@ class Stretch:
 
 @dataclass(frozen=True)
 class ServoComparison:
-    """One servo: how far simulation and log are apart.
+    """Difference between simulation and log for one servo.
 
     Attributes:
-        servo_id, joint_name: which.
+        servo_id, joint_name: the servo.
         rms_deg, max_deg: difference of the positions, at the servo's shaft.
         lag_logged_ms, lag_simulated_ms: behind the goals; None where it hardly moved.
     """
@@ -64,7 +68,7 @@ class ServoComparison:
 
 @dataclass(frozen=True)
 class Comparison:
-    """What came of a log in the simulator."""
+    """Result of replaying a log in the simulator."""
 
     seconds: float
     stretches: int
@@ -73,17 +77,17 @@ class Comparison:
 
     @property
     def rms_deg(self) -> float:
-        """Over all servos."""
+        """Root mean square of the difference in degrees, over all servos."""
         return float(np.sqrt(np.mean([s.rms_deg**2 for s in self.servos])))
 
     @property
     def worst(self) -> ServoComparison:
-        """The servo that differs most."""
+        """The servo with the largest difference."""
         return max(self.servos, key=lambda s: s.rms_deg)
 
 
 def compare(stretches: Sequence[Stretch], robot: RobotModel, body: str = "plain") -> Comparison:
-    """Feed every stretch to simulated servos, and look how far they come from what was logged."""
+    """Replay every stretch on simulated servos and compare their positions with the logged ones."""
     refused = 0
     simulated: list[Array] = []
     for stretch in stretches:
@@ -95,7 +99,7 @@ def compare(stretches: Sequence[Stretch], robot: RobotModel, body: str = "plain"
 
 
 def _played(stretch: Stretch, robot: RobotModel, body: str) -> tuple[Array, int]:
-    """(T, S) positions read from the simulated servos, and goals they refused."""
+    """(T, S) positions read from the simulated servos, and the number of goals that they refused."""
     start_rad = JointServoMap(robot).tick_to_rad(stretch.present_tick[0])
     bus = SimBus(robot, world=world_of(robot, None, body, start_rad=start_rad.tolist()))
     clock = VirtualClock()
@@ -131,7 +135,7 @@ def _compared(i: int, robot: RobotModel, stretches: Sequence[Stretch], simulated
 
 
 def _lag_ms(i: int, stretches: Sequence[Stretch], positions: Sequence[Array]) -> float:
-    """The delay of the goals that comes nearest to the positions."""
+    """Milliseconds of delay with which the goals fit the positions best."""
     errors = np.zeros(len(_LAGS_MS))
     for stretch, position in zip(stretches, positions, strict=True):
         goal = stretch.goal_tick[:, i].astype(np.float64)

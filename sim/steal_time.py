@@ -1,4 +1,9 @@
-"""The time of a machine without what its host took from it: for simulated servos that time did not pass.
+"""Time of a machine without the pauses that its host imposed: for simulated servos no time passed during these.
+
+A virtual machine stands still while its host runs others, for half a second on a busy host. Real servos go on meanwhile, their bus
+watchdogs run out, and the robot is rightly in fault. Simulated servos stand still with the machine; a watchdog that ran out would
+describe the host and not the robot. A process that is stopped or starved on a running machine is another matter: the host took no
+time from the machine, and the servos' time goes on.
 
 A virtual machine stands still while its host runs others, for half a second on a busy one. Real servos go on meanwhile, their bus
 watchdogs run out, and the robot is in fault, rightly. Simulated ones stand still with the machine: that their watchdog ran out
@@ -16,18 +21,18 @@ from pathlib import Path
 from daemon.host.clock import Clock, RealClock
 
 STAT = Path("/proc/stat")
-"""Since the start of the machine and of each processor: what its host took, as eighth figure, in 1/100 s (proc_stat(5))."""
+"""File whose eighth figure in each `cpu` line is the time that the host took since the start, in 1/100 s (proc_stat(5))."""
 _STOLEN = re.compile(r"^cpu\d+(?: +\d+){7} +(\d+)", re.MULTILINE)
 _STOLEN_UNIT_S = 0.01
 _TINY_S = 1e-6
 LEAST_PAUSE_S = 0.03
-"""Shorter ones hurt no watchdog."""
+"""Seconds of the shortest pause that is taken off; a shorter one trips no watchdog."""
 LOOK_EVERY_S = 0.1
-"""What was taken before a pause began is at most that old."""
+"""Seconds between two readings of `STAT`, so that the figure from before a pause is at most this old."""
 
 
 class MachineTime:
-    """Seconds of a real clock less the pauses of the whole machine; to be asked often, by any thread.
+    """Seconds of a real clock less the pauses of the whole machine; must be read often; safe for several threads.
 
     Attributes:
         taken_s: sum of those pauses.
@@ -41,7 +46,7 @@ class MachineTime:
         self._stolen_s = stolen_s(self._stat)
 
     def now_s(self) -> float:
-        """Seconds; never goes back."""
+        """Seconds; the value never decreases."""
         with self._lock:
             now_s = self._clock.now_s()
             pause_s = now_s - self._asked_s
@@ -60,7 +65,7 @@ class MachineTime:
 
 
 def stolen_s(stat: Path = STAT) -> list[float]:
-    """Seconds that the host took from each processor since the machine's start; none where no file tells."""
+    """Seconds that the host took from each processor since the machine's start; empty where `stat` cannot be read."""
     try:
         text = stat.read_text("ascii")
     except OSError:
@@ -70,5 +75,5 @@ def stolen_s(stat: Path = STAT) -> list[float]:
 
 @functools.cache
 def machine_time() -> MachineTime:
-    """The one of this process: servos on several ports have the same time."""
+    """The machine time of this process, one for all ports of a robot."""
     return MachineTime(RealClock())

@@ -1,4 +1,4 @@
-"""A robot's servos and what they turn, in one time: shared by every port that leads to them."""
+"""A robot's servos and the body that they move, in one time shared by every port that leads to them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 BACKLASH_RAD = {
     "x_current": 0.0044, "mx1": 0.0058, "mx2_current": 0.0058, "mx2_load": 0.0058, "y": 0.00087, "p": 0.00175,
 }  # fmt: skip
-"""15, 20, 3 and 6 arc minutes (e-manual, "Backlash"); where it says nothing, what our estimate below says."""
+"""Radians of backlash by family: 15, 20, 3 and 6 arc minutes (e-manual, "Backlash"); other families get our estimate below."""
 _BACKLASH_OTHER_RAD = 0.0044
 _EPSILON_S = 1e-9
 
@@ -37,7 +37,7 @@ class World:
     """Servos, body, faults and audit of one robot.
 
     Args:
-        robot: whose servos.
+        robot: the robot.
         faults: what goes wrong; nothing when None.
         start_rad: (J,) pose to begin in; the park pose when None.
         body: makes the body from the robot, the motors and the start angles of the shafts; plain shafts when None.
@@ -78,13 +78,13 @@ class World:
         self._check_encoder_faults()
         self.t_s = 0.0
         self.lock = threading.RLock()
-        """Held while anything is asked of the servos: doors may be served by threads of their own."""
+        """Held during every access to the servos: each port may be served by a thread of its own."""
         self.on_clock_jump: Callable[[float], None] | None = None
         self._steps = 0
         self._done_s = -math.inf
 
     def advance(self, t_s: float) -> None:
-        """Move on to time `t_s`; earlier times change nothing."""
+        """Advance to time `t_s`; earlier times change nothing."""
         if t_s <= self._done_s:
             return
         self._done_s = t_s
@@ -101,7 +101,7 @@ class World:
             servo.watch(t_s)
 
     def move_by_hand(self, pose_rad: Sequence[float]) -> None:
-        """Put the limp joints where a hand leads them in a pose (J,); servos that have torque do not follow."""
+        """Move the limp joints to a pose (J,) as a hand would; servos with torque do not follow."""
         ticks = JointServoMap(self.robot).to_ticks(np.array(pose_rad, np.float64))
         with self.lock:
             for servo, tick in zip(self.servos.values(), ticks.tolist(), strict=True):
@@ -109,7 +109,7 @@ class World:
                     self.drives.place(servo.index, tick)
 
     def lead_by_hand(self, pose_rad: Sequence[float]) -> None:
-        """Lead the joints to a pose by hand, then switch servos that count turns off and on there."""
+        """Lead the joints to a pose by hand, then switch servos that count turns off and on in that pose."""
         self.move_by_hand(pose_rad)
         for servo in self.servos.values():
             if servo.spec.extended:
@@ -117,7 +117,7 @@ class World:
                 servo.restore_power()
 
     def _judge(self, t_s: float) -> None:
-        """Every 20 ms: power, latches, watchdogs, and what outlasts no fault."""
+        """Update power, latched errors and watchdogs, and report self-contact to the audit; every 20 ms."""
         self._keep_up(t_s)
         volts = self.drives.voltage_v
         for servo in self.all:
@@ -133,7 +133,7 @@ class World:
             self.audit.touched(touched, led=all(servo.torque for servo in self.all))
 
     def _keep_up(self, t_s: float) -> None:
-        """Faults that last: the drives are told what holds now."""
+        """Apply the lasting faults that are in force now to the drives."""
         share = np.ones(self.drives.n)
         for fault in self.faults.in_force("brown_out"):
             for servo in self._meant(fault):
@@ -155,11 +155,11 @@ class World:
             self.drives.touch()
 
     def _true_ticks(self) -> list[int]:
-        """Where the servos of the robot file stand, as their registers count."""
+        """(S,) true positions of the robot file's servos, in the ticks of their registers."""
         return [round(servo.position_tick) for servo in self.servos.values()]
 
     def _strike(self, fault: Fault, t_s: float) -> None:
-        """What happens at an instant."""
+        """Carry out a fault that happens at an instant."""
         for servo in self._meant(fault):
             i = servo.index
             if fault.kind in ("overload", "trip"):
@@ -180,7 +180,7 @@ class World:
             self.on_clock_jump(1.0 if fault.amount is None else fault.amount)
 
     def _check_encoder_faults(self) -> None:
-        """Refuse encoder faults of servos that have no such error (Protocol 1.0)."""
+        """Refuse encoder faults of servos that report no encoder error (Protocol 1.0)."""
         able = [servo.spec.servo_id for servo in self.all if servo.has_encoder_error]
         for i, fault in enumerate(self.faults.faults, 1):
             if fault.kind == "encoder" and (fault.servo_id not in able if fault.servo_id is not None else not able):
@@ -193,7 +193,7 @@ class World:
 
 
 def make_servo(spec: ServoSpec, drives: Drives, index: int, firmware: int | None = None) -> SimServo:
-    """The servo of a model, for its protocol and family."""
+    """The simulated servo of a model, by its protocol and family."""
     model = MODELS[spec.model.model_number]
     other = {"y": SimServoY, "p": SimServoP}.get(model.family, SimServo)
     return (SimServo1 if model.protocol == 1.0 else other)(spec, drives, index, firmware)

@@ -1,4 +1,8 @@
-"""Many texts through the daemon's bus side on every robot: model, retargeting, hand-over, gate, codec, servos.
+"""Many texts through the daemon's bus side on every robot: model, retargeting, splicing, gate, codec, servos.
+
+In virtual time: the same `ControlLoop`, `SafetyLimiter`, `ServoBus` and simulated servos as in a run, without waiting. Every third
+text interrupts the one before at a random moment; every tenth run is stopped half way. Then fewer texts are played once more, while
+the wire and the servos fail on a schedule, requests arrive at random and frames are nonsense. The simulator audits every goal.
 
 Virtual time: the same `ControlLoop`, `SafetyLimiter`, `ServoBus` and simulated servos as in a run, without waiting. Every third
 text interrupts the one before at a random moment; every tenth run is stopped half way. Then fewer texts once more, while the
@@ -53,6 +57,8 @@ _METHOD = (
 
 def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -> dict[str, Any]:
     """`prompts`, `robots`, `goals`, `violations`, contacts, `repairs`, and the same for each robot.
+
+    The sums of each robot are written to stderr as soon as they are known.
 
     The sums of each robot go to stderr as soon as they are known.
 

@@ -1,4 +1,4 @@
-"""A simulated robot behind the real bus side in virtual time: plays paths, is disturbed, and is repaired by a person."""
+"""A simulated robot behind the real bus side in virtual time: plays paths, suffers disturbances, and is repaired as by a person."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from sim.port import SimPort
 Array = NDArray[np.float64]
 _QUEUE = 10
 _RECORDED = 100
-"""Setpoints at a time while cycles are recorded: fewer than the rings of shared memory hold."""
+"""Number of setpoints pushed at a time while cycles are recorded: fewer than the rings of shared memory hold."""
 _REQUESTS = (BusRequest.STOP, BusRequest.PARK, BusRequest.ESTOP, BusRequest.RESET, BusRequest.ARM)
 _COOL_C = 30.0
 _REPAIR_CYCLES, _REBOOT_CYCLES = 100, 60
@@ -37,10 +37,10 @@ class AuditRig:
     """Control loop, safety limiter, servo bus and codec over simulated servos, without waiting.
 
     Args:
-        robot: which one.
-        faults: what happens to its servos and its wire.
+        robot: the robot.
+        faults: faults of its servos and its wire.
         seed: of the faults' probabilities.
-        body: what the servos turn, "plain" or "mujoco" (`sim.options.BODIES`).
+        body: body behind the servos, "plain" or "mujoco" (`sim.options.BODIES`).
     """
 
     def __init__(
@@ -59,16 +59,16 @@ class AuditRig:
         self._velocity: Array = np.zeros(robot.n_joints)
 
     def state(self) -> JointState:
-        """What was pushed last, with the velocity of the last step."""
+        """The last setpoint pushed, with the velocity of its step."""
         return JointState(self._last, self._velocity)
 
     @property
     def fault(self) -> str:
-        """Why the robot is in fault, "" when it is not."""
+        """Reason of the robot's fault, "" when it is in none."""
         return self._link.text if self._streamer.state is BusState.FAULT else ""
 
     def play(self, path: Array, share: float = 1.0, *, stop: bool = False) -> None:
-        """Play a share of a path (N, J) at bus rate from `state()` on, then stop when asked to."""
+        """Play a share of a path (N, J) at bus rate from `state()` on, then stop if `stop` is true."""
         n = max(1, round(share * len(path)))
         pushed = 0
         while pushed < n:
@@ -87,6 +87,8 @@ class AuditRig:
 
     def recorded(self, path: Array, after_s: float) -> NDArray[np.void]:
         """The bus cycles of playing a path (N, J) at bus rate from `state()` on, and of holding its end for `after_s`.
+
+        A fault ends them; `fault` then has its reason, and `make_ready` repairs it as a person would.
 
         A fault ends them; `fault` then names it, and `make_ready` is what a person does next.
         """
@@ -107,7 +109,7 @@ class AuditRig:
         return np.concatenate(rows)
 
     def play_disturbed(self, path: Array, draw: np.random.Generator) -> None:
-        """Play a path while requests and frames come that make no sense, and repair what broke."""
+        """Play a path while meaningless requests and frames arrive, and repair any fault."""
         at = 0
         while at < len(path) and self._streamer.state in (BusState.HOLDING, BusState.PLAYING):
             some = np.array(path[at : at + _QUEUE])
@@ -128,13 +130,13 @@ class AuditRig:
         self.make_ready()
 
     def make_ready(self) -> None:
-        """What a person does until the robot holds: wait, reboot what is latched, reset, arm.
+        """Act as a person would until the robot holds: wait, reboot servos with latched errors, reset, arm.
 
         Raises:
-            RuntimeError: it does not get there in ten tries.
+            RuntimeError: the robot does not hold after ten tries.
         """
         for _ in range(10):
-            if self._streamer.state is BusState.PLAYING:  # the end of what it plays was lost
+            if self._streamer.state is BusState.PLAYING:  # the end of the running path was lost
                 self._request(BusRequest.STOP)
             if self._streamer.state in (BusState.FAULT, BusState.ESTOP):
                 self.repairs += 1
@@ -155,7 +157,7 @@ class AuditRig:
         raise RuntimeError(f"still {self._streamer.state.name} after ten repairs: {self._link.text}")
 
     def finish(self) -> dict[str, Any]:
-        """Park; the audit's figures."""
+        """Park the robot; return the audit's figures."""
         if self._streamer.state is not BusState.HOLDING:
             self.make_ready()
         self._request(BusRequest.PARK)
@@ -184,7 +186,7 @@ class AuditRig:
         self._cycles(1)
 
     def _settle(self) -> None:
-        """Until nothing is queued and the robot is limp, holds, is in fault, or waits for the rest of what it plays."""
+        """Run until no setpoint is queued and the robot is limp, holds, is in fault, or waits for the rest of a path."""
         lasting = (BusState.LIMP, BusState.HOLDING, BusState.PLAYING, BusState.FAULT, BusState.ESTOP)
         for _ in range(round(60 / self._period_s)):
             if self._streamer.state in lasting and not self._link.setpoints.queued_frames:

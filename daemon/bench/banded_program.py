@@ -18,23 +18,23 @@ _sparse: Any = importlib.import_module("scipy.sparse")
 Array = NDArray[np.float64]
 _MOST_STEPS = 40
 _GAP, _RESIDUAL = 1e-7, 1e-7
-"""Mean complementarity, and residuals, at which a solution counts as found."""
+"""Mean complementarity, and residuals, below which a solution counts as found."""
 _START = 1e-2
-"""Slacks and multipliers begin at this or more."""
+"""Smallest initial value of slacks and multipliers."""
 _TO_BORDER = 0.995
-"""Share of the way to the nearest bound that a step goes."""
+"""Share of the distance to the nearest bound that a step covers."""
 
 
 @dataclass(frozen=True)
 class Program:
-    """Least x' M x / 2 + g' x over x (N,) with A x <= b + soft z, where z is the multiplier of a row.
+    """The minimum of x' M x / 2 + g' x over x (N,) with A x <= b + soft z, where z is the multiplier of a row.
 
     Attributes:
         matrix: (N, N) sparse M, positive semidefinite.
         gradient: (N,) g.
         rows: (R, N) sparse A.
         upper: (R,) b.
-        soft: (R,) 0 makes a row hard; else 1 / soft is the weight of half the squared amount by which it is passed.
+        soft: (R,) 0 makes a row hard; else 1 / soft is the weight of half its squared violation.
     """
 
     matrix: Any
@@ -46,7 +46,7 @@ class Program:
 
 @dataclass(frozen=True)
 class _Step:
-    """Where a step begins: slacks, multipliers, residuals, weights of the rows, and the factorised matrix."""
+    """The point at which a step begins: slacks, multipliers, residuals, weights of the rows, and the factorised matrix."""
 
     s: Array
     z: Array
@@ -57,7 +57,7 @@ class _Step:
 
 
 def least(program: Program, width: int) -> Array:
-    """(N,) the solution, with no element of the matrix further than `width` - 1 below the diagonal.
+    """(N,) solution of a program whose matrix has no element further than `width` - 1 below the diagonal.
 
     Raises:
         FloatingPointError: the matrix is not positive definite.

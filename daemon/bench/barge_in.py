@@ -27,7 +27,7 @@ SHORTEST_GAP_S, LONGEST_GAP_S = 0.03, 0.6
 STOP_EVERY = 10
 STOP_WATCHED_S = 0.6
 SEEN_OUT = 0.5
-"""A stop is judged where the bus process made at least this share of its cycles in that time."""
+"""Share of its cycles that the bus process must have made for a stop to be judged."""
 SETTLED_S = 12.0
 STILL_RAD_S = np.deg2rad(2.0)
 _METHOD = (
@@ -41,7 +41,7 @@ _METHOD = (
 
 @dataclass
 class _Heard:
-    """What came back."""
+    """Replies and events received so far."""
 
     ends: Counter[str] = field(default_factory=Counter[str])
     takeover_ms: list[float] = field(default_factory=list[float])
@@ -58,6 +58,9 @@ class _Heard:
 
 def bench_barge_in(n: int = 1000, seed: int = 0, robot: str = "reference") -> dict[str, Any]:
     """`takeover_p95_ms`, `stop_p95_ms`, `concurrent`, `lost_stops`, `ended_once` (share of the commands).
+
+    Where the machine holds up the bus process, faults follow, which are counted in `faults`, each reset and armed again. A stop
+    after which the bus process made less than half of its cycles cannot be judged: `unseen_stops`.
 
     A machine that holds the bus process up leads to faults, which are counted in `faults`, each reset and armed again. A stop
     after which the bus process made less than half of its cycles cannot be judged: `unseen_stops`.
@@ -99,7 +102,7 @@ def bench_barge_in(n: int = 1000, seed: int = 0, robot: str = "reference") -> di
 
 
 def _talk(client: Client, texts: list[str], rng: np.random.Generator, heard: _Heard, stops_s: list[float]) -> list[str]:
-    """Say all of them, stop now and then, listen to the end; the reasons of faults."""
+    """Say all texts, stop at random, receive events to the end; return the reasons of faults."""
     faults: list[str] = []
     context_: zmq.Context[zmq.Socket[bytes]] = zmq.Context()
     socket = context_.socket(zmq.DEALER)
@@ -134,7 +137,7 @@ def _talk(client: Client, texts: list[str], rng: np.random.Generator, heard: _He
 
 
 def _still_after_s(window: list[LoggedCycle], t_s: float, rate_hz: float) -> float | None:
-    """Seconds from `t_s` until no joint is faster than 2 deg/s, for the rest of the watched time; None when one is."""
+    """Seconds from `t_s` until no joint is faster than 2 deg/s for the rest of the watched time; None when a joint stays faster."""
     goals_rad = np.array([c.goal_rad for c in window], np.float64)
     speed = np.abs(np.diff(goals_rad, axis=0)).max(1) * rate_hz
     fast = np.flatnonzero(speed > STILL_RAD_S)

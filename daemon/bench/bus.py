@@ -32,7 +32,7 @@ BAUDS = (1_000_000, 2_000_000, 4_000_000)
 LOSSES = (0.001, 0.01)
 _FIFO = 40
 _NO_BAUD = 100_000_000
-"""Told to the driver where there is no wire: it sleeps through the time that bytes take."""
+"""Bits per second set in the driver where there is no wire, so that it does not wait for bytes on a wire."""
 _WARM_CYCLES, _BLOCK = 50, 10
 _METHOD = (
     "20 servos on a pty whose other end, a process of its own, holds every byte back for its time on the wire; a cycle"
@@ -45,7 +45,7 @@ _METHOD = (
 
 
 def bench_bus(seconds: float = 3.0, seed: int = 0) -> dict[str, Any]:
-    """`codec_us`; under `wire`, `no_wire`, `loss` and `peers` what the driver reaches; `dead_servo_rate_share`."""
+    """`codec_us`; the driver's rates under `wire`, `no_wire`, `loss` and `peers`; `dead_servo_rate_share`."""
     console = Console(stderr=True)
     realtime = _take_fifo()
     figures: dict[str, Any] = {"wire": {}}
@@ -71,7 +71,7 @@ def bench_bus(seconds: float = 3.0, seed: int = 0) -> dict[str, Any]:
 
 
 def _take_fifo() -> bool:
-    """First-in-first-out priority for this process, as the bus process takes it, where it is allowed."""
+    """Give this process FIFO priority, as the bus process has it; return whether the system allowed this."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_FIFO))
     except OSError:
@@ -80,12 +80,12 @@ def _take_fifo() -> bool:
 
 
 def _codecs_us() -> tuple[float, float]:
-    """By sync read, by fast sync read."""
+    """Median codec times in microseconds, with sync read and with fast sync read."""
     return _codec_us(fast=False), _codec_us(fast=True)
 
 
 def _codec_us(*, fast: bool) -> float:
-    """Median time to build the goals and to parse and store the answers of all servos."""
+    """Median microseconds to build the goals and to parse and store the answers of all servos."""
     write = GroupWrite(IDS, 116, 4)
     step = (FastSyncStep if fast else SyncStep)(list(range(N_SERVOS)), IDS)
     reading, goals = BusReading.of(N_SERVOS), np.full(N_SERVOS, POSITION_TICK, np.int32)
@@ -110,7 +110,7 @@ def _reply(*, fast: bool) -> bytes:
 
 @contextmanager
 def _emulator(baud: int, *, fast: bool = True, loss: float = 0.0, dead: int = 0) -> Generator[str]:
-    """The tty of servos at `baud` (0: no wire)."""
+    """The tty of emulated servos at `baud` (0: a wire that takes no time)."""
     options = [f"--servos={N_SERVOS}", f"--baud={baud}", f"--loss={loss}", f"--dead={dead}"]
     options += ["--fast"] if fast else []
     if os.sched_getscheduler(0) == os.SCHED_FIFO:
@@ -143,6 +143,8 @@ def _bus(device: str, baud: int, *, verify: bool = True) -> Generator[ServoBus]:
 def _timed(cycle: Callable[[], object], seconds: float) -> tuple[np.ndarray[Any, Any], float]:
     """(N,) seconds of a cycle, each the mean of ten in a row, and processor seconds of a cycle.
 
+    The mean of ten is taken because a cycle whose end is noticed late makes the next one look short.
+
     Of ten, because a cycle that is noticed late makes the next one look short.
     """
     for _ in range(_WARM_CYCLES):
@@ -160,7 +162,7 @@ def _timed(cycle: Callable[[], object], seconds: float) -> tuple[np.ndarray[Any,
 
 
 def _run(bus: ServoBus, seconds: float) -> tuple[np.ndarray[Any, Any], float, float]:
-    """(N,) seconds of each cycle, processor seconds of one, share of values that were valid and right."""
+    """(N,) seconds of each cycle, processor seconds of one, and the share of values that were valid and right."""
     goals, valid = np.full(N_SERVOS, POSITION_TICK, np.int32), [0, 0]
 
     def cycle() -> None:
@@ -238,7 +240,7 @@ def _loss(seconds: float, *, fast: bool) -> tuple[dict[str, Any], float]:
 
 
 def _peer(name: str, seconds: float) -> dict[str, Any]:
-    """The bus cycle of `bus` by a peer: at 1 and 4 Mbit/s, without a wire, and with one reply in a thousand lost."""
+    """Figures of the bus cycle of `bus` with a peer's driver: at 1 and 4 Mbit/s, without a wire, and with 0.1 % of replies lost."""
     figures: dict[str, Any] = {}
     if name == "dynamixel-sdk":
         figures["codec_us"] = round(sdk_codec_us(IDS, _reply(fast=False)), 1)

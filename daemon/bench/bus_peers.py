@@ -1,4 +1,4 @@
-"""The bus cycle by other clients: dynamixel-sdk, rustypot (extra `bench`), and a minimal C program where there is a compiler."""
+"""The bus cycle with other clients: dynamixel-sdk, rustypot (extra `bench`), and a minimal C program where there is a compiler."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from daemon.bench.wire_emulator import POSITION_TICK
 from daemon.dynamixel.codec.packet import sync_read, sync_write
 
 Cycle = Callable[[], bool]
-"""One cycle; whether every servo's position was right."""
+"""Runs one cycle; returns whether every servo's position was right."""
 Peer = Callable[[str, int, list[int]], tuple[Cycle, Callable[[], None]]]
-"""(tty, baud, ids) -> a cycle, and what ends the peer."""
+"""Maps (tty, baud, ids) to a cycle and a function that closes the peer."""
 
 
 def sdk(device: str, baud: int, ids: list[int], *, fast: bool = False) -> tuple[Cycle, Callable[[], None]]:
-    """GroupSyncWrite and GroupSyncRead of dynamixel-sdk, three values of each servo taken out."""
+    """A cycle of dynamixel-sdk: GroupSyncWrite and GroupSyncRead, with three values extracted for each servo."""
     lib: Any = importlib.import_module("dynamixel_sdk")
     port = lib.PortHandler(device)
     handler = lib.PacketHandler(2.0)
@@ -48,7 +48,7 @@ def sdk(device: str, baud: int, ids: list[int], *, fast: bool = False) -> tuple[
 
 
 def rustypot(device: str, baud: int, ids: list[int], *, fast: bool = False) -> tuple[Cycle, Callable[[], None]]:
-    """Raw blocks of rustypot's XL430 controller, split here."""
+    """A cycle of rustypot's XL430 controller, whose raw blocks are split here."""
     lib: Any = importlib.import_module("rustypot")
     controller = lib.Xl430PyController(device, baud, 0.05)
     if fast:
@@ -77,12 +77,12 @@ MODULES = {"dynamixel-sdk": "dynamixel_sdk", "rustypot": "rustypot"}
 
 
 def installed() -> list[str]:
-    """Peers that can be run here."""
+    """Names of the peers that can run on this machine."""
     return [name for name, module in MODULES.items() if importlib.util.find_spec(module) is not None]
 
 
 def sdk_codec_us(ids: list[int], reply: bytes, n: int = 300) -> float:
-    """Median time in which dynamixel-sdk builds the goals, parses these answers and takes the values out, without I/O."""
+    """Median microseconds in which dynamixel-sdk builds the goals, parses these answers and extracts the values, without I/O."""
     lib: Any = importlib.import_module("dynamixel_sdk")
 
     class Wire:
@@ -104,7 +104,7 @@ def sdk_codec_us(ids: list[int], reply: bytes, n: int = 300) -> float:
             return out
 
         def setPacketTimeout(self, _length: int) -> None:  # noqa: N802
-            """Nothing is waited for."""
+            """Do nothing, as this port never waits."""
 
         def isPacketTimeout(self) -> bool:  # noqa: N802
             return not self._left
@@ -130,7 +130,7 @@ def sdk_codec_us(ids: list[int], reply: bytes, n: int = 300) -> float:
 
 
 def c_client_us(device: str, ids: list[int], reply_bytes: int, seconds: float, *, fast: bool) -> float | None:
-    """Median cycle of the minimal C client on this tty; None without a C compiler."""
+    """Median cycle in microseconds of the minimal C client on this tty; None without a C compiler."""
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler is None:
         return None

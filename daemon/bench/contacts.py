@@ -1,4 +1,4 @@
-"""Self-contact by MuJoCo's own pipeline on a model of its own: what checks the retargeter's answer from outside."""
+"""Self-contact by MuJoCo's own pipeline on a separate model: an independent check of the retargeter."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class ContactCheck:
         self._resting = self.touching(robot.rest_rad)
 
     def frames(self, q_rad: NDArray[np.float64]) -> int:
-        """How many of the poses (T, J) touch."""
+        """Number of poses (T, J) in self-contact."""
         return sum(bool(self.touching(q) - self._resting) for q in q_rad)
 
     def touching(self, q_rad: NDArray[np.float64]) -> set[tuple[int, int]]:

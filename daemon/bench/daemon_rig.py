@@ -1,4 +1,4 @@
-"""A daemon of its own for a measurement: simulated robot, local sockets, a second process that keeps the cores busy."""
+"""A daemon for a measurement: simulated robot, local sockets, a second process that keeps the cores busy."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from daemon.demo.main_job import child, free_endpoints, wait_until_ready
 from daemon.errors import DaemonError
 
 HALTED = ("fault", "estop")
-"""Where hold-ups of the machine lead: servos stopped by watchdogs; a bus process that was silent for a second and came back."""
+"""States after the machine stood still: servos stopped by their watchdogs; a bus process that was silent for a second and came
+back."""
 _NOT_ARMED = (*HALTED, "limp")
 ARM_TRIES = 5
 ARM_PAUSE_S = 1.0
@@ -28,7 +29,7 @@ _BUSY = "x = 1\nwhile True:\n    x = x * 3 % 1000003\n"
 
 @contextlib.contextmanager
 def running_daemon(robot: str, *options: str, audit: Path | None = None) -> Generator[tuple[Client, Path]]:
-    """A client of a daemon that is armed and ready, and the daemon's output; parked at the end."""
+    """A client of a daemon that is armed and ready, and the path of the daemon's output; the robot is parked at the end."""
     endpoints = free_endpoints()
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "daemon.log"
@@ -46,7 +47,7 @@ def running_daemon(robot: str, *options: str, audit: Path | None = None) -> Gene
 
 
 def arm_again(client: Client) -> None:
-    """From limp or `HALTED`, as a person would: reset, arm, and once more where the machine's next hold-up comes meanwhile.
+    """Arm from limp or `HALTED` as a person would: reset, arm, and again where the machine stands still once more meanwhile.
 
     Raises:
         DaemonError: the robot is still not armed after the last try.
@@ -71,7 +72,7 @@ def _keys_among(options: Sequence[str]) -> Path | None:
 
 @contextlib.contextmanager
 def busy_cores() -> Generator[None]:
-    """One process that never rests for each core, at normal priority."""
+    """Run one process without pauses for each core, at normal priority."""
     n = len(os.sched_getaffinity(0))
     hogs = [subprocess.Popen([sys.executable, "-c", _BUSY]) for _ in range(n)]
     try:
@@ -83,7 +84,7 @@ def busy_cores() -> Generator[None]:
 
 
 def percentile(values: Sequence[float], share: float) -> float | None:
-    """The value that `share` percent do not exceed; None for none."""
+    """The value that `share` percent of the values do not exceed; None without values."""
     import numpy as np
 
     return round(float(np.percentile(values, share)), 2) if len(values) else None

@@ -1,4 +1,4 @@
-"""What is done to a daemon while an e-stop is given: floods, connections, frozen and killed processes, a torn port."""
+"""Disturbances of a daemon during which an e-stop is given: floods, connections, frozen and killed processes, a torn port."""
 
 from __future__ import annotations
 
@@ -17,16 +17,18 @@ from daemon.bench.estop_rig import BUS, EstopRig
 from daemon.bench.floods import flooded
 
 ALIVE_BOUND_S, RESTART_BOUND_S = 1.0, 60.0
-"""Seconds after which an e-stop counts as lost: with a bus process and its port alive; where one of them has to come back, which
-takes Python more than ten on a machine whose cores are all busy."""
+"""Seconds after which an e-stop counts as lost: with a live bus process and port; where one of these has to come back, for which
+Python takes more than ten on a machine whose cores are all busy.
+"""
 LONGEST_WAIT_S = 0.6
-"""Longest time from the disturbance to the request; each is drawn at random."""
+"""Seconds of the longest wait from the disturbance to the request; each wait is drawn at random."""
 SHORTEST_WAIT_S = 0.01
-"""Seconds of the shortest wait: bytes of a process that was just killed have reached the servos by then."""
+"""Seconds of the shortest wait: by then the last bytes of a process that was just killed have reached the servos."""
 LONGEST_TEAR_S = 1.0
-"""Longest time for which the port is torn."""
+"""Seconds for which the port is torn, at most."""
 LONGEST_FREEZE_S = 0.8
-"""Longest time from the request to the frozen bus process's going on; about 1 s after the request the daemon would kill it."""
+"""Seconds from the request until the frozen bus process continues, at most; the daemon would kill it about 1 s after the request.
+"""
 
 _Act = Callable[[EstopRig, np.random.Generator], AbstractContextManager[None]]
 
@@ -36,11 +38,11 @@ class Disturbance:
     """One way to disturb the daemon.
 
     Attributes:
-        act: a context in which the e-stop is given; when it ends, what froze goes on and what flooded is gone.
-        state: the robot's before.
-        bound_s: after which an e-stop counts as lost.
+        act: context in which the e-stop is given; at its end frozen processes continue and floods stop.
+        state: state of the robot before the disturbance.
+        bound_s: seconds after which an e-stop counts as lost.
         bus_away: whether bus process or port are away, so that time is counted from their return as well.
-        newcomer: whether the e-stop comes from a client that connects for it; else it was connected before.
+        newcomer: whether the client connects only to give the e-stop; else it was connected before.
     """
 
     act: _Act
@@ -106,7 +108,7 @@ def _bus_killed(rig: EstopRig, rng: np.random.Generator) -> Generator[None]:
 
 @contextlib.contextmanager
 def _bus_frozen(rig: EstopRig, rng: np.random.Generator) -> Generator[None]:
-    """One of two goes on soon after the request; the others are killed by the daemon, and started again."""
+    """Freeze the bus process; in half of the trials it continues soon after the request, else the daemon kills and restarts it."""
     pid = rig.child(BUS)
 
     def goes_on() -> None:
@@ -128,7 +130,7 @@ def _bus_frozen(rig: EstopRig, rng: np.random.Generator) -> Generator[None]:
 
 @contextlib.contextmanager
 def _starting(rig: EstopRig, rng: np.random.Generator) -> Generator[None]:
-    """All processes of a daemon are killed in a motion; the servos have torque while the next one starts."""
+    """Kill all processes of a daemon during a motion; the servos have torque while the next daemon starts."""
     rig.kill_all()
     rig.start()
     rig.until_listening()

@@ -1,4 +1,4 @@
-"""E-stop to torque-off bytes, through a whole daemon, while every core is kept busy by another process; then under disturbances."""
+"""Time from e-stop to torque-off bytes, through a whole daemon, with every core busy; then under disturbances."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _METHOD = (
 
 
 def bench_estop(n: int = 30, seed: int = 0, robot: str = "reference") -> dict[str, Any]:
-    """`cycles_max`, `cycles_p95` and milliseconds with all cores busy; `disturbances`, and all their `lost` and `violations`.
+    """`cycles_max`, `cycles_p95` and milliseconds with all cores busy; `disturbances`, with the sums `lost` and `violations`.
 
     Args:
         n: e-stops with all cores busy, and in each disturbance.

@@ -18,18 +18,18 @@ from daemon.bench.disturbances import DISTURBANCES, Disturbance
 from daemon.bench.estop_rig import Button, EstopRig
 
 STAYS_OFF_S = 0.1
-"""Seconds without torque after which it is taken for off, once the e-stop is told as carried out."""
+"""Seconds without torque after which torque counts as off, once the e-stop is reported as carried out."""
 _LOOK_S = 0.0005
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one e-stop.
+    """The outcome of one e-stop.
 
     Attributes:
         lost: whether a servo still had torque at the bound.
-        told: whether the daemon had said by then that the e-stop was carried out.
-        off_s: from the request to torque off of all servos; 0 where none had torque, the bound where the e-stop was lost.
+        told: whether the daemon had reported by the bound that the e-stop was carried out.
+        off_s: seconds from the request to torque off of all servos; 0 where none had torque, the bound where the e-stop was lost.
         back_s: the same from the first bytes that servos heard after the disturbance, if that was after the request; None where the
             bus process was not away, or no servo had torque.
     """
@@ -43,7 +43,7 @@ class Outcome:
 def measure_disturbed(
     n: int, seed: int, robot: str, names: Sequence[str] = tuple(DISTURBANCES)
 ) -> tuple[dict[str, dict[str, Any]], int]:
-    """Figures of each disturbance, and the violations that the servos' audit has found in all of them.
+    """Figures of each disturbance, and the number of violations that the servos' audit found in all of them.
 
     Args:
         n: e-stops for each disturbance.
@@ -79,7 +79,7 @@ def give_one(rig: EstopRig, disturbance: Disturbance, rng: np.random.Generator) 
 
 
 def summary(outcomes: Sequence[Outcome], disturbance: Disturbance) -> dict[str, Any]:
-    """`lost` and `untold` of `n`, and the times of the others in milliseconds."""
+    """`lost` and `untold` of `n`, and the times of the other e-stops in milliseconds."""
     kept = [one for one in outcomes if not one.lost]
     figures: dict[str, Any] = {
         "lost": len(outcomes) - len(kept),
@@ -120,7 +120,7 @@ def _percentiles(seconds: Sequence[float]) -> dict[str, float | None]:
 
 
 def _tell(rig: EstopRig, trial: str, outcome: Outcome) -> None:
-    """Progress on stderr, and the daemon's log where an e-stop was lost or not told as carried out."""
+    """Print progress on stderr, and the daemon's log where an e-stop was lost or not reported as carried out."""
     back = "" if outcome.back_s is None else f", {1e3 * outcome.back_s:.1f} ms from the bus process's return"
     told = "" if outcome.told else ", not told as carried out"
     sys.stderr.write(f"{trial}: {'LOST' if outcome.lost else f'{1e3 * outcome.off_s:.1f} ms'}{back}{told}\n")

@@ -35,13 +35,13 @@ CLIENT_PRIORITY = 20
 READY_TIMEOUT_S = 60.0
 STATE_TIMEOUT_S = 20.0
 _LEAD_TRIES = 4
-"""A machine that stands still for a moment lets servos fall silent on the way to a state: the robot is led there again."""
+"""Attempts to lead the robot to a state: when the machine stands still for a moment, servos fall silent and one fails."""
 _LOG_LINES = 40
-"""Lines of the daemon's log that go with an error."""
+"""Lines of the daemon's log that an error shows."""
 
 
 class EstopRig:
-    """Starts the daemon when it is needed and not there, and leads the robot to a state. Ends all that it started on exit.
+    """Starts the daemon when needed, and leads the robot to a state. Ends all processes that it started on exit.
 
     Attributes:
         servos: of the robot.
@@ -75,7 +75,7 @@ class EstopRig:
     ) -> None:
         try:
             self._remember_children()
-            self._child.close()  # parks; killed only if it does not end
+            self._child.close()  # parks the robot; killed only if it does not end
         finally:
             self.kill_all()
             self.servos.close()
@@ -109,14 +109,14 @@ class EstopRig:
         self._process = self._child.enter_context(child(self._arguments, self._log))
 
     def kill_front(self) -> None:
-        """Kill the front; its children go on."""
+        """Kill the front; its child processes live on."""
         self._remember_children()
         os.kill(self.front, signal.SIGKILL)
         if self._process is not None:
             self._process.wait(5)
 
     def kill_all(self) -> None:
-        """Kill the front and every process that it started, so that servos keep the torque that they have."""
+        """Kill the front and every process that it started, so that servos keep their torque."""
         self._remember_children()
         if self._process is not None and self._process.poll() is None:
             self.kill_front()
@@ -130,10 +130,10 @@ class EstopRig:
         self._known.clear()
 
     def bring_to(self, state: str) -> None:
-        """Lead the robot to "moving", "arming" or "parking", whatever the daemon and the robot have been through.
+        """Lead the robot to "moving", "arming" or "parking", from any state of the daemon and the robot.
 
         Raises:
-            DaemonError: the daemon does not get ready, or the robot not into the state; with the end of the daemon's log.
+            DaemonError: the daemon does not get ready, or the robot does not reach the state; with the end of the log.
         """
         for tries_left in reversed(range(_LEAD_TRIES)):
             if self._process is None or self._process.poll() is not None:
@@ -150,7 +150,7 @@ class EstopRig:
                 sys.stderr.write(f"led to {state} again: {error}\n")
 
     def until_listening(self) -> None:
-        """Wait until `ctl` takes connections, whatever else the daemon does not do yet."""
+        """Wait until `ctl` accepts connections, even if the daemon is not ready otherwise."""
         self._until("ctl takes connections", lambda: listening(self.endpoints.ctl))
 
     def _until_ready(self) -> None:
@@ -171,7 +171,7 @@ class EstopRig:
 
 
 class Button:
-    """A client of `ctl` that can do nothing but give an e-stop.
+    """A client of `ctl` that only gives e-stops.
 
     Args:
         endpoint: `ctl` of the daemon.
@@ -202,11 +202,11 @@ class Button:
         self._socket.connect(self._endpoint)
 
     def press(self) -> None:
-        """Ask for an e-stop."""
+        """Request an e-stop."""
         self._socket.send(encode(Estop(id=self._id)))
 
     def told(self) -> bool:
-        """Whether a message that is there says that the e-stop was carried out."""
+        """Whether a received message says that the e-stop was carried out."""
         while self._socket.poll(0):
             event = decode_event(self._socket.recv())
             if event.id == self._id and (
@@ -261,7 +261,7 @@ def _children(pid: int) -> dict[int, str]:
 
 
 def _runs(pid: int, module: str) -> bool:
-    """Whether a process lives and runs a module; else its id may be another's by now."""
+    """Whether a process lives and runs a module; an ended process's id may belong to another one by now."""
     try:
         return module.encode() in (Path("/proc") / str(pid) / "cmdline").read_bytes().split(b"\0")
     except OSError:
@@ -269,7 +269,7 @@ def _runs(pid: int, module: str) -> bool:
 
 
 def _free_ports(n: int) -> list[int]:
-    """TCP ports of this machine that nobody listens at just now."""
+    """TCP ports of this machine on which no program listens at present."""
     with contextlib.ExitStack() as stack:
         sockets = [stack.enter_context(socket.create_server(("127.0.0.1", 0))) for _ in range(n)]
         return [s.getsockname()[1] for s in sockets]

@@ -1,4 +1,8 @@
-"""What a robot does of a motion: its path through the daemon's control loop, simulated servos and their load.
+"""Motions as executed: their path through the daemon's control loop to simulated servos under load.
+
+The control loop, gate, servo bus and codec are those of a run, in virtual time; behind them are servos with their own profiles,
+loops and limits of torque, and the robot's body in MuJoCo with gravity, inertia, friction and contact. The measured positions that
+the servos report are judged.
 
 The same streamer, gate, servo bus and codec as in a run, in virtual time; behind them servos with their own profiles, loops and
 limits of torque, and the robot's body in MuJoCo with gravity, inertia, friction and contact. Judged are the positions that
@@ -29,26 +33,26 @@ from sim.faults import Fault
 
 Array = NDArray[np.float64]
 _WAY_FRAMES = 30
-"""Frames of standing in a motion's first pose before it begins, so that the robot gets there at its own speed."""
+"""Frames of standing in a motion's first pose before the motion, so that the robot reaches the pose at its own speed."""
 _THERE_RAD = 0.02
 """Radians within which a robot counts as standing where a path begins or ends."""
 _AFTER_S = 0.4
-"""Seconds for which the end of a path is held, so that servos that lag come to rest in it."""
+"""Seconds for which the end of a path is held, so that lagging servos come to rest."""
 _LONGEST_LAG_S = 0.4
 _MOVED_RAD = 0.05
-"""Radians that a joint must go through before its lag is looked for."""
+"""Radians of travel below which no lag of a joint is computed."""
 _ROUNDING_RAD = 1e-9
 _SHORT = 0.98
-"""Share of its way that a joint must make; one that makes less is named."""
+"""Share of the commanded travel below which a joint is reported."""
 
 
 @dataclass(frozen=True)
 class Tracking:
-    """How well joints followed one path.
+    """Tracking of one path by the joints.
 
     Attributes:
         error_rad: (N, J) goal less measured position in each bus cycle.
-        lag_s: (J,) delay that explains most of it, NaN for joints that hardly moved.
+        lag_s: (J,) delay that explains most of the error, NaN for joints that hardly moved.
         way: (J,) range measured as a share of the range commanded, NaN likewise.
         gated: bus cycles in which the daemon's gate changed a setpoint.
         longer_s: seconds that the robot took longer than its path, because something slowed it down.
@@ -62,15 +66,15 @@ class Tracking:
 
 
 class Executed:
-    """One robot that plays one motion after another."""
+    """A simulated robot that plays one motion after another."""
 
     def __init__(self, retargeter: Retargeter, body: str = "mujoco", faults: tuple[Fault, ...] = ()) -> None:
         """Arm a simulated robot.
 
         Args:
-            retargeter: which robot, and how it follows.
-            body: what its servos turn, "plain" or "mujoco".
-            faults: what goes wrong.
+            retargeter: the robot and its retargeting settings.
+            body: body behind the servos, "plain" or "mujoco".
+            faults: faults of servos and wire.
         """
         self._retargeter, self._map = retargeter, JointServoMap(retargeter.robot)
         self._rig = AuditRig(retargeter.robot, faults, body=body)
@@ -83,7 +87,7 @@ class Executed:
         self._probes = {p.text: p for probes in PROBE_SETS.values() for p in probes}
 
     def perform(self, motion: Motion) -> tuple[Motion, Motion]:
-        """What the path of a motion commands, and what the servos measured, both on a person."""
+        """The commanded motion of the retargeted path and the measured motion, both as poses of a person."""
         first = cut(motion, 0, 1)
         begin = self._retargeter.retarget(first).q_rad[0]
         if np.abs(begin - self._rig.state().position_rad).max() > _THERE_RAD:
@@ -104,7 +108,7 @@ class Executed:
         )
 
     def _play(self, path: JointPath) -> NDArray[np.void]:
-        """The bus cycles of a path; a fault is noted and repaired."""
+        """The bus cycles of a path; a fault is recorded and repaired."""
         cycles = self._rig.recorded(path.at_rate(self._rate_hz), _AFTER_S)
         if self._rig.fault:
             self._faults[self._rig.fault] += 1
@@ -112,7 +116,7 @@ class Executed:
         return cycles
 
     def shown(self, motion: Motion) -> Motion:
-        """What the servos measured; what the probe of its text then keeps of its path's verdicts is counted."""
+        """The measured motion; whether it keeps the verdicts that its text's probe gives the path is counted."""
         if not len(motion.joints_m):
             return motion
         commanded, measured = self.perform(motion)
@@ -154,7 +158,7 @@ def tracking(cycles: NDArray[np.void], measured_rad: Array, period_s: float, lon
 
 
 def summary(of: list[Tracking], names: tuple[str, ...]) -> Mapping[str, Any]:
-    """Tracking error, lag and way of all paths: over all joints, and of the joints that are worst."""
+    """Tracking error, lag and travel of all paths: over all joints, and of the worst joints."""
     if not of:
         return {}
     error = np.rad2deg(np.concatenate([t.error_rad for t in of]))

@@ -1,4 +1,4 @@
-"""Text to first moving servo frame, warm, through the whole daemon: ZeroMQ, generator, retargeting, gate, bytes."""
+"""Time from text to first moving servo frame, warm, through the whole daemon: ZeroMQ, generator, retargeting, gate, bytes."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def bench_first_motion(n: int = 50, seed: int = 0, robot: str = "reference") -> 
 
 
 def from_rest(client: Client, texts: list[str], seed: int, name: str) -> dict[str, Any]:
-    """`p50_ms`, `p95_ms` and `n` of texts that are said while the robot stands still."""
+    """`p50_ms`, `p95_ms` and `n` of texts said while the robot stands still."""
     return _times(client, texts, seed, name)
 
 
@@ -84,7 +84,9 @@ def _times(
     cancel: bool = True,
     before: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Say each text; with `stop` from stillness, else while the one before is played, or (without `cancel`) once it idles.
+    """Say each text: with `stop` at rest, else while the text before is played, or (without `cancel`) once it idles.
+
+    With `before` each text interrupts a story of these scenes.
 
     With `before` each text interrupts a story of these scenes.
     """
@@ -94,7 +96,7 @@ def _times(
     faults: list[str] = []
     host = HostShare()
     for i, text in enumerate(texts):
-        if client.status().state in HALTED:  # it came while the text before was being played
+        if client.status().state in HALTED:  # a fault or e-stop came while the text before was played
             faults.append(f"after text {i}")
             arm_again(client)
         try:
@@ -130,7 +132,7 @@ def _times(
 
 
 def _first_motion(client: Client, command_id: str, text: str, seed: int) -> tuple[float | None, float, str]:
-    """Milliseconds to the first moving frame (None when nothing moved) and spent in the generator; why nothing moved."""
+    """Milliseconds to the first moving frame (None when nothing moved), milliseconds in the generator, and why nothing moved."""
     generate_ms, reason = 0.0, "no end was told"
     for event in client.events_of(Say(id=command_id, text=text, seed=seed)):
         generate_ms = getattr(event, "generate_ms", generate_ms)
@@ -144,7 +146,7 @@ def _first_motion(client: Client, command_id: str, text: str, seed: int) -> tupl
 
 @contextlib.contextmanager
 def _remote_generator() -> Generator[list[str]]:
-    """A generator behind keys; the options that lead a daemon to it."""
+    """Run a generator behind keys; yield the options with which a daemon uses it."""
     with tempfile.TemporaryDirectory() as folder:
         server, board = KeyFolder(Path(folder) / "server"), KeyFolder(Path(folder) / "board")
         server.allow("board", board.new().public.decode())

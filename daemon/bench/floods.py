@@ -1,4 +1,6 @@
-"""Floods of a daemon's public sockets, each in a process of its own that ends with the one that started it.
+"""Floods of a daemon's public sockets, each in a process of its own that ends with its parent.
+
+`python -m daemon.bench.floods KIND ENDPOINT` floods until it is killed; it prints a line once the flood has begun.
 
 `python -m daemon.bench.floods KIND ENDPOINT` floods until it is killed; it prints a line once the flood has begun.
 """
@@ -25,18 +27,19 @@ from daemon.wire.requests import Capabilities, Reset, Status
 N_PEERS = 4
 """Clients that flood `cmd` or `stream` together."""
 N_TOPICS, TOPIC_BYTES = 200, 1000
-"""Topics that the flood of `pub` subscribes to and gives up again. A daemon that was flooded so lost an e-stop for 12 s once."""
+"""Number of topics, and bytes of each, that the flood of `pub` subscribes to and unsubscribes from. Such a flood once delayed an
+e-stop by 12 s."""
 N_CONNECTIONS = 1000
-"""Connections that say nothing. They once took every descriptor of the daemon in 0.7 s."""
+"""Number of connections without any traffic. They once used up every descriptor of the daemon in 0.7 s."""
 _RENEW_S = 1.0
-"""Seconds after which idle connections are made anew, as the daemon closes those that do not shake hands."""
+"""Seconds after which idle connections are made anew, as the daemon closes those without a handshake."""
 _FRAME_BYTES = 300
 _MULTIPART_EVERY = 100
-"""Frames of `stream` of which one is a message of two parts."""
+"""Number of frames of `stream`, of which one is a message of two parts."""
 
 
 def flood_cmd(endpoint: str) -> None:
-    """Send requests that cost the daemon an answer, and bytes that are none, as fast as they are taken; read no answer."""
+    """Send requests that need an answer, and invalid bytes, as fast as the socket takes them; read no answer."""
     peers = _peers(endpoint, zmq.DEALER)
     frames = (encode(Capabilities(id="flood")), b"x" * _FRAME_BYTES, b'{"type": ' * 100)
     for peer, frame in zip(itertools.cycle(peers), itertools.cycle(frames), strict=False):
@@ -45,7 +48,7 @@ def flood_cmd(endpoint: str) -> None:
 
 
 def flood_ctl(endpoint: str) -> None:
-    """Ask for the state and for resets, and send bytes that are none, as fast as they are taken; read no answer."""
+    """Request the state and resets, and send invalid bytes, as fast as the socket takes them; read no answer."""
     peers = _peers(endpoint, zmq.DEALER)
     frames = (encode(Status(id="flood")), encode(Reset(id="flood")), b"x" * _FRAME_BYTES, b'{"type": ' * 100)
     for peer, frame in zip(itertools.cycle(peers), itertools.cycle(frames), strict=False):
@@ -54,7 +57,7 @@ def flood_ctl(endpoint: str) -> None:
 
 
 def flood_stream(endpoint: str) -> None:
-    """Send frames that are no targets, some of them of two parts."""
+    """Send frames that are no targets, some of them in two parts."""
     peers = _peers(endpoint, zmq.PUB)
     for i, peer in enumerate(itertools.cycle(peers)):
         if i % _MULTIPART_EVERY:
@@ -64,7 +67,7 @@ def flood_stream(endpoint: str) -> None:
 
 
 def flood_pub(endpoint: str) -> None:
-    """Subscribe to long topics and give them up again."""
+    """Subscribe to long topics and unsubscribe again."""
     (peer,) = _peers(endpoint, zmq.SUB, 1)
     topics = [f"v1/{i:04d}".encode() + b"x" * TOPIC_BYTES for i in range(N_TOPICS)]
     while True:
@@ -74,7 +77,7 @@ def flood_pub(endpoint: str) -> None:
 
 
 def idle_connections(endpoint: str) -> None:
-    """Hold connections over TCP that say nothing."""
+    """Hold TCP connections without sending."""
     raise_descriptor_limit()
     parts = urlsplit(endpoint)
     held: list[socket.socket] = []
@@ -97,10 +100,10 @@ FLOODS: dict[str, Callable[[str], None]] = {
 
 @contextlib.contextmanager
 def flooded(kind: str, endpoint: str) -> Generator[None]:
-    """A flood of `FLOODS` that has begun.
+    """Run a flood of `FLOODS`, which has begun when the block is entered.
 
     Raises:
-        DaemonError: its process ended before it had.
+        DaemonError: its process ended before the flood began.
     """
     command = [sys.executable, "-m", "daemon.bench.floods", kind, endpoint]
     with subprocess.Popen(command, stdout=subprocess.PIPE) as process:

@@ -1,4 +1,4 @@
-"""Motions that retargeting is measured on: recordings where a folder has them, else synthesised gestures."""
+"""Motions for measuring retargeting: recordings where a folder has them, else synthesised gestures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ _SHORTEST_FRAMES = 40
 
 
 def bench_motions(n: int | None, seed: int) -> tuple[str, list[Motion]]:
-    """What the motions are, and at most `n` of them.
+    """Description of the motions, and at most `n` of them.
+
+    Recordings are the held-out CMU clips of docs/DATA.md in `$MMMD_SHARED/data` or in `shared/data` beside the checkout, with fast
+    runs, dances and karate among them. Recordings do not contain head turning: the head follows the body.
 
     Recordings are the held-out CMU clips of docs/DATA.md in `$MMMD_SHARED/data` or in `shared/data` beside the checkout:
     fast runs, dances and karate among them. Recordings show no head turning: it follows the body.
@@ -75,7 +78,7 @@ def cut(motion: Motion, start: int, end: int) -> Motion:
 
 
 def glued(motions: list[Motion], n_frames: int) -> Motion:
-    """`n_frames` of the motions one after another, over and over; between two of them the person jumps."""
+    """The first `n_frames` of the motions repeated one after another; between two of them the person jumps."""
     frames = np.arange(n_frames) % sum(len(m.joints_m) for m in motions)
     first = motions[0]
     return Motion(

@@ -1,4 +1,4 @@
-"""Speed of the released model's size: a whole motion by our decoder beside one plain forward pass of the same weights."""
+"""Speed of a model of the released size: a whole motion by our decoder against one plain forward pass of the same weights."""
 
 from __future__ import annotations
 
@@ -20,6 +20,12 @@ LENGTHS = range(1, N_TOKENS + 1)
 
 def bench_official(n: int | None = None, seed: int = 0) -> dict[str, Any]:
     """`fp32_s`, `bf16_s`, `int8_s` (where the processor can), `reference_forward_ms`, `tokens_identical`, and ratios to one.
+
+    The weights are random, as speed does not depend on them. `tokens_identical` compares, at `n` lengths from 1 to 49 tokens (all
+    when None), the packed fp32 model and the fast decoder with the plain model and the released sampler written plainly
+    (`mmm_core.model.released_sampler`): a whole text, and an edit of its middle, alternately with arg-max and at temperature 1;
+    `lengths_that_differ` lists the lengths at which ids differ. The steps are the released ten; the released code needs ten plain
+    passes and more.
 
     Random weights: speed does not depend on them. `tokens_identical` compares, at `n` lengths from 1 to 49 tokens (all when None),
     the packed fp32 model and the fast decoder with the plain model and the released sampler written plainly
@@ -84,7 +90,7 @@ def bench_official(n: int | None = None, seed: int = 0) -> dict[str, Any]:
 
 
 def _same_ids(fast: Any, plain: Any, text: Any, n_tokens: int, seed: int) -> bool:
-    """Whether `fast` fills a row of `n_tokens`, and then its middle again, with the ids of the plain sampler."""
+    """Whether `fast` fills a row of `n_tokens`, and then its middle again, with the same ids as the plain sampler."""
     import torch
 
     from mmm_core.model.decode import seeded_noise

@@ -1,4 +1,4 @@
-"""What every figure carries: the machine, the versions, the seed and the method."""
+"""The context of every figure: machine, versions, seed and method."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PACKAGES = ("mmmd", "torch", "numpy", "mujoco", "pyzmq")
 
 
 def context(seed: int, method: str) -> dict[str, Any]:
-    """`machine`, `versions`, `seed` and `method`, to stand beside the figures."""
+    """`machine`, `versions`, `seed` and `method`, to be stored with the figures."""
     return {"machine": machine(), "versions": _versions(), "seed": seed, "method": method}
 
 
@@ -30,13 +30,13 @@ def percentiles_ms(seconds: Sequence[float]) -> dict[str, float]:
 
 
 class HostShare:
-    """What the host of a virtual machine takes of its processors, from now on."""
+    """Measures the share of the processors' time that the host of a virtual machine takes, from the object's creation on."""
 
     def __init__(self) -> None:
         self._began_s, self._taken_s = time.monotonic(), stolen_s()
 
     def figures(self) -> dict[str, float]:
-        """`host_took`, a share of their time; nothing where that cannot be known."""
+        """`host_took`, a share of the processors' time; empty where the system does not report it."""
         past_s = time.monotonic() - self._began_s
         shares = [(now_s - then_s) / past_s for now_s, then_s in zip(stolen_s(), self._taken_s, strict=True)]
         return {"host_took": round(statistics.fmean(shares), 3)} if shares else {}

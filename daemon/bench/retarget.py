@@ -1,4 +1,4 @@
-"""Retargeting: time of all its stages, direction error, bounds and contacts checked again, and mink on the same arms."""
+"""Retargeting: processor time of all stages, direction error, bounds and contacts checked again, and mink on the same arms."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ _SPEED_RAD_S, _ACCELERATION_RAD_S2 = 4.8, 40.0
 _CHECKED_HZ = (20.0, 200.0)
 _CONTACT_HZ = 100.0
 _WRIST_SPEEDS_M_S = (2.0, 3.6, float("inf"))
-"""Clips are told apart by how fast their faster wrist is in 99 of 100 frames; 3.6 m/s is the clips' that peers were measured on."""
+"""Metres a second by which clips are grouped: the speed that the faster wrist keeps below in 99 of 100 frames; 3.6 is that of the
+clips on which peers were measured."""
 _METHOD = (
     "CPU time of the thread (other work on the machine lengthens wall time, not this); a chunk is 20 frames of a clip that"
     " join on to the path so far, timed from human joints to servo ticks at bus rate; the first frame is the first call of"
@@ -47,7 +48,7 @@ _METHOD = (
 
 
 def bench_retarget(n: int | None = None, seed: int = 0, robots: tuple[str, ...] = ()) -> dict[str, Any]:
-    """The figures, per robot under `robots`; `n` clips at most, all when None."""
+    """The figures, per robot under `robots`, on at most `n` clips, or all when None."""
     what, motions = bench_motions(n, seed)
     names = robots or tuple(list_robots())
     stderr = Console(stderr=True)
@@ -71,7 +72,7 @@ def _robot_figures(robot: RobotModel, motions: list[Motion], console: Console) -
 
 
 def with_common_limits(robot: RobotModel) -> RobotModel:
-    """The robot with the speed and acceleration that peers were measured at."""
+    """The robot with the speed and acceleration limits with which peers were measured."""
     joints = tuple(
         dataclasses.replace(j, velocity_limit_rad_s=_SPEED_RAD_S, acceleration_limit_rad_s2=_ACCELERATION_RAD_S2)
         for j in robot.joints
@@ -80,7 +81,9 @@ def with_common_limits(robot: RobotModel) -> RobotModel:
 
 
 def _fidelity(retargeter: Retargeter, motions: Iterable[Motion], *, whole: bool = False) -> dict[str, Any]:
-    """Direction error, its share that no limit in time and no contact can explain, violations, collisions.
+    """Direction error, the share of it that no limit in time and no contact can explain, violations, collisions.
+
+    With `whole` also the least error that is possible over whole clips, which takes a second or more for each clip.
 
     With `whole` also the least error that whole clips allow, which takes a second or more of each.
     """
@@ -130,7 +133,7 @@ def _angles(errors_deg: list[Array]) -> dict[str, float]:
 
 
 def _of_optimum(errors_deg: list[Array], best_deg: list[Array]) -> dict[str, Any]:
-    """The least that whole clips allow, and how many times as much the path has."""
+    """The least direction error that whole clips allow, and the ratio of the path's error to it."""
     ours, best = (np.concatenate([e.ravel() for e in errors]) for errors in (errors_deg, best_deg))
     rms = [float(np.sqrt((e**2).mean())) for e in (ours, best)]
     return {
@@ -142,7 +145,7 @@ def _of_optimum(errors_deg: list[Array], best_deg: list[Array]) -> dict[str, Any
 
 
 def causal_path(wanted_rad: Array, retargeter: Retargeter) -> Array:
-    """(T, J) poses followed from rest in the first, each step knowing only the next."""
+    """(T, J) path that starts at rest in the first pose and in each step knows only the next pose."""
     position, velocity, period = wanted_rad[0], np.zeros(wanted_rad.shape[1]), 1 / FPS
     path = np.empty_like(wanted_rad)
     for t, wanted in enumerate(wanted_rad):
@@ -152,13 +155,13 @@ def causal_path(wanted_rad: Array, retargeter: Retargeter) -> Array:
 
 
 def wrist_speed_m_s(motion: Motion) -> float:
-    """Speed that the faster wrist keeps below in 99 of 100 frames."""
+    """Speed in m/s that the faster wrist keeps below in 99 of 100 frames."""
     moved = np.diff(motion.joints_m[:, (20, 21)].astype(np.float64), axis=0)
     return float(np.percentile(np.linalg.norm(moved, axis=-1).max(-1), 99) * motion.fps)
 
 
 def _violations(path: JointPath, retargeter: Retargeter, rate_hz: float) -> int:
-    """Samples outside a bound; the path starts at rest."""
+    """Number of samples outside a bound; the path starts at rest."""
     limits, period = retargeter.limits, 1 / rate_hz
     start = path.at(np.zeros(1))
     q = np.concatenate([start, start, path.at_rate(rate_hz)])
@@ -200,7 +203,7 @@ def _times(robot: RobotModel, motions: list[Motion]) -> dict[str, float]:
 def _timed_s(
     retargeter: Retargeter, ticks: JointServoMap, motion: Motion, start: JointState | None
 ) -> tuple[float, JointState]:
-    """CPU time from joints to ticks, and the state at the end of the path."""
+    """Processor seconds from joint positions to ticks, and the state at the end of the path."""
     began_s = time.thread_time()
     path = retargeter.retarget(motion, start, settle=False)
     ticks.rad_to_tick(path.at_rate(retargeter.robot.bus.rate_hz))

@@ -1,4 +1,6 @@
-"""mink, where it is installed, on the arm problem that ours solves in closed form: elbows and wrists from bone directions.
+"""mink, where installed, on the problem that our retargeting solves in closed form: elbows and wrists from bone directions.
+
+Both get the same targets on the same robot with position limits only, one frame after another.
 
 Both get the same targets on the same robot with position limits only, one frame after another.
 """
@@ -27,7 +29,7 @@ _MOST_FRAMES = 400
 
 
 def mink_figures(motions: list[Motion]) -> dict[str, Any]:
-    """Milliseconds a frame and direction errors of mink and of our closed form; says so where mink is missing."""
+    """Milliseconds a frame and direction errors of mink and of our closed form, or a note that mink is missing."""
     if importlib.util.find_spec("mink") is None or importlib.util.find_spec("daqp") is None:
         return {"mink": "not installed: pip install '.[bench]'"}
     retargeter = Retargeter(load_robot(_ROBOT))
@@ -59,7 +61,7 @@ def _mink(retargeter: Retargeter, human: list[HumanPose], steps: int, speed_rad_
     limits: list[Any] = [mink.ConfigurationLimit(model)]
     if speed_rad_s is not None:
         limits.append(mink.VelocityLimit(model, dict.fromkeys(robot.joint_names, speed_rad_s)))
-    # The targets are for a chest that stands still: all but the arms is kept where it is.
+    # The targets are for a chest that stands still: all joints but the arms' stay where they are.
     still = [
         int(model.joint(j.name).dofadr[0])
         for j in robot.joints

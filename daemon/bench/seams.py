@@ -1,4 +1,4 @@
-"""What happens where motions meet: jerk of the human against real motion, steps of the joints, closure of loops."""
+"""Smoothness where motions meet: jerk of the human motion against real motion, velocity steps of the joints, closure of loops."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ WINDOW = 20
 """Frames (one second) around a seam, and of a window of real motion."""
 PREFIX_S = 0.4
 LATEST_GO_OVER = 10
-"""A motion takes its draft's place within the draft's first half second."""
+"""Frames of the draft, half a second, within which the motion itself takes the draft's place."""
 UPPER = (12, 15, 16, 17, 18, 19, 20, 21)
 _METHOD = (
     "peak jerk: largest third difference of position times 20^3, m/s3, over neck, head, shoulders, elbows, wrists against the"
@@ -48,7 +48,7 @@ _METHOD = (
 
 
 def bench_seams(n: int = 60, seed: int = 0, robot: str = "reference") -> dict[str, Any]:
-    """`peak_jerk_ratio` (the worst kind of seam), `velocity_step_share`, `loop_closure_deg`, and each kind's own."""
+    """`peak_jerk_ratio` (the worst kind of seam), `velocity_step_share`, `loop_closure_deg`, and figures of each kind of seam."""
     from mmm_core.generate.engine import Engine
 
     folder = recordings_folder()
@@ -109,7 +109,7 @@ def _prompt_seams(
 
 
 def _prefix_seams(engine: Engine, motions: list[Motion], rng: np.random.Generator) -> list[float]:
-    """Peak jerk where the second text of each pair goes on from the first one's motion, as `say` with a prefix does."""
+    """Peak jerk where the second text of each pair continues the first one's motion, as `say` with a prefix does."""
     from mmm_core.generate.continuation import continue_motion
     from mmm_core.generate.keyframes import features_of
 
@@ -149,12 +149,12 @@ def _idle_seam(p: PoseSequence, rng: np.random.Generator) -> float:
 
 
 def _closure_deg(p: PoseSequence, loop: tuple[int, int]) -> float:
-    """How far the loop's last frame is from the frame before its first."""
+    """Degrees between the loop's last frame and the frame before its first."""
     return float(distance_deg(closed(p, loop)[-1:], p.at(np.array([loop[0] - 1])))[0])
 
 
 def _peak_jerk(p: PoseSequence, at: int) -> float:
-    """Largest jerk within half a second of frame `at`, m/s3."""
+    """Largest jerk within half a second of frame `at`, in m/s3."""
     joints = _on_common_body(p).joints_m[:, UPPER]
     around = joints[max(0, at - WINDOW // 2) : at + WINDOW // 2]
     return float(np.linalg.norm(np.diff(around, n=3, axis=0), axis=-1).max()) * FPS**3
@@ -165,7 +165,7 @@ def _on_common_body(p: PoseSequence) -> PoseSequence:
 
 
 def _real_jerk(folder: Any, rng: np.random.Generator) -> float:
-    """Mean peak jerk of one-second windows of held-out real motion, of the half in which more happens."""
+    """Mean peak jerk of one-second windows of held-out real motion, over the half of the windows with more jerk."""
     peaks: list[float] = []
     for features, _ in read_clips(folder, "test"):
         recovered = recover(features)

@@ -1,4 +1,4 @@
-"""Joint target to first moved servo goal, through the whole daemon: ZeroMQ, checks, guard, gate, bytes."""
+"""Time from joint target to first moved servo goal, through the whole daemon: ZeroMQ, checks, guard, gate, bytes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _METHOD = (
 
 
 def bench_stream(n: int = 50, seed: int = 0, robot: str = "reference") -> dict[str, Any]:
-    """`p50_ms`, `p95_ms` and `n` from sending; the same under `received`."""
+    """`p50_ms`, `p95_ms` and `n` counted from sending; the same from receiving under `received`."""
     sent_s: list[float] = []
     received_s: list[float] = []
     with running_daemon(robot, "--quiet") as (client, _):
@@ -50,7 +50,7 @@ def _first_motion(client: Client, step_rad: float) -> tuple[float, float]:
 
 
 def _freest(client: Client) -> int:
-    """The joint that has most room on both sides of where it stands."""
+    """Index of the joint with the most room on both sides of its position."""
     now = client.status()
     room = [
         min(j.position_max_rad - q, q - j.position_min_rad)

@@ -1,4 +1,4 @@
-"""Texts for figures: plain commands of every family, and things beyond the model, drawn with a seed."""
+"""Texts for benchmarks: plain commands of every family, and texts beyond the model's scope, drawn with a seed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import numpy as np
 
 
 def draw_texts(n: int, seed: int, *, outside_share: float = 0.0) -> list[str]:
-    """`n` sentences of the corpus grammar's plainest form, shuffled; a share of them of what the model cannot do.
+    """`n` shuffled sentences of the corpus grammar's plainest form, with a share `outside_share` of texts that the model cannot do.
+
+    The sentences differ from each other as long as there are enough.
 
     They are different as long as there are enough.
     """

@@ -1,4 +1,4 @@
-"""Simulated servos behind a real tty: they outlive the daemon's processes, and show at any time which of them has torque."""
+"""Simulated servos behind a real tty: they outlive the daemon's processes, and report at any time which of them has torque."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ _PLUG_TIMEOUT_S = 5.0
 
 
 class ListeningBus(SimBus):
-    """Remembers when it received its first bytes since `listen_anew`.
+    """A simulated bus that records when it first received bytes since `listen_anew`.
 
     Attributes:
-        first_bytes_s: monotonic time; None where nothing was received since.
+        first_bytes_s: monotonic time of these bytes; None before any.
     """
 
     first_bytes_s: float | None = None
 
     def listen_anew(self) -> None:
-        """Wait for the next first bytes."""
+        """Forget the recorded time and wait for the next bytes."""
         self.first_bytes_s = None
 
     def receive(self, data: bytes, t_s: float, baud: int, *, patient: bool = False) -> None:
-        """Take what the client sends, as `SimBus` does."""
+        """Receive the client's bytes, as `SimBus` does."""
         if self.first_bytes_s is None:
             self.first_bytes_s = time.monotonic()
         super().receive(data, t_s, baud, patient=patient)
@@ -48,8 +48,8 @@ class TtyServos:
         url: of the bus, for `mmmd run --bus`.
 
     Args:
-        robot: whose servos they are.
-        folder: where the link to the tty is made.
+        robot: the robot.
+        folder: folder for the link to the tty.
     """
 
     def __init__(self, robot: RobotModel, folder: Path) -> None:
@@ -66,7 +66,7 @@ class TtyServos:
         return any(servo.torque for servo in self.bus.servos.values())
 
     def unplugged(self, on: bool) -> None:
-        """Take the tty away, or bring it back as another one under the same link.
+        """Remove the tty, or bring it back as another one under the same link.
 
         Raises:
             DaemonError: the tty did not go or come in time.
@@ -84,20 +84,23 @@ class TtyServos:
 
 
 def go_first(pid: int, flags: int = 0) -> None:
-    """FIFO priority for a process that plays servos (0: this thread), where that is allowed."""
+    """Give FIFO priority to a process that plays servos (0: this thread), where the system allows this."""
     with contextlib.suppress(OSError):
         os.sched_setscheduler(pid, os.SCHED_FIFO | flags, os.sched_param(BUS_PRIORITY))
 
 
 def go_last(pid: int) -> None:
-    """Normal priority again."""
+    """Give a process normal priority again."""
     with contextlib.suppress(OSError):
         os.sched_setscheduler(pid, os.SCHED_OTHER, os.sched_param(0))
 
 
 @contextlib.contextmanager
 def served(server: PtyServer) -> Generator[PtyServer]:
-    """Simulated servos behind a tty, in a thread that goes first where that is allowed: late, they would be silent ones.
+    """Serve simulated servos behind a tty in a thread, with FIFO priority where allowed: late answers would count as silence.
+
+    The calling thread gets FIFO priority as well, because it sometimes holds the interpreter's lock; processes started meanwhile do
+    not get it.
 
     The caller itself goes first as well, as it holds the interpreter's lock now and then; what is started meanwhile does not.
     """

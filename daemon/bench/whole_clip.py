@@ -3,7 +3,7 @@
 `mmmd bench retarget` compares the path of the retargeter, which is made block by block with 0.4 s in view, with this one.
 Limits are the retargeter's own: position, velocity and acceleration of every control point, rest at the start and at the
 end, and the margin of every pair of bodies in every frame. Sequential quadratic programming: bone directions and distances
-are linearised where the last program led, and `banded_program` solves each program. Contacts are kept by a steep
+are linearised at the last program's solution, and `banded_program` solves each program. Contacts are kept by a steep
 penalty, because a program that has them as bounds may have no solution.
 """
 
@@ -26,26 +26,26 @@ _sparse: Any = importlib.import_module("scipy.sparse")  # has no types
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 _ROUNDS = 20
-"""Linearisations at most."""
+"""Number of linearisations at most."""
 _LEAST_GAIN = 1e-4
-"""Share of the error that a round must gain; with less, the next may go half as far."""
+"""Share of the error by which a round must lower it; after a smaller gain the trust radius is reduced."""
 _SETTLE_FRAMES = 16
-"""Frames after the last in which the joints come to rest, as the retargeter allows."""
+"""Frames after the last pose in which the joints come to rest, as the retargeter allows."""
 _ANGLE_WEIGHT = 1e-6
-"""Weight of a squared angle against a squared direction error: enough for joints whose turning cannot be seen."""
+"""Weight of a squared angle against a squared direction error: enough for joints whose rotation is not visible."""
 _NEAR_M = 0.08
 """Metres beyond its margin within which a pair is part of the program."""
 _STIFFNESS = 4e4
-"""Weight of a squared metre that a pair comes too near: a millimetre costs as much as 11 degrees in one frame."""
+"""Weight of a squared metre below the margin: a millimetre costs as much as 11 degrees in one frame."""
 _TRUST_RAD = (0.4, 0.2, 0.1, 0.05, 0.02)
-"""Radians that a control point may move in one round, one after another where a round gained too little."""
+"""Radians that a control point may move in one round; the next value is used after a round with too little gain."""
 _MOST_LACK_M = 1e-3
-"""Metres that a pair may lack of its margin at an end that counts as free of contact."""
+"""Metres that a pair may lack of its margin in a solution that counts as free of contact."""
 
 
 @dataclass(frozen=True)
 class WholeClip:
-    """What a whole clip allows.
+    """The best path of a whole clip.
 
     Attributes:
         errors_deg: (4, T) direction errors, in the order of `retarget.path.report.BONES`.
@@ -64,13 +64,16 @@ class WholeClip:
 def best_of_clip(retargeter: Retargeter, poses: Poses, path: JointPath, *, contact: bool = True) -> WholeClip:
     """The least squared direction error of all paths for `poses` that begin where `path` begins.
 
+    Head and waist follow `path`; the arms are free. The program is not convex: it is solved once starting from `path` and once
+    starting from the poses, and the solution of lower cost counts.
+
     Head and waist go where `path` moves them; the arms are free. The program is not convex: it is begun from `path`, and once
     more from the poses themselves, and the end of less cost counts.
 
     Args:
         retargeter: the robot.
-        poses: what it should do.
-        path: what the retargeter made of them.
+        poses: the poses to be shown.
+        path: the retargeter's path for them.
         contact: whether distances are kept; without them the error is a bound that no method can pass.
     """
     program = _Program(retargeter, poses, path, contact=contact)
@@ -112,23 +115,23 @@ class _Program:
         return _sparse.diags([1.0, -1.0], [0, -1], shape=(self._n_points, self._n_points))
 
     def _each(self, matrix: Any) -> Any:
-        """A matrix over control points, for each joint alike."""
+        """A matrix over control points, applied to each joint."""
         return _sparse.kron(matrix, _sparse.identity(len(self._joints))).tocsr()
 
     @cached_property
     def _moved(self) -> Any:
-        """(N n, N n) of the squared first differences."""
+        """(N n, N n) matrix of the squared first differences."""
         first = self._each(self._differences)
         return first.T @ first
 
     def starts(self) -> list[Array]:
-        """Control points to begin from, (N, n) each: the retargeter's, and the poses with the end held."""
+        """Control points to start from, (N, n) each: the retargeter's, and those of the poses with the end held."""
         posed = self._poses.q_rad[:, self._joints]
         held = np.concatenate([posed, np.repeat(posed[-1:], self._n_points - len(posed), 0)])
         return [self._control[2:, self._joints], held]
 
     def solve(self, start: Array) -> WholeClip:
-        """Rounds from control points `start` (N, n) until the error gets no smaller."""
+        """Solve in rounds from control points `start` (N, n) until the error stops falling."""
         x = start
         best, cost = x, self._cost(x)
         trust = 0
@@ -150,11 +153,11 @@ class _Program:
         return WholeClip(errors_deg, control, cost, float(self._lacks(frames).max(initial=0.0)))
 
     def _frames(self, control: Array) -> Array:
-        """(T, J) poses in the frames of (N + 2, J) control points."""
+        """(T, J) poses in the frames, from (N + 2, J) control points."""
         return ((control[1:-1] + control[2:]) / 2)[: self._T]
 
     def _all(self, x: Array) -> Array:
-        """(N + 2, J) control points of all joints for free ones (N, n)."""
+        """(N + 2, J) control points of all joints, from free ones (N, n)."""
         control = self._control.copy()
         control[2:, self._joints] = x
         return control
@@ -182,7 +185,7 @@ class _Program:
         N, n, T = self._n_points, len(self._joints), self._T
         frames = self._frames(self._all(x))
         hessian, fall = self._retargeter.shown(self._poses, frames)
-        # Frames are half way between control points.
+        # A frame lies half way between two control points.
         between = self._each(_sparse.diags([0.5, 0.5], [0, -1], shape=(T, N)))
         seen = _sparse.block_diag(list(hessian[:, self._joints[:, None], self._joints]), format="csr")
         matrix = (between.T @ seen @ between + _ANGLE_WEIGHT * self._moved).tocsc()
@@ -208,7 +211,7 @@ class _Program:
         return x + least(program, 3 * n).reshape(N, n)
 
     def _near_pairs(self, frames: Array) -> tuple[Any, Array]:
-        """How the room of each near pair grows with the arms' joints, (R, T n), and the rooms, (R,)."""
+        """(R, T n) derivatives of the near pairs' distances beyond the margin by the arms' joints, and these distances (R,)."""
         contact, n = self._retargeter.contact, len(self._joints)
         rooms = contact.slacks_m(frames, 1.0)
         data: list[Array] = []

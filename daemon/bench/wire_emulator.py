@@ -1,4 +1,7 @@
-"""Servos on a pty that only keep the time of a wire: what `mmmd bench bus` measures clients against.
+"""Servos on a pty that model only the timing of a wire, against which `mmmd bench bus` measures clients.
+
+Answers are built once and looked up; nothing moves, and writes are not checked. With `--baud 0` every request is answered at once.
+Run as `python -m daemon.bench.wire_emulator`; prints the tty, serves until its standard input closes.
 
 Answers are built once and looked up; no motion, no checks of what is written. With `--baud 0` everything is answered at
 once. Run as `python -m daemon.bench.wire_emulator`; prints the tty, serves until its standard input closes.
@@ -22,12 +25,12 @@ from daemon.dynamixel.registers.models import MODELS
 MODEL_NUMBER, FIRMWARE = 1020, 52
 POSITION_TICK, VELOCITY_RAW, CURRENT_RAW = 2048, -3, -7
 _SPIN_S = 0.00015
-"""Sleeping wakes late by about this much; the rest of the time to an answer is spun away."""
+"""Seconds by which a sleep ends late; the rest of the time to an answer is spent in a busy loop."""
 _PING_BYTES = 3
 
 
 def memory(servo_id: int) -> bytes:
-    """A servo's table from the factory, standing in the middle."""
+    """Control table of a servo from the factory, in its middle position."""
     table, out = MODELS[MODEL_NUMBER].table, bytearray(256)
     values = {
         "model_number": MODEL_NUMBER, "firmware_version": FIRMWARE, "id": servo_id, "return_delay_time": 0,
@@ -44,9 +47,9 @@ class Emulator:
     Args:
         n: servos.
         baud: bits per second; 0 for a wire that takes no time.
-        loss: share of status packets that are lost.
-        dead: id that never answers; 0 for none.
-        fast: whether fast sync reads are known.
+        loss: share of status packets that are lost, 0 to 1.
+        dead: id of a servo that never answers; 0 for none.
+        fast: whether the servos know fast sync reads.
         seed: of the losses.
     """
 
@@ -78,7 +81,7 @@ class Emulator:
                 free_s = self._answer(request, heard_s)
 
     def _answer(self, request: bytes, at_s: float) -> float:
-        """Send what a request earns, each packet once its last byte is due; the time the wire is free again."""
+        """Answer a request, each packet once its last byte is due; return the time at which the wire is free again."""
         for reply in self._replies(request):
             at_s += len(reply) * self._byte_s
             if self._byte_s:
@@ -102,7 +105,7 @@ class Emulator:
             return replies
         lost = [self._random.random() < self._loss for _ in replies]
         if request[7] == Instruction.FAST_SYNC_READ and True in lost:
-            replies = replies[: lost.index(True)]  # nobody goes on behind a part that is missing
+            replies = replies[: lost.index(True)]  # no servo continues after a missing part
         kept = [r for r, gone in zip(replies, lost, strict=False) if not gone]
         return [b"".join(kept)] if kept and not self._byte_s else kept
 
@@ -125,7 +128,7 @@ class Emulator:
         return []
 
     def _fast_reply(self, data: dict[int, bytes]) -> list[bytes]:
-        """The common packet in the pieces in which the servos send it; it ends before one that is dead."""
+        """The common packet in the parts that the servos send; it ends before a dead servo's part."""
         raw, at, out = fast_status([Part(i, 0, d) for i, d in data.items()]), 0, list[bytes]()
         for servo_id, d in data.items():
             if servo_id == self._dead:
@@ -137,7 +140,7 @@ class Emulator:
 
 
 def _end(data: bytes) -> int | None:
-    """Where the first packet of `data` ends; the client is trusted to send nothing else."""
+    """Offset at which the first packet of `data` ends, None where it is incomplete; clients are trusted to send packets only."""
     if len(data) < 7 or not data.startswith(HEADER):
         return None
     end = 7 + (data[5] | data[6] << 8)

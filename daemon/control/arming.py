@@ -1,4 +1,8 @@
-"""Arming, from limp to torque: verify the servos anew, wait until the joints stand still, pin goals to where they stand, torque on.
+"""Arming, from limp to torque: verify the servos, wait until the joints stand still, pin the goals to their positions, torque on.
+
+`arm_in_steps` is a generator that returns control to the bus cycle between its steps. Records continue meanwhile, and an e-stop, a
+stop or a dead front takes effect at once, however long a bad wire or a swinging arm delays arming. Only the last step switches
+torque on, servo by servo; an e-stop requested during that step ends it.
 
 A generator that gives the bus cycle back between its steps: records go on, and an e-stop, a stop or a front that has died
 counts at once, however long a bad wire or a swinging arm makes it. Torque comes on in the last step alone, servo by servo, and
@@ -35,7 +39,7 @@ class Armed:
 
     Attributes:
         goal_tick: (S,) goals that the servos hold.
-        limits: what their registers say.
+        limits: of the servos, read from their registers.
     """
 
     goal_tick: NDArray[np.int32]
@@ -45,7 +49,10 @@ class Armed:
 def arm_in_steps(
     robot: RobotModel, bus: ServoBus, clock: Clock, effort: float, turns: TurnWatch, estop_asked: Callable[[], bool]
 ) -> Generator[None, None, Armed]:
-    """Arm a limp robot. Whoever breaks off, or catches an error, has to cut torque.
+    """Arm a limp robot. A caller that breaks off or catches an error must cut torque.
+
+    Each servo is addressed by itself and answers, which takes tens of milliseconds for all of them. Without `estop_asked` a robot
+    of sixteen servos kept its torque for up to 85 ms after an e-stop during this step.
 
     Each servo is told by itself and answers, which takes tens of milliseconds for all of them: a robot of sixteen kept its torque
     for up to 85 ms after an e-stop that came then.
@@ -54,14 +61,14 @@ def arm_in_steps(
         robot: the robot.
         bus: its servos.
         clock: time of the cycles.
-        effort: share of full torque that it begins with.
-        turns: what is known of the servos' whole turns.
+        effort: share of full torque at the start, 0 to 1.
+        turns: says whether the servos' whole turns are known.
         estop_asked: whether an e-stop waits for the next cycle; asked before each servo gets torque.
 
     Raises:
         BusMismatchError: servos or their settings are not what the robot file needs; they may have been changed since.
-        ServoFaultError: one reports an error, moves, does not take its goal, or may stand elsewhere than it says.
-        LinkError: no answer, or the port is gone.
+        ServoFaultError: a servo reports an error, moves, refuses its goal, or may stand elsewhere than it reports.
+        LinkError: a servo does not answer, or the port is lost.
     """
     bus.verify()
     yield

@@ -1,12 +1,12 @@
-"""States of the bus process and what leads from one to another: requests, faults, e-stops, a silent front or ctl process.
+"""States of the bus process and their transitions: requests, faults, e-stops, a silent front or ctl process.
 
     LIMP --arm--> ARMING --torque on, at rest pose--> HOLDING <--setpoints--> PLAYING
     armed --stop, torque off--> STOPPING --at rest--> HOLDING or LIMP
     armed --park--> PARKING --at park pose--> LIMP
-    any but ESTOP --fault--> FAULT, any --e-stop--> ESTOP; from these two a reset leads to LIMP, and nothing else leads on
+    any but ESTOP --fault--> FAULT, any --e-stop--> ESTOP; only a reset leaves these two states, to LIMP
 
 Armed are ARMING, HOLDING, PLAYING, STOPPING and PARKING; a stop or park before torque is on leads to LIMP at once. The control
-loop takes one step in each cycle, and does the moving.
+loop takes one step in each cycle, and makes the goals.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from retarget.robot.robot import RobotModel
 log = logging.getLogger(__name__)
 
 CTL_LOST_S = 0.18
-"""Seconds of cycles without a heartbeat of the process that takes e-stops: with the next one 0.2 s."""
+"""Seconds without a heartbeat of the ctl process, which takes e-stops, before an e-stop: 0.2 s with the next cycle."""
 CTL_LOST = (
     "nobody took e-stops for 0.2 s, which counts as one: the ctl process was lost or held up; it is started again"
 )
@@ -44,10 +44,10 @@ _COMES_TO = {
 
 
 class BusStateMachine:
-    """The state, torque and the arming under way.
+    """The state of the bus process, the servos' torque, and the arming that is under way.
 
     Attributes:
-        state: what the bus process is doing.
+        state: the current state.
         torque: torque of the servos and the goals that they hold.
         limp_at_rest: whether a robot that is stopping goes limp, instead of holding, once it stands.
 
@@ -56,8 +56,8 @@ class BusStateMachine:
         bus: its servos.
         link: requests and heartbeats.
         clock: time of the cycles.
-        turns: what is known of the servos' whole turns.
-        move: the slow move, which every change of plan ends.
+        turns: says whether the servos' whole turns are known.
+        move: the slow move to rest or park pose, which every change of state begins anew.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class BusStateMachine:
             self.state = state
 
     def serve(self, request: BusRequest) -> None:
-        """Carry out a request as far as the state allows; a shutdown is the loop's."""
+        """Carry out a request as far as the state allows; the control loop serves a shutdown request itself."""
         log.info("request %s in %s", request.name, self.state.name)
         if request in ESTOPS:
             self._link.set_text("")
@@ -86,13 +86,13 @@ class BusStateMachine:
         elif request in _COMES_TO:
             self._link.setpoints.drop()
             if self._arming is not None:
-                self.go_limp()  # before torque is on there is nothing to bring to rest
+                self.go_limp()  # before torque is on no joint has to be brought to rest
             elif self.state in ARMED:
                 self._forget_move()
                 self.limp_at_rest = request is BusRequest.TORQUE_OFF
                 self.enter(_COMES_TO[request])
             elif request is BusRequest.TORQUE_OFF and self.state is BusState.FAULT:
-                self.cut_torque()  # it has come to rest in a fault, and stays in it
+                self.cut_torque()  # the robot has come to rest in a fault, and stays in the fault
         elif request is BusRequest.FAULT:
             self.fault(HELD_UP)
         elif request is BusRequest.RESET:
@@ -111,7 +111,9 @@ class BusStateMachine:
             self.enter(BusState.ARMING)
 
     def arm_further(self) -> Armed | None:
-        """One step towards torque, while the robot is being armed; the robot's torque and limits after the last step.
+        """Take one step of arming; return the robot's torque and limits after the last step, else None.
+
+        Any error during arming is a fault, and torque is cut.
 
         Any doubt is a fault, and torque is cut.
         """
@@ -131,14 +133,14 @@ class BusStateMachine:
         return None
 
     def watch_ctl(self) -> None:
-        """An e-stop when nobody takes e-stops any more; none can be reset before somebody does."""
+        """Trigger an e-stop when the ctl process has stopped; a reset is refused until it runs again."""
         if self._ctl_silence.lasts(self._link.ctl_beat) and self.state is not BusState.ESTOP:
             log.error("the ctl process was silent for %g s: e-stop", CTL_LOST_S)
             self._estop(holds=self._link.estop_kind is BusRequest.ESTOP_HOLD)
             self._link.set_text(CTL_LOST)
 
     def watch_front(self, *, watched: bool) -> None:
-        """Hold, park or go limp where the front is silent; only with torque, and where it is to be watched at all."""
+        """Hold, park or go limp when the front is silent, if the robot has torque and `watched` is true."""
         has_torque = self.torque.on or self._arming is not None or self.torque.may_hold
         loss = self._front.step(self.state, watched=watched and has_torque)
         if loss is FrontLoss.HOLD:
@@ -149,7 +151,7 @@ class BusStateMachine:
             self.cut_torque()
 
     def fault(self, text: str) -> None:
-        """Latch a fault: what still has torque comes to rest and holds; nothing re-arms by itself. An e-stop stays one."""
+        """Latch a fault: servos with torque come to rest and hold, and no servo re-arms by itself. An e-stop stays an e-stop."""
         if self.state is BusState.ESTOP:
             self._link.set_text(text)
             return
@@ -162,12 +164,12 @@ class BusStateMachine:
         self.enter(BusState.FAULT)
 
     def no_way(self) -> None:
-        """Latch a fault because the slow move found no free way, and go limp after the time that its text says."""
+        """Latch a fault because the slow move found no free path; go limp after the time that the fault's text names."""
         self.fault(self._move.no_way("park" if self.state is BusState.PARKING else "rest"))
         self.torque.cut_at(self._clock.now_s() + NO_WAY_LIMP_S)
 
     def limp_when_due(self) -> None:
-        """Go limp where there was no free way and the time that was said is over."""
+        """Go limp when no free path was found and the announced time is over."""
         if self.torque.cut_is_due(self._clock.now_s(), in_fault=self.state is BusState.FAULT):
             log.warning("no free way was found %g s ago: torque off", NO_WAY_LIMP_S)
             self.cut_torque()
@@ -177,12 +179,12 @@ class BusStateMachine:
         self.enter(BusState.LIMP)
 
     def cut_torque(self) -> None:
-        """Torque off at once, which ends arming; the state stays."""
+        """Cut torque at once, which ends arming; the state stays."""
         self.torque.cut()
         self._arming = None
 
     def _estop(self, *, holds: bool) -> None:
-        """Cut torque; or brake and hold, where nothing is latched that holds already."""
+        """Enter the e-stop: cut torque, unless `holds` is true and the robot is armed; it then brakes and holds."""
         self._link.setpoints.drop()
         self._forget_move()
         if not holds or self._arming is not None or self.state not in ARMED:

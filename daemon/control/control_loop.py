@@ -36,7 +36,7 @@ from retarget.robot.ticks import JointServoMap
 log = logging.getLogger(__name__)
 
 LOOK_S = 0.002
-"""Seconds between two looks for an e-stop while the next cycle is waited for."""
+"""Seconds between two polls for an e-stop while the loop waits for its next cycle."""
 
 
 class ControlLoop:
@@ -99,7 +99,7 @@ class ControlLoop:
         return self._states.state
 
     def found_holding(self) -> None:
-        """Servos may have torque that this process did not give them: a latched fault, and they are not forgotten in it."""
+        """Latch a fault in which servos may have torque that this process did not give them; torque off reaches these too."""
         self._states.state, self._torque.may_hold = BusState.FAULT, True
 
     def close(self) -> None:
@@ -113,11 +113,11 @@ class ControlLoop:
         return self.state is BusState.LIMP or (self.state in (BusState.ESTOP, BusState.FAULT) and self._torque.has_cut)
 
     def cycle(self) -> None:
-        """One bus period."""
-        self._told_s = self._clock.now_s()  # of a cycle in which no goals go out
+        """Run one bus period."""
+        self._told_s = self._clock.now_s()  # time of a cycle in which no goals are sent
         try:
             asked = self._link.take_request()
-            if asked is not None:  # one a cycle, so that the front sees each state; an e-stop voids what came before it
+            if asked is not None:  # one a cycle, so that the front sees each state; an e-stop voids earlier requests
                 self._owed.append(asked)
                 self._states.serve(asked.kind)
                 if asked.kind is BusRequest.SHUTDOWN:
@@ -149,7 +149,7 @@ class ControlLoop:
         self._cycle += 1
 
     def _waited_until(self, due_s: float) -> float:
-        """Wait for the next cycle; when it began. An e-stop that cuts waits for none: no goal follows that would come early."""
+        """Wait for the next cycle and return its start time. An e-stop that cuts torque starts the cycle early: no goal follows."""
         while (now_s := self._clock.now_s()) < due_s:
             if self._link.cut_asked:
                 return now_s
@@ -157,14 +157,14 @@ class ControlLoop:
         return due_s
 
     def _tell_done(self) -> None:
-        """Say that a request is carried out: a cut once its packets went out on every port, the others after their cycle."""
+        """Report a request as carried out: a cut once its packets went out on every port, others after their cycle."""
         for asked in list(self._owed):
             if not (self._torque.cut_waits and asked.kind in ESTOPS):
                 self._link.done(asked)
                 self._owed.remove(asked)
 
     def _armed(self, armed: Armed) -> None:
-        """Torque has come on: goals go on from where the servos stand, with little effort at first."""
+        """Begin after torque came on: goals continue from the servos' positions, with a low effort limit at first."""
         self._derating.limits = armed.limits
         self._judge.armed(self._clock.now_s())
         self._ramp.begin()
@@ -173,7 +173,7 @@ class ControlLoop:
     # Goals.
 
     def _next_goal(self) -> NDArray[np.float64] | None:
-        """(J,) goal of this cycle through the gate; None while torque is off."""
+        """(J,) goal of this cycle after the gate; None while torque is off."""
         self._underrun = False
         self._frame_or_none()
         if not self._torque.on:
@@ -181,7 +181,7 @@ class ControlLoop:
         if self.state in ARMED:
             self._ramp.step()
         if (self._ramp.holds_goals or not self._leading.done) and self.state is not BusState.STOPPING:
-            return self._gate.brake()  # where it was pinned
+            return self._gate.brake()  # at the pinned goals
         if self.state in (BusState.ARMING, BusState.PARKING):
             return self._move_slowly()
         if self.state is BusState.STOPPING:
@@ -198,7 +198,7 @@ class ControlLoop:
         return self._gate.brake()  # fault or e-stop with torque still on: hold
 
     def _frame_or_none(self) -> None:
-        """Between plans a record belongs to no plan."""
+        """Clear the frame number: between plans a record belongs to no plan."""
         if self.state is not BusState.PLAYING:
             self._plan_id, self._frame, self._last = 0, 0, True
             self._setpoints.reset()
@@ -211,7 +211,7 @@ class ControlLoop:
             self._states.enter(BusState.PLAYING)
             return self._gate.step(setpoint.q_rad)
         if self.state is BusState.PLAYING and not self._last:
-            self._underrun = True  # the front is late: slow down, go on when it is back
+            self._underrun = True  # the front is late: slow down, continue when frames arrive
             return self._gate.brake()
         goal = self._gate.brake()
         if self._gate.at_rest:
@@ -219,7 +219,7 @@ class ControlLoop:
         return goal
 
     def _tell_held(self) -> None:
-        """Log once when what is played begins to be held off the robot itself."""
+        """Log once per hold that the gate keeps the motion from leading the robot into itself."""
         if self._gate.held and not self._held:
             pairs = ", ".join(f"{a} and {b}" for a, b in self._gate.touching(self._setpoint_rad)[:3])
             log.warning(
@@ -228,7 +228,7 @@ class ControlLoop:
         self._held = self._gate.held
 
     def _move_slowly(self) -> NDArray[np.float64]:
-        """To the rest pose, then it holds; to the park pose, then it is limp."""
+        """Return the goal of the slow move: to the rest pose, then hold; or to the park pose, then go limp."""
         parking = self.state is BusState.PARKING
         to_rad = self.robot.park_rad if parking else self.rest_rad
         goal = self._slow.step(to_rad, self._link.park_stay_s if parking else 0.0)
@@ -245,14 +245,14 @@ class ControlLoop:
     # Judgement.
 
     def _check_stall(self) -> None:
-        """After a pause in which the servos' watchdog may have run out: they then stand still and refuse goals."""
+        """After a pause in which the servos' watchdogs may have run out, check them: tripped servos stop and refuse goals."""
         driven = self._torque.on and self._torque.goal_tick is not None
         if why := self._judge.stalled(self._clock.now_s(), driven=driven):
             self._torque.goal_tick = None
             self._states.fault(why)
 
     def _derate(self, reading: BusReading) -> None:
-        """Slow down what is played before a servo trips."""
+        """Slow down the running motion before a servo trips."""
         d = self._derating
         if d.update(reading):
             log.warning("%s", d.cause(self.robot))

@@ -1,4 +1,7 @@
-"""Slower before a servo trips: by temperature, by supply voltage, by lasting current. Part of the bus process; no I/O.
+"""Slows motion down before a servo trips: by temperature, by supply voltage, by lasting current. Part of the bus process; no I/O.
+
+The running motion slows down along its own path, for all joints alike, so that it stays free of self-contact and ends later; stops
+and the gate keep their full speed. The share of full speed changes slowly, and `status` reports it with its cause.
 
 What is played slows down along its own path, for all joints alike, so that it stays free of self-contact and comes to its
 end later; stops and the gate are as quick as ever. The share of full speed changes slowly, and `status` tells it with its
@@ -38,7 +41,7 @@ _SLOWING = (
     np.array([[HOTTEST_C], [LOWEST_V], [-HIGHEST_CURRENT]]),
     np.array([[HOT_C], [LOW_V], [-HIGH_CURRENT]]),
 )
-"""Margins at which slowing is greatest, and at which it begins: of temperature, voltage, current."""
+"""Margins of temperature, voltage and current at which slowing is greatest, and at which it begins."""
 
 
 class DeratedBy(IntEnum):
@@ -55,9 +58,9 @@ class ServoLimits:
     """Limits of S servos as their own registers say; infinite or zero where a servo has none.
 
     Attributes:
-        temperature_c: (S,) of its reading, at which it trips.
-        voltage_raw: (S,) below which it trips, 0.1 V.
-        current_raw: (S,) unit of its reading.
+        temperature_c: (S,) temperature at which the servo trips.
+        voltage_raw: (S,) voltage below which the servo trips, 0.1 V.
+        current_raw: (S,) current limit in the unit of the servo's reading.
     """
 
     temperature_c: Array
@@ -66,12 +69,12 @@ class ServoLimits:
 
     @classmethod
     def none(cls, n: int) -> ServoLimits:
-        """Nothing is known, nothing slows."""
+        """Limits of `n` servos about which nothing is known; they cause no derating."""
         return cls(np.full(n, np.inf), np.zeros(n), np.full(n, np.inf))
 
 
 class Registers(Protocol):
-    """What `read_limits` needs of a bus."""
+    """The part of a bus that `read_limits` needs."""
 
     @property
     def ids(self) -> Sequence[int]:
@@ -112,12 +115,12 @@ def read_limits(bus: Registers) -> ServoLimits:
 
 
 class Derating:
-    """The share of full speed, brought up to date once a cycle.
+    """The share of full speed, updated once a cycle.
 
     Attributes:
         share: 1 is full speed.
-        by: what it is lowered for.
-        row: of the servo that needs it most.
+        by: cause of the derating.
+        row: row of the servo that needs the lowest share.
     """
 
     def __init__(self, n_servos: int, period_s: float) -> None:
@@ -128,7 +131,7 @@ class Derating:
         self.share, self.by, self.row = 1.0, DeratedBy.NOTHING, 0
 
     def update(self, reading: BusReading) -> bool:
-        """Judge a reading; whether the cause has changed."""
+        """Judge a reading; return whether the cause has changed."""
         known_v = reading.voltage_raw != UNKNOWN
         fresh = np.isnan(self._voltage) & known_v
         self._voltage[fresh] = reading.voltage_raw[fresh]
@@ -148,7 +151,7 @@ class Derating:
         return self.by is not before
 
     def cause(self, robot: RobotModel) -> str:
-        """The cause for the log, with the servo that it lies in."""
+        """The cause for the log, with the name of the servo concerned."""
         if not self.by:
             return "full speed again"
         servo = robot.servos[self.row]

@@ -1,4 +1,7 @@
-"""Faults of servos with torque, found in what they answer. Part of the bus process.
+"""Finds faults of servos with torque in their answers. Part of the bus process.
+
+A servo that was silent for as long as its bus watchdog takes may have been stopped by the watchdog while the others moved on. Such
+a servo answers normally and refuses every goal, so its watchdog is read as soon as it answers again.
 
 A servo that was silent for as long as its bus watchdog takes may have stopped by it while the others went on: it then
 answers as ever and refuses every goal, so it is asked as soon as it is back.
@@ -21,14 +24,14 @@ from retarget.robot.robot import RobotModel
 log = logging.getLogger(__name__)
 
 MISSING_CYCLES = 20
-"""Bus cycles in which half of the servos are silent that make a fault (loose plug, power)."""
+"""Bus cycles in a row with half of the servos silent that count as a fault (loose plug, power)."""
 TORQUE_CHECK_CYCLES = 5
 MAY_HAVE_TRIPPED_S = 0.75 * WATCHDOG_UNITS * WATCHDOG_UNIT_S
 """Seconds without a packet after which a servo's watchdog may have run out."""
 
 
 class FaultDetector:
-    """Judges each reading of a robot with torque; names what is a fault."""
+    """Judges each reading of a robot with torque and describes its fault, if any."""
 
     def __init__(self, robot: RobotModel, bus: ServoBus) -> None:
         self._robot, self._bus = robot, bus
@@ -38,13 +41,13 @@ class FaultDetector:
         self._fed_s = 0.0
 
     def armed(self, now_s: float) -> None:
-        """Torque has just come on: silences of before count no more."""
+        """Forget silences from before torque came on; called at the moment when it does."""
         self._missing_cycles = 0
         self._silent_s[:] = 0.0
         self._fed_s = now_s
 
     def stalled(self, now_s: float, *, driven: bool) -> str:
-        """Once a cycle: why a pause of the bus process is a fault; empty when it is none, and for servos that get no goals.
+        """Reason why a pause of the bus process is a fault, once a cycle; empty for no fault, and where servos get no goals.
 
         Raises:
             LinkError: a servo does not say whether its watchdog has run out.
@@ -58,7 +61,7 @@ class FaultDetector:
         return f"the bus process was held up for {pause_s:.2f} s: servo {tripped[0]} stopped by its watchdog"
 
     def fault(self, reading: BusReading) -> str:
-        """Why the reading of a cycle with torque is a fault; empty when it is none.
+        """Reason why the reading of a cycle with torque is a fault; empty when it is none.
 
         Raises:
             ServoFaultError: a servo reports a hardware error.
@@ -80,7 +83,7 @@ class FaultDetector:
         return self._tripped(reading) or self._lost_torque(reading)
 
     def withhold_tripped(self, reading: BusReading) -> None:
-        """In a fault the others hold; what has stopped by its watchdog meanwhile refuses goals, and gets none.
+        """Send no more goals to servos that their watchdog stopped during a fault: they refuse goals. The others hold.
 
         Raises:
             LinkError: a question that had to be asked was not answered.
@@ -89,7 +92,7 @@ class FaultDetector:
             log.warning("%s", why)
 
     def _tripped(self, reading: BusReading) -> str:
-        """A servo that is back after a silence in which it may have stopped by its watchdog."""
+        """Description of a servo that is back after a silence and was stopped by its watchdog meanwhile; empty for none."""
         was_silent_s = self._silent_s.copy()
         self._silent_s += self._period_s
         self._silent_s[reading.valid] = 0.0
@@ -109,11 +112,11 @@ class FaultDetector:
             return False
         found = self._bus.poll_item(self._bus.ids[row], "bus_watchdog")
         if found is None:
-            self._silent_s[row] = was_silent_s[row]  # asked again
+            self._silent_s[row] = was_silent_s[row]  # read its watchdog again
         return found == WATCHDOG_TRIPPED
 
     def _lost_torque(self, reading: BusReading) -> str:
-        """One servo after another is asked whether it still has its torque."""
+        """Description of a servo that has lost its torque; one servo a call is asked, in turn. Empty for none."""
         if self._cycle % TORQUE_CHECK_CYCLES:
             return ""
         row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)

@@ -12,9 +12,10 @@ log = logging.getLogger(__name__)
 HEARTBEAT_LOST_S = 0.5
 """Seconds without a heartbeat of the front after which the robot decelerates and holds."""
 PARK_AFTER_S = 5.0
-"""Seconds without a heartbeat after which it parks and goes limp."""
+"""Seconds without a heartbeat of the front after which the robot parks and goes limp."""
 FAULT_LIMP_S = 10.0
-"""Seconds without a heartbeat after which servos that kept torque in a fault or e-stop go limp: nobody will come."""
+"""Seconds without a heartbeat of the front after which servos with torque in a fault or e-stop go limp: no operator can reset them.
+"""
 
 
 class FrontLoss(Enum):
@@ -37,7 +38,7 @@ class FrontWatch:
         self._is_lost = False
 
     def step(self, state: BusState, *, watched: bool) -> FrontLoss | None:
-        """The reaction that is due in this cycle; None where there is none, where `watched` is false, and while the robot parks."""
+        """The reaction due in this cycle; None for no reaction, where `watched` is false, and while the robot parks."""
         if not watched or state is BusState.PARKING:
             self._is_lost = False
             return None

@@ -1,4 +1,7 @@
-"""The first goals after arming are the measured ticks themselves; from there the servos are led onto the map of joints.
+"""The first goals after arming are the measured ticks; from them the goals approach the ticks that the joint angles map to.
+
+A joint angle maps exactly onto a servo's tick unless several servos drive one joint: play and horns then leave each servo slightly
+off the angle that they share. Sending the mapped ticks as first goals would make each servo jump by its own offset.
 
 Joint angles map onto every servo's tick but where several servos drive one joint: play and horns leave each a little
 beside the angle that all together stand for. Written as joints their first goals would be a jump of as much.
@@ -12,7 +15,7 @@ from numpy.typing import NDArray
 from retarget.robot.ticks import JointServoMap
 
 STEP_TICK, _TICKS_PER_TURN = 1, 4096
-"""Ticks a cycle by which a servo of 4096 ticks a turn is led; a servo of finer ticks is led by as many degrees."""
+"""Ticks a cycle by which the goal of a servo with 4096 ticks a turn moves; a finer servo moves by the same angle."""
 
 
 class LeadingBack:
@@ -30,18 +33,18 @@ class LeadingBack:
 
     @property
     def done(self) -> bool:
-        """Whether goals are what the map says; until then the joints must be held still."""
+        """Whether goals equal the mapped ticks; until then the joints must be held still."""
         return self._beside is None
 
     def begin(self, measured_tick: NDArray[np.int32]) -> NDArray[np.float64]:
-        """(J,) the joints' angles at (S,) measured ticks, from which the next goals go on."""
+        """Joint angles (J,) at the measured ticks (S,); the caller's next goals must continue from these angles."""
         q_rad = self._ticks.tick_to_rad(measured_tick)
         beside = measured_tick - self._mapped(q_rad)
         self._beside = beside if beside.any() else None
         return q_rad
 
     def goal_tick(self, q_rad: NDArray[np.float64]) -> NDArray[np.int32]:
-        """(S,) goals for joints (J,); right after `begin` the measured ticks, then nearer to the map with each call."""
+        """Goal ticks (S,) for joint angles (J,): the measured ticks right after `begin`, then nearer to the mapped ones."""
         goal = self._mapped(q_rad)
         if self._beside is None:
             return goal

@@ -1,4 +1,6 @@
-"""Before torque comes on: the joints stand still, and every servo's goal is where it stands.
+"""Pinning before torque comes on: wait until the joints stand still, then set every servo's goal to its position.
+
+The functions are generators: the bus process runs its cycles between their steps.
 
 Generators: between their steps the bus process goes on with its cycles.
 """
@@ -19,20 +21,23 @@ from daemon.host.clock import Clock
 PIN_ATTEMPTS = 3
 SWING_OUT_S = 1.0
 _STILL_S, _STILL_TICK = 0.02, 2
-"""Before arming the joints must stand: within two ticks over 20 ms, and in no more than a second."""
+"""Seconds and ticks: before arming the joints must move less than two ticks in 20 ms, within at most a second."""
 _PIN_TICK = 8
-"""Ticks by which a joint may be away from its pinned goal when torque comes on: 0.7 degrees of a servo of 4096 ticks."""
+"""Ticks between a joint and its pinned goal that are allowed when torque comes on: 0.7 degrees at 4096 ticks a turn."""
 _TICKS_PER_TURN = 4096
-"""What those two are for; finer servos (Y, P) may go as many degrees, coarser ones as many ticks."""
+"""Ticks a turn for which the tick bounds here are given; finer servos (Y, P) may move the same angle, coarser ones the same ticks.
+"""
 
 
 def reading_at_rest(bus: ServoBus, clock: Clock) -> Generator[None, None, BusReading]:
-    """A whole reading of joints that stand still: limp they swing on, and a goal pinned meanwhile would jerk.
+    """Return a complete reading of joints at rest: limp joints swing, and a goal pinned during a swing would jerk.
+
+    If a servo is still silent after a second, the last reading is returned with that servo marked not valid.
 
     After a second with a servo silent it is the last one, as it is.
 
     Raises:
-        ServoFaultError: one still moves after a second.
+        ServoFaultError: a servo still moves after a second.
     """
     still_tick = _ticks(bus, _STILL_TICK)
     reading, began_s = bus.exchange(None), clock.now_s()
@@ -52,7 +57,7 @@ def reading_at_rest(bus: ServoBus, clock: Clock) -> Generator[None, None, BusRea
 
 
 def refuse_hardware_errors(bus: ServoBus, reading: BusReading) -> None:
-    """Raises ServoFaultError for a servo that tells of a hardware error."""
+    """Raise ServoFaultError if a servo reports a hardware error."""
     for row in np.flatnonzero(reading.error & ALERT_BIT):
         servo_id = bus.ids[int(row)]
         text = bus.hardware_error_text(servo_id)
@@ -62,13 +67,12 @@ def refuse_hardware_errors(bus: ServoBus, reading: BusReading) -> None:
 def pin_where_they_stand(
     bus: ServoBus, clock: Clock, reading: BusReading, effort: float
 ) -> Generator[None, None, NDArray[np.int32]]:
-    """(S,) goals pinned to where the joints stand, still so when all are: on a bad wire it takes long enough to move an arm.
+    """(S,) goals pinned to the joints' positions, checked at the end: on a bad wire an arm has time to move meanwhile.
 
-    No cycle comes between the last look and its end, so that torque may come on at once.
+    No bus cycle runs between the last check and the return, so that torque may come on at once.
 
     Raises:
-        ServoFaultError: a goal is not taken, a servo tells of a hardware error by now, or a joint moves each time while
-            goals are pinned.
+        ServoFaultError: a servo refuses its goal or reports a hardware error, or a joint moves during every attempt.
     """
     row, pin_tick = 0, _ticks(bus, _PIN_TICK)
     for _ in range(PIN_ATTEMPTS):
@@ -78,7 +82,9 @@ def pin_where_they_stand(
             pinned = bus.read_item(servo_id, "goal_position")
             if pinned != tick:
                 raise ServoFaultError(servo_id, f"goal pinned to {tick}", f"goal {pinned}")
-        refuse_hardware_errors(bus, bus.exchange(None))  # protocol 1.0 forgets its alarm when it is told an effort
+        refuse_hardware_errors(
+            bus, bus.exchange(None)
+        )  # a servo of protocol 1.0 clears its alarm when an effort limit is written
         bus.set_effort(effort, confirmed=True)
         now = bus.exchange(None)
         refuse_hardware_errors(bus, now)
@@ -93,12 +99,12 @@ def pin_where_they_stand(
 
 
 def _ticks(bus: ServoBus, ticks: int) -> NDArray[np.float64]:
-    """(S,) `ticks`, given for 4096 a turn, in the ticks of each servo; never fewer."""
+    """(S,) `ticks`, given for 4096 a turn, converted to each servo's own resolution; never fewer."""
     return np.array([ticks * max(1.0, s.model.ticks_per_turn / _TICKS_PER_TURN) for s in bus.servos])
 
 
 def _pin(bus: ServoBus, servo_id: int, tick: int) -> None:
-    """Set the goal of a limp servo to where it stands.
+    """Set the goal of a limp servo to its measured position.
 
     Raises:
         ServoFaultError: it stands outside its own position limits, and refuses.

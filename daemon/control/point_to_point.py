@@ -1,4 +1,4 @@
-"""The slow move of arming and parking: from wherever the robot stands, by a way that keeps off its own body."""
+"""The slow move of arming and parking: from the present pose, along a path without self-contact."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ log = logging.getLogger(__name__)
 
 Array = NDArray[np.float64]
 SEARCH_PIECES_PER_S = 200
-"""Pieces of the search for a way in a second: one or a few in a cycle."""
+"""Steps of the path search per second; a bus cycle makes one or a few of them."""
 HELD_S, SEARCHES = 0.5, 3
-"""Seconds that the gate holds the move before a way is searched for anew, and the number of searches."""
+"""Seconds that the gate holds the move before a new path is searched, and the number of searches."""
 NO_WAY_LIMP_S = 10.0
-"""Seconds that a robot for which no free way was found holds in a fault before it goes limp."""
+"""Seconds that a robot without a free path holds in a fault before it goes limp."""
 
 
 class PointToPointMove:
-    """Comes to rest, looks for a way that is free, and goes it; a step in each bus cycle.
+    """Comes to rest, searches a free path and follows it; one step in each bus cycle.
 
     Args:
-        robot: whose.
-        contact: its body.
+        robot: the robot to move.
+        contact: model of the robot's body.
         gate: every goal passes it.
 
     Attributes:
-        setpoint_rad: (J,) where it should be now; None before there is a way.
-        arrived: whether it is there, and has stayed as long as it should.
-        blocked: the search that found no way, or the last of too many; None while there is hope.
+        setpoint_rad: (J,) setpoint of this cycle; None before a path is found.
+        arrived: whether the robot has reached the pose and stayed there for the requested time.
+        blocked: the search that found no path, or the last one allowed; None before that.
     """
 
     def __init__(self, robot: RobotModel, contact: SelfContact, gate: SafetyLimiter) -> None:
@@ -45,7 +45,7 @@ class PointToPointMove:
         self.begin()
 
     def begin(self) -> None:
-        """Forget the way: the next step begins anew from where the robot stands then."""
+        """Forget the path: the next step begins anew from the robot's position at that time."""
         self._approach: PtpTrajectory | None = None
         self._search: RrtConnect | None = None
         self._searches = 0
@@ -55,7 +55,7 @@ class PointToPointMove:
         self.blocked: RrtConnect | None = None
 
     def step(self, to_rad: Array, stay_s: float) -> Array:
-        """(J,) the next goal on the way to a pose (J,) in which it stays for a while."""
+        """(J,) next goal on the path to a pose (J,) in which the robot stays for `stay_s` seconds."""
         if self._approach is None:
             goal = self._gate.brake()
             if self._gate.at_rest:
@@ -63,7 +63,7 @@ class PointToPointMove:
             return goal
         self.setpoint_rad = self._approach.at(self._gone_s + self._period_s)
         goal = self._gate.step(self.setpoint_rad)
-        if self._gate.held:  # its time stands still with it
+        if self._gate.held:  # the move's time stops while the gate holds it
             self._held_s += self._period_s
             if self._held_s > HELD_S:
                 self._approach = None
@@ -74,7 +74,7 @@ class PointToPointMove:
         return goal
 
     def no_way(self, where: str) -> str:
-        """Text of the fault that no way was found to a pose, "rest" or "park"."""
+        """Text of the fault that no path was found to a pose, `where` being "rest" or "park"."""
         touching = self.blocked.touching() if self.blocked is not None else ()
         near = ", ".join(f"{a} and {b}" for a, b in touching[:3])
         return (
@@ -83,7 +83,7 @@ class PointToPointMove:
         )
 
     def _look_for_a_way(self, to_rad: Array) -> None:
-        """Some pieces of the search from where it stands; then the way, or the end of hope."""
+        """Make some steps of the search from the present pose; then set the path, or `blocked`."""
         if self._search is None:
             self._search = RrtConnect(self._robot, self._contact, self._gate.position_rad, to_rad)
             self._searches += 1

@@ -1,4 +1,4 @@
-"""Entry of the bus process: rights, port, loop. `python -m daemon.control.process --robot R --bus URL --link NAME`."""
+"""Entry of the bus process: privileges, port, loop. `python -m daemon.control.process --robot R --bus URL --link NAME`."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ log = logging.getLogger(__name__)
 
 ORPHAN_CHECK_S = 0.5
 ORPHAN_END_S = 30.0
-"""Longest life without a front: holding, parking and a fault or e-stop in which torque was kept are over by then."""
+"""Seconds for which the bus process lives on without a front: enough to hold, park and end a fault or e-stop with torque."""
 SLOW_EVERY = 10
-"""Cycles between two readings of the slow registers, of one servo each."""
+"""Cycles between two readings of slow registers; each reads one servo."""
 
 
 def main() -> int:
-    """Run until asked to shut down; 0 after that, 1 when the bus could not be opened."""
+    """Run until a shutdown request; return 0 after that, 1 when the bus could not be opened."""
     parser = argparse.ArgumentParser(description="the bus process of mmmd; started by `mmmd run`")
     for name in ("--robot", "--bus", "--link"):
         parser.add_argument(name, required=True)
@@ -51,7 +51,7 @@ def main() -> int:
     def opened() -> ServoBus:
         return open_bus(arguments.bus, robot, clock, slow_every=SLOW_EVERY)
 
-    locked = lock_memory()  # bringing all pages in takes long: not between the start and the first cycle
+    locked = lock_memory()  # loading all pages takes long: not between the start and the first cycle
     streamer = start(robot, opened, link, clock, after_loss=arguments.after_loss)
     if streamer is None:
         return 1
@@ -71,13 +71,13 @@ def main() -> int:
     try:
         streamer.run()
     finally:
-        give_back_fifo()  # what is left takes as long as it takes: no other robot's bus process shall wait for it
+        give_back_fifo()  # closing takes time: no other robot's bus process shall wait for this one
         streamer.close()
     return 0
 
 
 def _end_with_parent(streamer: ControlLoop, parent: Parent) -> None:
-    """Give the port back once the front is gone for good: when the robot is parked, or nobody came in a while."""
+    """End the loop once the front is gone for good: when the robot is parked, or after `ORPHAN_END_S`."""
     while not parent.gone:
         time.sleep(ORPHAN_CHECK_S)
     orphaned_s = time.monotonic()

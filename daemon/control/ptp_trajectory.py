@@ -1,4 +1,4 @@
-"""Slow moves along a way of straight lines: from where the robot stands to rest, and to park. Jerk-limited, by ruckig."""
+"""Slow moves along straight lines in joint space: from the present pose to rest, and to park. Jerk-limited, by ruckig."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ JERK_RAD_S3 = 20.0
 
 
 class PtpTrajectory:
-    """A move of all joints at once, each slower than its own limits, on straight lines, at rest at the end of each.
+    """A move of all joints at once along straight lines, at rest at the end of each; every joint keeps below its limits.
 
     Args:
-        way_rad: poses (J,) to go through, the first one where the robot stands.
+        way_rad: poses (J,) to pass through; the first is the present one.
         limits: of the joints.
 
     Raises:
@@ -35,7 +35,7 @@ class PtpTrajectory:
 
     @property
     def duration_s(self) -> float:
-        """Time the move takes."""
+        """Seconds that the move takes."""
         return float(sum(line.duration for line in self._lines))
 
     def at(self, t_s: float) -> Array:
@@ -53,7 +53,7 @@ class PtpTrajectory:
 def _line(start_rad: Array, goal_rad: Array, limits: JointLimits) -> Trajectory:
     n = len(start_rad)
     request = InputParameter(n)
-    request.synchronization = Synchronization.Phase  # joints in step: the way is straight
+    request.synchronization = Synchronization.Phase  # joints in step: the path is straight
     request.current_position, request.target_position = start_rad.tolist(), goal_rad.tolist()
     request.max_velocity = np.minimum(SPEED_RAD_S, 0.5 * limits.velocity_rad_s).tolist()
     request.max_acceleration = np.minimum(ACCELERATION_RAD_S2, 0.5 * limits.acceleration_rad_s2).tolist()

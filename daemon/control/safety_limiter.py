@@ -1,4 +1,7 @@
-"""The last limiter before bytes, for every source: text, replay, raw stream, park.
+"""The last limiter before the bytes, for every source of setpoints: text, replay, raw stream, park.
+
+For any input, its output keeps position, velocity and acceleration limits and leads the robot into no self-contact: after every
+goal, braking at full deceleration is proved free of contact. Input that already keeps all of these passes bit for bit.
 
 Whatever comes in, what goes out keeps position, velocity and acceleration, and leads the robot not into itself: braking as
 hard as it can is proved free after every goal. What already keeps all that passes bit for bit.
@@ -19,18 +22,18 @@ from retarget.robot.robot import RobotModel
 Array = NDArray[np.float64]
 
 FARTHEST_RAD = 1000.0
-"""Targets beyond are all equally far; without this bound the limiter overflows at 1e300 and its goal is NaN."""
+"""Radians beyond which targets count as equally far; without this bound the limiter overflows at 1e300 and its goal is NaN."""
 GATE_SHARE = 0.3
-"""Share of the margin of self-contact that is kept here: less than what paths and streams keep, so that those pass."""
+"""Share of the self-contact margin that the gate keeps: less than the share of paths and streams, so that those pass."""
 
 
 class SafetyLimiter:
-    """Holds what the joints were told last, and lets nothing through that they cannot follow.
+    """Holds the joints' last goal and passes only goals that the joints can follow.
 
     Args:
-        robot: which one.
+        robot: the robot.
         period_s: time between two goals; that of the robot's bus when None.
-        contact: of the robot; None: nothing is known of its body, limits alone are kept.
+        contact: model of the robot's body; None keeps the limits alone.
 
     Attributes:
         position_rad, velocity_rad_s: (J,) the last goal and the step to it.
@@ -50,11 +53,11 @@ class SafetyLimiter:
 
     @property
     def held(self) -> bool:
-        """Whether it keeps the robot from touching itself just now."""
+        """Whether the gate keeps the robot from touching itself in this cycle."""
         return self._guarded is not None and self._guarded.held
 
     def reset(self, position_rad: Array) -> None:
-        """Start anew at a measured position, at rest."""
+        """Start again at a measured position (J,), at rest."""
         if not np.isfinite(position_rad).all():
             raise ValueError(f"the gate cannot start at {position_rad}: not finite")
         self.position_rad = position_rad.copy()
@@ -90,7 +93,7 @@ class SafetyLimiter:
         return self._advance(brake(self.position_rad, self.velocity_rad_s, limits, self.period_s))
 
     def _limits_now(self) -> JointLimits:
-        """The robot's; a joint found outside its range has the range up to where it is, so that nothing drives it back in haste."""
+        """The robot's limits; the range of a joint found outside extends to its position, so that it is not driven back hard."""
         low, high = self.limits.position_min_rad, self.limits.position_max_rad
         if ((self.position_rad >= low) & (self.position_rad <= high)).all():
             return self.limits
@@ -102,11 +105,11 @@ class SafetyLimiter:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the last step moved nothing."""
+        """Whether the last step moved no joint."""
         return not self.velocity_rad_s.any()
 
     def touching(self, target_rad: Array) -> list[tuple[str, str]]:
-        """Names of the bodies that would touch at finite targets (J,), for people; none when nothing is known of the body."""
+        """Names of the bodies that would touch at finite targets (J,), for messages; empty when the body is unknown."""
         return [] if self._guarded is None else self._guarded.touching(target_rad)
 
     def _advance(self, goal: Array) -> Array:

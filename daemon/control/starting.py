@@ -1,4 +1,4 @@
-"""How the bus process starts: opens and verifies the bus, and names what keeps the robot from being driven."""
+"""Starts the bus process: opens and verifies the bus, and names every reason why the robot cannot be driven."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ _HELD_BEFORE = "servo {} had torque before it was armed: who drove it may have b
 def start(
     robot: RobotModel, open_bus: Opener, link: BusLink, clock: Clock, *, after_loss: bool = False
 ) -> ControlLoop | None:
-    """Open and verify the bus; a `ControlLoop` when the robot is there, else None and the reason in the link.
+    """Open and verify the bus; return a `ControlLoop`, or None with the reason in the link when the robot cannot be driven.
+
+    With `after_loss`, or where a servo has torque already, the loop starts in a latched fault: no joint may move by itself, and no
+    servo may count as limp that is not. A pending e-stop or torque-off request cuts torque before anything else.
 
     `after_loss`, or a servo that has torque already, starts it in a latched fault: nothing may move by itself, and nothing
     may be taken for limp that is not. An e-stop or torque off that nobody has carried out cuts torque before anything else.
@@ -36,7 +39,9 @@ def start(
     try:
         bus = open_bus()
     except DaemonError as error:
-        refused = isinstance(error, (CommandError, ConfigError))  # before any byte: the URL is wrong, not the bus
+        refused = isinstance(
+            error, (CommandError, ConfigError)
+        )  # raised before any byte was sent: the URL is wrong, not the bus
         link.set_ready(Readiness.REFUSED if refused else Readiness.FAILED, str(error))
         return None
     try:
@@ -82,6 +87,6 @@ def start(
 
 
 def _cut_what_is_owed(bus: ServoBus, link: BusLink) -> None:
-    """Torque off where somebody asks for it while the bus starts; the first cycle serves the request itself, and repeats it."""
+    """Cut torque where this is requested while the bus starts; the first cycle serves the request itself, and repeats the cut."""
     if link.owes(*ESTOPS, BusRequest.TORQUE_OFF):
         bus.send_torque_off()

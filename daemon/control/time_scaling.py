@@ -1,4 +1,8 @@
-"""How fast setpoints are played: as they come, slower along their own path, or not at all while the gate holds. No I/O.
+"""Rate at which setpoints are played: full, slower along their own path, or zero while the gate holds. No I/O.
+
+Where the gate keeps the robot off itself the motion waits and then continues slowly. A path without self-contact needs this only
+where hard braking at full speed would cause contact. By waiting, the robot stays on its path, and its own arms do not cut it off
+from the rest of the path.
 
 Where the gate holds the robot off itself the motion waits for it and is then played slowly on. A path that touches nothing
 needs that only where hard braking from it at full speed would touch; so the robot does not lose its path there, and is
@@ -14,14 +18,14 @@ import numpy as np
 from daemon.shared_memory.bus_link import Setpoint
 
 WAIT_S = 1.0
-"""Seconds that a motion waits in all before it goes on without the robot: a motion that leads into the robot ends as well."""
+"""Seconds that a motion waits in all before it continues without the robot, so that a motion into the robot ends as well."""
 REJOIN_PER_S = 2.0
-"""Rise of the share of full speed in a second, after the gate has held the robot."""
+"""Rise of the share of full speed per second, after the gate has held the robot."""
 _REJOINED = 0.5
 
 
 class TimeScaling:
-    """The share of full speed at which setpoints are taken, brought up to date once a cycle."""
+    """The share of full speed at which setpoints are taken, updated once a cycle."""
 
     def __init__(self, period_s: float) -> None:
         self._period_s = period_s
@@ -42,12 +46,14 @@ class Source(Protocol):
     """A source of setpoints."""
 
     def take_setpoint(self) -> Setpoint | None:
-        """The next one; None when there is none."""
+        """The next setpoint; None when there is none."""
         ...
 
 
 class ScaledSetpoints:
-    """Setpoints at a share of their rate, between two of them where a cycle falls between.
+    """Setpoints played at a share of their rate, interpolated where a cycle falls between two of them.
+
+    At full speed they pass unchanged, so that a replay is equal bit for bit.
 
     At full speed they pass as they are, so that a replay is the same bit for bit.
     """
@@ -59,12 +65,12 @@ class ScaledSetpoints:
         self._phase = 0.0
 
     def reset(self) -> None:
-        """A new motion begins."""
+        """Begin a new motion."""
         self._given = self._following = None
         self._phase = 0.0
 
     def take(self, share: float) -> Setpoint | None:
-        """The setpoint of this cycle, the same again at a share of 0; None when it has not come yet."""
+        """The setpoint of this cycle, the previous one again at a share of 0; None when the next one has not arrived yet."""
         if self._given is None or (share >= 1.0 and self._following is None):
             self._given = self._source.take_setpoint()
             return self._given
@@ -74,13 +80,13 @@ class ScaledSetpoints:
                 self._given, self._following, phase, arrives = self._following, None, phase - 1.0, True
             elif (following := self._source.take_setpoint()) is not None:
                 self._following = following
-            else:  # the end, or the front is late: from here it goes on as from anywhere
+            else:  # the end, or the front is late: the next setpoint is taken without interpolation
                 self._phase = 0.0
                 return self._given if arrives else None
         self._phase = phase
         a, b = self._given, self._following
         if b is None or phase == 0.0:
             return a
-        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is the gate's to refuse
+        with np.errstate(invalid="ignore", over="ignore"):  # the gate refuses values that are not finite
             q_rad = a.q_rad + phase * (b.q_rad - a.q_rad)
         return Setpoint(a.plan_id, a.frame, False, q_rad)

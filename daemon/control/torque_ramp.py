@@ -1,8 +1,8 @@
-"""The torque ramp after arming: what the servos may exert rises from a part to all of it. A tripped one is told nothing.
+"""The torque ramp after arming: the servos' effort limit rises from a share to the whole. A tripped servo gets no write.
 
 On protocol 1.0 the ramp writes `torque_limit`, which also clears an alarm, and a goal switches torque on: a servo that
 trips unseen between its last answer and the next step would come back with the next goal. So while the ramp lasts these
-servos get no goals (they hold those they were pinned to), and at its end each has to say that it still has its torque.
+servos get no goals (they hold their pinned ones), and at its end each must report that it still has its torque.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from daemon.dynamixel.servo_bus import ServoBus
 from daemon.errors import ServoFaultError
 
 EFFORT_START = 250 / 885
-"""Share of full effort that torque comes on with (of goal PWM; on protocol 1.0 the torque limit)."""
+"""Share of full effort when torque comes on (of goal PWM; on protocol 1.0 of the torque limit)."""
 RAMP_S = 0.6
-"""Seconds until it is full."""
+"""Seconds until the effort limit is full."""
 STEP_CYCLES = 5
 """Bus cycles from one step of the ramp to the next."""
 
@@ -40,12 +40,12 @@ class TorqueRamp:
         return not self._proved
 
     def begin(self) -> None:
-        """Torque has just come on, with `EFFORT_START`."""
+        """Start the ramp at `EFFORT_START`; torque has just come on."""
         self._share, self._cycle = EFFORT_START, 0
         self._proved = not self._by_torque_limit
 
     def step(self) -> None:
-        """One cycle of the ramp; nothing once it is over, and nothing while an answer carries an alarm.
+        """Run one cycle of the ramp; does nothing once the ramp is over, and nothing while an answer carries an alarm.
 
         Raises:
             ServoFaultError: a servo has lost its torque during the ramp.

@@ -1,4 +1,7 @@
-"""Torque of the servos: on after arming, off in one packet that is sent again until no servo can have missed it.
+"""Torque of the servos: on after arming, off by one packet that is repeated until every servo has received it.
+
+No servo answers the packet that cuts torque. So the packet is sent several times, and once more to any servo that still has torque
+in a later reading: a corrupted packet, a lost port or a loose cable then does no harm. Part of the bus process.
 
 Nobody answers torque off. So it goes out several times, and once more to any servo that still has torque in a later reading: a
 spoilt packet, a lost port or a loose cable then costs nothing. Part of the bus process.
@@ -18,15 +21,15 @@ from daemon.errors import LinkError, LinkLostError
 log = logging.getLogger(__name__)
 
 TORQUE_OFF_REPEATS = 5
-"""Packets of torque off, one a bus cycle."""
+"""Number of times that the packet of torque off is sent, once a bus cycle."""
 
 
 class TorqueSwitch:
-    """Whether the servos have torque, and how it is cut.
+    """Knows whether the servos have torque, and cuts it.
 
     Attributes:
         on: whether this process has given them torque.
-        goal_tick: (S,) goals that the servos hold; None without torque, and where they are to get no goals.
+        goal_tick: (S,) goals that the servos hold; None without torque, and where servos must get no goals.
         made_limp: whether this process has cut torque since it was last given.
         may_hold: whether servos may have torque that this process did not give them.
 
@@ -43,12 +46,12 @@ class TorqueSwitch:
 
     @property
     def has_cut(self) -> bool:
-        """Whether torque was cut and every packet of it went out."""
+        """Whether torque was cut and all of the packets that cut it went out."""
         return self.made_limp and not self.on and not self._off_left
 
     @property
     def cut_waits(self) -> bool:
-        """Whether torque is to be cut and no packet of it has gone out on every port."""
+        """Whether torque is to be cut and no such packet has gone out on every port yet."""
         return not self.on and self._off_left == TORQUE_OFF_REPEATS
 
     def switched_on(self, goal_tick: NDArray[np.int32]) -> None:
@@ -64,12 +67,12 @@ class TorqueSwitch:
         self.cut_by_repeat()
 
     def cut_by_repeat(self) -> None:
-        """Cut torque with the next `repeat_off`."""
+        """Cut torque with the next call of `repeat_off`."""
         self.on, self.made_limp, self.may_hold, self.goal_tick = False, True, False, None
         self._off_left = TORQUE_OFF_REPEATS
 
     def repeat_off(self) -> None:
-        """Once a cycle: send a torque off that is left, or the one that a servo has missed.
+        """Send a pending torque off, or repeat it for a servo that has missed it; called once a cycle.
 
         Raises:
             LinkError: the port does not take the packet that a servo has missed.
@@ -77,22 +80,22 @@ class TorqueSwitch:
         if self.on:
             return
         if self._off_left:
-            with suppress(LinkLostError):  # the exchange tells of it, and reads the ports that are left
+            with suppress(LinkLostError):  # the exchange reports the loss, and reads the other ports
                 self._bus.send_torque_off()
                 self._off_left -= 1
             return
         holding = np.flatnonzero(self._bus.reading.torque == 1) if self.made_limp else ()
-        if len(holding):  # read since: it heard none of them, a cable may have been loose
+        if len(holding):  # a servo read since then received none of them, a cable may have been loose
             ids = ", ".join(str(self._bus.ids[row]) for row in holding)
             log.warning("servo %s still has torque: torque off is sent again", ids)
             self._bus.send_torque_off()
 
     def cut_at(self, at_s: float) -> None:
-        """Have `cut_is_due` say so from a time on, unless the fault is over by then."""
+        """Schedule a cut for a time, which `cut_is_due` reports unless the fault is over by then."""
         self._cut_at_s = at_s
 
     def cut_is_due(self, now_s: float, *, in_fault: bool) -> bool:
-        """Once a cycle: whether the time of `cut_at` has come; outside a fault, or without torque, it is forgotten."""
+        """Whether the time of `cut_at` has come; outside a fault, or without torque, the time is forgotten. Called once a cycle."""
         if self._cut_at_s is None:
             return False
         if not self.on or not in_fault:

@@ -1,4 +1,8 @@
-"""Before torque comes on: whether the servos' ticks can mean only one pose. Part of the bus process.
+"""Checks before torque comes on that the servos' ticks can mean only one pose. Part of the bus process.
+
+A servo in extended position mode forgets whole turns without power: at 192 degrees it reports -168 after a power cycle, and a joint
+that may be at either angle could be turned the wrong way. Whole turns are known once every other number of turns would put the
+joints outside their range, and as long as each servo answers without a pause in which it could have lost power.
 
 A servo in extended position mode forgets whole turns without power: at 192 degrees it reports -168 afterwards, and a joint
 that may be at either would be turned the wrong way. Whole turns are known once every other count of them would put the
@@ -22,22 +26,22 @@ from retarget.robot.ticks import JointServoMap
 PAUSE_S = 0.15
 """Seconds of silence in which a servo may have lost its power and started again (which takes longer)."""
 SLACK_RAD = math.radians(5.0)
-"""Angle by which a joint may be found outside its range and its count of turns, reported or another, is still believed."""
+"""Radians by which a joint may be outside its range while a number of turns, reported or not, still counts as possible."""
 MOST_APART_RAD = math.radians(2.0)
-"""Largest angle by which the servos of one joint may disagree about it: what play, horns and zeros come to."""
+"""Radians by which the servos of one joint may disagree: the sum of play, horns and zeros."""
 TURNS_UNKNOWN = "it forgets whole turns without power"
-"""What a refusal says where a person has to lead the joint by hand."""
+"""Words of a refusal where a person has to lead the joint by hand."""
 LOOK_CYCLES = 10
-"""Bus cycles between two looks while turns are not known."""
+"""Bus cycles between two checks while turns are not known."""
 
 
 class TurnWatch:
-    """Follows the servos' positions and says whether their whole turns are known.
+    """Follows the servos' positions and reports whether their whole turns are known.
 
     Args:
-        robot: whose servos.
-        ticks: its map.
-        bus: to name servos by.
+        robot: the robot.
+        ticks: the robot's map between joints and ticks.
+        bus: the servos, for their names in errors.
     """
 
     def __init__(self, robot: RobotModel, ticks: JointServoMap, bus: ServoBus) -> None:
@@ -80,7 +84,7 @@ class TurnWatch:
             self.known[self._other_counts(reading.position_tick) < 0] = True
 
     def require_one_pose(self, present_tick: NDArray[np.int32]) -> None:
-        """Refuse a robot whose servos, found at (S,) ticks, may stand elsewhere than they say.
+        """Refuse a robot whose servos, at measured ticks (S,), may stand elsewhere than they report.
 
         Raises:
             ServoFaultError: whole turns are not known, or several servos of one joint disagree.
@@ -108,11 +112,11 @@ class TurnWatch:
             raise ServoFaultError(self._bus.ids[row], f"position of {joint}", text)
 
     def _apart_tick(self, ticks: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(..., S) ticks from where a servo stands to where the pose that all together stand for would put it."""
+        """(..., S) ticks from each servo's position to the one that the pose shared by all servos of the joint implies."""
         return ticks - np.rint(self._ticks.to_ticks(self._ticks.tick_to_rad(ticks)))
 
     def _other_counts(self, present_tick: NDArray[np.int32]) -> NDArray[np.intp]:
-        """(G,) of each group the row of `_shifts` that may be as true as what it reports; -1 for none."""
+        """(G,) for each group the row of `_shifts` that is as possible as the reported turns; -1 for none."""
         base = present_tick.astype(np.float64)
         poses = base + np.concatenate([np.zeros((1, len(base))), self._shifts * self._turn_tick])
         servo_rad, joint_rad = self._outside_rad(poses)
@@ -121,12 +125,12 @@ class TurnWatch:
         other = (servo_rad[1:] * servos).sum(1) + (joint_rad[1:] * joints).sum(1)
         best = np.full(len(self.known), -1, np.intp)
         likely = np.flatnonzero(other <= found + self._believed_rad)
-        for n in likely[np.argsort(-other[likely])]:  # the likeliest last
+        for n in likely[np.argsort(-other[likely])]:  # the most likely one last
             best[self._of_shift[n]] = n
         return best
 
     def _outside_rad(self, poses: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """(N, S) and (N, J) angles by which servos and joints are outside their ranges, or apart from one another."""
+        """(N, S) and (N, J) radians by which servos and joints are outside their ranges, or servos of a joint apart."""
         q_rad = self._ticks.tick_to_rad(poses)
         robot, ticks = self._robot, self._ticks
         joint = np.maximum(q_rad - robot.position_max_rad, robot.position_min_rad - q_rad)
@@ -136,7 +140,7 @@ class TurnWatch:
 
 
 def _groups(robot: RobotModel) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """(G, S) and (G, J) which servos and joints hang together."""
+    """(G, S) and (G, J) masks: the servos and joints of each group that move together."""
     moved = np.zeros((robot.n_servos, robot.n_joints), bool)
     for row, servo in enumerate(robot.servos):
         moved[row, [j for j, _ in servo.couplings]] = True

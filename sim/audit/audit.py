@@ -1,4 +1,9 @@
-"""The audit: every goal the servos receive, checked against the robot's limits, apart from the daemon's own gate.
+"""The audit: every goal the servos receive, checked against the robot's limits, independently of the daemon's own gate.
+
+Written from the robot file alone, in ticks of each servo. A goal is one step of one bus period; rounding to ticks adds at most one
+tick to a step and two to the difference of two steps. The bus may pause between two goals (a skipped cycle), but may not hurry:
+more than a few goals in a row that come faster than the robot's rate are a violation of their own. Another violation are goals that
+move a servo which has reported its trip often enough, once there was time to come to rest.
 
 Written from the robot file alone, in ticks of each servo. A goal is one step of one bus period; rounding to ticks adds at most one
 tick to a step and two to the difference of two steps. Between two goals the bus may pause (a skipped cycle), but may
@@ -19,17 +24,19 @@ from retarget.robot.ticks import JointServoMap
 from sim.audit.contact_audit import ContactAudit
 
 PIN_TOLERANCE_TICK, _TICKS_PER_TURN = 12, 4096
-"""About one degree of such a servo: torque may come on over a goal no further from where the servo stands. Finer servos
-(Y, P) may be as many degrees away, coarser ones as many ticks."""
+"""Ticks between a servo and its goal when torque comes on, about one degree at 4096 ticks a turn. Finer servos (Y, P) may be the
+same angle away, coarser ones the same number of ticks.
+"""
 HURRY_GOALS, HURRY_RATE = 4, 1.1
-"""Goals that may come at once (a cycle that was held up, and those that start late behind it), and their rate in the long run as
-a multiple of the bus rate."""
+"""Number of goals that may come at once (those of a late cycle and of the next ones), and their long-run rate as a multiple of the
+bus rate.
+"""
 TTY_GOALS = 30
-"""Goals that may come at once behind a tty: a loaded machine may have let the simulator sleep meanwhile."""
+"""Number of goals that may come at once over a tty: a loaded machine may have let the simulator sleep meanwhile."""
 FAULT_GRACE_S = 0.1
-"""Goals that were under way when a servo tripped are not counted against anybody."""
+"""Seconds after a servo's trip in which goals already under way are no violation."""
 ANSWERS_TOLD = 10
-"""Whole answers after which the client must know of a servo's trip: some may be lost on their way."""
+"""Complete answers after which the client must know of a servo's trip: some may be lost on the wire."""
 _MAX_DETAILS = 20
 
 
@@ -53,7 +60,7 @@ class _Track:
     told_tick: int | None = None
 
     def well(self) -> None:
-        """Nothing is latched."""
+        """Clear the record of a latched fault."""
         self.faulted_s, self.alerts, self.told_s, self.told_tick = None, 0, math.inf, None
 
 
@@ -62,15 +69,15 @@ class Audit:
     """Collects goals and violations of one robot.
 
     Attributes:
-        measure: true ticks of the servos, for contacts that were not commanded; None where nobody can tell.
+        measure: returns the servos' true ticks, for contacts that were not commanded; None where these are unknown.
         goals: goals received.
-        waiting_goals: how many may come at once.
+        waiting_goals: number of goals that may come at once.
         violations: by kind.
         writes_in_fault: goals to a servo whose fault has taken its torque, after a grace of 0.1 s. They move nothing: a group
             is told to hold, and it is one of them. Goals that lead it on are violations.
         body_contacts: steps in which the body (MuJoCo) touched itself.
-        led_contacts: those of them while every servo had torque: it did not fall onto itself, it was led there.
-        details: the first violations in words.
+        led_contacts: body contacts while every servo had torque: the goals led the robot there, it did not fall.
+        details: description of the first violations.
     """
 
     robot: RobotModel
@@ -100,7 +107,7 @@ class Audit:
             self._tracks[servo.servo_id] = _Track(low, high, step, bend, rest_s, pin_tick)
 
     def torque(self, t_s: float, servo_id: int, on: bool, goal_tick: int, present_tick: int) -> None:
-        """Torque was switched."""
+        """Record that torque was switched on or off."""
         track = self._tracks.get(servo_id)
         if track is None:
             return
@@ -112,18 +119,18 @@ class Audit:
             self._violate(t_s, servo_id, "unpinned_torque", f"goal {goal_tick}, standing at {present_tick}")
 
     def torque_in_fault(self, t_s: float, servo_id: int) -> None:
-        """Somebody asked a servo for torque that has latched a fault; before any answer of it nobody can know."""
+        """Count a request for torque on a servo with a latched fault, unless the servo has not answered since."""
         track = self._tracks.get(servo_id)
         if track is None or track.alerts:
             self._violate(t_s, servo_id, "torque_in_fault", "it has to be rebooted first")
 
     def torque_limit(self, t_s: float, servo_id: int, limit: int, most: int) -> None:
-        """A servo of Protocol 1.0 was given a torque limit, over the `most` that its owner has allowed it."""
+        """Count a torque limit for a servo of Protocol 1.0 above `most`, the maximum that its owner has set."""
         if limit > most:
             self._violate(t_s, servo_id, "torque_limit", f"{limit}, its max torque is {most}")
 
     def heard_in_fault(self, t_s: float, servo_id: int) -> None:
-        """A servo whose fault has taken its torque, or that its watchdog has stopped, gave an answer that went out whole."""
+        """Record a complete answer of a servo whose fault has taken its torque, or that its watchdog has stopped."""
         track = self._tracks.get(servo_id)
         if track is not None:
             track.alerts += 1
@@ -131,7 +138,7 @@ class Audit:
                 track.told_s = t_s
 
     def goal(self, t_s: float, servo_id: int, tick: int, torque: bool, *, faulted: bool = False) -> None:
-        """A servo received a goal."""
+        """Check a goal that a servo received."""
         track = self._tracks.get(servo_id)
         if track is None:
             return
@@ -142,7 +149,7 @@ class Audit:
             self._judge_in_fault(track, t_s, servo_id, tick)
             return
         track.well()
-        # Where a joint stood outside its range when torque came on, it may only come back.
+        # a joint that was outside its range when torque came on may only come back
         low, high = track.minimum, track.maximum
         if track.last is not None:
             low, high = min(low, track.last), max(high, track.last)
@@ -158,14 +165,16 @@ class Audit:
         track.before, track.last = track.last, tick
 
     def missed(self, t_s: float, servo_id: int, tick: int) -> None:
-        """A goal that was sent and lost on the wire: the next one is a step from it, not from the last one that came."""
+        """Record a goal that was lost on the wire: the next goal is a step from this one, not from the last one received."""
         track = self._tracks.get(servo_id)
         if track is not None and track.last is not None:
             track.before, track.last = track.last, tick
             self.contacts.told(t_s, servo_id, tick, torque=True)
 
     def refused(self, t_s: float, servo_id: int, code: int, *, faulted: bool = False, tripped: bool = False) -> None:
-        """A servo refused a goal: the daemon wrote beyond its limits, or though its watchdog had stopped it.
+        """Count a goal that a servo refused: it was beyond the servo's limits, or its watchdog had stopped the servo.
+
+        A servo that has not answered since its watchdog `tripped` may get goals: the client cannot know of the trip.
 
         One that was not heard since its watchdog `tripped` may get goals: nobody can know.
         """
@@ -190,12 +199,12 @@ class Audit:
         }
 
     def touched(self, steps: int, *, led: bool) -> None:
-        """Count `steps` in which the body touched itself; `led`: while every servo had torque."""
+        """Count `steps` in which the body touched itself; `led`: whether every servo had torque."""
         self.body_contacts += steps
         self.led_contacts += steps if led else 0
 
     def check_poses(self) -> None:
-        """Look for self-contact in the poses collected so far, and forget them: for runs of hours."""
+        """Check the poses collected so far for self-contact, and forget them: for runs of hours."""
         self.contacts.check()
 
     def _count_in_fault(self, track: _Track, t_s: float, faulted: bool) -> None:
@@ -207,7 +216,7 @@ class Audit:
         self.writes_in_fault += t_s > track.faulted_s + FAULT_GRACE_S
 
     def _judge_in_fault(self, track: _Track, t_s: float, servo_id: int, tick: int) -> None:
-        """A servo that has told of its trip may be told to stand still, with its group, and nothing else."""
+        """Check a goal for a servo that has reported its trip: the servo may be told to stand still with its group, no more."""
         if t_s > track.told_s + track.rest_s and track.told_tick not in (None, tick):
             self._violate(
                 t_s, servo_id, "goal_in_fault", f"led from {track.told_tick} to {tick}, though it has tripped"
@@ -215,7 +224,7 @@ class Audit:
         track.told_tick = tick
 
     def _count_hurry(self, track: _Track, t_s: float, servo_id: int, tick: int) -> None:
-        """Goals that move the servo are paid for by time."""
+        """Count goals that move the servo against the time since the last ones."""
         earned = (t_s - track.at_s) * self.robot.bus.rate_hz * HURRY_RATE
         track.credit, track.at_s = min(float(self.waiting_goals), track.credit + max(0.0, earned)), max(track.at_s, t_s)
         if tick == track.last:

@@ -1,4 +1,8 @@
-"""Self-contact of the poses a robot was told to take, and of those its servos really took, kept apart.
+"""Counts self-contact of the commanded poses and of the measured ones, apart from each other.
+
+A commanded pose consists of the last goal sent to each servo, also where the goal was lost on the wire or refused: a servo that is
+stuck, limp or deaf leads to a pose that no goals commanded. Such a pose may be in contact when torque comes on in it; that contact
+is inherited as long as it only grows shallower, and is counted by itself.
 
 What was told is the last goal sent to each servo, also where it was lost on the wire or refused: a servo that is stuck, limp
 or deaf makes a pose that nobody commanded. Such a pose may be in contact when torque comes on over it; that contact is
@@ -21,7 +25,7 @@ from retarget.robot.ticks import JointServoMap
 
 Array = NDArray[np.float64]
 EVERY = 5
-"""Number of sets of goals of which one is checked; the first after torque came on always is."""
+"""Number of sets of goals of which one is checked; the first set after torque came on always is."""
 ROUNDED_M = 0.002
 """Metres by which a contact may seem to grow deeper: goals are whole ticks."""
 _MAX_POSES = 500_000
@@ -33,14 +37,14 @@ class ContactAudit:
     """Collects poses of one robot and checks them later, all at once.
 
     Args:
-        robot: whose.
-        measure: true ticks of its servos now, in the order of the robot file; None: only goals are known.
+        robot: the robot.
+        measure: returns the servos' true ticks, in the order of the robot file; None to check goals alone.
 
     Attributes:
-        checked: poses looked at.
-        commanded: those told that are in contact and have not inherited it.
-        inherited: those told whose contacts all stem from the pose over which torque came on, none deeper than before.
-        measured: poses in contact that the servos really took, whatever the cause.
+        checked: number of poses that were checked.
+        commanded: commanded poses with a contact that is not inherited.
+        inherited: commanded poses whose contacts were all there when torque came on, none deeper since.
+        measured: measured poses in contact, from any cause.
         details: the first of `commanded` in words.
     """
 
@@ -59,11 +63,11 @@ class ContactAudit:
         self.details: list[str] = []
 
     def begin(self, servo_id: int, goal_tick: int) -> None:
-        """Torque came on over a goal."""
+        """Record that torque came on over a goal."""
         self._told[servo_id] = self._pinned[servo_id] = goal_tick
 
     def told(self, t_s: float, servo_id: int, tick: int, torque: bool) -> None:
-        """A goal was sent; with torque the last servo's completes a pose."""
+        """Record a goal that was sent; with torque on, the last servo's goal completes a pose."""
         self._told[servo_id] = tick
         if not torque or servo_id != self._robot.servo_ids[-1] or len(self._told) < len(self._robot.servo_ids):
             return
@@ -84,7 +88,7 @@ class ContactAudit:
             self._true.extend(self._measure())
 
     def check(self) -> None:
-        """Look at the poses collected so far, and forget them: for runs of hours."""
+        """Check the poses collected so far, and forget them: for runs of hours."""
         if not self._times:
             return
         if self._contact is None:

@@ -1,4 +1,4 @@
-"""What the servos turn: the contract of a body, and the plain one in which every shaft turns for itself.
+"""The contract of a body, which the servos move, and the plain body, in which every shaft turns independently.
 
 Angles are those of the servos' output shafts, in radians from tick 0, so that a body knows no registers. With the plain
 body a servo carries nothing but its own rotor: without profile it follows a goal with about a first-order lag.
@@ -18,38 +18,38 @@ Array = NDArray[np.float64]
 
 
 class Body(Protocol):
-    """Shafts that take torque and turn."""
+    """Shafts that turn under the servos' torques."""
 
     position_rad: Array
     """(S,) angle of each shaft; write it only while nothing steps."""
     velocity_rad_s: Array
-    """(S,) speed of each shaft."""
+    """(S,) velocity of each shaft, rad/s."""
 
     @property
     def at_rest(self) -> bool:
-        """Whether, with the same torques, nothing would move."""
+        """Whether every shaft would stay where it is under unchanged torques."""
         ...
 
     @property
     def self_contacts(self) -> int:
-        """Steps so far in which the robot touched itself."""
+        """Number of steps so far in which the robot touched itself."""
         ...
 
     def step(self, torque_nm: Array, blocked: NDArray[np.bool_], step_s: float) -> None:
-        """Move on by `step_s` under (S,) torques; a blocked shaft does not turn."""
+        """Advance by `step_s` seconds under (S,) torques; a blocked shaft does not turn."""
         ...
 
     def place(self, shaft: int, position_rad: float) -> None:
-        """Put one shaft somewhere, at rest."""
+        """Set one shaft to a position, at rest."""
         ...
 
     def push(self, joint: int | None, amount: float) -> None:
-        """An external torque (N m) on one shaft, on all when None; stays until it is changed."""
+        """Set an external torque (N m) on one shaft, on all when None; it stays until the next call."""
         ...
 
 
 class PlainBody:
-    """Shafts apart from each other, each with its rotor's inertia and friction."""
+    """Independent shafts, each with its rotor's inertia and friction."""
 
     self_contacts = 0
 
@@ -63,11 +63,11 @@ class PlainBody:
 
     @property
     def at_rest(self) -> bool:
-        """Nothing turns, and friction held it in the last step."""
+        """Whether no shaft turns and friction held all of them in the last step."""
         return not np.count_nonzero(self.velocity_rad_s)
 
     def step(self, torque_nm: Array, blocked: NDArray[np.bool_], step_s: float) -> None:
-        """Semi-implicit Euler; friction may stop a shaft but never turn it round."""
+        """Integrate by semi-implicit Euler; friction may stop a shaft but never reverse it."""
         rate = self._per_inertia * step_s
         velocity = self.velocity_rad_s + (torque_nm + self._push_nm - self._damping * self.velocity_rad_s) * rate
         slowed = np.maximum(np.abs(velocity) - self._friction_nm * rate, 0.0)
@@ -77,10 +77,10 @@ class PlainBody:
         self.position_rad = self.position_rad + self.velocity_rad_s * step_s
 
     def place(self, shaft: int, position_rad: float) -> None:
-        """Put one shaft somewhere, at rest."""
+        """Set one shaft to a position, at rest."""
         self.position_rad[shaft] = position_rad
         self.velocity_rad_s[shaft] = 0.0
 
     def push(self, joint: int | None, amount: float) -> None:
-        """An external torque in N m on one shaft, or on all."""
+        """Set an external torque in N m on one shaft, or on all."""
         self._push_nm[slice(None) if joint is None else joint] = amount

@@ -1,4 +1,10 @@
-"""What drives each servo model: electrical and mechanical constants of its motor behind the gears.
+"""Electrical and mechanical constants of each servo model's motor, seen behind the gears.
+
+Rated voltage, no-load speed, stall torque and stall current: ROBOTIS e-manual (`_data/dxl_x_info.yml`, `_data/dxl_mx_info.yml`,
+pages XM540 and AX); the stall currents of XM540 and AX are not in the shared facts and should be checked on a servo. DYNAMIXEL-Y
+and -P (`_data/dxl_y_info.yml`, `_data/dxl_p_info.yml`, at 24 V): the manual gives no stall; for Y we use its maximum torque and
+current (99:1), for P (303.75:1) its continuous torque per ampere at the highest current that its limit allows. All other constants
+are our estimates and marked as such.
 
 Rated voltage, no-load speed, stall torque and stall current: ROBOTIS e-manual (`_data/dxl_x_info.yml`,
 `_data/dxl_mx_info.yml`, pages XM540 and AX); the stall currents of XM540 and AX are not in the shared facts and should
@@ -15,15 +21,17 @@ from dataclasses import dataclass
 from sim.errors import SimSettingError
 
 FRICTION_SHARE = 0.007
-"""Coulomb friction of motor and gears over stall torque; 0.03 N m of an XM430 in ROBOTIS' own OP3 model."""
+"""Share of the stall torque that is Coulomb friction of motor and gears; 0.03 N m of an XM430 in ROBOTIS' own OP3 model."""
 VISCOUS_SHARE = 0.25
-"""Viscous friction over the slope of the torque-speed line: ROBOTIS' OP3 model damps an XM430 by 1.08 N m s/rad, of which
-0.85 is that slope (stall torque over no-load speed)."""
+"""Viscous friction as a share of the torque-speed line's slope: ROBOTIS' OP3 model damps an XM430 by 1.08 N m s/rad, of which the
+slope (stall torque over no-load speed) is 0.85.
+"""
 MECHANICAL_TIME_CONSTANT_S = 0.015
-"""In which the unloaded servo reaches 63 % of its speed (our estimate); gives the inertia seen at the output."""
+"""Seconds in which the unloaded servo reaches 63 % of its speed (our estimate); the inertia at the output follows from it."""
 _THERMAL_TIME_CONSTANT_S = 600.0
 _STALL_RISE_K = 300.0
-"""Heating if stalled for ever: an XM430 passes 80 degrees after about two minutes, 40 % of stall settles near 70."""
+"""Kelvin by which a servo warms up if stalled for ever: an XM430 passes 80 degrees after about two minutes, 40 % of stall settles
+near 70."""
 _STALL_RISE_Y_K = 100.0
 """Kelvin by which a stalled Y warms up: its motor trips at 60 degrees; half of its maximum current is allowed for long."""
 
@@ -33,12 +41,12 @@ class Motor:
     """Constants of one servo model, seen at its output shaft.
 
     Attributes:
-        rated_v, no_load_rad_s, stall_torque_nm, stall_current_a: as the manual says.
+        rated_v, no_load_rad_s, stall_torque_nm, stall_current_a: from the manual.
         resistance_ohm: of the winding.
-        torque_nm_per_a, emf_v_s_per_rad: so that stall torque and no-load speed come out with friction taken off.
+        torque_nm_per_a, emf_v_s_per_rad: chosen so that stall torque and no-load speed result after friction.
         friction_nm, damping_nm_s_per_rad: Coulomb and viscous friction.
         inertia_kg_m2: of the rotor, times the gear ratio squared.
-        stall_rise_k: heating if stalled for ever.
+        stall_rise_k: temperature rise if stalled for ever.
         heating_k_per_j: temperature rise of the case per joule.
         cooling_per_s: share of the difference to the room given off per second.
     """
@@ -129,14 +137,14 @@ MOTORS: dict[int, Motor] = {
     4150: _motor(24.0, 32.2, 61.4, 22.4, _STALL_RISE_Y_K),  # YM080-230-R099-RH; continuous 26.0 N m at 10.7 A
     2000: _motor(24.0, 32.7, 15.3, 4.5),  # PH42-020-S300-R; continuous 5.1 N m at 1.5 A
 }
-"""By model number."""
+"""Motor constants by model number."""
 
 
 def motor_of(model_number: int) -> Motor:
     """Constants of a model.
 
     Raises:
-        SimSettingError: a model the simulator does not know.
+        SimSettingError: the simulator does not know the model.
     """
     if model_number not in MOTORS:
         raise SimSettingError("servo model number", str(model_number), ", ".join(str(n) for n in MOTORS))

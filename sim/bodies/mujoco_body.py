@@ -1,4 +1,9 @@
-"""The robot's own body behind the servos: gravity, inertia, contact with itself, joint stops, pushes. MuJoCo.
+"""The robot's own body behind the servos: gravity, inertia, self-contact, joint stops, pushes. MuJoCo.
+
+The robot's description is used unchanged except for its model of the servos: damping, friction and armature of the joints come from
+the servo's motor instead (the motor's own back-EMF damps, see `sim/servos/drives.py`). Joints without a stop in the description get
+one slightly outside the limits of the robot file. Bodies that are neighbours, or touch in the rest pose, cannot collide: their
+shapes are too coarse to tell.
 
 The robot's description is taken as it is, but for what stands for the servos in it: damping, friction and armature of its
 joints come from the servo's motor instead (the motor's own back-EMF damps, see `sim/servos/drives.py`). Joints without a stop in
@@ -23,7 +28,7 @@ from sim.errors import SimSettingError
 Array = NDArray[np.float64]
 
 STOP_MARGIN_RAD = 0.1
-"""Stops stand this far outside the position limits where the description says nothing."""
+"""Radians by which stops lie outside the position limits where the description has none."""
 _NEAR_REST_M = 0.004
 _SMALL_RAD, _HELD_NM = 1e-4, 1e3
 
@@ -32,7 +37,7 @@ class MujocoBody:
     """A `Body` in which servos turn joints: one each, or several through gears, differentials and linkages.
 
     Args:
-        robot: whose description is loaded.
+        robot: the robot; its description is loaded.
         motors: of the servos; more than the robot has is refused.
         position_rad: (S,) start angles of the shafts.
     """
@@ -62,19 +67,19 @@ class MujocoBody:
         self.velocity_rad_s: Array = np.zeros(len(motors))
 
     def _gears_at(self, q: Array) -> Array:
-        """(S, J) how far each shaft turns with each joint."""
+        """(S, J) rate at which each shaft turns with each joint."""
         ends = q + np.concatenate([np.eye(len(q)), -np.eye(len(q))]) * _SMALL_RAD
         shafts = self._map.to_ticks(ends) * self._rad_per_tick
         return (shafts[: len(q)] - shafts[len(q) :]).T / (2 * _SMALL_RAD)
 
     @property
     def at_rest(self) -> bool:
-        """Never for sure: an arm may start to sink."""
+        """Whether the body surely stays at rest: never, as an arm may start to sink."""
         return False
 
     @property
     def joint_rad(self) -> Array:
-        """(J,) where the joints are."""
+        """(J,) joint positions, rad."""
         return self._data.qpos[self._q].copy()
 
     def step(self, torque_nm: Array, blocked: NDArray[np.bool_], step_s: float) -> None:
@@ -94,7 +99,7 @@ class MujocoBody:
             self.self_contacts += bool((self._data.contact.dist < 0).any())
 
     def place(self, shaft: int, position_rad: float) -> None:
-        """Put one shaft somewhere, at rest; the joints it moves go with it."""
+        """Set one shaft to a position, at rest, and the joints that it moves with it."""
         turn = np.zeros(len(self.position_rad))
         turn[shaft] = position_rad - self.position_rad[shaft]
         self._data.qpos[self._q] += np.linalg.pinv(self._gears) @ turn
@@ -104,12 +109,12 @@ class MujocoBody:
         self.velocity_rad_s[shaft] = 0.0
 
     def push(self, joint: int | None, amount: float) -> None:
-        """An external torque in N m, felt at the shaft."""
+        """Set an external torque in N m, as felt at the shaft."""
         self._push_nm[slice(None) if joint is None else joint] = amount
 
 
 def _compile(robot: RobotModel, motors: Sequence[Motor], gears: Array) -> Any:
-    """The description with the servos' own dynamics at its joints; between joints of a differential none are coupled."""
+    """The compiled description with the servos' own dynamics at its joints; a differential's joints are not coupled by them."""
     spec = _with_stops(robot)
     for a, b in sorted(_never_touching(robot, _with_stops(robot).compile())):
         spec.add_exclude(bodyname1=a, bodyname2=b)
@@ -124,7 +129,7 @@ def _compile(robot: RobotModel, motors: Sequence[Motor], gears: Array) -> Any:
 
 
 def _with_stops(robot: RobotModel) -> Any:
-    """The description with a stop for every joint of the robot; MuJoCo keeps friction only where some is given."""
+    """The description with a stop for every joint; MuJoCo keeps friction and stops only in models that have some."""
     spec = description_spec(robot)
     for joint in robot.joints:
         described = spec.joint(joint.name)
@@ -138,7 +143,7 @@ def _with_stops(robot: RobotModel) -> Any:
 
 
 def _never_touching(robot: RobotModel, model: Any) -> set[tuple[str, str]]:
-    """Bodies within two steps of the tree, and those that meet in the rest pose."""
+    """Pairs of bodies that cannot collide: within two steps of the tree, or in contact in the rest pose."""
     parent = model.body_parentid
     pairs: set[tuple[int, int]] = set()
     for b in range(1, model.nbody):

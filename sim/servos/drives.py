@@ -1,6 +1,6 @@
 """The control loops and motors of all servos of a robot, one array element a servo.
 
-A fixed grid of 2 ms steps, so that what happens does not depend on when somebody looks. In each step: profile (trapezoid)
+A fixed grid of 2 ms steps, so that the result does not depend on when the drives are read. In each step: profile (trapezoid)
 -> PID and feed-forward, or the loop of the operating mode -> PWM limit -> current through the winding, limited -> torque on
 the body. Every tenth step: supply voltage, heating, load filter. Gains are scaled as in the block diagrams of the
 ROBOTIS e-manual (XM430-W350, "Position PID Gain", "Velocity PI Gain"); sums and differences are taken per millisecond,
@@ -26,9 +26,9 @@ SLOW_EVERY = 10
 _SLOW_S = STEP_S * SLOW_EVERY
 ROOM_C = 25.0
 _LOAD_FILTER_S = 2.0
-"""Time constant of the load that the overload check looks at (our estimate; the manual says 'persistent')."""
+"""Seconds, time constant of the load that the overload check uses (our estimate; the manual says 'persistent')."""
 _SUPPLY_OHM = 0.05
-"""Resistance of supply and cables, shared by the servos of one rated voltage (our estimate)."""
+"""Ohms of supply and cables, shared by the servos of one rated voltage (our estimate)."""
 
 
 class Mode(IntEnum):
@@ -48,7 +48,7 @@ POSITION_MODES = (Mode.POSITION, Mode.EXTENDED_POSITION, Mode.CURRENT_POSITION)
 class Drives:
     """Loops and motors of S servos; positions in ticks of each servo, voltages as shares of the supply.
 
-    What the servos set (call `touch` afterwards): `mode`, `torque`, `goal_tick`, `goal_tick_s`, `goal_a`, `goal_duty`,
+    Attributes that the servos set (call `touch` afterwards): `mode`, `torque`, `goal_tick`, `goal_tick_s`, `goal_a`, `goal_duty`,
     `limit_duty`, `limit_a`, gains, `profile_tick_s` and `profile_tick_s2` (inf for none), `deadband_tick`, `supply_share`.
     """
 
@@ -102,13 +102,13 @@ class Drives:
         self.touch()
 
     def set_goal(self, i: int, tick: float) -> None:
-        """A new goal position; the same again costs nothing."""
+        """Set a new goal position of servo `i`; an unchanged goal costs nothing."""
         if self.goal_tick[i] != tick:
             self.goal_tick[i] = tick
             self._quiet = False
 
     def touch(self) -> None:
-        """A setting has changed: forget what was derived from the old ones."""
+        """Recompute the values derived from settings, after a setting has changed."""
         self._quiet, self._rows = False, None
         in_position = np.isin(self.mode, POSITION_MODES)
         self._plain = bool(in_position.all()) and not (
@@ -119,13 +119,13 @@ class Drives:
         self._has_profile = bool((np.isfinite(self.profile_tick_s) | np.isfinite(self.profile_tick_s2)).any())
 
     def start(self, i: int) -> None:
-        """Torque of servo `i` comes on: the path begins where it stands."""
+        """Switch torque of servo `i` on: its path begins at its present position."""
         self.path_tick[i], self.path_tick_s[i] = self.position_tick[i], 0.0
         self._sum[i], self._ramp_tick_s[i] = 0.0, self.velocity_tick_s[i]
         self._last_error[i] = self.goal_tick[i] - self.position_tick[i]
 
     def place(self, i: int, tick: float) -> None:
-        """Put a shaft somewhere, at rest."""
+        """Set the shaft of servo `i` to a position, at rest."""
         self.body.place(i, tick * float(self.rad_per_tick[i]))
         self.position_tick[i] = self.path_tick[i] = tick
         self.velocity_tick_s[i] = self.path_tick_s[i] = 0.0
@@ -143,7 +143,7 @@ class Drives:
         return self._rows
 
     def step(self) -> bool:
-        """One step of the grid; whether the slow part was done, after which latches should be looked at."""
+        """Make one step of the grid; return whether the slow part ran, after which latched errors must be updated."""
         self._steps += 1
         slow = self._steps % SLOW_EVERY == 0
         if not self._quiet:
@@ -173,7 +173,7 @@ class Drives:
         self.duty, self.current_a = duty, current
 
     def _follow_path(self) -> None:
-        """Where the profile is by now: at the goal without one, else on a trapezoid that ends there at rest."""
+        """Advance the profile: at the goal without a profile, else on a trapezoid that ends at the goal at rest."""
         if not self._has_profile:
             self.path_tick_s = np.zeros(self.n)
             self.path_tick = self.goal_tick.copy()
@@ -199,7 +199,7 @@ class Drives:
         return duty
 
     def _any_duty(self) -> Array:
-        """Every mode and every gain."""
+        """(S,) duty for any mode and any gains."""
         error = self.path_tick - self.position_tick
         effective = np.copysign(np.maximum(np.abs(error) - self.deadband_tick, 0.0), error)
         held = self.p_gain * effective + self.d_gain * (error - self._last_error) / STEP_S
@@ -219,7 +219,7 @@ class Drives:
         return duty
 
     def _heat(self) -> None:
-        """Supply under load, temperature, filtered load."""
+        """Update the supply under load, the temperature and the filtered load."""
         drawn = np.abs(self.duty * self.current_a)
         for group in self._supplies:
             sag_v = _SUPPLY_OHM * float(drawn[group].sum())

@@ -1,4 +1,4 @@
-"""Carries instructions out on one servo and returns its answer; goals and torque are reported to the audit."""
+"""Carries instructions out on one servo and returns its answer; reports goals and torque to the audit."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Instructions:
         self.on_goal: Callable[[float, int, int], None] | None = None
 
     def carry_out(self, servo: SimServo, p: Packet, t_s: float, *, by_second_id: bool = False) -> tuple[int, bytes]:
-        """Do what an instruction says; error and parameters of the answer.
+        """Carry out an instruction packet; return the answer's error code and parameters.
 
         `by_second_id`: the packet was for the servo's second id, by which its EEPROM cannot be changed (e-manual,
         "Secondary ID").
@@ -82,7 +82,7 @@ class Instructions:
         return ErrorCode.DATA_RANGE
 
     def missed(self, servos: Sequence[SimServo], access: Access, t_s: float) -> None:
-        """A write that its servo did not hear."""
+        """Report a write that its servos did not receive to the audit."""
         for servo in servos:
             item = servo.items["goal_position"]
             at = item.address - access.address
@@ -90,7 +90,7 @@ class Instructions:
                 self._audit.missed(t_s, servo.spec.servo_id, item.decode(access.data[at : at + item.size]))
 
     def write(self, servo: SimServo, address: int, data: bytes, t_s: float) -> int:
-        """Write, and tell the audit."""
+        """Write to a servo and report the write to the audit; return the error code."""
         had_torque, was_faulted, servo_id = servo.torque, servo.is_faulted, servo.spec.servo_id
         error = servo.write(address, data)
         if "goal_position" in servo.asked:
@@ -113,7 +113,7 @@ class Instructions:
 
 
 def accesses_of(p: Packet, protocol: float, *, strict: bool = False) -> list[Access]:
-    """What a packet asks of each servo; nothing when it is cut short, or PacketError when `strict`."""
+    """The accesses that a packet requests of each servo; empty when the packet is cut short, or PacketError when `strict`."""
     try:
         return (packet if protocol == 2.0 else packet1).accesses(p)
     except PacketError:
@@ -123,7 +123,7 @@ def accesses_of(p: Packet, protocol: float, *, strict: bool = False) -> list[Acc
 
 
 def _identity(servo: SimServo) -> bytes:
-    """What a servo says to a ping."""
+    """Parameters of a servo's answer to a ping."""
     if servo.model.protocol == 1.0:
         return b""
     return struct.pack("<HB", servo.memory.get("model_number"), servo.memory.get("firmware_version"))

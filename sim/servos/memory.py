@@ -1,4 +1,7 @@
-"""The control table of one servo as bytes: items by name, what may be written where, indirect addresses.
+"""The control table of one servo as bytes: items by name, access rights, indirect addresses.
+
+The table knows addresses, sizes, access rights and ranges; `SimServo` knows the meaning of values. An indirect data byte shows the
+byte whose address stands in its indirect address item (ROBOTIS e-manual, "Indirect Address").
 
 Knows addresses, sizes, access rights and ranges; what a value means is the servo's affair. An indirect data byte shows
 the byte whose address stands in its indirect address item (ROBOTIS e-manual, "Indirect Address").
@@ -14,7 +17,7 @@ from daemon.dynamixel.registers.models import BusModel, IndirectWindow
 from daemon.dynamixel.registers.registers import Item
 
 INDIRECT = "indirect_"
-"""What the names of indirect address items and of indirect data items begin with."""
+"""Prefix of the names of indirect address items and of indirect data items."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +35,9 @@ class Memory:
     """The bytes of one servo.
 
     Args:
-        model, firmware: whose control table.
+        model, firmware: servo model and firmware version, which choose the control table.
         measured: addresses whose bytes are written by `measure`.
-        assumed: what items begin with of which the manual does not say it.
+        assumed: initial values of items for which the manual gives none.
     """
 
     def __init__(
@@ -57,7 +60,7 @@ class Memory:
             self.reset(item)
 
     def reset(self, item: Item) -> None:
-        """Back to the value from the factory; where there is none to what is assumed, or zero."""
+        """Set an item back to its value from the factory; without one to its assumed value, or zero."""
         self.set(item.name, item.initial if item.initial is not None else self._assumed.get(item.name, 0))
 
     def get(self, name: str) -> int:
@@ -69,7 +72,7 @@ class Memory:
         return value
 
     def set(self, name: str, value: int) -> None:
-        """Store an item, unchecked."""
+        """Store an item's value, unchecked."""
         item = self.items[name]
         data = item.encode(value)
         self.bytes[item.address : item.end] = data
@@ -77,11 +80,11 @@ class Memory:
             self._values[name] = item.decode(data)
 
     def measure(self, layout: struct.Struct, *values: int) -> None:
-        """Store what was measured, packed side by side from the first of the measured addresses on."""
+        """Store measured values, packed side by side from the first of the measured addresses on."""
         layout.pack_into(self.bytes, self._measured.start, *values)
 
     def read(self, address: int, length: int, *, strict: bool = True) -> bytes | None:
-        """Bytes as a client sees them; None beyond the end, or, when `strict`, from or to an address without an item.
+        """Bytes as a client reads them; None beyond the end, or, when `strict`, from or to an address without an item.
 
         Addresses without an item between others read as zero: clients read the table in blocks.
         """
@@ -98,7 +101,7 @@ class Memory:
         return bytes(self.bytes[a] for a in targets)
 
     def resolve(self, address: int) -> int:
-        """The address behind an indirect data byte; any other address is itself."""
+        """The address that an indirect data byte stands for; any other address itself."""
         for window in self._windows:
             if window.data <= address < window.data + window.count:
                 at = window.address + 2 * (address - window.data)
@@ -107,7 +110,7 @@ class Memory:
         return address
 
     def runs(self, address: int, data: bytes) -> list[tuple[int, bytes]]:
-        """A write as writes to real addresses: one run, or several where indirect data bytes point to and fro."""
+        """A write split into writes to real addresses: one, or several where indirect data bytes point to separate places."""
         if address + len(data) <= self._data_first:
             return [(address, data)]
         found: list[tuple[int, bytearray]] = []
@@ -120,7 +123,7 @@ class Memory:
         return [(start, bytes(part)) for start, part in found]
 
     def span(self, address: int, length: int) -> Span:
-        """The whole items that a write covers, and what is wrong with it."""
+        """The whole items that a write covers, and the problem with the write, if any."""
         key = (address, length)
         if key not in self._spans:
             self._spans[key] = self._find_span(address, length)

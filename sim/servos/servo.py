@@ -1,4 +1,6 @@
-"""One simulated servo of Protocol 2.0: what may be written to each register, and the error each mistake earns.
+"""One simulated servo of Protocol 2.0: the writes that each register accepts, and the error code of each mistake.
+
+This file covers X and MX; `servo_series_y_p.py` has the differences of Y and P.
 
 X and MX; what Y and P do otherwise stands in `servo_series_y_p.py`.
 
@@ -27,7 +29,7 @@ _SINGLE_TURN = (Mode.POSITION,)
 
 @dataclass(frozen=True)
 class Errors:
-    """What a servo answers to mistakes that are made before a register is reached, or by bytes that are no value."""
+    """Error codes for mistakes found before a register is reached, and for bytes that are no valid value."""
 
     instruction: int
     length: int
@@ -37,10 +39,10 @@ class Errors:
 
 
 class SimServo(ServoPower):
-    """Registers of one servo, and what they make its motor do.
+    """Registers of one servo, and their effect on its motor.
 
     Attributes:
-        asked: names of the items that the last write was about, whether it was taken or not.
+        asked: names of the items that the last write addressed, accepted or not.
     """
 
     errors = Errors(ErrorCode.INSTRUCTION, ErrorCode.DATA_LENGTH, ErrorCode.ACCESS, ErrorCode.DATA_RANGE, ErrorCode.CRC)
@@ -64,7 +66,7 @@ class SimServo(ServoPower):
         return (self.errors.access, b"") if data is None else (ErrorCode.NONE, data)
 
     def write(self, address: int, data: bytes) -> int:
-        """Write whole items; the error code of the first that refuses, nothing written then."""
+        """Write whole items; return the error code of the first item that refuses, in which case nothing is written."""
         accepted: list[tuple[Item, int]] = []
         self.asked = []
         for start, part in self.memory.runs(address, data):
@@ -86,18 +88,18 @@ class SimServo(ServoPower):
         return ErrorCode.NONE
 
     def writes_eeprom(self, address: int, data: bytes) -> bool:
-        """Whether a write is about an item that is kept without power."""
+        """Whether a write addresses an item that is kept without power."""
         spans = (self.memory.span(start, len(part)) for start, part in self.memory.runs(address, data))
         return any(item.eeprom for span in spans for item, _ in span.items)
 
     def register(self, address: int, data: bytes) -> int:
-        """Keep a write for `act` (instruction "Reg Write")."""
+        """Keep a write until `act` (instruction "Reg Write")."""
         self._pending = (address, data)
         self._set("registered_instruction", 1)
         return ErrorCode.NONE
 
     def act(self) -> tuple[int, bytes] | None:
-        """The write that was kept, to be carried out now; None when there is none."""
+        """Address and data of the write kept by `register`, which is forgotten; None when there is none."""
         pending, self._pending = self._pending, None
         self._set("registered_instruction", 0)
         return pending
@@ -120,7 +122,7 @@ class SimServo(ServoPower):
         return ErrorCode.NONE if low <= value <= high else ErrorCode.DATA_LIMIT
 
     def _limits(self, name: str) -> tuple[float, float]:
-        """What other items allow."""
+        """Lowest and highest value of an item that other items allow."""
         if name == "goal_position":
             mode = self.memory.get("operating_mode")
             if mode == Mode.POSITION:
@@ -141,7 +143,7 @@ class SimServo(ServoPower):
             if drive_mode & 8 and not self.torque and not self.is_faulted:
                 self._set_torque(True)  # drive mode bit 3: torque on by goal update
             if drive_mode & 4:
-                self._configure()  # a profile in time depends on the way to go
+                self._configure()  # the duration of a profile depends on the distance to go
         elif name == "torque_enable":
             self._set_torque(bool(value))
         else:
@@ -154,7 +156,7 @@ class SimServo(ServoPower):
                 self._configure()
 
     def _change_mode(self) -> None:
-        """A new operating mode starts with its own defaults (e-manual, "Operating Mode", note)."""
+        """Give the items of a new operating mode their defaults (e-manual, "Operating Mode", note)."""
         for name in ("position_p_gain", "position_i_gain", "position_d_gain", "velocity_p_gain", "velocity_i_gain",
                      "feedforward_1st_gain", "feedforward_2nd_gain", "profile_velocity", "profile_acceleration"):  # fmt: skip
             if name in self.items and not self.items[name].hybrid:

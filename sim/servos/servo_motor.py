@@ -1,4 +1,4 @@
-"""A simulated servo's table and its motor: what the registers make the drive do, and what is measured into them.
+"""A simulated servo's control table and motor: registers drive the motor, and measurements are stored in registers.
 
 Frames: the drive counts the shaft's ticks; the registers count with sign, homing offset and whole turns.
 """
@@ -19,7 +19,7 @@ from sim.servos.memory import Memory
 
 _FIRMWARE = {"x330": 52, "mx1": 41, "ax": 24}
 _FIRMWARE_OTHER = 45
-"""Firmware of X and MX; of Y and P any would do."""
+"""Firmware version of simulated servos by default; for Y and P any version would do."""
 _LIVE_AT = range(120, 147)
 _LIVE = struct.Struct("<HBBhhiiiiHB")  # realtime tick 120 ... temperature 146, side by side; P: 568 ... 594
 _MS_PER_S, _TICK_WRAP_MS = 1000, 32768
@@ -31,18 +31,18 @@ class ServoMotor:
     """One servo of Protocol 2.0 as its registers count it.
 
     Attributes:
-        spec, model, firmware: who it is.
-        index: of its motor in `drives`.
+        spec, model, firmware: identity of the servo.
+        index: row of its motor in `drives`.
         memory: its control table.
-        baud: bits per second it listens at; 0 for a code without one.
-        watchdog_tripped: whether its bus watchdog has run out: it refuses goals until that is cleared.
+        baud: bits per second at which the servo receives; 0 for a baud code without meaning.
+        watchdog_tripped: whether its bus watchdog has run out; it refuses goals until the watchdog is cleared.
     """
 
     _measured_at = _LIVE_AT
     _most_offset_in_position_mode: ClassVar[float] = 1024
     """Homing offset in ticks beyond which position mode ignores it (e-manual, "Homing Offset")."""
     _assumed: ClassVar[Mapping[str, int]] = {}
-    """What items begin with of which the manual does not say it."""
+    """Initial values of items for which the manual gives none."""
 
     def __init__(self, spec: ServoSpec, drives: Drives, index: int, firmware: int | None = None) -> None:
         number = spec.model.model_number
@@ -75,7 +75,7 @@ class ServoMotor:
         return self.items["present_velocity"].scale
 
     def _full_duty(self) -> int:
-        """What goal_pwm and present_pwm count to."""
+        """Value of goal_pwm and present_pwm that stands for full duty."""
         return self.items["pwm_limit"].high or 0
 
     @property
@@ -95,7 +95,7 @@ class ServoMotor:
 
     @property
     def position_tick(self) -> float:
-        """True position, finer than a tick, as the register counts."""
+        """True position in ticks of the register, with fractions."""
         return self._to_register(float(self.drives.position_tick[self.index]))
 
     @position_tick.setter
@@ -103,7 +103,7 @@ class ServoMotor:
         self.drives.place(self.index, self._to_shaft(tick))
 
     def get(self, name: str) -> int:
-        """Value of an item, live ones refreshed."""
+        """Value of an item; measured items are refreshed first."""
         if name.startswith(("present_", "moving", "realtime", "velocity_traj", "position_traj")):
             self._refresh()
         return self.memory.get(name)
@@ -115,7 +115,7 @@ class ServoMotor:
         if name in self.items:
             self._set(name, value)
 
-    # What the registers make the motor do.
+    # From registers to the motor.
 
     def _set_torque(self, on: bool) -> None:
         self._set("torque_enable", int(on))
@@ -131,7 +131,7 @@ class ServoMotor:
         self.drives.set_goal(self.index, self._to_shaft(tick))
 
     def _configure(self) -> None:
-        """Hand what the registers say to the drive."""
+        """Pass the settings in the registers to the drive."""
         get, i, d = self.memory.get, self.index, self.drives
         self._sign = -1 if get("drive_mode") & 1 else 1
         self._threshold_tick_s = get("moving_threshold") * self._tick_s_per_unit
@@ -159,7 +159,7 @@ class ServoMotor:
         d.touch()
 
     def _set_gains(self) -> None:
-        """Loops as in the block diagrams of the manual, in PWM units."""
+        """Set the loop gains as in the block diagrams of the manual, in PWM units."""
         get, i, d, units = self.memory.get, self.index, self.drives, 1.0 / self._pwm_full
         d.p_gain[i] = get("position_p_gain") / 128 * units
         d.i_gain[i] = get("position_i_gain") / 65536 * units * _MS_PER_S
@@ -186,8 +186,8 @@ class ServoMotor:
         return top, top / ramp_s if ramp_s else math.inf
 
     def _type_of_profile(self) -> int:
-        """What a goal position makes of the profile; from rest, as the manual assumes."""
-        in_time = self.memory.get("drive_mode") & 4  # its speed depends on the way to go
+        """Type of profile that a goal position leads to; from rest, as the manual assumes."""
+        in_time = self.memory.get("drive_mode") & 4  # a profile in time, whose speed depends on the distance
         top, bend = self._profile() if in_time else (self._top_tick_s, self._bend_tick_s2)
         way = abs(float(self.drives.goal_tick[self.index] - self.drives.path_tick[self.index]))
         if math.isinf(top):
@@ -213,7 +213,7 @@ class ServoMotor:
         return tick + self._turn_tick
 
     def _refresh(self) -> None:
-        """Write what is measured into the table."""
+        """Write measured values into the table."""
         position, velocity, current, duty, voltage, temperature, path, path_speed = self.drives.live()[self.index]
         sign, per_unit = self._sign, self._tick_s_per_unit
         moving = abs(velocity) > self._threshold_tick_s

@@ -15,7 +15,7 @@ from sim.servos.drives import Drives, Mode
 from sim.servos.servo_motor import ServoMotor
 
 BOOT_S = 0.2
-"""Silence after a reboot (our estimate)."""
+"""Seconds without answers after a reboot (our estimate)."""
 OVERLOAD_BIT, ENCODER_BIT, HEAT_BIT, VOLTAGE_BIT = 1 << 5, 1 << 3, 1 << 2, 1 << 0
 OVERLOAD_SHARE = 0.8
 """Filtered share of the stall current that counts as overload (our estimate)."""
@@ -25,10 +25,10 @@ GOALS = ("goal_position", "goal_velocity", "goal_pwm", "goal_current")
 
 
 class ServoPower(ServoMotor):
-    """What a servo does about its supply, its errors and a client that fell silent.
+    """Reactions of a servo to its supply, to its errors and to a silent client.
 
     Attributes:
-        silent_until_s: it boots until then.
+        silent_until_s: time until which the servo boots and does not answer.
         powered: whether its supply is there.
         watchdog_stops: whether a tripped bus watchdog stops it.
     """
@@ -44,15 +44,15 @@ class ServoPower(ServoMotor):
         self._power_on(was_on=True)
 
     def _set_up(self) -> None:
-        """How somebody who knows sets a servo up for streaming; `restore_factory` undoes it."""
+        """Set the registers as for streaming by an experienced user; `restore_factory` undoes this."""
         self._set("return_delay_time", 0)
         self._set("operating_mode", Mode.EXTENDED_POSITION if self.spec.extended else Mode.POSITION)
 
     def set_baud(self, baud: int) -> None:
-        """Set the baud as a tool would have.
+        """Set the baud directly, as another tool would have done before.
 
         Raises:
-            SimSettingError: the model cannot.
+            SimSettingError: the model has no such baud.
         """
         code = self.model.baud_code(baud)
         if code is None:
@@ -73,7 +73,7 @@ class ServoPower(ServoMotor):
         self._power_on()
 
     def _power_on(self, *, was_on: bool = False) -> None:
-        """RAM is fresh; whole turns are forgotten, unless power `was_on` all the time."""
+        """Reset RAM; forget whole turns, unless the servo `was_on` all the time."""
         self._pending, self._profile_type = None, 0
         self._set_torque(False)
         startup = self.memory.get("startup_configuration") if "startup_configuration" in self.items else 0
@@ -93,19 +93,19 @@ class ServoPower(ServoMotor):
         self._goal_here()
 
     def lose_power(self) -> None:
-        """The supply is gone: no torque, no answer."""
+        """Take the supply away: no torque, no answer."""
         if self.powered:
             self.powered = False
             self._set_torque(False)
 
     def restore_power(self) -> None:
-        """The supply is back: it starts anew."""
+        """Bring the supply back: the servo boots."""
         if not self.powered:
             self.powered = True
             self.reboot()
 
     def restore_factory(self, keep: tuple[str, ...] = ()) -> None:
-        """Every item as from the factory, but those in `keep`."""
+        """Set every item to its value from the factory, but those in `keep`."""
         kept = {name: self.memory.get(name) for name in (*keep, "model_number", "firmware_version")}
         for item in self.items.values():
             self.memory.reset(item)
@@ -119,7 +119,7 @@ class ServoPower(ServoMotor):
         self._set_if("backup_ready", 1)
 
     def restore_backup(self) -> bool:
-        """Return to the copy; False when there is none."""
+        """Restore the copy of the table; return False when there is none."""
         return self._restore(ram_only=False)
 
     def _restore(self, *, ram_only: bool) -> bool:
@@ -132,7 +132,7 @@ class ServoPower(ServoMotor):
         return True
 
     def clear_turns(self) -> bool:
-        """Forget whole turns (instruction "Clear"); False while it moves."""
+        """Forget whole turns (instruction "Clear"); return False while the shaft moves."""
         if abs(float(self.drives.velocity_tick_s[self.index])) > 1.0:
             return False
         self._turn_tick = self._whole_turns()
@@ -140,7 +140,7 @@ class ServoPower(ServoMotor):
         return True
 
     def _whole_turns(self) -> float:
-        """Ticks of the whole turns that the shaft has made, which are forgotten without power."""
+        """Ticks of the whole turns that the shaft has made and that the servo forgets without power."""
         raw = float(self.drives.position_tick[self.index])
         return math.floor(raw / self.model.ticks_per_turn) * self.model.ticks_per_turn
 
@@ -148,12 +148,12 @@ class ServoPower(ServoMotor):
 
     @property
     def error(self) -> int:
-        """What it complains of: bits, or the code of a Y; 0 when all is well."""
+        """The hardware error: bits, or the code of a Y; 0 for none."""
         return self.memory.get(self.model.error_item)
 
     @property
     def is_faulted(self) -> bool:
-        """Whether a hardware error is latched that took its torque."""
+        """Whether a latched hardware error has taken the servo's torque."""
         return bool(self.memory.get("hardware_error_status") & self.memory.get("shutdown"))
 
     def trip(self, hardware_error: int) -> None:
@@ -163,13 +163,13 @@ class ServoPower(ServoMotor):
             self._set_torque(False)
 
     def judge(self) -> None:
-        """Latch what voltage, temperature and load have come to."""
+        """Latch the errors that voltage, temperature and load now call for."""
         if not self.powered:
             return
         live = self.drives.live()[self.index]
         decivolt = round(live[4] * 10)
         if decivolt < RESET_SHARE * self.model.voltage_v[0] * 10:
-            return  # too low even to notice: the world takes its power away
+            return  # too low for the controller to run: the world takes its power away
         if not self.memory.get("min_voltage_limit") <= decivolt <= self.memory.get("max_voltage_limit"):
             self._latch(VOLTAGE_BIT)
         if live[5] > self.memory.get(self.model.thermometers[0].limit):
@@ -182,11 +182,11 @@ class ServoPower(ServoMotor):
             self.trip(bit)
 
     def fed(self, t_s: float) -> None:
-        """An instruction packet passed on the bus: the watchdog starts anew."""
+        """Restart the bus watchdog: an instruction packet passed on the bus."""
         self._fed_s = t_s
 
     def watch(self, t_s: float) -> None:
-        """The bus watchdog: stop where it stands, without a ramp, when nothing was heard for too long."""
+        """Trip the bus watchdog when no packet came for its time: the shaft stops at once, without a ramp."""
         self._now_s = t_s
         if t_s - self._fed_s <= self._watchdog_s or not self.torque:
             return

@@ -31,7 +31,7 @@ class SimServo1(SimServo):
 
     @property
     def is_faulted(self) -> bool:
-        """Whether an alarm has taken its torque."""
+        """Whether a latched alarm has taken the servo's torque."""
         return bool(self._alarm & self.memory.get("shutdown"))
 
     @property
@@ -43,14 +43,14 @@ class SimServo1(SimServo):
         self._set("return_delay_time", 0)
 
     def trip(self, hardware_error: int) -> None:
-        """Latch an alarm; where the shutdown mask says so torque is off and the torque limit zero."""
+        """Latch an alarm; where the shutdown mask contains it, torque goes off and the torque limit becomes zero."""
         self._alarm |= hardware_error
         if self.is_faulted:
             self._set("torque_limit", 0)
             self._set_torque(False)
 
     def alert(self) -> int:
-        """The alarm's bits for a status packet."""
+        """The alarm's bits for the error byte of a status packet."""
         return self._alarm
 
     def _power_on(self, *, was_on: bool = False) -> None:
@@ -87,7 +87,7 @@ class SimServo1(SimServo):
             self._configure()
 
     def _recovered(self) -> bool:
-        """Clear an alarm whose cause is over."""
+        """Clear an alarm whose cause is over; return whether no alarm is left."""
         hot = self.drives.temperature_c[self.index] > self.memory.get("temperature_limit") - _COOLER_C
         loaded = self.drives.load[self.index] > 0.5
         if (self._alarm & HEAT_BIT and hot) or (self._alarm & OVERLOAD_BIT and loaded):
@@ -139,7 +139,7 @@ class SimServo1(SimServo):
         return register_tick
 
     def watch(self, t_s: float) -> None:
-        """No bus watchdog in these."""
+        """Do nothing: these models have no bus watchdog."""
         self._now_s = t_s
 
     def _latch(self, bit: int) -> None:

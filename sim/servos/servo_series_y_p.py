@@ -1,7 +1,7 @@
-"""Simulated DYNAMIXEL-Y and -P: what their registers do otherwise than those of X.
+"""Simulated DYNAMIXEL-Y and -P: the registers that behave unlike those of X.
 
 ROBOTIS e-manual, "Control Table" of YM070-210-R099-RH and PH42-020-S300-R. Our own estimates, as the manual gives no scale:
-what the gains mean, and what those of P begin with. Of Y are not modelled: the current loop, position I and D gain, feed-forward,
+the scale of the gains, and the initial gains of P. Not modelled for Y: the current loop, position I and D gain, feed-forward,
 low-pass filters, offsets, dynamic brake, safe stop time and the time in which torque comes on or goes; following-error,
 over-speed and position-limit errors; the battery; clearing whole turns (refused) and clearing errors without a reboot.
 """
@@ -29,13 +29,13 @@ _IN_POSITION, _PROFILE_ONGOING, _MOVING, _IN_RANGE = 0x01, 0x02, 0x04, 0x40
 _WATCHDOG_ERROR, _OVER_VOLTAGE, _LOW_VOLTAGE = 18, 1, 2
 _CODES = {HEAT_BIT: 4, OVERLOAD_BIT: 5, ENCODER_BIT: 13}
 _LOOP_PER_S, _LOOP_GAIN = 25.0, 6283185
-"""Position gain from the factory as a rate at which errors go (our estimate)."""
+"""Position gain from the factory in 1/s, the rate at which a position error decays, and its register value (our estimate)."""
 _TURNING, _TURNING_PER_S = 3.0, 10.0
 """Velocity P and I gain from the factory, as shares of the duty that the speed itself takes (our estimate)."""
 
 
 class SimServoP(SimServo):
-    """Registers of one P: those of X at other addresses, positions counted from the middle."""
+    """Registers of one P: as those of X at other addresses, with positions counted from the middle of the range."""
 
     _measured_at = range(568, 595)
     _position_range: ClassVar[Mapping[int, float]] = {}
@@ -74,11 +74,11 @@ class SimServoY(SimServoP):
 
     @property
     def is_faulted(self) -> bool:
-        """Whether an error has taken its torque."""
+        """Whether a latched error has taken the servo's torque."""
         return self.error not in (0, *HOLDING_ERRORS)
 
     def trip(self, hardware_error: int) -> None:
-        """An error of these bits of an X: the first stays until a reboot, and takes the torque."""
+        """Latch the error that corresponds to these bits of an X: the first error stays until a reboot, and takes the torque."""
         if self.is_faulted:
             return
         over = float(self.drives.live()[self.index][4]) * 10 > self.memory.get("max_voltage_limit")
@@ -90,14 +90,14 @@ class SimServoY(SimServoP):
         self.trip(bit)
 
     def _tell(self, code: int) -> None:
-        """A new error, and the history of the last sixteen."""
+        """Store a new error code, and add it to the history of the last sixteen."""
         for i in range(16, 1, -1):
             self._set(f"error_code_history_{i}", self.memory.get(f"error_code_history_{i - 1}"))
         self._set("error_code_history_1", code)
         self._set("error_code", code)
 
     def watch(self, t_s: float) -> None:
-        """The bus watchdog, which is an error of its own here."""
+        """Run the bus watchdog, whose trip is an error of its own in this family."""
         was = self.watchdog_tripped
         super().watch(t_s)
         if self.watchdog_tripped and not was and not self.error:
@@ -109,7 +109,7 @@ class SimServoY(SimServoP):
             self._set("error_code", 0)
 
     def clear_turns(self) -> bool:
-        """Not modelled: of a servo with a gear it would move the zero."""
+        """Refuse to clear whole turns, which is not modelled: on a servo with a gear the zero would move."""
         return False
 
     def _whole_turns(self) -> float:
@@ -128,7 +128,7 @@ class SimServoY(SimServoP):
         )
 
     def _profile(self) -> tuple[float, float]:
-        """Top speed and acceleration in ticks; time-based profiles have items of their own."""
+        """Top speed and acceleration of the profile in ticks; time-based profiles have items of their own."""
         get = self.memory.get
         if not get("drive_mode") & 4:
             return super()._profile()

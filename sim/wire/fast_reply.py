@@ -1,4 +1,4 @@
-"""The one packet that answers a fast read: what each servo adds to it when its turn comes."""
+"""The one packet that answers a fast read, and the bytes that each servo adds to it in its turn."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from daemon.dynamixel.codec.packet import BROADCAST_ID, Instruction, Part
 
 
 def shares_of(turns: Sequence[Sequence[Part]], length: int) -> list[list[bytes]]:
-    """What is sent in each turn: the first one's head, then a part and the checksum of all that was heard so far.
+    """Bytes sent in each turn: the packet's head in the first, then a part and the checksum of all bytes received so far.
 
     Args:
         turns: the part of each servo whose turn it is; more than one where servos share an id. They talk at once and the
@@ -32,7 +32,7 @@ def shares_of(turns: Sequence[Sequence[Part]], length: int) -> list[list[bytes]]
 
 
 def _heard(said: Sequence[bytes]) -> bytes:
-    """What is heard of several who talk at once."""
+    """Bytes that are received when several servos send at once."""
     heard = int.from_bytes(said[0])
     for own in said[1:]:
         heard &= int.from_bytes(own)
@@ -40,5 +40,5 @@ def _heard(said: Sequence[bytes]) -> bytes:
 
 
 def share_as(before: Sequence[Sequence[Part]], part: Part, length: int) -> Callable[[int], bytes]:
-    """Makes what a servo adds to a fast reply, under the id it is to carry."""
+    """A function from the id to be carried to the bytes that a servo adds to a fast reply."""
     return lambda servo_id: shares_of([*before, [part._replace(servo_id=servo_id)]], length)[-1][0]

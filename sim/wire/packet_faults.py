@@ -1,4 +1,4 @@
-"""Faults of the wire applied to one status packet: pieces of bytes, each with its delay."""
+"""Applies faults of the wire to one status packet; the result is pieces of bytes, each with its delay."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim.faults import Fault, FaultSchedule
 
 @dataclass(frozen=True)
 class Piece:
-    """Bytes that are sent `after_s` later than they should be; `alone`: read by itself."""
+    """Bytes that are sent `after_s` seconds late; `alone`: read apart from the bytes that follow."""
 
     data: bytes
     after_s: float = 0.0
@@ -20,11 +20,11 @@ class Piece:
 def apply_packet_faults(
     faults: FaultSchedule, servo_id: int, encode: Callable[[int], bytes], t_s: float, byte_s: float
 ) -> list[Piece]:
-    """The answer of a servo as it is sent at `t_s`; nothing when it is lost.
+    """The answer of a servo as sent at `t_s`; empty when it is lost.
 
     Args:
-        faults: what is in force; its packet counter goes on by one.
-        servo_id: who answers.
+        faults: the schedule; its packet counter increases by one.
+        servo_id: id of the answering servo.
         encode: the answer's bytes, given the id it is to carry.
         t_s: when.
         byte_s: seconds a byte takes.

@@ -1,4 +1,4 @@
-"""One half-duplex wire and the adapter at its end: when each byte is where, and what is left of bytes that met.
+"""One half-duplex wire and the adapter at its end: the time of each byte, and the result of collisions.
 
 Ten bits a byte in both directions. Two talkers at once garble each other (`wire_bytes.py`). The adapter hands bytes on as they
 come, in lumps by its latency timer (FTDI: when the timer fires or a USB packet is full), or in pieces cut anywhere.
@@ -16,12 +16,12 @@ from sim.wire.wire_bytes import TINY_S, Burst, put
 
 BITS_PER_BYTE = 10
 _GAP_S = 0.001
-"""Bytes that follow each other within this are handed on as one burst: fewer wake-ups, the same end."""
+"""Seconds between bytes that are passed on as one burst: fewer wake-ups, the same result."""
 
 
 @dataclass(frozen=True)
 class WireSettings:
-    """How wire and adapter behave.
+    """Settings of a wire and its adapter.
 
     Attributes:
         turnaround_s: from the last bit of an instruction to the first of an answer, besides the return delay.
@@ -29,7 +29,7 @@ class WireSettings:
         usb_packet_bytes: bytes after which the adapter does not wait for the timer: 62, or 510 for high-speed ones.
         piece_bytes: (least, most) size of the pieces a read is cut into; None for whole bursts.
         no_wire_delay: answers arrive at once: for measuring software, not wires.
-        seed: of the pieces and of what collisions leave.
+        seed: of the pieces' sizes and of the noise that collisions leave.
     """
 
     turnaround_s: float = 0.0
@@ -40,7 +40,7 @@ class WireSettings:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse what no wire can be."""
+        """Refuse values that no wire can have."""
         for name in ("turnaround_s", "latency_s"):
             value = getattr(self, name)
             if not 0 <= value <= 1:
@@ -52,7 +52,7 @@ class WireSettings:
 
 
 class Wire:
-    """Bytes on the wire towards the client, and bytes that the adapter has not handed on yet."""
+    """Bytes on the wire towards the client, and bytes that the adapter has not passed on yet."""
 
     def __init__(self, settings: WireSettings | None = None) -> None:
         self.settings = settings or WireSettings()
@@ -64,10 +64,10 @@ class Wire:
         self.collisions = 0
 
     def talk(self, t_s: float, data: bytes, baud: int, *, patient: bool = False) -> tuple[float, float, bytearray]:
-        """The client sends: (start, seconds per byte, the bytes as servos hear them). What it meets is garbled.
+        """Let the client send: return start time, seconds per byte, and the bytes as servos receive them, garbled by collisions.
 
-        `patient`: not before the answers under way are through. For doors in real time, where a simulator that was held up
-        would make answers late, and a client that was in time collide with them.
+        A `patient` client starts after the answers under way. Real-time ports use this: a simulator that was held up would send
+        answers late, and a client that sent in time would collide with them.
         """
         byte_s = 0.0 if self.settings.no_wire_delay else BITS_PER_BYTE / baud
         start_s = max(t_s, self._client_end_s)
@@ -83,7 +83,7 @@ class Wire:
         return start_s, byte_s, heard.data
 
     def answer(self, start_s: float, data: bytes, baud: int, *, alone: bool = False) -> float:
-        """A servo sends from `start_s` on; the time its last byte ends."""
+        """Let a servo send from `start_s` on; return the time at which its last byte ends."""
         byte_s = 0.0 if self.settings.no_wire_delay else BITS_PER_BYTE / baud
         burst = Burst(start_s, byte_s, bytearray(data), alone)
         if start_s < self._client_end_s - TINY_S and burst.end_s > self._client_start_s + TINY_S:
@@ -106,12 +106,12 @@ class Wire:
         return burst.end_s
 
     def echo(self, start_s: float, data: bytes, byte_s: float) -> None:
-        """The client hears what it sends."""
+        """Return the client's own bytes to it as an echo."""
         for part in self._overlay(Burst(start_s, byte_s, bytearray(data))):
             put(self._coming, part)
 
     def _overlay(self, burst: Burst) -> list[Burst]:
-        """Let a burst meet all that is on the wire at its time; the parts of it that met nothing."""
+        """Let a burst collide with all bytes on the wire at its time; return the parts that met none."""
         parts = [burst]
         for other in self._coming:
             if other.start_s < burst.end_s - TINY_S and burst.start_s < other.end_s - TINY_S:
@@ -138,12 +138,14 @@ class Wire:
     # The client's end.
 
     def clear(self) -> None:
-        """The cable is out: what was under way is gone."""
+        """Discard all bytes under way: the cable is out."""
         self._coming.clear()
         self._held.clear()
 
     def ready_s(self, most: int = 1 << 30, until_s: float = math.inf) -> float | None:
-        """When something is handed to the client next, at best `most` bytes at once; None when nothing is under way.
+        """Time at which bytes are next passed to the client, at best `most` at once; None when none are under way.
+
+        Without latency timer and pieces this is the end of the burst, or `until_s` within one.
 
         Without latency timer and pieces this is the end of the burst, or `until_s` within one.
         """
@@ -186,7 +188,7 @@ class Wire:
         return bytes(out)
 
     def _arrived(self, burst: Burst, t_s: float) -> int:
-        """How many bytes of a burst are in by `t_s`."""
+        """Number of bytes of a burst that have arrived by `t_s`."""
         if burst.end_s <= t_s + TINY_S:
             return len(burst.data)
         if burst.byte_s <= 0:
@@ -203,7 +205,7 @@ class Wire:
     # The adapter's buffer.
 
     def _flush_of(self, burst: Burst) -> float:
-        """When the first byte of what comes next is handed on: by the timer, or when a packet is full before."""
+        """Time at which the first byte of the next burst is passed on: when the timer fires, or earlier when a packet is full."""
         period, first_s = self.settings.latency_s, burst.start_s + burst.byte_s
         by_timer_s = self._timer_s + period * max(1, math.ceil((first_s - self._timer_s) / period - 1e-9))
         missing, full_s = self.settings.usb_packet_bytes, math.inf
@@ -215,7 +217,7 @@ class Wire:
         return min(by_timer_s, full_s)
 
     def _take_lumps(self, t_s: float, most: int) -> bytes:
-        """Everything whose lump has been handed on by `t_s`."""
+        """All bytes whose lump has been passed on by `t_s`."""
         out = bytearray()
         if self._held:
             n = min(len(self._held), most)

@@ -1,4 +1,6 @@
-"""Bytes in time on one wire, and what is left of them when two talk at once.
+"""Bytes in time on one wire, and the bytes that are left when two senders collide.
+
+Bytes that begin together are ANDed bit by bit, as open-collector drivers do; bytes that do not line up become noise.
 
 Bytes that begin together are ANDed bit by bit, as open-collector drivers do; where they do not line up noise is left.
 """
@@ -11,12 +13,12 @@ from collections import deque
 from dataclasses import dataclass
 
 TINY_S = 1e-9
-"""Times nearer to each other than this are one: hours into a run a double is good for some 1e-11 s."""
+"""Seconds by which two times may differ and count as equal: hours into a run a double resolves some 1e-11 s."""
 
 
 @dataclass
 class Burst:
-    """Bytes on their way to the client; `alone`: not to be joined with what follows."""
+    """Bytes on their way to the client; `alone`: not to be joined with the bytes that follow."""
 
     start_s: float
     byte_s: float
@@ -25,11 +27,11 @@ class Burst:
 
     @property
     def end_s(self) -> float:
-        """When the last byte ends."""
+        """Time at which the last byte ends."""
         return self.start_s + len(self.data) * self.byte_s
 
     def within(self, from_s: float, to_s: float) -> tuple[int, int]:
-        """Range of the bytes that are on the wire between two times, also in part."""
+        """Range of the bytes that are on the wire, at least in part, between two times."""
         if self.byte_s <= 0:
             return 0, 0
         first = max(0, math.floor((from_s - self.start_s + TINY_S) / self.byte_s))
@@ -37,16 +39,16 @@ class Burst:
         return first, max(first, last)
 
     def garble(self, from_s: float, to_s: float, draw: random.Random) -> None:
-        """Make noise of the bytes that are on the wire between two times."""
+        """Turn the bytes that are on the wire between two times into noise."""
         for i in range(*self.within(from_s, to_s)):
             self.data[i] ^= draw.randrange(1, 256)
 
     def part(self, first: int, last: int) -> Burst:
-        """Some of its bytes, at their time."""
+        """Some of the burst's bytes, at their time."""
         return Burst(self.start_s + first * self.byte_s, self.byte_s, self.data[first:last], self.alone)
 
     def meet(self, other: Burst, draw: random.Random) -> list[Burst]:
-        """Two at once: what comes of it where they overlap stays in this burst; returned are the rest of `other`'s bytes."""
+        """Collide with another burst: the result of the overlap stays in this burst; return the rest of `other`'s bytes."""
         if self.byte_s <= 0 or other.byte_s <= 0:
             return [other]
         first, last = other.within(self.start_s, self.end_s)
@@ -62,7 +64,7 @@ class Burst:
 
 
 def put(bursts: deque[Burst], burst: Burst) -> None:
-    """Put a burst among others that are in the order of time and do not overlap with it."""
+    """Insert a burst among others that are in the order of time and do not overlap with it."""
     at = len(bursts)
     while at and bursts[at - 1].start_s > burst.start_s + TINY_S:
         at -= 1

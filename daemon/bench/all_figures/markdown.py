@@ -1,4 +1,4 @@
-"""The report in Markdown: every figure with its mark, the machine, the runs, how they measure, and other programs beside ours."""
+"""The report in Markdown: every figure with its mark, the machine, the runs and their methods, and other programs' figures."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ _QUICK = (
     "**Quick: runs marked so took small numbers of texts and trials. Their figures are no measurement of a release.**"
 )
 BUSY = 0.1
-"""Share of the processors' time that other processes took from which on the line of a figure says so."""
+"""Share of the processors' time taken by other processes from which a figure's line mentions it."""
 
 
 def report(table: Sequence[Measurement], records: Mapping[str, Record]) -> str:
     """The whole page.
 
     Args:
-        table: what there is to measure.
-        records: what was measured, by name.
+        table: all measurements.
+        records: the records, by name.
     """
     known = {m.name: records[m.name] for m in table if m.name in records}
     lines = ["# Figures", "", _HEAD, "", _summary(table, known)]

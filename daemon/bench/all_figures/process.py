@@ -1,4 +1,4 @@
-"""One command in a fresh process: ended when it takes too long, with the share of the processors that others took meanwhile."""
+"""Runs one command in a fresh process: ended at its time limit, with the share of the processors that other processes took."""
 
 from __future__ import annotations
 
@@ -19,12 +19,13 @@ from pathlib import Path
 from sim.steal_time import STAT, stolen_s
 
 GRACE_S = 30.0
-"""Seconds that a command has to end its own processes before all of its session are killed."""
+"""Seconds that a command has to end its own processes before its whole session is killed."""
 LAST_LINES = 2
-"""Lines of stderr that are kept of a command that failed."""
+"""Lines of stderr that are kept of a failed command."""
 _TICK_S = 1 / os.sysconf("SC_CLK_TCK")
 _THREADS = {"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
-"""Settings of the Makefile: worker threads that spin while they wait would take the cores from the measured command."""
+"""Environment variables, as in the Makefile: worker threads that wait in a busy loop would take the cores from the measured
+command."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,12 @@ class Outcome:
     """The outcome of a command.
 
     Attributes:
-        status: exit status; None where it was ended for its time.
+        status: exit status; None where the command exceeded its time limit.
         said: stdout.
         last_lines: the end of stderr.
         seconds: wall time.
-        others_took: share of all processors' time that other processes took; None where the machine does not tell.
-        host_took: share that the host of a virtual machine took; None where it does not tell.
+        others_took: share of all processors' time that other processes took; None where unknown.
+        host_took: share that the host of a virtual machine took; None where unknown.
     """
 
     status: int | None
@@ -51,10 +52,10 @@ class Outcome:
 def run_command(
     words: Sequence[str], limit_s: float, folder: Path, tell: Callable[[str], None] = lambda _line: None
 ) -> Outcome:
-    """Run a command to its end, or to `limit_s` seconds; nothing that it started outlives it.
+    """Run a command to its end, or for `limit_s` seconds; no process that it started outlives it.
 
     Args:
-        words: as they are typed; "mmmd" and "python" are this installation's.
+        words: the command line; "mmmd" and "python" are those of this installation.
         limit_s: seconds.
         folder: to run it in.
         tell: called with each line of its stderr, from another thread.
@@ -100,7 +101,7 @@ def _read(process: subprocess.Popen[str], last: deque[str], tell: Callable[[str]
 
 
 def _end(process: subprocess.Popen[str]) -> None:
-    """Let a command end itself, then kill what is left of its session's first process group."""
+    """Let a command end itself, then kill the rest of its session's first process group."""
     if process.poll() is None:
         process.terminate()
         with contextlib.suppress(subprocess.TimeoutExpired):
@@ -111,7 +112,7 @@ def _end(process: subprocess.Popen[str]) -> None:
 
 
 def _busy_s(stat: Path = STAT) -> float | None:
-    """Seconds that all processors have worked since the machine's start, the host's share left out (proc_stat(5))."""
+    """Seconds that all processors have worked since the machine's start, without the host's share (proc_stat(5))."""
     try:
         user, nice, system, _idle, _io, irq, soft = map(int, stat.read_text("ascii").split("\n", 1)[0].split()[1:8])
     except (OSError, ValueError):
@@ -120,6 +121,6 @@ def _busy_s(stat: Path = STAT) -> float | None:
 
 
 def _children_s() -> float:
-    """Processor seconds of all children that have ended, with theirs."""
+    """Processor seconds of all child processes that have ended, their own children included."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime

@@ -1,4 +1,4 @@
-"""The files of a report's folder: one JSON for each measurement, and which of them still count."""
+"""The files of a report's folder: one JSON file for each measurement, and whether it is still valid."""
 
 from __future__ import annotations
 
@@ -21,32 +21,32 @@ from daemon.bench.report import machine
 from daemon.errors import CommandError
 
 ROOT = Path(__file__).parents[3]
-"""The clone, or the folder of installed packages."""
+"""Path of the clone, or of the folder of installed packages."""
 PACKAGES = ("mmm_core", "retarget", "daemon", "sim")
 _NOT_MEASURED = ("daemon/bench/all_figures/",)
-"""Files that only make the report: a change of them changes no figure."""
+"""Prefixes of files that only make the report: changing them changes no figure."""
 DIGITS = 12
 MOST_CHARACTERS = 300
-"""Most characters that a record keeps of the last output of a failed command."""
+"""Number of characters that a record keeps, at most, of the last output of a failed command."""
 
 
 class Record(msgspec.Struct, frozen=True, kw_only=True):
-    """A measurement as it is kept.
+    """The stored result of a measurement.
 
     Attributes:
         name: of the measurement.
         command: as it was typed.
         version: of mmmd.
         commit: of the clone; "" where there is none.
-        code: digest of the packages' files: the same digest measures the same.
+        code: digest of the packages' files; measurements with equal digests measure the same code.
         machine: processor, cores, system, Python.
         date: of the end, ISO 8601, UTC.
         seconds: wall time of the command.
         quick: whether small numbers were taken.
-        others_took: share of the processors' time that other processes took; None where the machine does not tell.
-        host_took: share that the host of a virtual machine took; None where it does not tell.
-        status: exit status; None where the command was ended for its time.
-        error: why there are no values; "" where there are.
+        others_took: share of the processors' time that other processes took; None where unknown.
+        host_took: share that the host of a virtual machine took; None where unknown.
+        status: exit status; None where the command exceeded its time limit.
+        error: reason why there are no values; "" where there are values.
         values: the command's JSON.
     """
 
@@ -99,7 +99,7 @@ def read_records(folder: Path, table: Sequence[Measurement]) -> dict[str, Record
 
 
 def write_record(folder: Path, record: Record) -> None:
-    """Write a record whole or not at all."""
+    """Write a record atomically."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{record.name}.json"
     draft = path.with_suffix(".draft")
@@ -108,7 +108,7 @@ def write_record(folder: Path, record: Record) -> None:
 
 
 def why_again(record: Record | None, command: str, now: Here) -> str:
-    """Why a measurement has to be made (again); "" where its record counts."""
+    """Reason why a measurement has to be made (again); "" where its record is valid."""
     if record is None:
         return "missing"
     if record.error:
@@ -185,7 +185,7 @@ def _git(root: Path, *words: str) -> str:
 
 
 def _digest(root: Path) -> str:
-    """Digest of the names and contents of the packages' files, those that only make the report left out."""
+    """Digest of the names and contents of the packages' files, except those that only make the report."""
     whole = hashlib.sha256()
     for package in PACKAGES:
         for path in sorted((root / package).rglob("*")):

@@ -1,4 +1,4 @@
-"""`mmmd bench all`: every figure by its own command in a fresh process, kept as it comes, and one report of all."""
+"""`mmmd bench all`: every figure by its own command in a fresh process, stored at once, and one report of all."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ def bench_all(
     markdown: Path | None = None,
     table_file: Path = TABLE,
 ) -> tuple[dict[str, Any], bool]:
-    """Measure what is missing in a folder, and write the report of all that it has.
+    """Make the missing measurements of a folder, and write the report of all that it has.
 
     Args:
-        out: folder of one JSON file for each measurement; what it has of this code on this machine is not measured again.
+        out: folder of one JSON file for each measurement; files of this code and machine are not measured again.
         only: names of measurements to make; all when empty. The report has all that the folder has.
         quick: small numbers of texts and trials.
         seed: of the benches that take one.
-        measure: False to make only the report of what is there.
-        markdown: where the report goes; `out`/report.md when None.
+        measure: False to make only the report, from the folder's files.
+        markdown: path of the report; `out`/report.md when None.
         table_file: the table of figures.
 
     Returns:
@@ -68,7 +68,7 @@ def bench_all(
 def _measured(
     wanted: Sequence[Measurement], records: dict[str, Record], out: Path, quick: bool, seed: int, console: Console
 ) -> Iterator[Record]:
-    """The records that had to be made, one after another, each written at once."""
+    """Make the missing records, one after another, each written at once."""
     given = {RECORDINGS: str(recordings_folder())}
     for i, m in enumerate(wanted):
         place = f"[{i + 1}/{len(wanted)}] {m.name}"
@@ -103,7 +103,7 @@ def _one(
 
 
 def _missing_need(m: Measurement) -> str:
-    """Why a measurement cannot be made here; "" where it can."""
+    """The missing resource that a measurement needs; "" where it can be made here."""
     if m.needs == "recordings" and recordings_folder() is None:
         return "it needs the recordings of docs/DATA.md, in $MMMD_SHARED/data or in ../shared/data"
     if m.needs == "clone" and not (ROOT / "docs" / "tools").is_dir():
@@ -112,7 +112,7 @@ def _missing_need(m: Measurement) -> str:
 
 
 def _as_json(table: Sequence[Measurement], records: dict[str, Record]) -> dict[str, Any]:
-    """Each command's JSON under its name, `runs` with what each took, `figures` with marks and verdicts."""
+    """Each command's JSON under its name, `runs` with the time and load of each, `figures` with marks and verdicts."""
     figures = [
         {"figure": row.figure.what, "measured": row.shown, "to_reach": row.to_reach, "met": row.is_met, "verdict": row.verdict,
          "source": row.figure.source, "run": m.name}

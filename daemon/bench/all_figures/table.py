@@ -1,4 +1,4 @@
-"""The table of all figures (`figures.toml`): what measures each, its mark, and the verdict on a measured value."""
+"""The table of all figures (`figures.toml`): the command that measures each, its mark, and the verdict on a measured value."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from daemon.errors import CommandError
 
 TABLE = Path(__file__).parent / "figures.toml"
 KeyPath = tuple[str | tuple[str, ...], ...]
-"""A path in a command's JSON: names of keys; "*" is every key, a tuple those it names."""
+"""A path in a command's JSON: names of keys; "*" stands for every key, a tuple for the keys in it."""
 RECORDINGS = "{recordings}"
-"""Stands in a command for the folder of docs/DATA.md."""
+"""Placeholder in a command for the folder of docs/DATA.md."""
 NOT_MEASURED = "not measured here"
 YES, NO = "yes", "no"
 
@@ -30,8 +30,8 @@ class Figure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         unit: "%" where the values are shares of 1.
         at_most: the mark from above; None for none.
         at_least: the mark from below; None for none.
-        is_true: whether the value has to be true.
-        either: of the figures of a measurement with this name one met mark is enough; "" for none.
+        is_true: whether the mark is that the value is true.
+        either: name of a group of figures of which one has to meet its mark; "" for none.
         source: who or what sets the mark.
     """
 
@@ -46,7 +46,7 @@ class Figure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def has_mark(self) -> bool:
-        """Whether there is anything to reach."""
+        """Whether the figure has a mark to reach."""
         return self.is_true or self.at_most is not None or self.at_least is not None
 
 
@@ -60,7 +60,7 @@ class Column(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Peers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Under which key of a command's JSON other programs' figures stand, and which programs they may be of."""
+    """The key in a command's JSON under which other programs' figures stand, and the programs that may be there."""
 
     key: str
     expected: tuple[str, ...]
@@ -72,13 +72,13 @@ class Measurement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         name: of the measurement and of its file.
-        command: program and arguments; "mmmd" and "python" are this installation's; "{recordings}" the folder of docs/DATA.md.
+        command: program and arguments; "mmmd" and "python" of this installation; "{recordings}" is the folder of docs/DATA.md.
         options: further arguments.
         quick: the arguments in their place with --quick; None for the same.
         limit_s: seconds after which the command is ended.
         how: the method in a sentence.
-        needs: "recordings" or "clone" for what does not ship; "" for nothing.
-        without: why no command measures it; "" where one does.
+        needs: "recordings" or "clone", which do not ship; "" for neither.
+        without: reason why no command measures the figures; "" where one does.
         leave_out: keys of the JSON that are not kept.
         figures: lines of the report.
         peers: other programs in the same run; None for none.
@@ -97,14 +97,14 @@ class Measurement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     peers: Peers | None = None
 
     def words(self, seed: int, *, quick: bool) -> tuple[str, ...]:
-        """The command as it is typed; benches take a seed and all of mmmd's print JSON."""
+        """The command line: benches get a seed, and all commands of mmmd print JSON."""
         options = self.quick if quick and self.quick is not None else self.options
         seeded = ("--seed", str(seed)) if self.command[:2] == ("mmmd", "bench") and seed else ()
         return (*self.command, *options, *seeded, *(("--json",) if self.command[0] == "mmmd" else ()))
 
 
 class Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A figure as measured: the values and the mark in words, and whether the mark is met (None: no mark, or no value)."""
+    """A measured figure: values and mark in words, and whether the mark is met (None: no mark, or no value)."""
 
     figure: Figure
     shown: str
@@ -131,7 +131,7 @@ def chosen(table: Sequence[Measurement], names: Sequence[str]) -> tuple[Measurem
 
 
 def typed(words: Sequence[str]) -> str:
-    """A command line as it is shown; the folder of the recordings is DIR."""
+    """A command line for display; the folder of the recordings is shown as DIR."""
     return shlex.join("DIR" if word == RECORDINGS else word for word in words)
 
 
@@ -148,7 +148,7 @@ def rows_of(measurement: Measurement, values: Mapping[str, Any] | None) -> list[
 
 
 def values_at(values: Any, path: KeyPath) -> Iterator[tuple[str, Any]]:
-    """(name, value) of everything a path leads to; names are the keys that "*" or a tuple of it stood for."""
+    """(name, value) pairs of everything that a path leads to; names are the keys that "*" or a tuple stood for."""
     if not path:
         if values is not None and not isinstance(values, Mapping):
             yield "", values
@@ -166,7 +166,7 @@ def values_at(values: Any, path: KeyPath) -> Iterator[tuple[str, Any]]:
 
 
 def shown(value: Any, unit: str) -> str:
-    """A value as it is printed, without its unit."""
+    """A value as printed, without its unit."""
     if isinstance(value, bool):
         return YES if value else NO
     number = float(value) * (100 if unit == "%" else 1)
@@ -194,7 +194,7 @@ def _worst(found: list[tuple[str, Any]], figure: Figure) -> tuple[str, Any]:
 
 
 def _verdict(figure: Figure, values: Sequence[Any]) -> tuple[str, bool | None]:
-    """In words whether the mark is met, or by how much not."""
+    """Whether the mark is met, in words, with the distance where it is not."""
     if figure.is_true:
         return (YES, True) if all(values) else (NO, False)
     if figure.at_most is not None:
