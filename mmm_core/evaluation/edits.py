@@ -1,4 +1,4 @@
-"""Edits that do what they say: body parts, segments, new beginnings, new ends, in-betweening. `mmmd eval edits`.
+"""Measures edits (body parts, segments, new beginnings, new ends, in-betweening) for `mmmd eval edits`.
 
 Each case generates a motion, edits it for a text, and judges the result by the kinematic signs of `mmm_core.recognition`: whether
 the edited part shows the gesture that the text names (its arm, direction and number within one), and whether the rest stays. The
@@ -36,13 +36,13 @@ _ALL = ("left", "right", "head", "trunk")
 
 @dataclass(frozen=True)
 class EditCase:
-    """An edit of a generated motion, and what must be seen where it is new.
+    """An edit of a generated motion, and the gesture that its new part must show.
 
     Attributes:
         kind: one of `KINDS`.
         base, seconds, seed: text, length and seed of the motion that is edited; `seed` is also the edit's.
         text: the edit's text.
-        family, limb, side, direction, count: as of a probe (`mmm_core.corpus.heldout`).
+        family, limb, side, direction, count: the expected gesture, as in a probe (`mmm_core.corpus.heldout`).
         parts: body parts that are edited; all when empty.
         start_s, end_s: the segment; None is the motion's beginning or end.
         before_s, after_s: seconds of a new beginning, of a new end, or between two motions.
@@ -71,7 +71,7 @@ def read_cases(which: str) -> tuple[EditCase, ...]:
     """The cases of one of `SETS`: edits are improved on the development set and reported on the test set.
 
     Raises:
-        msgspec.ValidationError: a field of the wrong type, or one that is missing.
+        msgspec.ValidationError: a field is missing or has the wrong type.
     """
     lines = files("mmm_core.corpus").joinpath("prompts", f"edits_{which}.jsonl").read_bytes()
     return tuple(msgspec.json.decode(line, type=EditCase) for line in lines.splitlines())
@@ -80,7 +80,7 @@ def read_cases(which: str) -> tuple[EditCase, ...]:
 def evaluate_edits(
     engine: Engine, progress: Callable[[int], None] = lambda _n: None, stride: int = 1
 ) -> dict[str, Any]:
-    """Shares of edits that show their text (`asked`), keep the rest (`kept`) and both (`share`), by kind and by set.
+    """Shares of edits that show their text (`asked`), keep the rest (`kept`) and do both (`share`), by kind and by set.
 
     `told` is the share of cases in which the editor's own verdict (reached or not) agrees with the check. `missed` lists
     the texts of cases that fail.
@@ -88,7 +88,7 @@ def evaluate_edits(
     Args:
         engine: the model.
         progress: called with the number of cases done.
-        stride: every how many cases one is taken.
+        stride: distance between the cases that are taken; 1 takes all.
     """
     rows: list[tuple[str, EditCase, bool, bool, bool]] = []
     for which in SETS:
@@ -117,7 +117,7 @@ def evaluate_edits(
 
 
 def run_case(engine: Engine, case: EditCase) -> tuple[Edited, bool, bool]:
-    """The edited motion, whether it shows what the text asks, and whether the rest stayed."""
+    """The edited motion, whether it shows the gesture of the text, and whether the rest stayed."""
     base = engine.generate(case.base, seed=case.seed, seconds=case.seconds).motion
     n = len(base.joints_m)
     if case.kind == "between":
@@ -156,7 +156,7 @@ def shows_asked(s: PostureFeatures, case: EditCase) -> bool:
 def _stays(
     before: Motion, after: Motion, start: int, stop: int, at: int, limbs: Sequence[str] = _ALL, seam: int = SEAM_FRAMES
 ) -> bool:
-    """Whether limbs move in frames `start` to `stop` of a motion as in another one, where these frames begin at frame `at`."""
+    """Whether `limbs` move in frames `start` to `stop` of `before` as they do from frame `at` on in `after`."""
     inner = slice(start + seam if start or at else start, stop - seam)
     if inner.stop - inner.start < 1:
         return True

@@ -1,9 +1,9 @@
 """The evaluator: maps motions and texts to vectors that are close when they belong together.
 
-Guo et al. 2022 (CVPR, "Generating Diverse and Natural 3D Human Motions from Text") sec. 6.1: movement snippets of four
-frames by convolution, then a bidirectional GRU over them; words by another. Attributes carry the published names, so
-that the published checkpoint (`finest.tar`) loads where a user has it. Ours is the same at a smaller size, and reads
-MiniLM's word states instead of GloVe and parts of speech.
+Guo et al. 2022 (CVPR, "Generating Diverse and Natural 3D Human Motions from Text") sec. 6.1: convolutions make movement
+snippets of four frames, which a bidirectional GRU reads; another one reads words. Attributes carry the published names, so
+that a user's copy of the published checkpoint (`finest.tar`) can be loaded. Our evaluator has this architecture at a smaller
+size, and reads MiniLM's word states instead of GloVe and parts of speech.
 """
 
 from __future__ import annotations
@@ -22,15 +22,16 @@ from mmm_core.inference.checkpoint import fill_module, load_tensors, save_tensor
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 
 N_CONTACTS = 4
-"""Foot contacts, the last features, which the evaluator does not read."""
+"""Number of foot contacts, the last features of a row, which the evaluator does not read."""
 KIND = "mmmd-evaluator"
+"""Kind of file that holds an evaluator of ours."""
 
 
 @dataclass(frozen=True)
 class EvaluatorConfig:
     """Sizes; the defaults are the published ones for HumanML3D.
 
-    `rest_pose` names the rest directions of the rotations in its training data (see `checkpoint.Model`).
+    `rest_pose` is the definition of the features in the training data (see `checkpoint.Model`).
     """
 
     n_features: int = 263
@@ -66,7 +67,7 @@ class MovementEncoder(nn.Module):
 
 
 class _BiGru(nn.Module):
-    """The last states of both directions, through two layers."""
+    """A bidirectional GRU whose last states in both directions pass two layers."""
 
     def __init__(self, n_in: int, hidden: int, middle: int, n_out: int) -> None:
         super().__init__()
@@ -108,7 +109,7 @@ class MotionReader(_BiGru):
 
 
 class Evaluator(nn.Module):
-    """The three networks, with the statistics of the features they were trained on."""
+    """The three networks, with the mean and standard deviation of their training features."""
 
     mean: Tensor
     std: Tensor
@@ -123,10 +124,10 @@ class Evaluator(nn.Module):
         self.register_buffer("std", torch.ones(config.n_features))
 
     def motions(self, features: Sequence[Tensor]) -> Tensor:
-        """(B, embedding) of B motions (T_i, F), in their own units; a motion's vector does not depend on its neighbours.
+        """(B, embedding) vectors of B motions (T_i, F), not normalised; a motion's vector does not depend on its neighbours.
 
-        Zeros fill the batch after normalising, always to the longest motion there is: the convolution at a motion's end
-        sees whether padding follows (through its bias), so the width is part of what the published extractor learnt.
+        After normalising, zeros fill the batch to `MAX_TOKENS`, or to the longest motion if that is longer. The convolution at a
+        motion's end is sensitive to padding (through its bias), and the published extractor was trained with this width.
         """
         lengths = torch.tensor([len(f) // FRAMES_PER_TOKEN for f in features])
         width = max(MAX_TOKENS, int(lengths.max())) * FRAMES_PER_TOKEN
@@ -138,21 +139,21 @@ class Evaluator(nn.Module):
         return self.motion_encoder(snippets, lengths)
 
     def texts(self, words: Tensor, parts_of_speech: Tensor | None, lengths: Tensor) -> Tensor:
-        """(B, embedding) of B texts."""
+        """(B, embedding) vectors of B texts."""
         return self.text_encoder(words, parts_of_speech, lengths)
 
 
 def save_evaluator(path: Path, evaluator: Evaluator, provenance: dict[str, object]) -> None:
-    """Write our evaluator."""
+    """Write an evaluator of ours to a file."""
     tensors = {k: t.half() if k not in ("mean", "std") else t for k, t in evaluator.state_dict().items()}
     save_tensors(path, tensors, KIND, {"config": asdict(evaluator.config), "provenance": provenance})
 
 
 def load_evaluator(path: Path) -> tuple[Evaluator, dict[str, object]]:
-    """Our evaluator and where it comes from.
+    """An evaluator of ours, and its provenance.
 
     Raises:
-        CheckpointError: missing, of another kind, or a tensor that does not fit.
+        CheckpointError: the file is missing or of another kind, or a tensor does not fit.
     """
     tensors, metadata = load_tensors(path, KIND)
     evaluator = Evaluator(EvaluatorConfig(**metadata["config"]))
@@ -164,7 +165,7 @@ def load_published(path: Path, mean: Tensor, std: Tensor, n_features: int = 263)
     """The published evaluator (`text_mot_match/model/finest.tar`) with its statistics (`meta/mean.npy`, `std.npy`).
 
     Raises:
-        CheckpointError: not that file.
+        CheckpointError: the file is not the published one, or the statistics have another size.
     """
     parts = ("movement_encoder", "text_encoder", "motion_encoder")
     try:

@@ -1,9 +1,9 @@
-"""Fidelity: the share of gestures that the model performs as well as its corpus. `mmmd eval fidelity`.
+"""Measures fidelity, the share of gestures that the model performs as well as its corpus, for `mmmd eval fidelity`.
 
-For every family gestures and their captions are drawn as the corpus draws them, with seeds that no training uses. The corpus
-performs each in its free manner, and the model makes a motion for the caption alone. Both are judged by `likeness`. A check
-counts for a family when the corpus passes it nearly always, and the figure is the model's share of the motions in which the corpus
-passes all that count.
+For every family, gestures and their captions are drawn as the corpus draws them, with seeds that no training uses. The corpus
+performs each gesture in its free manner, and the model makes a motion for the caption alone. Both are judged by `likeness`. A
+check counts for a family if the corpus's own motions nearly always pass it. Among the gestures whose corpus motion passes all
+checks that count, fidelity is the share whose generated motion passes them, too.
 """
 
 from __future__ import annotations
@@ -28,15 +28,17 @@ from mmm_core.motion.posture_features import PostureFeatures, posture_features
 
 HELD_OUT_SEED = 23_000_001
 CORPUS_DRAWS = 10
+"""Motions of each family by which checks are chosen, and that the model is measured on unless told otherwise."""
 COUNTS_FROM = 0.9
-"""Share of the corpus's own motions that pass a check which counts."""
+"""Share of the corpus's own motions from which on a check counts."""
 N_WORST = 10
+"""Families that the figures list as the worst."""
 Generate = Callable[[str, int], Motion]
 
 
 @dataclass(frozen=True)
 class Case:
-    """A gesture, the sentence that asks for it, and the checks that the corpus's own motion passes."""
+    """A gesture, its sentence, and the outcome of each check for the corpus's own motion."""
 
     gesture: Gesture
     text: str
@@ -44,7 +46,7 @@ class Case:
 
 
 def cases_of(family: str, n: int = CORPUS_DRAWS) -> list[Case]:
-    """The first `n` cases of a family; they are the same every time."""
+    """The first `n` cases of a family, which never change."""
     cases: list[Case] = []
     seed = (HELD_OUT_SEED, zlib.crc32(family.encode()))
     draw = 0
@@ -66,7 +68,7 @@ def seen(body: Body) -> PostureFeatures:
 
 
 def judged(s: PostureFeatures, gesture: Gesture, text: str) -> Checks:
-    """The checks of a motion for a sentence; where the sentence leaves a choice open, every choice counts."""
+    """The outcome of each check of a motion for a sentence; where the sentence leaves a choice open, the best fit counts."""
     counts = {gesture.count}
     if count_asked(text) is None:
         counts |= set(FAMILIES[gesture.family].counts)
@@ -88,9 +90,9 @@ def fidelity(
 
     Args:
         generate: (sentence, seed) -> motion.
-        families: of the corpus; all when none is given.
+        families: names of families; all of the corpus when empty.
         n_each: motions of each family.
-        progress: told how many motions are done.
+        progress: called with the number of motions done.
     """
     table: dict[str, dict[str, Any]] = {}
     made = shown = done = 0
@@ -122,7 +124,7 @@ def fidelity(
 
 
 def counting_checks(cases: Sequence[Case]) -> list[str]:
-    """The checks that the corpus itself passes often enough to be asked of a model."""
+    """Names of the checks that count: those that the corpus's own motions pass often enough."""
     names = {check for case in cases for check in case.corpus}
     share = {check: np.mean([case.corpus.get(check, True) for case in cases]) for check in names}
     return sorted(check for check, passed in share.items() if passed >= COUNTS_FROM)

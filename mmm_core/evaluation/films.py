@@ -1,8 +1,8 @@
-"""Contact sheets and short films of what the model does, beside people: `python -m mmm_core.evaluation.films ../shared/data`.
+"""Contact sheets and short films of generated motions beside people: `python -m mmm_core.evaluation.films ../shared/data`.
 
-A person is drawn by limbs, in half profile: their left side red and on the right of the picture, their right side blue. The
-generated motion stands on the left, a recording with a caption that says the same on the right, where there is one; of a
-long recording the stretch is taken in which the hands move most. Nothing is chosen but prompt and seed, which are fixed below.
+A person is drawn by limbs, in half profile: the left side is red and on the right of the picture, the right side is blue. The
+generated motion stands on the left; a recording whose caption means the same, if there is one, stands on the right. A long
+recording is cut to the part in which the hands move most. Prompts and seed are fixed below, and no result is selected.
 """
 
 from __future__ import annotations
@@ -27,34 +27,36 @@ SEED = 1
 PANEL = (96, 126)
 """Width and height in pixels of one person."""
 METRES = 2.15
-"""What the height shows."""
+"""Metres that the height of a panel shows."""
 VIEW_YAW_RAD = np.deg2rad(-32.0)
+"""Radians by which the person is turned against the picture."""
 FILM_EVERY = 2
-"""Frames of the motion from one frame of a film to the next: 10 a second."""
+"""Frames of the motion from one frame of a film to the next, so that a film has 10 a second."""
 INSTANTS = 8
+"""Poses in a row of a contact sheet."""
 ROWS = 6
 """Prompts of a contact sheet."""
 SMOOTH = 3
-"""Factor by which lines are drawn larger before the picture is made smaller."""
+"""Factor by which a picture is drawn larger and then scaled down, which smooths its lines."""
 COLOURS = 6
-"""Number of colours of a picture; fewer colours, smaller files."""
+"""Number of colours of a picture; fewer colours make smaller files."""
 _PALETTE = {"": (68, 68, 68), "left": (192, 57, 43), "right": (36, 113, 163)}
 
 
 @dataclass(frozen=True)
 class PostureFeatures:
-    """A motion to be drawn: joints (T, 22, 3) in metres and where the head faces (T, 3)."""
+    """A motion to be drawn: joints (T, 22, 3) in metres and directions that the head faces (T, 3)."""
 
     joints_m: Array
     face: Array
 
     @classmethod
     def of(cls, joints_m: Array, head_quat_wxyz: Array) -> PostureFeatures:
-        """The features with the head's orientation (T, 4)."""
+        """The motion of joints (T, 22, 3) and head orientations (T, 4)."""
         return cls(joints_m.astype(np.float64), matrix_from_quat(head_quat_wxyz.astype(np.float64))[..., 2])
 
     def __len__(self) -> int:
-        """Frames."""
+        """Number of frames."""
         return len(self.joints_m)
 
     def cut(self, start: int, end: int) -> PostureFeatures:
@@ -64,14 +66,14 @@ class PostureFeatures:
 
 @dataclass(frozen=True)
 class Film:
-    """A prompt, and the caption of a recording to stand beside it; empty where no recording shows such a thing."""
+    """A prompt, and the caption of the recording to show beside it; empty if no recording shows such a gesture."""
 
     prompt: str
     real: str = ""
 
     @property
     def stem(self) -> str:
-        """Name of its file."""
+        """Name of the film's file, without its suffix."""
         return "_".join("".join(c if c.isalnum() else " " for c in self.prompt.lower()).split())
 
 
@@ -104,14 +106,14 @@ FILMS = (
 
 
 def recordings(folder: Path, captions: Sequence[str]) -> dict[str, PostureFeatures]:
-    """The first recording with each caption, held-out splits before training's.
+    """The first recording with each caption, searched in held-out splits first.
 
     Raises:
-        TrainingDataError: no recording has a caption.
+        TrainingDataError: no recording has one of the captions.
     """
     found: dict[str, PostureFeatures] = {}
     for split in ("test", "val", "train"):
-        for features, texts in list(read_clips(folder, split))[::2]:  # every other one is a mirror image
+        for features, texts in list(read_clips(folder, split))[::2]:  # every other clip is a mirror image
             for caption in set(texts) & set(captions) - found.keys():
                 motion = recover(features)
                 found[caption] = PostureFeatures.of(motion.joints_m, motion.head_quat_wxyz)
@@ -121,7 +123,7 @@ def recordings(folder: Path, captions: Sequence[str]) -> dict[str, PostureFeatur
 
 
 def liveliest(motion: PostureFeatures, n_frames: int) -> PostureFeatures:
-    """The stretch of `n_frames` in which the wrists move most against the shoulders; all of a shorter motion."""
+    """The `n_frames` of a motion in which the wrists move most relative to the shoulders; a shorter motion is returned whole."""
     if len(motion) <= n_frames:
         return motion
     wrists = motion.joints_m[:, [20, 21]] - motion.joints_m[:, [16, 17]]
@@ -131,7 +133,7 @@ def liveliest(motion: PostureFeatures, n_frames: int) -> PostureFeatures:
 
 
 def person(motion: PostureFeatures, frame: int) -> Image.Image:
-    """One pose, its pelvis in the middle; a line from the head says where it faces."""
+    """A picture of one pose with the pelvis in the middle; a line from the head shows the direction that it faces."""
     width, height = (SMOOTH * side for side in PANEL)
     image = Image.new("RGB", (width, height), "white")
     draw = ImageDraw.Draw(image)
@@ -186,7 +188,7 @@ def _beside(images: Sequence[Image.Image]) -> Image.Image:
 
 
 def make(engine: Engine, folder: Path, out: Path, films: Sequence[Film] = FILMS) -> list[Path]:
-    """Write a film for each prompt, the contact sheets and a page that shows them; what was written.
+    """Write a film for each prompt, the contact sheets and a page that shows them; returns the files.
 
     Raises:
         TrainingDataError: a recording is missing.
@@ -238,7 +240,7 @@ The families of gestures that come out worst, beside the corpus: [worst.md](wors
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Read the command line; exit status."""
+    """Run the command line; returns the exit status."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", 1)[0])
     parser.add_argument("data", type=Path, help="folder with clips.jsonl (docs/DATA.md)")
     parser.add_argument("--out", type=Path, default=Path("docs/films"))

@@ -1,8 +1,8 @@
-"""Strict checks of a motion against the reference performance of its gesture: execution, not only recognition.
+"""Checks the execution of a gesture strictly, against the reference performance of the gesture.
 
-A recognisable gesture may still be broken: a circle that is an ellipse, strokes of uneven pace, arms out of step, hands that
-pass each other. Each check measures one such fault against the reference performance of the same gesture, so that no table
-of families is needed.
+A recognisable gesture may still be badly executed: a circle that is an ellipse, strokes of uneven pace, arms out of step, hands
+that pass each other. Each check measures one such fault against the reference performance, so that no table of families is
+needed.
 """
 
 from __future__ import annotations
@@ -23,30 +23,34 @@ Checks = dict[str, bool]
 TURN_SHARE = 0.4
 """Share of the gesture's range by which a stroke rises and falls at least."""
 PACE_RATIO = 1.42
-"""Longest over shortest time between strokes, at most this factor above the reference's ratio."""
+"""Greatest ratio of longest to shortest time between strokes, each time divided by the reference's."""
 HALF_PACE_RATIO = 2.0
-"""Longest over shortest time between turning points, at most this factor above the reference's ratio."""
+"""Greatest ratio of longest to shortest time between turning points, each time divided by the reference's."""
 TEMPO_RATIO = 1.8
 """Factor by which strokes may be faster or slower than the reference's."""
 SIZE_RATIO, LEAST_SIZE = 1.75, 0.55
+"""Greatest and least ratio of the strokes' size to the reference's."""
 EVEN_SHARE = 0.5
-"""Smallest over largest stroke, at least this share of the reference's ratio."""
+"""Least ratio of smallest to largest stroke, as a share of the reference's ratio."""
 ROUND_SHARE = 0.62
-"""Width ratio of a closed path, at least this share of the reference's."""
+"""Least ratio of width to length of a closed path, as a share of the reference's ratio."""
 TURNS_OFF = 0.4
+"""Turns by which a closed path may differ from the reference's; more for paths of more than two turns."""
 MARGIN_FRAMES = 2
+"""Frames before and after a gesture in which its strokes may also lie."""
 PHASE_OFF = 0.2
 """Share of a cycle by which the arms may be out of step."""
 TOUCH_M, TOUCH_OFF_M = 0.15, 0.06
-"""Distance, metres, below which palms touch; and by which a motion's palms may stay farther apart than the reference's."""
+"""Metres between palms below which they touch, and by which a motion's palms may stay farther apart than the reference's."""
 POSE_OFF_M, POSE_OFF_DEG, POSE_FRAMES = 0.15, 14.0, 4
+"""Metres of a palm and degrees of head and trunk by which a pose may be off, and frames for which it must be held."""
 WAY_OFF_SHARE = 0.36
-"""Mean distance from the clean motion, time warped, as a share of its range."""
+"""Greatest mean distance from the reference, with time warped to fit, as a share of the reference's range."""
 _DTW_EVERY = 2
 
 
 def judge(s: PostureFeatures, ref: Reference) -> tuple[Checks, float]:
-    """The checks that apply to the gesture with their outcome, and the distance of the motion from the reference (0: equal)."""
+    """The outcome of each check that applies to the gesture, and the distance of the motion from the reference (0: equal)."""
     g = ref.gesture
     off, pairs = _warped(s, ref.shown)
     checks = {
@@ -77,7 +81,7 @@ def repeats(ref: Reference) -> bool:
 
 
 def _strokes(s: PostureFeatures, ref: Reference, core: slice) -> Checks:
-    """Count, pace and size along the axis of each acting channel."""
+    """Whether count, pace and size of the strokes match, along the axis of each acting channel."""
     wide = slice(max(0, core.start - MARGIN_FRAMES), core.stop + MARGIN_FRAMES)
     made, meant = [], []
     checks = {"count": True, "pace": True, "size": True}
@@ -85,7 +89,7 @@ def _strokes(s: PostureFeatures, ref: Reference, core: slice) -> Checks:
         signal, clean = ref.along(s, name)[wide], ref.along(ref.shown, name)[ref.core]
         turn = TURN_SHARE * float(np.ptp(clean))
         far = np.flatnonzero(np.abs(clean - clean[0]) > 0.5 * turn)
-        out = 1.0 if not len(far) or clean[far[0]] > clean[0] else -1.0  # where the first stroke goes
+        out = 1.0 if not len(far) or clean[far[0]] > clean[0] else -1.0  # sense of the first stroke along the axis
         made.append(_turning(out * signal, turn))
         meant.append(_turning(out * clean, turn))
         if len(made[-1]) == len(meant[-1]) > 1:
@@ -117,7 +121,7 @@ def _sized(made: Array, meant: Array, turn: float) -> bool:
 
 
 def _turning(signal: Array, turn: float) -> list[int]:
-    """Frames of the peaks, without a peak at the motion's end: where nothing moves a peak may be anywhere."""
+    """Frames of the peaks, without a last peak after which the signal does not fall: its frame is arbitrary if nothing moves."""
     found = peaks_beyond(signal, turn)
     return found[:-1] if found and signal[found[-1]] - signal[found[-1] :].min() < turn else found
 
@@ -145,7 +149,7 @@ def _lag(a: Array, b: Array) -> float | None:
         return None
     window = np.hanning(n + 2)[1:-1]
     x, y = (np.fft.rfft((v[:n] - v[:n].mean()) * window, 8 * n) for v in (a, b))
-    first = 8  # one cycle in the whole stretch
+    first = 8  # index of the frequency with one cycle in all frames
     k = first + int(np.argmax((np.abs(x) * np.abs(y))[first:]))
     return float(np.angle(x[k] * np.conj(y[k])) / (2 * np.pi))
 
@@ -185,7 +189,7 @@ def _touches(made: Array, meant: Array, ref: Reference) -> bool:
 
 
 def _takes_pose(s: PostureFeatures, ref: Reference) -> bool:
-    """Whether palms, head and trunk reach the pose that the reference holds, and hold it for a moment."""
+    """Whether palms, head and trunk reach the pose that the reference holds, and hold it for `POSE_FRAMES`."""
     meant = channels(ref.shown)
     body = np.concatenate(list(meant.values()), -1)
     away = np.linalg.norm(body - body[0], axis=-1)
@@ -220,7 +224,7 @@ def _longest(yes: NDArray[np.bool_]) -> int:
 
 
 def _warped(s: PostureFeatures, t: PostureFeatures) -> tuple[float, list[tuple[int, int]]]:
-    """Mean distance of two motions with time warped to fit best, as a share of the second's range; and the matched frames."""
+    """Mean distance of two motions with time warped to fit best, as a share of the second's range, and pairs of matched frames."""
     a, b = (np.concatenate(list(channels(x).values()), -1)[::_DTW_EVERY] for x in (s, t))
     apart = np.linalg.norm(a[:, None] - b[None], axis=-1)
     n, m = apart.shape

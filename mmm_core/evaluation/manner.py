@@ -1,4 +1,4 @@
-"""Whether tempo and size of a motion are as a sentence asks for them, against the motion of the plain sentence."""
+"""Judges tempo and size of a motion for a sentence that names them, against the motion of the plain sentence."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from mmm_core.motion.repetitions import body_path
 from mmm_core.recognition import checks
 
 LEAST_CHANGE = 1.15
-"""Factor by which tempo or size must differ from the plain sentence's, the right way."""
+"""Factor by which tempo or size must differ, in the right sense, from those of the plain sentence's motion."""
 _MOVING = 0.2
 """Share of the greatest speed above which a frame counts as moving."""
 
 
 def judge_manner(command: Command, motion: Motion, plain: Motion) -> dict[str, bool]:
-    """Whether tempo and size of a motion differ from the plain sentence's the right way by at least `LEAST_CHANGE`."""
+    """Whether tempo and size of a motion differ from those of the plain motion by at least `LEAST_CHANGE`, in the right sense."""
     verdict: dict[str, bool] = {}
     if command.tempo:
         faster = _pace(motion, command) / max(_pace(plain, command), 1e-6)
@@ -42,7 +42,7 @@ def plain_sentence(command: Command) -> str:
 
 
 def _pace(motion: Motion, command: Command) -> float:
-    """How fast a motion is: strokes a second, or where there are none, mean speed while moving as a share of its reach."""
+    """Speed of a motion: strokes a second or, without strokes, mean speed while moving divided by the motion's reach."""
     s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     cycle = checks.cycle_s(s, command.family)
     if cycle:
@@ -54,7 +54,7 @@ def _pace(motion: Motion, command: Command) -> float:
 
 
 def _reach(motion: Motion, command: Command) -> float:
-    """How large a motion is: the range of its strokes, or where there are none, how far the limb goes from where it was."""
+    """Size of a motion: the range of its strokes or, without strokes, the greatest distance of the limb from its first pose."""
     s = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     signals = checks._stroke_signals(s, command.family)  # noqa: SLF001
     ranges = [float(np.ptp(signal)) for signal, _ in signals if len(signal)]

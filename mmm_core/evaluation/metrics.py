@@ -1,6 +1,6 @@
 """The metrics of text-to-motion, on vectors of an evaluator. NumPy only.
 
-Guo et al. 2022 (CVPR) sec. 6 and MMM (arXiv 2312.03596) sec. 5: all of them compare vectors (N, D) that the evaluator's
+Guo et al. 2022 (CVPR) sec. 6 and MMM (arXiv 2312.03596) sec. 5: all metrics compare vectors (N, D) that the evaluator's
 extractors give for texts and motions.
 """
 
@@ -16,9 +16,13 @@ from mmm_core.errors import EvaluationError
 
 Array = NDArray[np.floating]
 POOL = 32
+"""Texts and motions in a pool of R-precision."""
 TOP = (1, 2, 3)
+"""Ranks up to which R-precision counts a hit."""
 N_PAIRS = 300
+"""Pairs over which diversity is averaged."""
 REPEATS = 20
+"""Repeats of a measurement."""
 
 
 @dataclass(frozen=True)
@@ -46,13 +50,13 @@ def distances(a: Array, b: Array) -> Array:
 
 
 def r_precision(texts: Array, motions: Array, generator: np.random.Generator, pool: int = POOL) -> dict[int, float]:
-    """Share of texts whose own motion is among the 1, 2, 3 nearest of a pool; pools are drawn without rest.
+    """Share of texts whose own motion is among the 1, 2, 3 nearest of a pool; an incomplete last pool is left out.
 
-    Motions at the same distance share the places they take together: a model that gives one motion for every text gets
-    1/32, 2/32, 3/32 and not, by the order of a sort, anything between nothing and everything.
+    Motions at equal distance share the ranks that they take together: a model with one motion for every text gets 1/32, 2/32
+    and 3/32. By the order of a sort it could get any value from 0 to 1.
 
     Raises:
-        EvaluationError: fewer pairs than a pool, or vectors that are not finite.
+        EvaluationError: there are fewer pairs than in a pool, or vectors are not finite.
     """
     n = len(texts)
     if n < pool:
@@ -62,7 +66,7 @@ def r_precision(texts: Array, motions: Array, generator: np.random.Generator, po
     for rows in order:
         gap = distances(texts[rows], motions[rows])
         own = np.diag(gap)[:, None]
-        tied = np.isclose(gap, own, rtol=1e-9, atol=1e-9)  # itself among them
+        tied = np.isclose(gap, own, rtol=1e-9, atol=1e-9)  # includes the text's own motion
         nearer = ((gap < own) & ~tied).sum(1)
         for top in TOP:
             hits[top] += float(np.clip((top - nearer) / tied.sum(1), 0.0, 1.0).sum())
@@ -81,7 +85,7 @@ def frechet_distance(a: Array, b: Array) -> float:
     symmetric: no complex root, and no small number added to singular covariances.
 
     Raises:
-        EvaluationError: fewer than two vectors on a side, or vectors that are not finite.
+        EvaluationError: there are fewer than two vectors on a side, or vectors are not finite.
     """
     a, b = _finite(a), _finite(b)
     if min(len(a), len(b)) < 2:
@@ -95,7 +99,7 @@ def frechet_distance(a: Array, b: Array) -> float:
 
 
 def diversity(motions: Array, generator: np.random.Generator, n_pairs: int = N_PAIRS) -> float:
-    """Mean distance of random pairs: 300 of them, 100 where there are not more motions than 300; fewer if need be."""
+    """Mean distance of `n_pairs` random pairs of motions; with at most `n_pairs` motions, of 100 pairs or one for each motion."""
     n = len(motions)
     pairs = n_pairs if n > n_pairs else min(100, n)
     first, second = (generator.choice(n, pairs, replace=False) for _ in range(2))
@@ -103,7 +107,7 @@ def diversity(motions: Array, generator: np.random.Generator, n_pairs: int = N_P
 
 
 def multimodality(motions: Array, generator: np.random.Generator, n_pairs: int = 10) -> float:
-    """Mean distance of random pairs of motions for the same text: (texts, generations, D)."""
+    """Mean distance of random pairs of motions for one text, from vectors (texts, generations, D)."""
     n = motions.shape[1]
     pairs = min(n_pairs, n)
     first, second = (generator.choice(n, pairs, replace=False) for _ in range(2))
@@ -111,7 +115,7 @@ def multimodality(motions: Array, generator: np.random.Generator, n_pairs: int =
 
 
 def _finite(vectors: Array) -> Array:
-    """The vectors in double precision; a NaN would be nearer than nothing and count as a hit."""
+    """The vectors in double precision; raises EvaluationError for NaN, which comparisons would count as a hit."""
     array = np.asarray(vectors, np.float64)
     if not np.isfinite(array).all():
         bad = int((~np.isfinite(array)).reshape(len(array), -1).any(1).sum())

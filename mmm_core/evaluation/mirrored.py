@@ -1,4 +1,4 @@
-"""Whether a mirrored prompt gives the mirrored motion: angles between limbs of the one and of the other's mirror image."""
+"""Measures whether a mirrored prompt gives the mirrored motion: angles between limbs of one and of the other's mirror image."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def limb_angles_deg(a: Motion, b: Motion) -> Array:
     """(T, bones + 1) degrees between the upper body's bones, and the head, of `a` mirrored and of `b`.
 
     Raises:
-        ValueError: the motions have no frames, or not as many as each other.
+        ValueError: the motions have no frames, or different numbers of frames.
     """
     if not len(a.joints_m) or len(a.joints_m) != len(b.joints_m):
         raise ValueError(

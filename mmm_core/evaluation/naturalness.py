@@ -1,12 +1,12 @@
-"""How motions move beside people: `python -m mmm_core.evaluation.naturalness ../shared/data ../shared/data/more`.
+"""Compares generated motion with people: `python -m mmm_core.evaluation.naturalness ../shared/data ../shared/data/more`.
 
-Wrists against their shoulders, at 20 fps, on clips in which a hand moves: jerk, speed, how much of the speed's spectrum lies above
-2 Hz and where its middle is. Trunk and head: how fast they turn, and whether they do so when the hands move; each joint is averaged
-over a quarter of a second for that, as the joints of a recording shake. The head's turn about its own axis is not in recordings
-of joints: the head here is the direction from neck to head.
+Measured of the wrists relative to their shoulders, at 20 fps and on clips in which a hand moves: jerk, speed, the share of the
+speed's spectrum above 2 Hz and the spectrum's centroid. Measured of trunk and head: their angular speed, and its correlation with
+the hands' speed; for these, joints are averaged over a quarter of a second, since the joints of recordings shake. Recordings of
+joints do not show the head's rotation about its own axis, so the direction from neck to head stands for the head.
 
-Real ones are the validation and test clips of the folders; `standing` are those in which the pelvis stays within 0.3 m, as a robot
-without legs does. What a recording adds of its own (marker noise, solved joints) is in the real figures.
+Real motions are the validation and test clips of the folders; `standing` are those in which the pelvis stays within 0.3 m, as
+with a robot without legs. Errors of the recordings (marker noise, solved joints) are part of the real figures.
 """
 
 from __future__ import annotations
@@ -41,11 +41,16 @@ TRUNK_HEAD = (
     "trunk_deg_s", "chest_deg_s", "head_on_chest_deg_s", "head_deg_s", "chest_with_hands", "head_with_hands",
 )  # fmt: skip
 MEASURES = (*WRISTS, *TRUNK_HEAD)
-"""Trunk: chest against pelvis. The last two are correlations of angular speed with the faster wrist's, both over 0.4 s."""
+"""Names of all measures. The trunk's speed is that of the chest against the pelvis; the last two are correlations of an angular
+speed with the speed of the faster wrist, both averaged over 0.4 s."""
 MOVES_M_S = 0.3
+"""Peak speed of a wrist, metres a second, from which on a clip is measured."""
 SHORTEST_FRAMES = 40
+"""Frames of the shortest clip that is measured."""
 STANDING_M = 0.3
+"""Metres within which the pelvis of a standing person stays."""
 _SMOOTH_FRAMES, _TOGETHER_FRAMES = 5, 8
+"""Frames over which joints, and over which correlated speeds, are averaged."""
 _PEAK_SPEED = MEASURES.index("peak_speed_m_s")
 
 
@@ -67,7 +72,7 @@ def measure(joints_m: Array) -> Array:
 
 
 def stands(joints_m: Array) -> bool:
-    """Whether the pelvis stays where it is."""
+    """Whether the pelvis stays within `STANDING_M`."""
     return float(np.linalg.norm(np.ptp(joints_m[:, 0][:, [0, 2]], axis=0))) < STANDING_M
 
 
@@ -82,11 +87,11 @@ def real_clips(folders: Sequence[Path]) -> list[Array]:
 
 
 def compare(real: Sequence[Array], made: Sequence[Array]) -> dict[str, Any]:
-    """10th, 50th and 90th percentile of each measure, and the share of what is made that lies between the real 10th and 90th.
+    """10th, 50th and 90th percentile of each measure, and the share of `made` between the 10th and 90th percentile of `real`.
 
     Args:
         real: joints (T, 22, 3) of recordings.
-        made: the same of motions that are compared with them.
+        made: joints (T, 22, 3) of motions that are compared with the recordings.
     """
     r, m = _measured(real), _measured(made)
     low, high = np.percentile(r, [10, 90], axis=0)
@@ -117,9 +122,9 @@ def generated(engine: Engine, families: Iterable[str], n_each: int) -> list[Moti
 
 
 def figures(folders: Sequence[Path], n_synthesised: int = 250, seed: int = 21, n_each: int = 2) -> dict[str, Any]:
-    """The tables of the corpus, of the model, and of the model with `mmm_core.motion.life`, which keeps the fidelity.
+    """Comparisons of the corpus, the model, and the model with `mmm_core.motion.life` with recordings, and the model's fidelity.
 
-    The model's are of every second family: the sizes of `life` were chosen by the other half.
+    Motions of the model are of every second family; the sizes of `life` were chosen by the other half of the families.
     """
     real = real_clips(folders)
     standing = [joints for joints in real if stands(joints)]
@@ -177,7 +182,7 @@ def _direction_deg_s(v: Array) -> Array:
 
 
 def _together(a: Array, b: Array) -> float:
-    """Correlation of two speeds over time; 0 where one does not change."""
+    """Correlation of two speeds over time; 0 if one of them is constant."""
     a, b = (uniform_filter1d(x, _TOGETHER_FRAMES) for x in (a, b))
     return float(np.corrcoef(a, b)[0, 1]) if a.std() > 1e-9 and b.std() > 1e-9 else 0.0
 

@@ -1,7 +1,7 @@
-"""Motions of people and their captions, in the features of the model to be measured.
+"""Reads motions of people and their captions, in the features of the measured model.
 
-Rotation channels depend on the rest directions of their source (`checkpoint.Model.rest_pose`). A HumanML3D folder
-is brought to ours through its joint positions; the other way needs the body model that the data set was made with.
+Rotation channels depend on the rest directions of their source (`checkpoint.Model.rest_pose`). Features of a HumanML3D folder
+are converted to ours through joint positions; the opposite conversion would need the body model of that data set.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from mmm_core.motion.features import features_from_joints, joints_from_positions
 
 @dataclass(frozen=True)
 class Pair:
-    """A motion of a person, whole tokens long, and one of its captions.
+    """A motion of a person, cut to whole tokens, and one of its captions.
 
     Attributes:
         features: (T, F).
         text: the caption.
-        words: its "word/POS" tokens, where the data set has them.
-        motion: number of the motion: pairs of one motion share it.
+        words: "word/POS" tokens of the caption; empty if the data set has none.
+        motion: number of the motion, which all pairs of the motion share.
     """
 
     features: NDArray[np.float32]
@@ -42,7 +42,7 @@ def read_pairs(folder: Path, splits: Sequence[Split]) -> list[Pair]:
     """Pairs of a data folder of either kind, one for each caption, in the folder's own features.
 
     Raises:
-        TrainingDataError: no pair, or the folder cannot be read.
+        TrainingDataError: there is no pair, or the folder cannot be read.
     """
     pairs: list[Pair] = []
     for number, (features, captions) in enumerate(_motions(folder, splits)):
@@ -65,7 +65,7 @@ def pairs_for(engines: Sequence[Engine], folder: Path, splits: Sequence[Split]) 
 
     Raises:
         TrainingDataError: as `read_pairs`.
-        EvaluationError: the models differ in their features, or the folder's cannot be brought to theirs.
+        EvaluationError: the models differ in their features, or the folder's features cannot be converted to them.
     """
     forms = {(engine.model.rest_pose, n_features(engine)) for engine in engines}
     if len(forms) > 1:
@@ -85,7 +85,7 @@ def pairs_for(engines: Sequence[Engine], folder: Path, splits: Sequence[Split]) 
 
 
 def folder_rest_pose(folder: Path) -> str:
-    """The rest directions of a folder's rotations."""
+    """Definition of a folder's features, as `checkpoint.Model.rest_pose`."""
     return "mmmd" if (folder / "clips.jsonl").is_file() else "humanml3d"
 
 
@@ -95,7 +95,7 @@ def n_features(engine: Engine) -> int:
 
 
 def to_our_rest_pose(features: NDArray[np.float32]) -> NDArray[np.float32]:
-    """HumanML3D's (T, 263) features -> ours, through the joint positions: bones then show no twist."""
+    """HumanML3D's (T, 263) features -> ours, through joint positions, so that bones have no twist."""
     return features_from_joints(joints_from_positions(features))
 
 

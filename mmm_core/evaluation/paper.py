@@ -1,4 +1,4 @@
-"""The tables of the paper's section 5, on whatever data and checkpoints are at hand.
+"""Computes the tables of the paper's section 5 for given data and checkpoints.
 
 1 (HumanML3D) and 2 (KIT-ML): real motion, the tokenizer's reconstruction, generation. 3: speed against quality. 4: editing in
 time. 5: editing the upper body. 6: ablations, over steps with one checkpoint, and over the differences between the given
@@ -38,7 +38,7 @@ from mmm_core.generate.engine import Engine
 from mmm_core.model.sampling import fill
 
 Table = dict[str, dict[str, Interval | float | int]]
-"""Lines by name, each with its columns."""
+"""Lines by name, each with its columns by name."""
 STEPS = (2, 4, 6, 10, 16)
 STRETCHES: dict[str, tuple[tuple[float, float], ...]] = {
     "in-betweening": ((0.25, 0.75),),
@@ -46,11 +46,11 @@ STRETCHES: dict[str, tuple[tuple[float, float], ...]] = {
     "prefix (the rest is made)": ((0.5, 1.0),),
     "suffix (the rest is made)": ((0.0, 0.5),),
 }
-"""Segments generated anew, as shares of the motion; together half of it in every task."""
+"""Segments that each task generates anew, as shares of the motion's length; together they are half of the motion."""
 
 
 def for_evaluation(engine: Engine, temperature: float | None = None) -> Engine:
-    """The engine with the settings of a measurement: temperature 1 for the released model, as its authors do, our own for ours."""
+    """The engine with the temperature of a measurement: by default 1 for the released model, as in the paper, else its own."""
     if temperature is None:
         temperature = 1.0 if engine.settings.official else engine.settings.temperature
     return _with_settings(engine, temperature=temperature)
@@ -59,9 +59,9 @@ def for_evaluation(engine: Engine, temperature: float | None = None) -> Engine:
 def comparison(
     reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, progress: Progress, each: int = N_MODALITY
 ) -> Table:
-    """Tables 1 and 2; `each` motions for a text give MModality.
+    """Tables 1 and 2; MModality is measured with `each` motions for a text.
 
-    The line of halves gives the FID between two halves of the real motions.
+    A line of its own gives the FID between two halves of the real motions.
     """
     return {
         "real motion": {**measure_same(reader, pairs, _real, repeats)},
@@ -99,7 +99,7 @@ def editing_in_time(reader: Reader, engine: Engine, pairs: Sequence[Pair], repea
 def editing_the_upper_body(
     reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, progress: Progress
 ) -> Table:
-    """Table 5: the lower body stays (or all but the arms, by our parts); empty for a model without parts."""
+    """Table 5: the lower body stays (with our body parts: all but the arms); empty for a model without body parts."""
     names = part_names(engine)
     upper = [i for i, name in enumerate(names) if name == "upper" or name.endswith("_arm")]
     if not upper:
@@ -115,7 +115,7 @@ def editing_the_upper_body(
 def ablations(
     reader: Reader, engines: dict[str, Engine], pairs: Sequence[Pair], repeats: int, progress: Progress
 ) -> Table:
-    """Table 6: steps with the first checkpoint, then each checkpoint under its recipe's description."""
+    """Table 6: several numbers of steps with the first checkpoint, then each checkpoint with facts of its recipe."""
     table: Table = {}
     for steps, other in _with_steps(next(iter(engines.values()))):
         table[f"{steps} steps"] = {**measure(reader, pairs, _generate(other), repeats, progress)}

@@ -1,4 +1,4 @@
-"""The probe suite: generate every probe with several seeds and check what each motion shows."""
+"""The probe suite: generates every probe with several seeds and checks the motions against the probe's expectations."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from mmm_core.recognition import checks
 from mmm_core.recognition.signs import shows
 
 SLOW_CYCLE_S, FAST_CYCLE_S = 0.72, 0.64
-"""Longer from stroke to stroke is slow, shorter is fast; 0.6 to 0.7 s are usual."""
+"""Seconds from stroke to stroke above which a gesture is slow, and below which it is fast; 0.6 to 0.7 s are usual."""
 MIN_PART = 12
-"""Frames that each gesture of a sequence has at least."""
+"""Frames of each gesture of a sequence at least."""
 Generate = Callable[[str, int], Motion]
 
 
 def judge(probe: Probe, shown: PostureFeatures, with_pose: bool = False) -> dict[str, bool]:
-    """Which of a probe's expectations a motion meets; only those the probe has, and its family's sign if asked for."""
+    """Whether a motion meets each expectation of a probe; `with_pose` adds the sign of the probe's family."""
     if probe.then is not None:
         return {"order": _in_order(probe, probe.then, shown)}
     verdict = {"limb": checks.limb(shown) == probe.limb}
@@ -45,7 +45,7 @@ def judge(probe: Probe, shown: PostureFeatures, with_pose: bool = False) -> dict
 
 
 def _in_order(first: Probe, second: Probe, shown: PostureFeatures) -> bool:
-    """Whether some moment parts the motion into the first gesture and the second, and none into second and first."""
+    """Whether the motion can be divided at some frame into first and second gesture, and at none into second and first."""
     n_frames = len(shown.head_yaw_deg)
 
     def parts(a: Probe, b: Probe, t: int) -> bool:
@@ -67,10 +67,15 @@ def evaluate(
     showable: Mapping[str, frozenset[str]] | None = None,
     probes: Sequence[Probe] | None = None,
 ) -> dict[str, Any]:
-    """Shares of expectations met over all probes and seeds, refused ones counted as not met, and the worst texts.
+    """Shares of expectations met over all probes and seeds, and the worst texts; a refused probe meets none.
 
-    With `showable` (`robot_capability.py`) the same for those expectations alone that a robot can meet, as "of_showable". Without
-    `probes` the development set is taken.
+    Args:
+        generate: (text, seed) -> motion.
+        seeds: seeds of each probe.
+        progress: called with the number of motions done.
+        showable: expectations that a robot can meet, by text (`robot_capability.py`); the shares of these alone are then given
+            as "of_showable".
+        probes: None takes the development set.
     """
     probes = PROBES if probes is None else probes
     met: dict[str, list[bool]] = defaultdict(list)

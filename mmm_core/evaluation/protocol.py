@@ -1,9 +1,9 @@
-"""The evaluation protocol: real, reconstructed and generated motions against their texts, repeated.
+"""The evaluation protocol: measures real, reconstructed and generated motions against their texts, several times.
 
-MMM (arXiv 2312.03596) sec. 5 after Guo et al. 2022: every motion of the split takes part once in a repeat, with one of its
-captions at random; generated motions have the real ones' lengths; pools of 32 are drawn from all of them; everything is
-repeated with other seeds for a 95 % interval. Where there are fewer than 32 motions there is no R-precision; with fewer
-vectors than dimensions the covariances are singular and FID says little: `n` stands beside every figure.
+MMM (arXiv 2312.03596) sec. 5 after Guo et al. 2022: in each repeat every motion of the split takes part once, with one of its
+captions at random; generated motions have the lengths of the real ones; pools of 32 are drawn from all motions; the repeats, with
+different seeds, give a 95 % interval. Fewer than 32 motions give no R-precision; with fewer vectors than dimensions the
+covariances are singular and FID says little. Therefore `n` stands beside every figure.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from mmm_core.model.tokens import FRAMES_PER_TOKEN
 
 GENERATE_BATCH = 16
 N_MODALITY_TEXTS, N_MODALITY = 100, 30
-"""MModality: 30 motions for each of 100 texts (Guo et al.; the released MMM code makes 11 for every text)."""
+"""Texts, and motions of each, for MModality (Guo et al.; the released MMM code makes 11 motions for every text)."""
 Progress = Callable[[str], None]
 Make = Callable[[Sequence[Pair], int], Motions]
 """(pairs, seed) -> a motion for each pair."""
@@ -35,7 +35,7 @@ Row = dict[str, Interval]
 
 
 def text_states(engine: Engine, pairs: Sequence[Pair]) -> TextStates:
-    """States of the pairs' captions as they stand: no caption is refused or shortened here."""
+    """Encoder states of the pairs' captions, of which none is refused or shortened."""
     return engine.read([p.text for p in pairs])
 
 
@@ -46,7 +46,7 @@ def seeds_of(pairs: Sequence[Pair], first: int, seed: int) -> list[int]:
 
 @torch.inference_mode()
 def generate(engine: Engine, pairs: Sequence[Pair], seed: int) -> Motions:
-    """A motion for each caption, as long as the real one."""
+    """A motion for each caption, as long as the real motion."""
     made: Motions = []
     for i in range(0, len(pairs), GENERATE_BATCH):
         some = pairs[i : i + GENERATE_BATCH]
@@ -58,19 +58,19 @@ def generate(engine: Engine, pairs: Sequence[Pair], seed: int) -> Motions:
 
 @torch.inference_mode()
 def decode(engine: Engine, rows: Sequence[torch.Tensor]) -> Motions:
-    """Features of rows of ids, each decoded by itself: padding would reach into a motion's end."""
+    """Features of rows of ids, each decoded by itself, because padding would change a motion's end."""
     return [engine.model.tokenizer.decode(ids[None])[0].numpy() for ids in rows]
 
 
 @torch.inference_mode()
 def reconstruct(engine: Engine, pairs: Sequence[Pair]) -> Motions:
-    """The real motions through the tokenizer."""
+    """The real motions, encoded and decoded."""
     tokenizer = engine.model.tokenizer
     return decode(engine, [tokenizer.encode(torch.from_numpy(p.features)[None])[0] for p in pairs])
 
 
 def one_caption_each(pairs: Sequence[Pair], generator: np.random.Generator) -> list[int]:
-    """Rows of `pairs`: one for each motion, its caption at random."""
+    """Rows of `pairs`: for each motion, the row of one of its captions at random."""
     rows_of: dict[int, list[int]] = {}
     for row, pair in enumerate(pairs):
         rows_of.setdefault(pair.motion, []).append(row)
@@ -89,7 +89,7 @@ def measure(
 
 
 def measure_same(reader: Reader, pairs: Sequence[Pair], make: Make, repeats: int) -> Row:
-    """Metrics of motions that depend on no seed and no caption (real or reconstructed): computed once, then repeated."""
+    """Metrics of motions that depend on no seed and no caption (real or reconstructed), which `make` computes once."""
     firsts = {pair.motion: pair for pair in reversed(pairs)}
     made = dict(zip(firsts, reader.motions(make(list(firsts.values()), 0)), strict=True))
     return _measure(

@@ -1,4 +1,4 @@
-"""An evaluator with the words it reads: motions and captions to vectors."""
+"""An evaluator together with its word vectors, which maps motions and captions to vectors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Motions = list[NDArray[np.float32]]
 
 
 class Reader:
-    """Motions and captions to vectors, by MiniLM's states (ours) or GloVe vectors (the published evaluator)."""
+    """Maps motions and captions to vectors, with MiniLM's states (our evaluator) or GloVe vectors (the published one)."""
 
     def __init__(self, evaluator: Evaluator, words: MiniLm | WordVectors) -> None:
         self.evaluator, self.words = evaluator, words
@@ -30,10 +30,10 @@ class Reader:
             raise EvaluationError(f"words of width {has}", f"{evaluator.config.word}, as the evaluator was trained on")
 
     def fit(self, engine: Engine) -> None:
-        """Make ready for the motions of a model.
+        """Prepare for the motions of a model, which are converted if the evaluator reads another definition of features.
 
         Raises:
-            EvaluationError: the evaluator reads other features than the model makes.
+            EvaluationError: the evaluator cannot read the model's features.
         """
         reads, made = self.evaluator.config.n_features, n_features(engine)
         if reads != made:
@@ -56,7 +56,7 @@ class Reader:
         """(N, D) vectors of the pairs' captions.
 
         Raises:
-            EvaluationError: GloVe vectors are to read captions without tokens.
+            EvaluationError: the evaluator reads GloVe vectors, and a caption has no tokens.
         """
         parts: list[torch.Tensor] = []
         for i in range(0, len(pairs), READ_BATCH):

@@ -1,7 +1,7 @@
-"""Reconstruction quality of a tokenizer on the corpus's own motions: the gate before a model is trained on its tokens.
+"""Measures the reconstruction quality of a tokenizer on the corpus's motions, before a model is trained on its tokens.
 
 The mean joint error hides the losses of a tokenizer: a head's turn or a trunk's roll moves joints by a few millimetres, and
-whole codebooks have been trained that lost them altogether. So motions are judged before and after, as probes are judged.
+whole codebooks have been trained that lost these movements. So motions are judged as probes before and after reconstruction.
 """
 
 from __future__ import annotations
@@ -26,13 +26,17 @@ from mmm_core.motion.posture_features import PostureFeatures, posture_features
 Features = NDArray[np.float32]
 ANGLES = ("trunk_yaw_deg", "trunk_pitch_deg", "trunk_roll_deg", "head_yaw_deg", "head_pitch_deg", "head_roll_deg")
 MOVED_DEG = 8.0
-"""Degrees of range from which a motion counts for an angle."""
+"""Degrees that an angle must range over for a motion to count for it."""
 LEAST_AMPLITUDE = 0.85
+"""Share of an angle's amplitude that must be kept."""
 LEAST_HEAD_YAW = 0.9
+"""Share of the head's yaw amplitude that must be kept."""
 LEAST_COUNTS = 0.97
-"""Share of counted motions whose strokes are the same within one."""
+"""Share of probes with a number whose strokes must be right within one."""
 N_EACH = 8
+"""Motions of each family."""
 _MOST_DRAWS = 100
+"""Draws of a performance at most, until one is short enough."""
 
 
 def shown(features: Features) -> PostureFeatures:
@@ -54,18 +58,19 @@ def performed(probe: Probe, seed: int) -> Features:
 
     spec = ClipSpec(tuple(gesture(p) for p in ((probe, probe.then) if probe.then else (probe,))))
     rng = np.random.default_rng(seed)
-    drawn = (synthesise_spec(spec, rng) for _ in range(_MOST_DRAWS))  # a slow one is longer than a clip may be
+    drawn = (synthesise_spec(spec, rng) for _ in range(_MOST_DRAWS))  # a slow performance may exceed a clip's length
     clip = next((clip for clip in drawn if clip is not None), None)
     assert clip is not None, f"{probe.text}: longer than a clip may be in each of {_MOST_DRAWS} draws"
     return clip.features
 
 
 def tokenizer_figures(tokenizer: Tokenizer) -> dict[str, Any]:
-    """Share of each angle's amplitude that is kept, of the probes' expectations that are met before and after, and faults.
+    """Amplitudes that a tokenizer keeps, expectations of probes that are met before and after reconstruction, and faults.
 
     Returns:
-        "kept": for each angle the mean share and the worst family's; "met" and "met_before": share of each expectation;
-        "faults": what falls below the gate, in words; "n".
+        "kept": for each angle the mean share of its amplitude, and the worst family's share; "met" and "met_before": share of
+        each expectation that is met after and before reconstruction; "faults": descriptions of figures below the gate; "n":
+        number of motions.
     """
 
     def through(features: Features) -> Features:
@@ -94,7 +99,7 @@ def tokenizer_figures(tokenizer: Tokenizer) -> dict[str, Any]:
 
 
 def _kept(through: Callable[[Features], Features]) -> tuple[dict[str, dict[str, Any]], int]:
-    """For each angle the share of its amplitude kept, over all families of head and trunk."""
+    """For each angle the share of its amplitude that is kept, over all families of head and trunk, and the number of motions."""
     found: dict[str, dict[str, list[float]]] = {angle: defaultdict(list) for angle in ANGLES}
     n = 0
     for name in (name for name, family in FAMILIES.items() if family.limb in ("head", "trunk")):

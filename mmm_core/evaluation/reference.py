@@ -23,9 +23,9 @@ Array = NDArray[np.floating]
 END_S = 0.3
 """Seconds of standing after a gesture."""
 ARM_MOVES_M, ANGLE_MOVES_M = 0.05, 0.06
-"""Range from which a channel counts as acting: metres for a hand, scaled angle for head and trunk."""
+"""Range from which a channel counts as acting: metres of a hand, and of head and trunk with angles scaled to metres."""
 ACTING_SHARE = 0.5
-"""Share of the largest arm's range from which the other arm acts too."""
+"""Share of the larger range of the two arms from which the other arm acts, too."""
 _HEAD_DEG_PER_M, _TRUNK_DEG_PER_M, _FOREARM_M, _TWIST_M_PER_RAD, _LIFT = 100.0, 60.0, 0.25, 0.1, 3.0
 
 
@@ -55,7 +55,7 @@ class Reference:
         gesture: the gesture.
         shown: posture features of its motion.
         core: frames of the gesture itself, without its onset and return.
-        acting: channels that make the strokes, or take the pose.
+        acting: channels that make the strokes or take the pose.
         axes: direction of the largest extent of each acting channel.
         is_path: whether the palms move round a closed path.
     """
@@ -74,7 +74,7 @@ class Reference:
 
 @lru_cache(maxsize=512)
 def reference(g: Gesture, otherwise: bool = False) -> Reference:
-    """The clean performance of a gesture that begins and ends at rest; `otherwise` in the other of two ways."""
+    """The reference performance of a gesture, which begins and ends at rest; `otherwise` takes the second of two variants."""
     rng = np.random.default_rng(0)
     score = Score(rng, rest_pose(Calm(rng)), follow_through=0.02, beat_s=BEAT_S, otherwise=otherwise)
     FAMILIES[g.family].perform(score, replace(g, hold_s=g.hold_s or 1.2 * FAMILIES[g.family].holds))

@@ -1,4 +1,4 @@
-"""The reports of `mmmd eval real` and `mmmd eval paper`: measured tables as plain numbers, with remarks on the sample."""
+"""Makes the reports of `mmmd eval real` and `mmmd eval paper`: measured tables as plain numbers, with remarks on the sample."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from mmm_core.imports.datasets import Split
 from mmm_core.inference.checkpoint import EVALUATOR_FILE, file_hash, load_text_encoder
 
 TABLES = {1: "comparison", 3: "speed", 4: "editing in time", 5: "editing the upper body", 6: "ablations"}
-"""Numbers and subjects; KIT-ML's comparison is number 2."""
+"""Subjects of the paper's tables by number; the comparison on KIT-ML is number 2."""
 KIT_FEATURES = 251
 SPEED_REPEATS, ABLATION_REPEATS = 3, 5
 """Most repeats in tables 3 and 6, which measure many models."""
@@ -31,7 +31,7 @@ COLUMNS = ("R1", "R2", "R3", "FID", "MM-Dist", "Diversity", "MModality", "AITS s
 
 
 def default_splits(data: Path) -> tuple[Split, ...]:
-    """The held-out splits: test; in the small clips.jsonl layout also val, on which no choice here depends."""
+    """The held-out splits: "test", and for the small clips.jsonl layout also "val", on which no choice of this project depends."""
     return ("val", "test") if (data / "clips.jsonl").is_file() else ("test",)
 
 
@@ -41,14 +41,14 @@ def load_reader(
     """The evaluator to measure with, and its file's hash.
 
     Args:
-        evaluator: ours (None: the one that ships), or the published one if `glove` is given.
+        evaluator: file of our evaluator (None: the one that ships), or of the published one if `glove` is given.
         glove: folder of the published word vectors.
-        mean: feature means that the published one was trained with.
-        std: their standard deviations.
+        mean: file of the feature means that the published evaluator was trained with.
+        std: file of their standard deviations.
 
     Raises:
-        CheckpointError: a file is missing or is not what it should be.
-        EvaluationError: the words are not those that the evaluator was trained on.
+        CheckpointError: a file is missing or of another kind.
+        EvaluationError: `mean` or `std` is missing, or the word vectors do not fit the evaluator.
     """
     path = evaluator or EVALUATOR_FILE
     if glove is None:
@@ -67,7 +67,7 @@ def load_reader(
 def real_figures(
     reader: Reader, engine: Engine, pairs: Sequence[Pair], repeats: int, each: int, progress: Progress
 ) -> dict[str, Any]:
-    """Real captions: generated motion against real motion, by the two ratios of the paper."""
+    """Figures on real captions: generated motion against real and reconstructed motion, with two ratios as a summary."""
     table = paper.comparison(reader, engine, pairs, repeats, progress, each)
     lines = {name: {key: number(v) for key, v in row.items()} for name, row in table.items()}
     made, real, again = lines["generated"], lines["real motion"], lines["tokenizer"]
@@ -97,7 +97,7 @@ def paper_figures(
     wanted: Sequence[int],
     progress_of: Callable[[str], Progress],
 ) -> dict[str, Any]:
-    """The paper's tables by their titles, lines and columns; an interval is [mean, half its width]."""
+    """The paper's tables by title, line and column; an interval is [mean, half its width]."""
     engine = next(iter(engines.values()))
     makers: dict[int, Callable[[Progress], paper.Table]] = {
         1: lambda p: paper.comparison(reader, engine, pairs, repeats, p, each),
@@ -118,10 +118,10 @@ def paper_figures(
 
 
 def measured_pairs(reader: Reader, engines: Sequence[Engine], data: Path, splits: Sequence[Split]) -> list[Pair]:
-    """The pairs of `data`, when model, folder and evaluator fit each other.
+    """The pairs of `data`, after checking that models, folder and evaluator fit each other.
 
     Raises:
-        EvaluationError: they do not.
+        EvaluationError: they do not fit.
         TrainingDataError: the folder cannot be read.
     """
     for engine in engines:
@@ -130,7 +130,7 @@ def measured_pairs(reader: Reader, engines: Sequence[Engine], data: Path, splits
 
 
 def sizes(reader: Reader, pairs: Sequence[Pair]) -> dict[str, Any]:
-    """`n` motions, `n_texts` different captions, and remarks on metrics that need more of them."""
+    """Numbers of motions (`n`) and of different captions (`n_texts`), and remarks on metrics that need more (`caveat`)."""
     n, n_texts = len({p.motion for p in pairs}), len({p.text for p in pairs})
     width = reader.evaluator.config.embedding
     said = [f"{n} motions with {n_texts} different captions; the literature measures 4,400 (HumanML3D)"]

@@ -1,4 +1,4 @@
-"""The probes that a robot is able to show: nobody without a waist bows, however well the text was understood.
+"""Finds the expectations of probes that a robot can meet: a robot without a waist cannot bow, whatever the model generates.
 
 The corpus itself performs each probe and the robot follows. An expectation that is not met then is beyond the robot, or
 beyond the retargeting. The remaining expectations measure the model and not the body.
@@ -30,8 +30,8 @@ def showable(
 
     Args:
         on_robot: maps a motion to a person in the robot's poses (`retarget.robot_to_human.shown_on_a_person`).
-        progress: told how many probes are done.
-        probes: those that are performed.
+        progress: called with the number of probes done.
+        probes: the probes to perform.
     """
     found: dict[str, frozenset[str]] = {}
     for probe in probes:

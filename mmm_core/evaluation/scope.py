@@ -15,14 +15,14 @@ from mmm_core.language.scope import ScopeVerdict
 from mmm_core.motion.skeleton import Array
 
 SHOWN = 12
-"""Most texts listed where the score fails."""
+"""Texts at most that the figures list as wrongly refused and as wrongly accepted."""
 
 
 def auroc(inside: Sequence[float] | Array, outside: Sequence[float] | Array) -> float:
     """Probability that a text inside scores above one outside, ties counted half (Mann and Whitney 1947).
 
     Raises:
-        ValueError: one of the two is empty or has a NaN.
+        ValueError: one of the two has no score or a NaN.
     """
     a, b = np.asarray(inside, np.float64), np.asarray(outside, np.float64)
     if not len(a) or not len(b) or np.isnan(a).any() or np.isnan(b).any():
@@ -36,9 +36,9 @@ def auroc(inside: Sequence[float] | Array, outside: Sequence[float] | Array) -> 
 def scope_figures(
     engine: Engine, inside: Sequence[str], outside: Mapping[str, Sequence[str]], mixed: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """AUROC, refusals and acceptances by kind, and milliseconds a decision, one text at a time.
+    """AUROC, refusals and acceptances by kind, and milliseconds for each decision, one text at a time.
 
-    Text encoding is included. Beside the time on the clock stands the processor's, which other work does not stretch.
+    Times include text encoding. Wall-clock time and processor time are given; other programs hardly change the latter.
     """
     engine.understand("warm up")
     spent_ms: list[tuple[float, float]] = []

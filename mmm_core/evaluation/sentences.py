@@ -1,4 +1,4 @@
-"""Sentences as people say them: each is generated with several seeds and judged by what its motion shows, not by its reading."""
+"""Measures sentences as people say them: each is generated with several seeds and judged by its motion, not by its reading."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _PART_STEP = 4
 
 
 def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool]:
-    """Which expectations of a sentence a motion meets; tempo and size are judged by `manner.judge_manner`."""
+    """Whether a motion meets each expectation of a sentence, except tempo and size, which `manner.judge_manner` judges."""
     verdict: dict[str, bool] = {}
     if sentence.nothing:
         return {"denial": checks.limb(shown) == ""}
@@ -46,9 +46,9 @@ def judge_sentence(sentence: Sentence, shown: PostureFeatures) -> dict[str, bool
 
 
 def seen_at_once(commands: Sequence[Command], shown: PostureFeatures) -> bool:
-    """Whether a motion shows several commands, each on its own limb; arms without a side act on different sides.
+    """Whether a motion shows several commands, each on its own limb; arms without a side must act on different sides.
 
-    Signs of head and trunk ask for other limbs to be still, so the limbs of the other commands are taken to be.
+    Signs of head and trunk require other limbs to be still, so each command is judged as if the limbs of the others were still.
     """
     arms = [c for c in commands if c.limb == "arm"]
     others = [c for c in commands if c.limb != "arm"]
@@ -75,13 +75,13 @@ def evaluate_sentences(
     """Shares of expectations met over all sentences and seeds, of whole sentences by kind, and the sentences missed most.
 
     Args:
-        generate: maps a sentence and a seed to its motion; one without frames shows nothing.
-        plain: the same for the plain sentence that tempo and size are compared with, and for a sentence without slips.
-        sentences: those that are judged.
-        seeds: seeds of each.
+        generate: (sentence, seed) -> motion; a motion without frames meets no expectation of movement.
+        plain: generates the plain sentence that tempo and size are compared with, and a sentence without slips.
+        sentences: the sentences to judge.
+        seeds: seeds of each sentence.
         progress: called with the number of motions done.
-        showable: expectations that the checks see when the corpus itself performs a sentence, by its text, as
-            `showable_expectations`; the shares of these alone are given as "of_showable".
+        showable: expectations that are met when the corpus itself performs a sentence, by text, from `showable_expectations`;
+            the shares of these alone are given as "of_showable".
     """
     met: dict[str, list[bool]] = defaultdict(list)
     whole: dict[str, list[bool]] = defaultdict(list)
@@ -123,7 +123,7 @@ def evaluate_sentences(
 def showable_expectations(
     sentences: Sequence[Sentence], on_robot: Callable[[Motion], Motion] = lambda motion: motion
 ) -> dict[str, frozenset[str]]:
-    """Expectations of sentences of one command that are seen when the corpus performs it, on a person or on a robot."""
+    """Expectations that are met when the corpus performs a sentence of one command, on a person or on a robot, by text."""
     single = [(s.text, s.commands[0][0]) for s in sentences if len(s.commands) == 1 and len(s.commands[0]) == 1]
     found = robot_showable(on_robot, probes=[replace(_probe(c), text=text) for text, c in single])
     return {text: keys | {"denial", "tempo", "size"} for text, keys in found.items()}
@@ -149,7 +149,7 @@ def _verdict(sentence: Sentence, motion: Motion) -> dict[str, bool]:
 
 
 def _nobody() -> PostureFeatures:
-    """What a person who stands still shows."""
+    """Posture features of a person who stands still."""
     joints = np.repeat(standing_joints().reshape(1, 22, 3), 30, 0)
     return posture_features(joints, np.tile([1.0, 0, 0, 0], (30, 1)), np.zeros((30, 2)))
 
@@ -183,7 +183,7 @@ def _shows(c: Command, shown: PostureFeatures) -> bool:
 
 
 def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool:
-    """Whether moments part the motion into the steps in order; of two steps, no moment of rest into the other order."""
+    """Whether the motion can be divided into the steps in order and, for two steps, at no frame at rest in reverse order."""
     T = len(shown.head_yaw_deg)
     moments = range(MIN_PART, T - MIN_PART, _PART_STEP if len(steps) > 2 else 2)
     parts: dict[tuple[int, int], PostureFeatures] = {}
@@ -211,7 +211,7 @@ def _in_turn(steps: Sequence[Sequence[Command]], shown: PostureFeatures) -> bool
 
 
 def _at_rest(shown: PostureFeatures) -> np.ndarray:
-    """(T,) frames in which the body is nearer to the first frame than to the farthest: the way back of a lean is no lean."""
+    """(T,) whether the body is near its first pose in each frame, by `_REST`."""
     angles = [
         shown.head_yaw_deg,
         shown.head_pitch_deg,
@@ -226,7 +226,7 @@ def _at_rest(shown: PostureFeatures) -> np.ndarray:
 
 
 def _step_seen(steps: Sequence[Sequence[Command]], i: int, shown: PostureFeatures) -> bool:
-    """Whether a part shows a step: its limb, side and direction, and its sign where these do not tell it from a neighbour."""
+    """Whether a part of a motion shows a step: its limb, side and direction, and its sign if a neighbour shares these."""
     step = steps[i]
     if len(step) > 1:
         return seen_at_once(step, shown)

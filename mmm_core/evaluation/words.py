@@ -1,7 +1,7 @@
-"""Words as the published evaluator reads them: GloVe vectors and parts of speech, from a user's files.
+"""Word vectors for the published evaluator: GloVe vectors and parts of speech, from a user's files.
 
-`our_vab_data.npy` (N, 300), `our_vab_words.pkl` (N words) and `our_vab_idx.pkl` (word: row). The pickles are read
-without running anything in them. Tokens are "word/POS", as the data sets' text files hold them.
+The files are `our_vab_data.npy` (N, 300), `our_vab_words.pkl` (N words) and `our_vab_idx.pkl` (word: row). The pickles are read
+without running any code in them. Tokens are "word/POS", as in the data sets' text files.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from torch import Tensor
 from mmm_core.errors import CheckpointError, EvaluationError
 
 MAX_WORDS = 20
+"""Tokens of a caption that are read at most."""
 MARKS = ("unk", "sos", "eos")
-"""Words that every caption needs: for what is unknown or padded, its start and its end."""
+"""Marks that the vocabulary must contain: for unknown words and padding, for a caption's start and for its end."""
 PARTS_OF_SPEECH = (
     "VERB", "NOUN", "DET", "ADP", "NUM", "AUX", "PRON", "ADJ", "ADV",
     "Loc_VIP", "Body_VIP", "Obj_VIP", "Act_VIP", "Desc_VIP", "OTHER",
@@ -35,7 +36,7 @@ _PLACE = {word: kind for kind, words in _SPECIAL.items() for word in words.split
 
 
 class WordVectors:
-    """Vectors of words; `read` gives what `extractors.TextReader` takes."""
+    """Vectors of words; `read` makes the input of `extractors.TextReader`."""
 
     def __init__(self, vectors: dict[str, np.ndarray]) -> None:
         self.vectors = vectors
@@ -47,7 +48,7 @@ class WordVectors:
         A caption of more than twenty tokens is cut.
 
         Raises:
-            EvaluationError: a caption has no tokens, as those of a clips.jsonl folder.
+            EvaluationError: a caption has no tokens, as in a clips.jsonl folder.
         """
         if not all(captions):
             raise EvaluationError("captions without word/POS tokens", "a HumanML3D or KIT-ML folder for GloVe vectors")
@@ -70,10 +71,10 @@ class WordVectors:
 
 
 def read_vectors(folder: Path) -> WordVectors:
-    """The three files of a folder.
+    """The word vectors in the three files of a folder.
 
     Raises:
-        CheckpointError: one is missing, broken, or holds anything but words and numbers.
+        CheckpointError: a file is missing, broken, or holds anything but words and numbers.
     """
     paths = [folder / f"our_vab_{part}" for part in ("data.npy", "words.pkl", "idx.pkl")]
     for path in paths:
@@ -97,7 +98,7 @@ def read_vectors(folder: Path) -> WordVectors:
 
 
 class _NothingRuns(pickle.Unpickler):
-    """Refuses every class and function."""
+    """Unpickler that refuses every class and function."""
 
     def find_class(self, module: str, name: str) -> Any:
         raise pickle.UnpicklingError(f"it asks for {module}.{name}")
@@ -107,5 +108,5 @@ def _plain_pickle(path: Path) -> Any:
     try:
         with path.open("rb") as f:
             return _NothingRuns(f).load()
-    except Exception as error:  # a broken pickle can raise nearly anything; none of it has run code of the file
+    except Exception as error:  # a broken pickle can raise nearly any error, but no code of the file has run
         raise CheckpointError(path, "", f"not a plain pickle ({error})", "words or numbers; nothing was run") from None

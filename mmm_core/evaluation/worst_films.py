@@ -1,4 +1,4 @@
-"""Films of the families that `mmmd eval fidelity` finds worst: the corpus's own performance beside the model's."""
+"""Films of the families with the lowest fidelity (`mmmd eval fidelity`): the corpus's performance beside the model's."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from mmm_core.motion.features import recover
 
 @dataclass(frozen=True)
 class Ranking:
-    """What `mmmd eval fidelity` found: (family, share) of the worst families, the worst first, and how many were measured."""
+    """Figures of `mmmd eval fidelity`: (family, share) of the worst families, worst first, and the numbers measured."""
 
     worst: Sequence[tuple[str, float]]
     n_families: int
@@ -33,7 +33,7 @@ def read_ranking(path: Path) -> Ranking:
     """The ranking in a file that `mmmd eval fidelity --json` wrote.
 
     Raises:
-        TrainingDataError: the file holds none.
+        TrainingDataError: the file holds no ranking.
     """
     try:
         found = json.loads(path.read_text("utf-8"))
@@ -44,7 +44,7 @@ def read_ranking(path: Path) -> Ranking:
 
 
 def make_worst(engine: Engine, ranking: Ranking, out: Path) -> list[Path]:
-    """Write a film of each family's first held-out case and a page that shows them to `out`; what was written."""
+    """Write a film of each family's first held-out case and a page that shows them to `out`; returns the files."""
     written: list[Path] = []
     lines: list[str] = []
     for name, share in ranking.worst:
@@ -79,7 +79,7 @@ motion. Shares alone decide which families stand here, the alphabet among equal 
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Read the command line; exit status."""
+    """Run the command line; returns the exit status."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", 1)[0])
     parser.add_argument("fidelity", type=Path, help="output of `mmmd eval fidelity --json`")
     parser.add_argument("--out", type=Path, default=Path("docs/films"))

@@ -1,7 +1,7 @@
-"""Ablations (MMM sec. 5.4) on our data: one choice changed at a time, trained alike from nothing, measured alike.
+"""Ablations (MMM sec. 5.4) on our data: one choice is changed at a time, with equal training from new weights and equal measures.
 
-What is shared is made once: corpus, captions, and the tokenizer and the lengths of the shipped model. Each variant keeps its
-state and its figures in a folder of its own, so that a run that was cut goes on, and one more variant costs only itself.
+Variants share the corpus, its captions, and the tokenizer and length predictor of the shipped model. Each variant keeps its
+state and its figures in a folder of its own, so an interrupted run can be continued, and a new variant does not repeat the others.
 """
 
 from __future__ import annotations
@@ -37,8 +37,11 @@ from mmm_core.training.transformer_training import train_transformer
 log = logging.getLogger(__name__)
 
 BASE = "as shipped"
+"""Name of the variant without a change."""
 PROBE_SEEDS = 2
+"""Motions generated for each probe."""
 REAL_REPEATS, REAL_EACH = 5, 10
+"""Repeats of the measurement on real captions, and motions for each text of its MModality."""
 COUNTED_CLIPS = 2000
 """Clips of the corpus whose codes are counted."""
 
@@ -78,16 +81,17 @@ TOKENIZERS: Mapping[str, Variant] = {
 
 
 def run_ablations(recipe: Recipe, run: Run, data: Path, only: Sequence[str] = ()) -> dict[str, dict[str, Any]]:
-    """Train and measure every variant that has no figures yet; all figures, by variant.
+    """Train and measure every variant that has no figures yet; returns the figures of all, by variant.
 
     Args:
-        recipe: what every variant but for its one choice is; goes on from a checkpoint, whose tokenizer and lengths serve all.
-        run: where; variants have folders in it.
-        data: folder with clips.jsonl: its clips are mixed in, and its held-out captions measured.
+        recipe: recipe of every variant but for its one choice; its `start` is a checkpoint whose tokenizer and length predictor
+            serve all variants.
+        run: its folder gets a folder for each variant.
+        data: folder with clips.jsonl; its clips are mixed into the training, and its held-out captions are measured.
         only: names of variants; all when empty.
 
     Raises:
-        TrainingDataError: `only` names a variant that is not there, or the recipe has no `start`.
+        TrainingDataError: `only` names an unknown variant, or the recipe has no `start`.
     """
     known = {**TRANSFORMERS, **TOKENIZERS}
     if unknown := [name for name in only if name not in known]:
@@ -131,7 +135,7 @@ def _transformer_figures(shared: Stages, variant: Variant, run: Run, data: Path)
 
 
 def _measured(checkpoint: Path, data: Path) -> dict[str, Any]:
-    """Probes and real captions, as `mmmd eval` has them."""
+    """Figures of a checkpoint on probes and on real captions, as `mmmd eval` measures them."""
     engine = Engine.load(checkpoint)
     probes = evaluate(lambda text, seed: engine.generate(text, seed=seed).motion, range(PROBE_SEEDS))
     reader, _ = report.load_reader()
@@ -161,7 +165,7 @@ def _tokenizer_figures(shared: Stages, variant: Variant, run: Run, data: Path) -
 
 @torch.inference_mode()
 def _error_mm(tokenizer: Tokenizer, data: Path) -> float:
-    """Mean distance of joints after encoding and decoding held-out motion of people."""
+    """Millimetres that joints of held-out motions of people are moved on average by encoding and decoding."""
     errors: list[float] = []
     for split in report.default_splits(data):
         for features, _ in read_clips(data, split):
@@ -175,21 +179,21 @@ def _error_mm(tokenizer: Tokenizer, data: Path) -> float:
 
 
 def _in_place(features: NDArray[np.float32]) -> NDArray[np.float64]:
-    """(T, 22, 3) joints of a person who neither walks nor turns: steps add up, and tell nothing of a pose."""
+    """(T, 22, 3) joints without walking and turning: errors of steps add up, and do not concern the pose."""
     still = features.copy()
     still[:, :3] = 0.0
     return np.asarray(recover(still).joints_m, np.float64)
 
 
 def _codes_used(tokenizer: Tokenizer, clips: Sequence[Clip]) -> float:
-    """Share of the codes that the corpus uses at all, mean of the body parts."""
+    """Share of the codes that the corpus uses at least once, as a mean over the body parts."""
     ids = torch.cat(encode_clips(clips[:COUNTED_CLIPS], tokenizer))
     used = [len(ids[:, part].unique()) / tokenizer.config.n_codes for part in range(ids.shape[1])]
     return round(float(np.mean(used)), 3)
 
 
 def table(figures: Mapping[str, Mapping[str, Any]], names: Iterable[str]) -> str:
-    """Markdown: a line for each variant that has figures."""
+    """Markdown table with a line for each variant that has figures."""
     rows = {name: figures[name] for name in names if name in figures}
     if not rows:
         return ""

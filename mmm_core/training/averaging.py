@@ -1,7 +1,7 @@
-"""The mean of several models' weights, each trained on other clips, in the time and size of one model.
+"""Averages the weights of several models, each trained on other clips; the mean costs the time and size of one model.
 
-Models that went on from one start lie so near each other that the mean of their weights is a model too, often a better one than
-each by itself (Wortsman et al. 2022, "Model soups", the uniform soup).
+The weights of models trained further from one start are so similar that their mean is a working model too, often a better one
+than each by itself (Wortsman et al. 2022, "Model soups", the uniform soup).
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from mmm_core.errors import CheckpointError
 from mmm_core.inference.checkpoint import Model, file_hash, load_model, save_model
 
 LEARNT = ("transformer", "length")
-"""What is averaged; tokenizer, text tower and scope are the first model's."""
+"""Modules whose weights are averaged; tokenizer, text tower and scope are the first model's."""
 
 
 def average_models(paths: Sequence[Path], out: Path) -> None:
     """Write the mean of the checkpoints at `paths` to `out`.
 
     Raises:
-        CheckpointError: one cannot be read, or differs from the first in sizes, in what it has, or in its tokenizer: ids would
-            mean other motions.
+        CheckpointError: a checkpoint cannot be read, or differs from the first one in sizes, modules or tokenizer (its ids
+            would mean other motions).
     """
     mean, *others = (load_model(path) for path in paths)
     for path, other in zip(paths[1:], others, strict=True):
@@ -41,7 +41,7 @@ def average_models(paths: Sequence[Path], out: Path) -> None:
 
 
 def _told_once(models: Sequence[tuple[str, Mapping[str, object]]]) -> list[dict[str, object]]:
-    """Each model's hash with its provenance, which is left out where it stands already: of the same model or a start."""
+    """Each model's hash and provenance; a provenance that is already listed, for the same model or as a start, is left out."""
     told: set[object] = set()
     for _, provenance in models:
         start = provenance.get("start")
@@ -56,7 +56,7 @@ def _told_once(models: Sequence[tuple[str, Mapping[str, object]]]) -> list[dict[
 
 
 def _mean(states: Sequence[Mapping[str, Tensor]]) -> dict[str, Tensor]:
-    """Name by name; what is no weight (counters) is as in the first."""
+    """The mean of each tensor over `states`; integer tensors (counters) are those of the first."""
     return {
         name: torch.stack([s[name].float() for s in states]).mean(0).to(t.dtype) if t.is_floating_point() else t
         for name, t in states[0].items()

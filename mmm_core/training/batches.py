@@ -19,6 +19,7 @@ from mmm_core.model.vqvae import VqVae
 from mmm_core.training.run import written_whole
 
 ENCODE_BATCH = 64
+"""Captions that are encoded at once."""
 CORPUS = "corpus.npz"
 """File of the training motions in a run's folder."""
 
@@ -29,10 +30,11 @@ class Clip:
 
     Attributes:
         features: (T, F).
-        captions: sentences for what follows its seen tokens.
+        captions: sentences for the part of the motion after its seen tokens.
         is_real: whether a person made it.
-        n_seen: tokens at its beginning that show another motion, which it goes on from: given, not learnt.
-        n_rest: tokens of rest added behind its own end; below 0, the number of its last tokens that are cut off.
+        n_seen: tokens at the beginning that show another motion, which this one continues; they are given to the model and
+            not learnt.
+        n_rest: tokens of rest added after the gesture's end; if negative, the gesture's last -`n_rest` tokens are cut off.
     """
 
     features: NDArray[np.float32]
@@ -53,13 +55,13 @@ class CaptionStates:
     """Text states of many captions, encoded once and kept in half precision."""
 
     def __init__(self, words: Tensor, n_words: NDArray[np.int64], sentences: Tensor) -> None:
-        """Word states of all captions one after another (N, D), pieces in each caption, sentence vectors (n, D)."""
+        """Keep word states (N, D) of all captions in a row, the number of word pieces of each, and sentence vectors (n, D)."""
         self.words, self.n_words, self.sentences = words, n_words, sentences
         self.offsets = np.concatenate([[0], np.cumsum(n_words)])
 
     @classmethod
     def encode(cls, captions: Sequence[str], encoder: TextEncoder) -> CaptionStates:
-        """Encode `captions`, of like length together."""
+        """Encode `captions`, in batches of similar length."""
         order = sorted(range(len(captions)), key=lambda i: len(captions[i]))
         n_words = np.zeros(len(captions), np.int64)
         words: list[Tensor] = [torch.empty(0)] * len(captions)
@@ -74,7 +76,7 @@ class CaptionStates:
         return cls(torch.cat(words), n_words, torch.stack(sentences))
 
     def save(self, path: Path) -> None:
-        """Keep the states on disk."""
+        """Write the states to a file."""
         state = {"words": self.words, "n_words": torch.from_numpy(self.n_words), "sentences": self.sentences}
         with written_whole(path) as partial:
             torch.save(state, partial)
@@ -99,15 +101,15 @@ class CaptionStates:
 
 @dataclass(frozen=True, eq=False)
 class TokenCorpus:
-    """What the transformer trains on.
+    """The transformer's training data.
 
     Attributes:
         ids: for each clip (L, C) int64.
         caption_rows: for each clip the rows of its captions in `captions`.
         captions: the encoded captions.
-        is_real: for each clip.
-        n_seen: for each clip, as of `Clip`; None where it is 0 for all.
-        n_rest: for each clip, as of `Clip`; None where it is 0 for all.
+        is_real: for each clip whether a person made it.
+        n_seen: `Clip.n_seen` of each clip; None where it is 0 for all.
+        n_rest: `Clip.n_rest` of each clip; None where it is 0 for all.
     """
 
     ids: list[Tensor]
@@ -122,7 +124,7 @@ class TokenCorpus:
         return np.zeros(len(rows), np.int64) if self.n_seen is None else self.n_seen[np.asarray(rows)]
 
     def own_lengths(self) -> NDArray[np.int64]:
-        """Tokens of each clip's own motion: without those seen before it and the rest added behind it."""
+        """Tokens of each clip's own motion, without its seen tokens and the rest added after it."""
         n_tokens = np.array([len(ids) for ids in self.ids], np.int64)
         n_rest = 0 if self.n_rest is None else self.n_rest
         return n_tokens - self.seen(range(len(self.ids))) - n_rest
@@ -138,7 +140,7 @@ def encode_clips(clips: Sequence[Clip], tokenizer: Tokenizer | VqVae) -> list[Te
 
 
 def length_buckets(ids: Sequence[Tensor], width: int = 6) -> dict[int, NDArray[np.int64]]:
-    """Clip indices by length, rounded up to a multiple of `width` tokens: few shapes, little padding."""
+    """Clip indices by length, rounded up to a multiple of `width` tokens, so that there are few shapes and little padding."""
     buckets: dict[int, list[int]] = {}
     for i, row in enumerate(ids):
         buckets.setdefault(min(-(-len(row) // width) * width, MAX_TOKENS), []).append(i)
@@ -146,7 +148,7 @@ def length_buckets(ids: Sequence[Tensor], width: int = 6) -> dict[int, NDArray[n
 
 
 def save_clips(path: Path, clips: Sequence[Clip]) -> None:
-    """Keep a made corpus on disk, so that a resumed run trains on the same clips."""
+    """Write clips to a file, so that a resumed run trains on the same ones."""
     lengths = np.array([len(c.features) for c in clips])
     captions = np.array(["\n".join(c.captions) for c in clips])
     features = np.concatenate([c.features for c in clips])

@@ -1,4 +1,4 @@
-"""Training of the evaluator: a text and its motion near each other, a text and another motion apart.
+"""Trains the evaluator: vectors of a text and its motion come near each other, those of a text and another motion apart.
 
 Guo et al. 2022 sec. 6.1: contrastive loss with a margin of 10 on Euclidean distances. Here all pairs of a batch count,
 and pairs that share a caption are not pushed apart.
@@ -21,26 +21,27 @@ from mmm_core.training.batches import CaptionStates, Clip
 from mmm_core.training.run import Run, Schedule, train
 
 MARGIN = 10.0
+"""Distance beyond which a text and another motion are far enough apart."""
 BATCH = 32
 SHORTEST_FRAMES = 24
 NOISE = 0.05
-"""Added to normalised features, so that a few hundred clips are not learnt by heart."""
+"""Standard deviation of noise on normalised features, without which a few hundred clips would be learnt by heart."""
 
 
 def train_evaluator(
     clips: Sequence[Clip], captions: CaptionStates, rows: list[list[int]], schedule: Schedule, run: Run,
     config: EvaluatorConfig = OURS, real_share: float = 0.5,
 ) -> Evaluator:  # fmt: skip
-    """An evaluator trained on `clips` and the states of their captions; half of a batch comes from people.
+    """An evaluator trained on `clips` and the states of their captions.
 
     Args:
         clips: motions; those shorter than 24 frames are left out.
         captions: text states.
         rows: for each clip the rows of its captions in `captions`.
-        schedule: how long.
-        run: where.
+        schedule: steps and learning rate.
+        run: folder and device.
         config: sizes.
-        real_share: share of a batch from people, where there are both kinds.
+        real_share: share of a batch that comes from people, where there are both kinds.
 
     Raises:
         TrainingDataError: no clip is long enough.
@@ -86,7 +87,7 @@ def train_evaluator(
 
 
 def _crop(features: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Most of a motion, from a random place."""
+    """70 to 100 % of a motion's frames, from a random start."""
     n = int(len(features) * rng.uniform(0.7, 1.0))
     n = max(SHORTEST_FRAMES, n)
     start = int(rng.integers(0, len(features) - n + 1))

@@ -1,8 +1,8 @@
-"""Clips made anew while a transformer trains, a round of them after a fixed number of steps, beside those of the rounds before.
+"""Makes new training clips while a transformer trains: a round of them after every fixed number of steps.
 
-22,000 fixed clips hold some ninety of a rare family; the synthesiser makes hundreds in a second, and reading captions takes longer
-than training on them. So a round's clips are made, encoded and kept in the run's folder when its first step comes, and the
-newest rounds are trained on together. Families are drawn by the weights of `families.json` in the run's folder, where there is one.
+22,000 fixed clips hold some ninety of a rare family, but the synthesiser makes hundreds a second. Encoding captions takes
+longer than training on them, so a round's clips are made, encoded and kept in the run's folder when its first step comes, and
+the newest rounds are trained on together. `families.json` in the folder of the rounds may weigh the families that are drawn.
 """
 
 from __future__ import annotations
@@ -35,33 +35,36 @@ from mmm_core.training.run import written_whole
 
 log = logging.getLogger(__name__)
 WEIGHTS_FILE = "families.json"
+"""File that gives weights of families."""
 REPEATED = 1.9
-"""Least weight of a family that repeats something, where nothing is known of how badly it does."""
+"""Least weight of a family with strokes, as long as no fidelity was measured."""
 CUT_SHARE = 1 / 7
-"""Share of the clips of another length that end before their gesture does."""
+"""Share of clips that end before their gesture does, among clips whose length is not their gesture's."""
 MOST_REST_TOKENS = 16
-"""Most tokens of rest behind a gesture: 3.2 s."""
+"""Tokens of rest after a gesture at most: 3.2 s."""
 DIRECTED = 1.7
-"""Factor for families with directions: each of them has its own motion to learn. Drawn more rarely, they lost 13 points."""
+"""Factor on the weight of a family with directions, since each direction is another motion. Drawn more rarely, such families
+lost 13 points."""
 
 
 @dataclass(frozen=True)
 class FreshRecipe:
-    """How clips are made while the transformer trains.
+    """Settings of the clips that are made while the transformer trains.
 
     Attributes:
-        clips: of a round; 0 makes none while it trains.
+        clips: clips of a round; 0 makes no clips.
         first: clips of the first round.
         every: steps between rounds.
-        rounds: how many of the newest are trained on.
-        captions: of each clip that are read.
-        free_share: share of clips that keep no beat: performed as by a person, with sway, breath and uneven strokes.
-        canonical_share: share of clips whose sentence is the one of it and its mirror image that the engine reads.
+        rounds: number of the newest rounds that are trained on.
+        captions: captions of each clip at most.
+        free_share: share of clips without a beat, performed as by a person, with sway, breath and uneven strokes.
+        canonical_share: share of clips with canonical text; the other clips have their sentences as they were drawn.
         single_share: share of clips that show one gesture; the others show two at once, or two or three in turn.
-        takeover_share: share of clips that begin in the middle of another gesture, whose tokens are given and not learnt; what
-            follows is one gesture without any chance.
-        deterministic_share: share of the others that show one gesture without any chance (`mmm_core.corpus.deterministic`).
-        other_length_share: share of those that are longer than their gesture, with rest behind it, or end a little before it does.
+        takeover_share: share of clips that begin in the middle of another gesture, whose tokens are given and not learnt; one
+            gesture without randomness follows.
+        deterministic_share: share of the clips without a takeover that show one gesture without randomness
+            (`mmm_core.corpus.deterministic`).
+        other_length_share: share of these deterministic clips that have rest after their gesture, or end a little before it.
     """
 
     clips: int = 0
@@ -78,7 +81,7 @@ class FreshRecipe:
 
 
 def usual_weights() -> dict[str, float]:
-    """How often each family is drawn at first: no family with directions less often than `synthesis` draws it."""
+    """Weight by which each family is drawn at first; it is at least that of `synthesis`, and more for strokes and directions."""
     return {
         name: max(usual_weight(name) * (DIRECTED if family.directions else 1.0), REPEATED if family.counts else 0.0)
         for name, family in FAMILIES.items()
@@ -86,9 +89,9 @@ def usual_weights() -> dict[str, float]:
 
 
 def weights_of(fidelity: Mapping[str, Mapping[str, object]], most: float = 6.0) -> dict[str, float]:
-    """How often to draw families of which `mmmd eval fidelity` found these figures: the worse, the more often.
+    """Weights of families from the figures of `mmmd eval fidelity`: the worse a family, the greater its weight.
 
-    Few motions tell little, so a family is taken to have passed one motion of two more than it was asked for.
+    A share of few motions is uncertain, so each family is credited with one success in two more motions (Laplace's rule).
     """
     found: dict[str, float] = {}
     for name, usual in usual_weights().items():
@@ -99,10 +102,10 @@ def weights_of(fidelity: Mapping[str, Mapping[str, object]], most: float = 6.0) 
 
 
 def read_weights(path: Path) -> dict[str, float]:
-    """Weights of the families from a file `{"family": weight}`; those that it does not name have their usual weight.
+    """Weights of the families from a file `{"family": weight}`; families that it does not name have their usual weight.
 
     Raises:
-        TrainingDataError: the file names no known family, or a weight is none.
+        TrainingDataError: the file names an unknown family, or a weight is not a number of 0 or more.
     """
     if not path.is_file():
         return usual_weights()
@@ -116,7 +119,7 @@ def read_weights(path: Path) -> dict[str, float]:
 
 
 def make_round(how: FreshRecipe, seed: int, k: int, weights: Mapping[str, float]) -> list[Clip]:
-    """The clips of round `k`; each depends on `seed`, `k`, its place and the families' `weights` alone."""
+    """The clips of round `k`; each depends on nothing but `seed`, `k`, its index and the families' `weights`."""
     return [_make(how, np.random.default_rng((seed, 77, k, i)), weights) for i in range(how.clips if k else how.first)]
 
 
@@ -133,10 +136,10 @@ def _make(how: FreshRecipe, rng: np.random.Generator, weights: Mapping[str, floa
 
 
 def at_another_length(clip: Clip, rng: np.random.Generator) -> Clip:
-    """The clip with rest behind it, or in one of seven draws without its last one or two tokens.
+    """The clip with rest after its gesture or, in one of seven draws, without its last one or two tokens.
 
-    Where each sentence has one length, a model learns the gesture from the length beside the words: "hold up your hand" at
-    3.0 s, the length of every clip that stands still, stood still.
+    If each sentence had one length, the model would learn the gesture from the length as well as from the words: "hold up your
+    hand" at 3.0 s, the length of every clip that stands still, stood still.
     """
     n = len(clip.features) // FRAMES_PER_TOKEN
     if rng.random() < CUT_SHARE:
@@ -148,23 +151,23 @@ def at_another_length(clip: Clip, rng: np.random.Generator) -> Clip:
 
 
 def _read_from_one_side(made: SynthClip, n_seen: int, n_captions: int) -> Clip:
-    """The clip whose sentence the engine reads: this one or its mirror image."""
+    """The clip or its mirror image, whichever has the canonical text."""
     read = [canonical(c) for c in made.captions]
-    turned = read[0][1]  # the others only where they are read from the same side
+    turned = read[0][1]  # other captions are kept only if their canonical text has the same side
     captions = [text for text, is_image in read if is_image == turned][:n_captions]
     return Clip(mirror(made.features) if turned else made.features, captions, False, n_seen)
 
 
 @dataclass(frozen=True)
 class Round:
-    """The clips of a round, as the transformer trains on them.
+    """The clips of a round, as ids and text states.
 
     Attributes:
-        ids: of each clip.
+        ids: (L, C) ids of each clip.
         caption_rows: for each clip the rows of its captions in `states`.
         captions: all captions.
-        states: their text states.
-        n_seen, n_rest: of each clip, as of `Clip`.
+        states: text states of the captions.
+        n_seen, n_rest: `Clip.n_seen` and `Clip.n_rest` of each clip.
     """
 
     ids: list[Tensor]
@@ -176,7 +179,7 @@ class Round:
 
 
 class FreshClips:
-    """The rounds of a run, made when they are asked for and read again when the run goes on."""
+    """The rounds of a run; a round is made when it is first needed and read from its file when the run is resumed."""
 
     def __init__(
         self,
@@ -187,14 +190,14 @@ class FreshClips:
         seed: int,
         people: TokenCorpus | None = None,
     ) -> None:
-        """`people`: clips of people that every round has beside its own."""
+        """Settings, folder and models; `people` has clips of people that are trained on beside every round."""
         self._how, self._folder, self._tokenizer, self._encoder = how, folder, tokenizer, encoder
         self._seed, self._people = seed, people
         self._rounds: dict[int, Round] = {}
         self._corpus: tuple[int, TokenCorpus] | None = None
 
     def corpus(self, step: int) -> TokenCorpus:
-        """What is trained on at `step`."""
+        """The training data at `step`: the newest rounds, and the clips of people."""
         newest = step // self._how.every
         if self._corpus is None or self._corpus[0] != newest:
             kept = range(max(0, newest - self._how.rounds + 1), newest + 1)
@@ -215,7 +218,7 @@ class FreshClips:
         distributed.wait()
         kept = torch.load(path, weights_only=True)
         states = CaptionStates(kept["words"], kept["n_words"].numpy(), kept["sentences"])
-        none = [0] * len(kept["ids"])  # rounds of runs before there were takeovers or rest
+        none = [0] * len(kept["ids"])  # older round files have neither key
         n_seen, n_rest = kept.get("n_seen") or none, kept.get("n_rest") or none
         return Round(kept["ids"], kept["caption_rows"], kept["captions"], states, n_seen, n_rest)
 
@@ -230,7 +233,7 @@ class FreshClips:
         return Round(ids, rows, captions, states, [clip.n_seen for clip in clips], [clip.n_rest for clip in clips])
 
     def clips(self, step: int) -> list[Clip]:
-        """The motions of the newest round at `step`, made again: a round keeps their ids alone."""
+        """The motions of the newest round at `step`, made again because a round keeps only their ids."""
         return self._clips(step // self._how.every)
 
     def _clips(self, k: int) -> list[Clip]:

@@ -23,11 +23,11 @@ def provenance(
     """Provenance that a checkpoint of a run carries.
 
     Args:
-        recipe: of the run.
-        run_folder: with the losses of each stage.
+        recipe: recipe of the run.
+        run_folder: folder with the losses of each stage.
         data: folder of the data; None for synthesised gestures alone.
         clips: training motions.
-        fps: their rate.
+        fps: frames per second of the clips.
         start: the checkpoint that training went on from; None for new weights.
     """
     sources = [f"those of its start ({start[1].provenance.get('data', 'not stated')})"] if start else []
@@ -53,7 +53,7 @@ def hours_of(clips: Sequence[Clip], fps: float) -> float:
 
 
 def _last_losses(folder: Path) -> dict[str, dict[str, float]]:
-    """The last line of each stage's log."""
+    """The losses in the last line of each stage's log."""
     found: dict[str, dict[str, float]] = {}
     for path in sorted(folder.glob("*.csv")):
         lines = path.read_text().splitlines()

@@ -26,8 +26,8 @@ class DataRecipe:
 
     Attributes:
         folder: a HumanML3D or KIT-ML folder, or one with clips.jsonl (docs/DATA.md); empty for none.
-        synthesised: clips that the gesture corpus makes before the training.
-        licence: of the folder's data; it goes into the checkpoint.
+        synthesised: number of clips that the gesture corpus makes before the training.
+        licence: licence of the folder's data, which is written into the checkpoint.
         fresh: gesture clips made while the transformer trains; the length predictor then trains on the newest of them.
     """
 
@@ -38,20 +38,20 @@ class DataRecipe:
 
     @property
     def has_gestures(self) -> bool:
-        """Whether any clip is of the gesture corpus."""
+        """Whether any clip comes from the gesture corpus."""
         return bool(self.synthesised or self.fresh.clips)
 
 
 @dataclass(frozen=True)
 class TextRecipe:
-    """Which text encoder reads the captions: the packed MiniLM, or CLIP from files.
+    """The text encoder of the captions: the packed MiniLM, or CLIP from files.
 
     Attributes:
-        encoder: its name.
-        clip: CLIP's weights.
-        vocabulary: CLIP's word pieces.
-        tuned_layers: the last layers of MiniLM, which the model takes for its own and trains; 0 leaves it as it is.
-        tuned_rate: their learning rate, as a share of the transformer's.
+        encoder: name of the encoder.
+        clip: file of CLIP's weights.
+        vocabulary: file of CLIP's word pieces.
+        tuned_layers: number of MiniLM's last layers that the model copies and trains; 0 leaves MiniLM unchanged.
+        tuned_rate: learning rate of these layers, as a share of the transformer's.
     """
 
     encoder: Literal["minilm", "clip"] = "minilm"
@@ -69,16 +69,17 @@ class TokenizerRecipe:
         layout: "parts" (ours), "whole" or "halves" (the paper's).
         n_codes: codes of each codebook.
         code_dim: width of a code.
-        width: of the decoder ("parts") or of all convolutions.
+        width: width of the decoder ("parts") or of all convolutions.
         batch: windows in a step.
         window_frames: frames in a window.
         real_share: share of windows from people.
-        reset_rule: what becomes of dead codes; "official" never resets one that was used once.
-        plain_steps: of the schedule's steps, those at first that do not quantise (layout "parts").
-        schedule: how long.
+        reset_rule: rule for dead codes; "official" never resets a code that was used once.
+        plain_steps: number of the schedule's first steps that do not quantise (layout "parts").
+        schedule: steps and learning rate.
         decoder: further training of the decoder alone; 0 steps for none (layout "parts").
-        gate: stop unless it keeps the corpus's motions (layout "parts"; `mmmd eval tokenizer`).
-        tune_start: train the decoder further of the model, too, that the recipe goes on from; its ids stay what they are.
+        gate: whether training stops if the tokenizer loses too much of the corpus's motions (layout "parts"; `mmmd eval
+            tokenizer`).
+        tune_start: whether the decoder of a start model is also trained further; this does not change its ids.
     """
 
     layout: Literal["parts", "whole", "halves"] = "parts"
@@ -96,7 +97,7 @@ class TokenizerRecipe:
     tune_start: bool = False
 
     def config(self, n_features: int) -> TokenizerConfig | VqVaeConfig:
-        """Sizes for features of that width."""
+        """Sizes for `n_features` features."""
         if self.layout == "parts":
             return TokenizerConfig(self.n_codes, self.code_dim, self.width)
         return VqVaeConfig(
@@ -106,7 +107,7 @@ class TokenizerRecipe:
 
 @dataclass(frozen=True)
 class TransformerRecipe:
-    """The masked transformer; what the tokenizer and the text encoder decide is not asked again."""
+    """The masked transformer; sizes that follow from the tokenizer and the text encoder are not settings."""
 
     width: int = 256
     n_heads: int = 8
@@ -133,10 +134,10 @@ class ScopeRecipe:
     """The texts that the scope classifier is trained on (docs/scope.md).
 
     Attributes:
-        sentences: number of sentences of the corpus, which can be done.
-        outside: number of texts that cannot be done.
-        own_captions: whether captions of the data folder are texts that can be done, too. Off for recordings of everyday
-            motion: their captions name much that an upper body cannot do.
+        sentences: number of sentences of the corpus, which are in scope.
+        outside: number of texts out of scope.
+        own_captions: whether captions of the data folder are in scope, too. This is off for recordings of everyday motion,
+            whose captions name many actions that an upper body cannot do.
     """
 
     sentences: int = 12_000
@@ -146,19 +147,19 @@ class ScopeRecipe:
 
 @dataclass(frozen=True)
 class Recipe:
-    """Everything; see the files in `recipes`.
+    """All settings of a training; see the files in `recipes`.
 
     Attributes:
-        seed: of the corpus and, unless its schedule has one of its own, of every stage.
-        start: a finished checkpoint to go on from ("shipped": the one in this package): its tokenizer stays, transformer and
-            lengths begin with its weights; empty for none.
-        data: what it is made from.
-        text: which text encoder.
-        tokenizer: motion to ids.
-        transformer: text to ids.
+        seed: seed of the corpus, and of every stage whose schedule has no seed of its own.
+        start: a finished checkpoint to train further ("shipped": the one in this package); its tokenizer stays, transformer and
+            length predictor begin with its weights. Empty for new weights.
+        data: data and gesture clips.
+        text: text encoder.
+        tokenizer: sizes and training of the tokenizer.
+        transformer: sizes and training of the transformer.
         length: schedule of the length predictor.
         evaluator: schedule of the evaluation's feature extractors.
-        scope: texts that refusals are learnt from; models of synthesised gestures alone have them.
+        scope: texts of the scope classifier; only models with gestures of the corpus have one.
     """
 
     seed: int = 0
@@ -172,7 +173,7 @@ class Recipe:
     scope: ScopeRecipe = field(default_factory=ScopeRecipe)
 
     def seeded(self) -> Recipe:
-        """The recipe with its seed in every stage that has none of its own."""
+        """The recipe with its seed in every stage that has no seed of its own."""
 
         def with_seed(schedule: Schedule) -> Schedule:
             return replace(schedule, seed=schedule.seed or self.seed)
@@ -189,15 +190,16 @@ class Recipe:
 
 
 def known_recipes() -> list[str]:
-    """Names of the recipes that ship."""
+    """Names of the recipes in this package."""
     return sorted(p.stem for p in RECIPES.glob("*.toml"))
 
 
 def read_recipe(name_or_path: str, seed: int | None = None) -> Recipe:
-    """A recipe by its name, or from a TOML file; `seed`, where given, stands for the recipe's.
+    """A recipe by its name, or from a TOML file; a given `seed` replaces the recipe's.
 
     Raises:
-        TrainingDataError: no such recipe, not TOML, an unknown key or a value of another kind; each is named.
+        TrainingDataError: the recipe does not exist, is not TOML, or has an unknown key or a value of another kind; the key is
+            named.
     """
     path = RECIPES / f"{name_or_path}.toml"
     if not path.is_file():

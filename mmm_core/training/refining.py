@@ -1,9 +1,10 @@
-"""A finished model with more codes: each codebook is refined, and the transformer keeps what it knows.
+"""Gives a finished model more codes: each codebook is refined, and the transformer keeps its training.
 
-Codes of a finished tokenizer are split where its latents lie furthest from them; encoders, codebooks and decoder are trained
-on; and k-means on the latents of the final encoders settles the codes. A new code is predicted at first as often as the old
-codes that the same motions had: its row of the transformer's head is the mean of their rows, shifted by the logarithm of the
-share that it takes of them. The transformer reads code vectors, not ids, so nothing else of it depends on their number.
+Codes of a finished tokenizer are split where latents lie farthest from their code; encoders, codebooks and decoder are trained
+further; then k-means on the latents of the final encoders settles the codes. At first a new code is predicted as often as it
+replaces old codes: its row of the transformer's head is the mean of the rows of the codes that it replaces, shifted by the
+logarithm of its share of their uses. The transformer reads code vectors, not ids, so no other weights depend on the number of
+codes.
 """
 
 from __future__ import annotations
@@ -27,29 +28,30 @@ log = logging.getLogger(__name__)
 SETTLING = 6
 """Iterations of k-means at the end."""
 _LEAST_LATENTS = 6
-"""Latents of a code for each code that it is split into."""
+"""Latents of an old code that are needed for each code that it is split into."""
 _ERROR_POWER = 0.6
-"""New codes go to old ones by their summed squared error to this power."""
+"""Exponent of an old code's summed squared error, in proportion to which it is split into new codes."""
 _SEEDED_MEANS = 8
 """Iterations of k-means within an old code."""
 _SHARED = 1e-3
-"""Uses spread over all old codes where no motion showed which of them a new code replaces."""
+"""Uses added to every new code, spread over all old codes, so that codes that no motion shows replace something."""
 _LEAST_LOG_SHARE = -7.0
+"""Least logarithm of the share of a new code."""
 _PROBED = 64
-"""Motions from which the mean input of the transformer's head is taken."""
+"""Motions over which the mean input of the transformer's head is taken."""
 
 
 def refined(
     model: Model, clips: Sequence[Clip], n_codes: int, schedule: Schedule, run: Run, real_share: float
 ) -> Model:
-    """`model` with `n_codes` codes in each codebook, its tokenizer trained on `clips` by `schedule`; `model` itself stays as it is.
+    """A copy of `model` with `n_codes` codes in each codebook, whose tokenizer is trained on `clips`; `model` does not change.
 
     Args:
         model: a finished model whose tokenizer has a codebook for each body part.
         clips: motions that the codes have to tell apart.
-        n_codes: more than the model has.
-        schedule: of the tokenizer's training after its codes were split.
-        run: where the training keeps its state, as stage `refined`.
+        n_codes: codes of each codebook, more than the model has.
+        schedule: schedule of the tokenizer's training after its codes were split.
+        run: the run that keeps the training's state, as stage `refined`.
         real_share: share of windows from people.
     """
     old = model.tokenizer
@@ -68,19 +70,19 @@ def refined(
 
 
 def split(latents: Tensor, codebook: Tensor, n_codes: int) -> Tensor:
-    """(n_codes, D): codes of `codebook` (K, D) in the places of their latents (N, D), split where the error is largest."""
+    """(n_codes, D) codes: the codes of `codebook` (K, D), split into means of their `latents` (N, D) where errors are largest."""
     ids = torch.cdist(latents, codebook).argmin(1)
     errors = torch.zeros(len(codebook)).index_add_(0, ids, (latents - codebook[ids]).square().sum(1))
     most = (torch.bincount(ids, minlength=len(codebook)) // _LEAST_LATENTS).clamp_min(1)
     children = torch.ones_like(most)
-    for _ in range(n_codes - len(codebook)):  # to the code whose children have the largest error each
+    for _ in range(n_codes - len(codebook)):  # the next new code goes to the code with the largest error for each child
         pressing = errors**_ERROR_POWER / children
         children[int(torch.where(children < most, pressing, pressing * 1e-6).argmax())] += 1
     return torch.cat([_means(latents[ids == k], codebook[k], int(n)) for k, n in enumerate(children)])
 
 
 def _means(latents: Tensor, code: Tensor, n: int) -> Tensor:
-    """(n, D) means of `latents`, seeded as k-means++ does; about `code` where there are too few."""
+    """(n, D) means of `latents` by k-means, seeded as in k-means++; with too few latents, codes close to `code`."""
     if n == 1:
         return code[None]
     if len(latents) < n:
@@ -95,7 +97,7 @@ def _means(latents: Tensor, code: Tensor, n: int) -> Tensor:
 
 
 def settle(latents: Tensor, codebook: Tensor, iterations: int = SETTLING) -> Tensor:
-    """(K, D): `codebook` after some iterations of k-means on `latents` (N, D); codes without latents move to large errors."""
+    """(K, D) codes after k-means on `latents` (N, D), from `codebook`; codes without latents move to latents with large errors."""
     for left in reversed(range(iterations)):
         codebook, uses, errors = _moved(latents, codebook)
         unused = (uses == 0).nonzero()[:, 0]
@@ -105,7 +107,7 @@ def settle(latents: Tensor, codebook: Tensor, iterations: int = SETTLING) -> Ten
 
 
 def _moved(latents: Tensor, codes: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Codes moved to the mean of their latents, how many each has, and the squared error of each latent before."""
+    """Codes moved to the mean of their latents, the number of latents of each, and each latent's squared error before the move."""
     ids = (codes.square().sum(1) - 2 * latents @ codes.T).argmin(1)
     uses = torch.bincount(ids, minlength=len(codes))
     means = torch.zeros_like(codes).index_add_(0, ids, latents) / uses.clamp_min(1)[:, None]
@@ -113,7 +115,7 @@ def _moved(latents: Tensor, codes: Tensor) -> tuple[Tensor, Tensor, Tensor]:
 
 
 def grown(model: Model, tokenizer: Tokenizer, clips: Sequence[Clip]) -> MotionTransformer:
-    """The transformer of `model` for the codes of `tokenizer`, which tell apart what those of `model` do not."""
+    """The transformer of `model` with a head for the codes of `tokenizer`, which has more of them."""
     old, K = model.transformer, tokenizer.config.n_codes
     made = MotionTransformer(replace(old.config, n_codes=K))
     state = old.state_dict()
@@ -138,7 +140,7 @@ def grown(model: Model, tokenizer: Tokenizer, clips: Sequence[Clip]) -> MotionTr
 
 @torch.no_grad()
 def _mean_before_head(model: Model, clips: Sequence[Clip]) -> Tensor:
-    """(W,) mean input of the transformer's head over motions that are masked in part, without text."""
+    """(W,) mean input of the transformer's head over partly masked motions, without text."""
     transformer, found = model.transformer, list[Tensor]()
     context = transformer.read_text(transformer.no_text(1))
     handle = transformer.norm_out.register_forward_hook(lambda _m, _i, out: found.append(out.flatten(0, -2).mean(0)))

@@ -1,7 +1,7 @@
-"""A training run: a folder with its state, resumable at any step, a progress bar and a CSV log.
+"""Runs a training: keeps its state in a folder, from which it can be resumed, and shows a progress bar and a CSV log.
 
-Every step draws from its own random seed, so a run that was cut, even killed, and goes on gives the same result as one
-that was not. On the GPU this holds but for the order of its sums.
+Every step draws from its own random seed, so a run that was interrupted, even killed, and resumed gives the result of an
+uninterrupted one. On a GPU this holds up to the order of sums.
 """
 
 from __future__ import annotations
@@ -24,26 +24,28 @@ from mmm_core import distributed
 from mmm_core.errors import CheckpointError, TrainingDataError
 
 LossFn = Callable[[int, torch.Generator], dict[str, Tensor]]
-"""(step, generator) -> losses of this process's share; the one called "loss" is minimised."""
+"""(step, generator) -> losses of this process's share, by name; "loss" is minimised, the others are logged."""
 LOG_EVERY = 20
+"""Steps between two lines of the log."""
 
 
 @dataclass(frozen=True)
 class Schedule:
-    """How long and how fast to train.
+    """Steps, learning rate and seed of a training.
 
     Attributes:
         steps: optimiser steps.
-        learning_rate: at its highest.
-        warmup_steps: steps of linear rise.
-        shape: "cosine" falls to `final_share`; "drop" stays and falls to it at once after two thirds (MMM's own).
-        final_share: of the learning rate, at the end.
-        weight_decay: AdamW's.
-        betas: AdamW's.
-        clip_norm: longest gradient; 0 does not clip.
-        ema_decay: of the averaged weights, which the model ends with; 0 keeps the last weights.
+        learning_rate: highest learning rate.
+        warmup_steps: steps in which the rate rises linearly.
+        shape: "cosine" lets the rate fall to `final_share`; "drop" keeps it until two thirds of the steps and then drops it
+            (MMM's own schedule).
+        final_share: share of the learning rate at the end.
+        weight_decay: weight decay of AdamW.
+        betas: betas of AdamW.
+        clip_norm: greatest norm of the gradient; 0 does not clip.
+        ema_decay: decay of the averaged weights, which the model ends with; 0 keeps the last weights.
         save_every: steps between saved states.
-        seed: of everything random in this stage.
+        seed: seed of all randomness in this stage.
     """
 
     steps: int
@@ -70,14 +72,15 @@ class Schedule:
 
 @dataclass(frozen=True)
 class Run:
-    """Place and manner of a stage's run.
+    """Folder, device and options of a run.
 
     Attributes:
-        folder: states, CSV logs, samples.
+        folder: folder of states, CSV logs and samples.
         device: "cpu", "cuda" or "cuda:N".
-        precision: of matrix products; weights and averages stay fp32.
+        precision: number format of matrix products; weights and averages stay fp32.
         sample_every: steps between samples; 0 for none.
-        tensorboard: write TensorBoard events beside the CSV (extra `train`).
+        tensorboard: whether TensorBoard events are written beside the CSV (extra `train`).
+        sampler: writes a sample of the model to a path; None writes none.
     """
 
     folder: Path
@@ -92,7 +95,7 @@ class Run:
         """The device, checked.
 
         Raises:
-            TrainingDataError: there is no such device.
+            TrainingDataError: the device does not exist.
         """
         if self.device.startswith("cuda") and not torch.cuda.is_available():
             raise TrainingDataError(self.folder, "run.device", f"'{self.device}', but no CUDA device is here", "cpu")
@@ -113,8 +116,8 @@ def train(
     """Train `module` in place and leave it on the CPU with its averaged weights, in evaluation mode.
 
     State is kept in `folder/name.pt` (weights, averages, optimiser, step) and `folder/name.csv`; an interrupted run
-    goes on from there, a finished one is only loaded. `slower` gives parts of the module, by the beginning of their parameters'
-    names, a share of the learning rate.
+    continues from there, a finished one is only loaded. `slower` gives a share of the learning rate for parameters whose names
+    begin with a key.
 
     Raises:
         CheckpointError: the state cannot be read, or cannot be written (the older one stays whole).
@@ -172,7 +175,7 @@ def train(
 
 
 def _by_share(module: nn.Module, slower: Mapping[str, float]) -> dict[float, list[nn.Parameter]]:
-    """Parameters by their share of the learning rate; those with all of it first."""
+    """Parameters by their share of the learning rate; first come the ones with the whole rate."""
     by_share: dict[float, list[nn.Parameter]] = {1.0: []}
     for name, parameter in module.named_parameters():
         share = next((s for beginning, s in slower.items() if name.startswith(beginning)), 1.0)
@@ -182,7 +185,7 @@ def _by_share(module: nn.Module, slower: Mapping[str, float]) -> dict[float, lis
 
 
 class _Log:
-    """Progress bar, CSV and, if asked for, TensorBoard; only in the first process."""
+    """Progress bar, CSV log and optional TensorBoard events; only the first process writes them."""
 
     def __init__(self, run: Run, name: str, first: int, steps: int) -> None:
         columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
@@ -206,7 +209,7 @@ class _Log:
             self._board.close()
 
     def step(self, step: int, losses: dict[str, Tensor], *, always: bool) -> None:
-        """Note a step; values are written now and then, the mean over all processes."""
+        """Count a step; every `LOG_EVERY` steps, and if `always`, write the mean values over all processes."""
         if step % LOG_EVERY == 0 or always:
             means = torch.stack([v.detach().float() for v in losses.values()])
             distributed.average([means])
@@ -235,10 +238,10 @@ def _board(run: Run, name: str) -> Any:
 
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
-    """Where to write a file that takes the place of `path` at once; while it is written the older one stays.
+    """Context with a temporary path; when it ends without an error, the file there replaces `path` at once.
 
     Raises:
-        CheckpointError: it could not be written.
+        CheckpointError: the file could not be written; an older one is whole.
     """
     partial = path.with_name(f"partial_{path.name}")
     try:

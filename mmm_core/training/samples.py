@@ -1,4 +1,4 @@
-"""Pictures while a model trains: a row of small figures for each motion that it decodes or samples."""
+"""Draws pictures while a model trains: a row of small figures for each motion that the model decodes or samples."""
 
 from __future__ import annotations
 
@@ -20,14 +20,16 @@ from mmm_core.motion.features import joints_from_positions, recover
 from mmm_core.motion.skeleton import JOINT_NAMES, PARENTS
 
 INSTANTS = 8
+"""Figures in a row."""
 SAMPLE_TEXTS = ("wave with your right hand", "raise your left arm", "clap your hands", "bow")
 SAMPLE_TOKENS = 15
+"""Tokens (3 s) of a sampled motion."""
 _COLOURS = {"left": "#c0392b", "right": "#2471a3"}
 
 
 @torch.no_grad()
 def draw_reconstruction(path: Path, tokenizer: Tokenizer | VqVae, shown: Tensor, ours: bool) -> None:
-    """Draw a clip (T, D) before and after its way through the tokenizer; `ours` as in `draw_samples`."""
+    """Draw a clip (T, D) before and after encoding and decoding; `ours` as in `draw_samples`."""
     features = shown.to(tokenizer.mean.device)
     again = tokenizer.decode(tokenizer.encode(features[None]))[0].cpu().numpy()
     draw_rows(path, {"a clip": _joints(shown.numpy(), ours), "through the tokenizer": _joints(again, ours)})
@@ -45,12 +47,12 @@ def draw_samples(
     """Draw a motion for each of `SAMPLE_TEXTS`.
 
     Args:
-        path: of the picture.
-        transformer: as it is at this step; it is back on its device afterwards.
+        path: file of the picture.
+        transformer: the model at this step; it is moved to the CPU and back to its device.
         texts: states of `SAMPLE_TEXTS`.
-        known: (L, C) ids of a clip for each text, whose lower body is the context of a model that makes the upper one.
+        known: (L, C) ids of a clip for each text; a model that predicts the upper body takes their lower body as context.
         tokenizer: decodes the ids.
-        ours: whether its features are those of `Motion`, not those of a data set.
+        ours: whether the tokenizer's features are those of `Motion`, not those of a data set.
     """
     device = transformer.codebooks.device
     transformer.cpu()
@@ -65,7 +67,7 @@ def draw_samples(
 
 
 def _joints(features: NDArray[np.float32], ours: bool) -> NDArray[np.floating]:
-    """(T, 22, 3) metres."""
+    """(T, 22, 3) joints in metres."""
     if ours:
         return recover(features).joints_m
     joints = joints_from_positions(features)
@@ -73,7 +75,7 @@ def _joints(features: NDArray[np.float32], ours: bool) -> NDArray[np.floating]:
 
 
 def draw_rows(path: Path, motions: dict[str, NDArray[np.floating]]) -> None:
-    """Draw each motion (T, 22, 3) at eight instants under its title, from the front: the person's left on the right."""
+    """Draw each motion (T, 22, 3) at eight instants under its title, from the front, with the person's left on the right."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

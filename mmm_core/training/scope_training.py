@@ -1,7 +1,8 @@
-"""What the scope score is made of: the index of known and outside commands, and the classifier that parts the two.
+"""Builds the two parts of the scope score: the index of known and outside commands, and the classifier of texts.
 
-The classifier sees sentences as the corpus says them, their clauses and the known commands against `outside_texts`; none of the
-prompts that choose its thresholds or measure it (docs/scope.md). About two minutes on one core, most of it reading the texts.
+The classifier is trained on sentences of the corpus, their clauses and the known commands against `outside_texts`, and on none
+of the prompts that choose its thresholds or measure it (docs/scope.md). This takes about two minutes on one core, most of it for
+encoding the texts.
 """
 
 from __future__ import annotations
@@ -31,20 +32,20 @@ from mmm_core.training.recipe import Recipe, ScopeRecipe
 
 log = logging.getLogger(__name__)
 INDEX_ROWS = 4
-"""Known commands of a row of a family that are kept in the index; all twelve and more teach the classifier."""
+"""Known commands of each row of a family that are kept in the index; the classifier is trained on all of them."""
 HIDDEN, DROPOUT, WEIGHT_DECAY, LEARNING_RATE, EPOCHS, BATCH = 64, 0.3, 0.3, 3e-3, 15, 256
 SEED = 5
 OWN_SHARE = 0.1
-"""Least share of own captions among the texts that can be done: a handful beside thousands would not be learnt."""
+"""Least share of own captions among the texts in scope; a handful beside thousands would not be learnt."""
 
 
 def build_scope(encoder: TextEncoder, recipe: ScopeRecipe, own: Sequence[str] = ()) -> ScopeIndex:
-    """The scope of what the corpus teaches, as `encoder` reads it; the same every time.
+    """The scope of a model of the corpus's gestures; equal arguments give equal results.
 
     Args:
-        encoder: what reads the texts.
-        recipe: how many of them.
-        own: captions of the training data that can be done besides; they are known commands, too.
+        encoder: text encoder of the model.
+        recipe: numbers of texts.
+        own: captions of the training data that are also in scope; they become known commands.
     """
     commands = sorted({*known_commands(INDEX_ROWS), *own})
     inside, outside = scope_sentences(recipe)
@@ -57,10 +58,10 @@ def build_scope(encoder: TextEncoder, recipe: ScopeRecipe, own: Sequence[str] = 
 
 
 def renew_scope(recipe: Recipe, made: Path, out: Path) -> None:
-    """Build the scope again for the finished checkpoint at `made` and write it to `out`; all other weights stay.
+    """Build the scope again for the finished checkpoint at `made` and write the model to `out`; all other weights stay.
 
     Raises:
-        CheckpointError: `made` is missing, or an imported model, which has no scope.
+        CheckpointError: `made` is missing, or is an imported model, which has no scope.
     """
     model = load_model(made)
     if model.text is not None or model.scope is None:
@@ -71,14 +72,14 @@ def renew_scope(recipe: Recipe, made: Path, out: Path) -> None:
 
 
 def own_captions(recipe: Recipe, clips: Iterable[Clip]) -> list[str]:
-    """Captions of people's clips, each once, where the recipe counts them among the texts that can be done."""
+    """Captions of people's clips, each once; none unless the recipe counts them as in scope."""
     return sorted({c for clip in clips if clip.is_real for c in clip.captions}) if recipe.scope.own_captions else []
 
 
 def scope_sentences(recipe: ScopeRecipe) -> tuple[list[str], list[str]]:
-    """Texts that can be done, and that cannot.
+    """Texts in scope, and texts out of scope.
 
-    The first are sentences of the corpus, clauses of some of them, and as many known commands at most, spread evenly.
+    Texts in scope are sentences of the corpus, clauses of some of them, and at most as many known commands, spread evenly.
     """
     rng = np.random.default_rng(SEED)
     known = sorted(known_commands())
@@ -93,7 +94,7 @@ def scope_sentences(recipe: ScopeRecipe) -> tuple[list[str], list[str]]:
 
 
 def sentence_vectors(texts: list[str], encoder: TextEncoder, batch: int = 64) -> Tensor:
-    """(N, D) unit vectors; texts of like length are read together, so that little is padded."""
+    """(N, D) unit vectors of texts, encoded in batches of similar length, which need little padding."""
     order = sorted(range(len(texts)), key=lambda i: len(texts[i]))
     read = [encoder.encode([texts[i] for i in order[j : j + batch]]).sentence for j in range(0, len(order), batch)]
     vectors = torch.cat(read)
@@ -101,7 +102,7 @@ def sentence_vectors(texts: list[str], encoder: TextEncoder, batch: int = 64) ->
 
 
 def train_classifier(can: Tensor, cannot: Tensor) -> ScopeClassifier:
-    """A classifier of sentence vectors (N, D), the two classes with the same weight."""
+    """A classifier trained on sentence vectors (N, D) of texts in and out of scope, both with the same total weight."""
     x = torch.cat([can, cannot])
     y = torch.cat([torch.ones(len(can)), torch.zeros(len(cannot))])
     weight = torch.where(y > 0, 0.5 * len(y) / len(can), 0.5 * len(y) / len(cannot))

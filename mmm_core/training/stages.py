@@ -1,7 +1,7 @@
-"""How a model is made, stage by stage, from data to checkpoint: what `mmmd train` runs.
+"""Trains a model stage by stage, from data to checkpoint, for `mmmd train`.
 
 corpus -> tokenizer -> ids and caption states -> length predictor, transformer -> checkpoint. Each stage keeps its state in
-the run's folder; a stage that is done is only loaded, so any of them can be asked for by itself.
+the run's folder; a finished stage is only loaded, so a caller can request any stage by itself.
 """
 
 from __future__ import annotations
@@ -58,25 +58,25 @@ log = logging.getLogger(__name__)
 
 
 class Stages:
-    """The stages of one recipe in one run; each property is made, or loaded, when it is first asked for."""
+    """The stages of one recipe in one run; each property is computed or loaded when it is first read."""
 
     def __init__(self, recipe: Recipe, run: Run, data: Path | None = None) -> None:
-        """`data` stands for the recipe's folder."""
+        """Recipe and run; `data` replaces the recipe's data folder."""
         folder = data or (Path(recipe.data.folder) if recipe.data.folder else None)
         self.recipe, self.run, self.data = recipe, run, folder
         self.is_dataset = folder is not None and not (folder / "clips.jsonl").is_file()
 
     @cached_property
     def folder(self) -> MotionFolder | None:
-        """The HumanML3D or KIT-ML folder, if the data are one."""
+        """The HumanML3D or KIT-ML folder; None for other data."""
         return open_folder(self.data) if self.is_dataset and self.data else None
 
     @cached_property
     def clips(self) -> list[Clip]:
-        """The training motions: made once, then read from the run's folder.
+        """The training motions, which are made once and then read from the run's folder.
 
         Raises:
-            TrainingDataError: there are none.
+            TrainingDataError: there are no clips with captions.
         """
         path = self.run.folder / CORPUS
         if not path.is_file() and distributed.rank() == 0:
@@ -106,10 +106,10 @@ class Stages:
 
     @cached_property
     def text(self) -> TextEncoder:
-        """The encoder that reads captions.
+        """The text encoder of the captions.
 
         Raises:
-            TrainingDataError: more of its layers are to be trained than it has.
+            TrainingDataError: the recipe trains more of the encoder's layers than it has.
         """
         how = self.recipe.text
         most = MiniLmConfig().n_layers if how.encoder == "minilm" else 0
@@ -123,7 +123,7 @@ class Stages:
 
     @cached_property
     def start(self) -> Model | None:
-        """The model that the recipe goes on from, if there is one; with refined codebooks where the recipe has more codes."""
+        """The model that the recipe starts from, or None; its codebooks are refined if the recipe has more codes."""
         how = self.recipe.tokenizer
         model = read_start(self.recipe, self.run.folder, self._rest_pose)
         if model is None or model.tokenizer.config.n_codes == how.n_codes:
@@ -141,8 +141,8 @@ class Stages:
 
     @cached_property
     def tokenizer(self) -> Tokenizer | VqVae:
-        """Motion to ids, trained; with the decoder as it was when the ids were made."""
-        start = self.start  # before hours of work on what will be refused
+        """The trained tokenizer, before any further training of its decoder."""
+        start = self.start  # read first, so that a start that does not fit is refused before hours of work
         how, clips = self.recipe.tokenizer, self.clips
         width = clips[0].features.shape[1]
         if start is not None:
@@ -169,7 +169,7 @@ class Stages:
         """Ids and caption states of the clips; caption states are kept in the run's folder.
 
         Raises:
-            TrainingDataError: the tokenizer loses what the recipe's gate asks it to keep.
+            TrainingDataError: the tokenizer does not pass the recipe's gate.
         """
         self._check_tokenizer()
         captions, rows = self._captions
@@ -179,7 +179,7 @@ class Stages:
         return TokenCorpus(encode_clips(self.clips, self.tokenizer), rows, states, is_real)
 
     def _check_tokenizer(self) -> None:
-        """The gate, before anything is trained on the tokenizer."""
+        """Raises TrainingDataError if the recipe has a gate that the tokenizer does not pass."""
         if self.recipe.tokenizer.gate and isinstance(self.tokenizer, Tokenizer) and distributed.rank() == 0:
             if faults := tokenizer_figures(self.tokenizer)["faults"]:
                 path = self.run.folder / "tokenizer.pt" if self.start is None else start_path(self.recipe)
@@ -201,10 +201,10 @@ class Stages:
 
     @cached_property
     def length(self) -> LengthClassifier:
-        """Number of tokens from text."""
+        """The trained length predictor."""
         start = None
         if self.start is not None and self.start.transformer.config.n_words == self.recipe.text.tuned_layers:
-            start = self.start.length  # else it has learnt to read other word states
+            start = self.start.length  # otherwise it was trained on other word states
         if not isinstance(start, LengthClassifier):
             start = None
         corpus = self.corpus
@@ -214,10 +214,10 @@ class Stages:
 
     @cached_property
     def fresh(self) -> FreshClips | None:
-        """Gesture clips made while the transformer trains, beside those of `corpus`; None where the recipe asks for none.
+        """Gesture clips made while the transformer trains, beside those of `corpus`; None if the recipe makes none.
 
         Raises:
-            TrainingDataError: the recipe's text encoder has layers of its own to train, whose states cannot be kept.
+            TrainingDataError: the recipe trains layers of the text encoder, so that caption states cannot be kept.
         """
         how = self.recipe.data.fresh
         if not how.clips:
@@ -233,7 +233,7 @@ class Stages:
 
     @cached_property
     def transformer(self) -> MotionTransformer:
-        """Text to ids."""
+        """The trained transformer."""
         how, tokenizer = self.recipe.transformer, self.tokenizer
         tuned = self.recipe.text.tuned_layers
         config = how.config(tokenizer.config, tokenizer.n_codebooks, self.corpus.captions.words.shape[1], tuned)
@@ -252,9 +252,9 @@ class Stages:
 
     @cached_property
     def evaluator(self) -> Evaluator:
-        """The extractors that evaluation uses; written beside the run's states when it is done.
+        """The trained evaluator, which is also written to the run's folder.
 
-        It reads MiniLM's states whatever the model reads, so that models with other text encoders can be compared.
+        The evaluator always reads MiniLM's states, so that models with other text encoders can be compared.
         """
         captions, rows = self._captions
         shared = self.recipe.text.encoder == "minilm" and not self.recipe.text.tuned_layers
@@ -268,7 +268,7 @@ class Stages:
         return evaluator
 
     def model(self) -> Model:
-        """All stages, as a model to be saved."""
+        """The model of all stages, ready to be saved."""
         transformer, length, tokenizer, how = self.transformer, self.length, self.tokenizer, self.recipe.tokenizer
         if isinstance(tokenizer, Tokenizer) and how.decoder.steps and (self.start is None or how.tune_start):
             newest = [] if self.fresh is None else self.fresh.clips(max(0, self.recipe.transformer.schedule.steps - 1))
@@ -285,7 +285,7 @@ class Stages:
 
     @property
     def _rest_pose(self) -> RestPose:
-        """The body of the data, as checkpoints name it."""
+        """Definition of the data's features, as `Model.rest_pose`."""
         return "mmmd" if self.folder is None else "humanml3d"
 
     @property
@@ -294,7 +294,7 @@ class Stages:
 
 
 def make_model(recipe: Recipe, run: Run, data: Path | None, out: Path) -> None:
-    """Run every stage that is not done yet and write the checkpoint to `out`."""
+    """Run every unfinished stage and write the checkpoint to `out`."""
     model = Stages(recipe, run, data).model()
     if distributed.rank() == 0:
         save_model(out, model, half=model.text is None)

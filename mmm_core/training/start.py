@@ -1,4 +1,4 @@
-"""Reads the checkpoint that a recipe starts from. One with other sizes, another text encoder or another body is refused."""
+"""Reads the checkpoint that a recipe starts from, and refuses one with other sizes, another text encoder or other features."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ from mmm_core.training.recipe import Recipe
 
 
 def start_path(recipe: Recipe) -> Path:
-    """The file that the recipe names."""
+    """The file of the recipe's start."""
     return MODEL_FILE if recipe.start == "shipped" else Path(recipe.start)
 
 
 def read_start(recipe: Recipe, run_folder: Path, rest_pose: str) -> Model | None:
-    """The checkpoint that the recipe names, checked; None where it names none.
+    """The checkpoint of the recipe's start; None if the recipe has none.
 
     Args:
-        recipe: names it.
-        run_folder: remembers the file that the run began with.
-        rest_pose: body of the data, "mmmd" or "humanml3d".
+        recipe: names the start.
+        run_folder: keeps the hash of the file that the run began with.
+        rest_pose: definition of the data's features, "mmmd" or "humanml3d".
 
     Raises:
-        CheckpointError: it cannot be read, or has other sizes, another text encoder or another body than are asked for.
+        CheckpointError: the file cannot be read, is not the one that the run began with, or has other sizes, another text
+            encoder or other features than the recipe.
     """
     if not recipe.start:
         return None
@@ -45,7 +46,10 @@ def read_start(recipe: Recipe, run_folder: Path, rest_pose: str) -> Model | None
     if sizes != model.tokenizer.config:
         raise CheckpointError(path, "tokenizer", f"{model.tokenizer.config}", f"{sizes}, as the recipe says")
     wanted = recipe.transformer.config(sizes, books, found.text_dim, recipe.text.tuned_layers)
-    if 0 in (found.n_words, wanted.n_words):  # its words' layers begin as the text encoder's, or are left behind
+    if 0 in (
+        found.n_words,
+        wanted.n_words,
+    ):  # word layers are copied from the text encoder, or those of the start are dropped
         wanted = replace(wanted, n_words=found.n_words)
     if replace(wanted, dropout=found.dropout) != found:
         raise CheckpointError(path, "transformer", f"{found}", f"{wanted}, as the recipe says")
@@ -53,7 +57,7 @@ def read_start(recipe: Recipe, run_folder: Path, rest_pose: str) -> Model | None
 
 
 def _check_same_start(path: Path, run_folder: Path) -> None:
-    """A run that goes on does so from the same file: ids of another tokenizer mean other motions."""
+    """Raises CheckpointError if a resumed run has another start file: ids of another tokenizer would mean other motions."""
     marker, found = run_folder / "start.sha256", file_hash(path)
     if not marker.is_file():
         run_folder.mkdir(parents=True, exist_ok=True)

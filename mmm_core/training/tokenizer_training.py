@@ -1,6 +1,6 @@
-"""Training of the tokenizer: reconstruction, differences between frames, commitment.
+"""Trains the tokenizer; its loss has terms for reconstruction, differences between frames, and commitment.
 
-MMM (arXiv 2312.03596) eq. 1. The loss weighs channels by what the robot needs: the mean joint error hides a lost head
+MMM (arXiv 2312.03596) eq. 1. The loss weighs channels by the robot's needs, since the mean joint error hides a lost head
 turn or forearm twist, whose channels are few and small (docs/model.md).
 """
 
@@ -28,9 +28,9 @@ WINDOW_FRAMES = 40
 BATCH = 128
 COMMITMENT = 0.05
 LATENT_SQUARE = 0.001
-"""Weight of the latents' mean square before there are codes: they stay of a size that codes can follow."""
+"""Weight of the latents' mean square in steps without codes, which keeps latents of a size that codes can follow later."""
 BETA = 0.3
-"""SmoothL1 turns linear here (in normalised units); 1 let small channels go."""
+"""Normalised error at which SmoothL1 turns linear; with 1, channels of small motion were lost."""
 DIFFERENCE_GAIN, DIFFERENCE_WEIGHT = 5.0, 0.3
 DECODER_DIFFERENCE_WEIGHT = 0.6
 
@@ -41,7 +41,9 @@ def channel_weights() -> Tensor:
     weight[:4] = 1.0
     weight[67:193] = 1.0
     weight[list(rotation_channels((13, 14, 16, 17, 18, 19, 20, 21)))] = 4.0  # collars, arms, forearm twist
-    weight[list(rotation_channels((3, 6, 9, 12, 15)))] = 4.0  # spine, neck and head; with 1 the trunk lost all its roll
+    weight[list(rotation_channels((3, 6, 9, 12, 15)))] = (
+        4.0  # spine, neck and head; with weight 1 the trunk lost all its roll
+    )
     weight[list(rotation_channels((1, 2, 4, 5, 7, 8, 10, 11)))] = 0.3  # legs: the robot has none
     weight[193:] = 0.1
     return weight / weight.mean()
@@ -49,7 +51,7 @@ def channel_weights() -> Tensor:
 
 @dataclass(frozen=True)
 class PaperLoss:
-    """MMM's tokenizer loss: SmoothL1 of all features, once more of the positions, and the commitment."""
+    """Weights in MMM's tokenizer loss: SmoothL1 of all features, plus weighted SmoothL1 of positions, plus commitment."""
 
     positions: float = 0.5
     commitment: float = 0.02
@@ -71,15 +73,15 @@ def train_tokenizer(
 
     Args:
         clips: motions; those shorter than a window are left out.
-        config: by parts (our loss), or the paper's layouts (its own loss).
-        schedule: how long.
-        run: where.
-        statistics: mean and spread of the features; None takes them from the clips.
+        config: layout by parts (trained with our loss), or one of the paper's layouts (trained with the paper's loss).
+        schedule: steps and learning rate.
+        run: folder and device.
+        statistics: mean and standard deviation of the features; None takes them from the clips.
         batch: windows in a step, of all processes.
         window_frames: frames in a window.
         real_share: share of windows from people, where there are both kinds.
-        plain_steps: steps at first in which latents are not quantised (layout by parts). With codes from the start, joints come
-            through them one after another, small ones after thousands of steps; so all are there when codes come.
+        plain_steps: number of first steps in which latents are not quantised (layout by parts). With codes from the start, the
+            tokenizer learns one joint after another, and joints of small motion only after thousands of steps.
     """
     torch.manual_seed(schedule.seed)
     tokenizer = Tokenizer(config) if isinstance(config, TokenizerConfig) else VqVae(config)
@@ -110,7 +112,7 @@ def train_tokenizer(
 def go_on_with_tokenizer(
     tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run: Run, name: str, real_share: float = 0.12
 ) -> None:
-    """Train a tokenizer that has codes further, in place; `name` is the stage's in the run's folder."""
+    """Train a tokenizer that has codes already further, in place; `name` names the stage in the run's folder."""
     device = run.torch_device
     weights, draw = channel_weights().to(device), _window_draw(clips, real_share, BATCH, WINDOW_FRAMES)
 
@@ -127,7 +129,7 @@ def go_on_with_tokenizer(
 def tune_decoder(
     tokenizer: Tokenizer, clips: Sequence[Clip], schedule: Schedule, run: Run, real_share: float = 0.12
 ) -> None:
-    """Train the decoder alone, in place: encoders and codebooks stay, so ids already made stay valid."""
+    """Train the decoder alone, in place; encoders and codebooks stay, so existing ids stay valid."""
     device = run.torch_device
     weights, draw = channel_weights().to(device), _window_draw(clips, real_share, BATCH, WINDOW_FRAMES)
     tokenizer.to(device).decoder.requires_grad_(True)
@@ -169,7 +171,7 @@ def _errors(reconstruction: Tensor, x: Tensor, weights: Tensor) -> tuple[Tensor,
 def _window_draw(
     clips: Sequence[Clip], real_share: float, batch: int, window: int
 ) -> Callable[[torch.Generator], Tensor]:
-    """Draws (batch, window, F) windows, `real_share` of them from real motion where there are both kinds."""
+    """A function that draws (batch, window, F) windows, `real_share` of them from real motion where there are both kinds."""
     synth = [c.features for c in clips if not c.is_real and len(c.features) >= window]
     real = [c.features for c in clips if c.is_real and len(c.features) >= window]
     if not synth and not real:

@@ -1,4 +1,4 @@
-"""Training of the masked transformer and of the length predictor.
+"""Trains the masked transformer and the length predictor.
 
 MMM (arXiv 2312.03596) sec. 3.2, eq. 2: visible ids are corrupted, a share of the positions is masked, and the loss is
 the cross-entropy at every motion position. Text dropout (ours) makes guidance possible.
@@ -25,23 +25,24 @@ from mmm_core.training.fresh import FreshClips
 from mmm_core.training.run import Run, Schedule, train
 
 TOKENS_PER_BATCH = 1100
-"""Rows per batch follow from the length, so that every step costs about the same."""
+"""Tokens of a batch; the number of rows follows from their length, so that every step costs about as much."""
 LENGTH_BATCH = 128
 
 
 @dataclass(frozen=True)
 class Corruption:
-    """How much of a training motion is hidden.
+    """Shares of a training motion that are masked, replaced or left out.
 
     Attributes:
-        masked_share: the least share of positions masked; drawn from U(masked_share, 1).
-        full_share: share of motions that are masked whole, as they are when generation begins: there the text alone tells.
-        kept_share: the least probability that a visible id is kept and not replaced; U(kept_share, 1) for each motion.
+        masked_share: least share of masked positions; the share is drawn from U(masked_share, 1) for each motion.
+        full_share: share of motions that are masked as a whole, as at the beginning of a generation, where the text is all that
+            the model has.
+        kept_share: least probability that a visible id is kept and not replaced, drawn from U(kept_share, 1) for each motion.
         no_text_share: share of motions trained without their text.
         real_share: share of motions made by a person, where there are both kinds.
-        part_share: share of motions of which single body parts are masked, so that parts can be edited alone.
-        cell_share: share of motions in which every body part of a position is masked by itself, not the position as a whole.
-        context_share: share of the ids of codebooks that are only seen (the lower body of eq. 3) which are replaced.
+        part_share: share of motions in which only some body parts are masked, so that parts can be edited alone.
+        cell_share: share of motions in which each body part of a position is masked independently.
+        context_share: share of replaced ids in codebooks that are not predicted (the lower body of eq. 3).
     """
 
     masked_share: float = 0.4
@@ -65,8 +66,8 @@ def corrupt(
 ) -> Tensor:
     """Replace some visible ids by random ones, then mask positions; (B, L, C) -> (B, L, C), [END] and [PAD] untouched.
 
-    Codebooks from `n_predicted` on are never masked, only lightly replaced (MMM eq. 3). The first `n_seen` (B,) positions of
-    a motion stay as they are.
+    Ids of codebooks from `n_predicted` on are never masked, and only some are replaced (MMM eq. 3). The first `n_seen` (B,)
+    positions of a motion do not change.
     """
     B, L, C = ids.shape
     P = C if n_predicted is None else n_predicted
@@ -102,14 +103,14 @@ def corrupt(
 
 
 def learnt(length: int, n_tokens: Tensor, n_seen: Tensor | None = None) -> Tensor:
-    """(B, L) bool: positions of the motions, of `n_tokens` (B,) tokens, after their first `n_seen` (B,)."""
+    """(B, L) bool: positions that count in the loss, from `n_seen` (B,) up to the motion's length `n_tokens` (B,)."""
     position = torch.arange(length, device=n_tokens.device)[None]
     motion = position < n_tokens[:, None]
     return motion if n_seen is None else motion & (position >= n_seen[:, None])
 
 
 class Batches:
-    """Draws the rows of a step from a corpus: clips of like length together, people's as often as asked."""
+    """Draws the rows of a step from a corpus: clips of similar length, a given share of them from people."""
 
     def __init__(self, corpus: TokenCorpus, tokens_per_batch: int, real_share: float) -> None:
         self._corpus, self._tokens, self._real_share = corpus, tokens_per_batch, real_share
@@ -118,7 +119,7 @@ class Batches:
         self._lengths, self._p = list(self._buckets), weight / weight.sum()
 
     def draw(self, generator: torch.Generator, config: TransformerConfig) -> tuple[Tensor, Tensor, Tensor, TextStates]:
-        """Ids (B, L, C) with [END] and [PAD], lengths (B,), seen tokens at the beginning (B,), and a caption of each."""
+        """Ids (B, L, C) with [END] and [PAD], lengths (B,), seen tokens at the beginning (B,), and a caption's states for each."""
         corpus, K = self._corpus, config.n_codes
         rng = np.random.default_rng(int(torch.randint(2**62, (1,), generator=generator)))
         length = self._lengths[rng.choice(len(self._lengths), p=self._p)]
@@ -147,10 +148,19 @@ def train_transformer(
     words: nn.ModuleList | None = None,
     words_rate: float = 1.0,
 ) -> MotionTransformer:
-    """A transformer trained on `corpus`, fixed or made anew: eq. 2, or eq. 3 where `config` predicts the first codebooks only.
+    """A transformer trained by eq. 2, or by eq. 3 if `config` predicts only the first codebooks.
 
-    It begins with the weights of `start`, which has the sizes of `config`, or from nothing. The layers of words that `config` may
-    have begin as the last of the text encoder's, `words`, where `start` has none, and learn at `words_rate` of the learning rate.
+    Args:
+        corpus: fixed clips, or clips that are made while it trains.
+        tokenizer: gives the code vectors.
+        config: sizes.
+        schedule: steps and learning rate.
+        run: folder and device.
+        how: corruption of the training motions; None takes the usual one.
+        tokens_per_batch: as `TOKENS_PER_BATCH`.
+        start: model of these sizes whose weights are trained further; None begins with new weights.
+        words: layers of the text encoder; the last ones are copied into the word layers of `config`, unless `start` has them.
+        words_rate: learning rate of the word layers, as a share of the schedule's.
     """
     how = how or Corruption()
     torch.manual_seed(schedule.seed)
@@ -193,10 +203,10 @@ def train_transformer(
 def train_length(
     corpus: TokenCorpus, schedule: Schedule, run: Run, start: LengthClassifier | None = None
 ) -> LengthClassifier:
-    """A length predictor trained by cross-entropy on each caption and its clip's tokens, from `start` or from nothing.
+    """A length predictor trained by cross-entropy on each caption and its clip's tokens, from `start` or with new weights.
 
-    Neither the tokens of another motion at a clip's beginning nor the rest added behind it count. People's clips are cut from
-    recordings, so their length says little; they are used only where there is nothing else.
+    Neither the tokens of another motion at a clip's beginning nor the rest added after it count. People's clips are cut from
+    recordings, so their length says little; they are used only where there are no other clips.
     """
     torch.manual_seed(schedule.seed)
     predictor = LengthClassifier(corpus.captions.words.shape[1])
@@ -220,14 +230,14 @@ def train_length(
 
 
 def _shares(is_real: np.ndarray, real_share: float) -> tuple[float, float]:
-    """Drawing weight of a real and of a synthesised clip."""
+    """Weights by which a real and a synthesised clip are drawn."""
     n_real = max(1, int(is_real.sum()))
     n_synth = max(1, len(is_real) - int(is_real.sum()))
     return real_share / n_real, (1 - real_share) / n_synth
 
 
 def _drawing_weight(rows: np.ndarray, is_real: np.ndarray, real_share: float) -> float:
-    """How often a bucket is drawn: its share of all clips, real ones lifted to `real_share`."""
+    """Weight by which a bucket of clips is drawn: the sum of its clips' weights."""
     real, synth = _shares(is_real, real_share)
     return float(np.where(is_real[rows], real, synth).sum())
 
