@@ -1,4 +1,4 @@
-"""Between the process that serves `ctl` and the front: one message a packet, never waited for by either side."""
+"""The channel between ctl process and front: one message a packet; neither side ever waits for the other."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from contextlib import suppress
 import msgspec
 
 MOST_BYTES = 1 << 17
-"""More than a request (64 kB) or an event has."""
+"""Bytes of a message at most: more than a request (64 kB) or an event has."""
 
 FRONT_SERVES_S, FRONT_ANSWERS_S = 2.0, 3.0
-"""Seconds: the front serves no request that is older, and after the second one its sender is told that nobody has served it."""
+"""Seconds: the front serves no request older than the first, and after the second its sender receives `front_silent`."""
 
 
 class Ready(msgspec.Struct, tag="ready"):
-    """From `ctl`, first of all.
+    """From the ctl process, before any other message.
 
     Attributes:
-        failed: why it does not serve; empty when it does.
-        in_use: whether that is because another has the endpoint.
+        failed: reason why it does not serve; empty when it serves.
+        in_use: whether the reason is that another process has the endpoint.
     """
 
     failed: str = ""
@@ -27,11 +27,11 @@ class Ready(msgspec.Struct, tag="ready"):
 
 
 class Handed(msgspec.Struct, tag="handed"):
-    """From `ctl`: a request. A stop or an e-stop is asked of the bus process already; the others are for the front to decide.
+    """From the ctl process: a request. The bus process already has a stop or an e-stop; the front decides on the others.
 
     Attributes:
-        number: of the request, as in `daemon.shared_memory.request_words`.
-        frame: as it came.
+        number: number of the request, as in `daemon.shared_memory.request_words`.
+        frame: the request as received.
     """
 
     number: int
@@ -39,21 +39,21 @@ class Handed(msgspec.Struct, tag="handed"):
 
 
 class Told(msgspec.Struct, tag="told"):
-    """From `ctl`: an event that it has sent by itself, for those who watch.
+    """From the ctl process: an event that it has sent itself, for the front to publish.
 
     Attributes:
-        event: its bytes.
+        event: the encoded event.
     """
 
     event: bytes
 
 
 class Answered(msgspec.Struct, tag="answered"):
-    """From the front: a request of that number is served.
+    """From the front: a request is served.
 
     Attributes:
-        number: as handed over.
-        event: the bytes of what answers it; empty for a stop or an e-stop, which `ctl` answers itself.
+        number: number of the request.
+        event: the encoded answer; empty for a stop or an e-stop, which the ctl process answers itself.
     """
 
     number: int
@@ -65,10 +65,10 @@ _DECODER = msgspec.msgpack.Decoder(Ready | Handed | Told | Answered)
 
 
 class Channel:
-    """One end. Not for several threads.
+    """One end of the channel. Not for several threads.
 
     Args:
-        end: of a `pair`, which it owns from now on.
+        end: socket of a `pair`, which the channel owns from now on.
     """
 
     def __init__(self, end: socket.socket) -> None:
@@ -77,11 +77,11 @@ class Channel:
         self.closed = False
 
     def fileno(self) -> int:
-        """For polling; -1 once closed."""
+        """Descriptor for polling; -1 once closed."""
         return self._socket.fileno()
 
     def send(self, message: Ready | Handed | Told | Answered) -> bool:
-        """Hand over a message; false when there is no room for it now. To an end that is gone it is lost."""
+        """Send a message; returns false when there is no room for it now. A message to an end that is gone is lost."""
         try:
             self._socket.send(_ENCODER.encode(message))
         except BlockingIOError:
@@ -91,7 +91,7 @@ class Channel:
         return True
 
     def receive(self) -> Ready | Handed | Told | Answered | None:
-        """The next message that is there, else None; `closed` tells when none will come any more."""
+        """The next message that has arrived, else None; `closed` says whether no more will come."""
         try:
             packet = self._socket.recv(MOST_BYTES)
         except BlockingIOError:
@@ -111,5 +111,5 @@ class Channel:
 
 
 def pair() -> tuple[socket.socket, socket.socket]:
-    """Two ends; packets keep their bounds, in order."""
+    """Two connected sockets, which keep the bounds and the order of packets."""
     return socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

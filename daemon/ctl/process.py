@@ -1,7 +1,8 @@
-"""Entry of the process that serves `ctl`: it alone stands between a person's e-stop and the bus process.
+"""Entry of the ctl process: it alone stands between a person's e-stop and the bus process.
 
-It shares no thread, interpreter lock, libzmq context or file descriptor table with what serves the public, and needs none of it:
-the front may be flooded, frozen or dead. It beats in shared memory; a bus process that misses the beat for 0.2 s makes an e-stop.
+The ctl process shares no thread, interpreter lock, libzmq context or file descriptor table with the process that serves the
+public, and needs none of them: the front may be flooded, frozen or dead. It beats in shared memory; a bus process that misses the
+beat for 0.2 s enters an e-stop.
 """
 
 from __future__ import annotations
@@ -34,16 +35,16 @@ from daemon.shared_memory.request_words import Asker
 log = logging.getLogger(__name__)
 
 SWITCH_S = 0.001
-"""Longest that the doorkeeper's thread keeps the interpreter from the one that takes e-stops."""
+"""Seconds that the doorkeeper's thread keeps the interpreter from the thread that takes e-stops at most."""
 SCHED_FIFO = 1
 """Number of the scheduler in sched.h, which ZeroMQ takes."""
 SHARE = Share(512, gives_way="oldest")
-"""Connections to `ctl`: who connects gets in whatever waits there, as it may be for an e-stop."""
+"""Connections to `ctl`: a newcomer always gets in, in place of the oldest connection, because it may bring an e-stop."""
 ORPHAN_CHECK_S = 0.5
 
 
 def main() -> int:
-    """Serve until SIGTERM, or until front and bus process are both gone; 1 when the endpoint cannot be had."""
+    """Serve until SIGTERM, or until front and bus process are both gone; returns 1 when the endpoint cannot be bound."""
     parser = argparse.ArgumentParser(description="serves the ctl socket of mmmd; started by `mmmd run`")
     for name in ("--endpoint", "--link"):
         parser.add_argument(name, required=True)

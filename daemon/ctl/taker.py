@@ -1,7 +1,7 @@
-"""Takes what comes on `ctl`: a stop or an e-stop goes to the bus process at once, the rest to the front. Waits for nobody.
+"""Takes the requests on `ctl`: a stop or an e-stop goes to the bus process at once, the rest to the front. Waits for neither.
 
-An e-stop goes before everything that was read already, and voids the reset, arm, park or torque among it. Its reply says whether
-a bus cycle has carried it out; where none has yet, `carried_out` follows when one has.
+An e-stop goes before all requests that were read already, and voids every reset, arm, park or torque among them. Its reply says
+whether a bus cycle has carried it out; if none has yet, `carried_out` follows when one has.
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ from daemon.wire.requests import Arm, CtlRequest, Estop, Park, Reset, Status, St
 log = logging.getLogger(__name__)
 
 BEAT_MS = 10
-"""Longest wait for a request: after it the process shows again that it serves."""
+"""Milliseconds to wait for a request at most: then the process beats again."""
 LOOK_MS = 1
-"""The same while a reply waits for the bus process or the front."""
+"""Milliseconds to wait for a request at most while a reply waits for the bus process or the front."""
 HALT_REPLY_S = 0.05
-"""Longest wait of the reply to a stop or an e-stop for the bus cycle that takes it, and for the texts before it to be ended."""
+"""Seconds that the reply to a stop or an e-stop waits at most for the bus cycle that takes it, and for earlier texts to end."""
 STATUS_PATIENCE_S = 30.0
-"""The same of a `status`, which may be served late: the daemon starts, or its machine was held up."""
+"""Seconds that the reply to a `status` waits at most; the front may be late: the daemon starts, or its machine was held up."""
 AT_ONCE = 64
-"""Requests that a turn reads, to find an e-stop among them, before it serves them; more wait in the sockets of their senders."""
+"""Requests that a turn reads before it serves them, to find an e-stop among them; more wait in their senders' sockets."""
 PAUSE_S = 0.001
-"""Pause after a turn that has read `AT_ONCE` requests: this process goes before all others of the machine but the bus process,
-and under a flood of requests it would leave the processor to nobody, not even to the client that sends the e-stop."""
+"""Seconds of pause after a turn that has read `AT_ONCE` requests: this process goes before all others but the bus process, and
+under a flood of requests it would leave the processor to nobody, not even to the client that sends the e-stop."""
 MOST_OPEN = 4096
-"""Replies that may be due, and messages to the front that may wait; beyond that the oldest are given up."""
+"""Number of replies that may be due, and of messages to the front that may wait; beyond it the oldest are given up."""
 
 
 _STATES = [state.value for state in RobotState]
@@ -51,7 +51,7 @@ _STATES = [state.value for state in RobotState]
 
 @dataclass(eq=False)
 class _Waiting:
-    """A request that was read and not yet served; `overtaken` by an e-stop it is not carried out any more."""
+    """A request that was read and not yet served; one that an e-stop has `overtaken` may not be carried out any more."""
 
     route: Route
     request: CtlRequest | WireError
@@ -64,12 +64,12 @@ class _Due:
     """A request whose reply is due.
 
     Attributes:
-        route: where the reply goes.
-        request: what was asked.
-        until_s: when it is answered at the latest.
-        asked: of a stop or an e-stop: what the bus process was asked.
-        state: the robot's before it.
-        ended: whether the front has ended what came before it.
+        route: address of the reply.
+        request: the request.
+        until_s: time by which it is answered at the latest, seconds.
+        asked: the request to the bus process, for a stop or an e-stop; else None.
+        state: the robot's state before the request.
+        ended: whether the front has ended the commands before the request.
     """
 
     route: Route
@@ -82,14 +82,14 @@ class _Due:
 
 
 class Taker:
-    """Serves one ROUTER socket; `turn` again and again.
+    """Serves one ROUTER socket; call `turn` again and again.
 
     Args:
-        socket: of `ctl`.
+        socket: the socket of `ctl`.
         link: shared memory with the bus process.
-        channel: to the front.
-        guard: of the socket's connections.
-        now_s: the monotonic clock.
+        channel: channel to the front.
+        guard: guard of the socket's connections.
+        now_s: monotonic clock, seconds.
     """
 
     def __init__(
@@ -111,7 +111,7 @@ class Taker:
         self._seq = itertools.count(1)
 
     def turn(self) -> None:
-        """Read what waits, serve it, send the replies that have come due; waits `BEAT_MS` at most."""
+        """Read the waiting requests, serve them, and send the replies that are due; waits `BEAT_MS` at most."""
         self._link.ctl_beats()
         self._wait(LOOK_MS if self._due or self._owed else BEAT_MS)
         is_flooded = self._read()
@@ -130,7 +130,7 @@ class Taker:
     # Requests.
 
     def _read(self) -> bool:
-        """Read what waits in the socket, and whether there may be more; an e-stop overtakes all that was read already."""
+        """Read the waiting requests; returns whether there may be more. An e-stop overtakes all that were read already."""
         for _ in range(AT_ONCE):
             if (parts := self._message()) is None:
                 return False
@@ -143,11 +143,11 @@ class Taker:
             for earlier in self._queue:
                 earlier.overtaken = True
             self._queue.appendleft(waiting)
-            return False  # what a flood still holds is read after it
+            return False  # the rest of a flood is read after the e-stop is served
         return True
 
     def _message(self) -> list[bytes] | None:
-        """The next message that is there, as far as it is kept: the rest of a longer one is discarded, its sender cut off."""
+        """The frames of the next message; None without one. Frames beyond `MOST_PARTS` are discarded; the sender may be cut off."""
         try:
             frame = self._socket.recv(zmq.DONTWAIT, copy=False)
         except zmq.Again:
@@ -187,7 +187,7 @@ class Taker:
             self._hand_over(waiting, request)
 
     def _halt(self, waiting: _Waiting, request: Stop | Estop) -> None:
-        """To the bus process first of all."""
+        """Send a stop or an e-stop to the bus process before anything else."""
         number, state = self._link.new_number(), _STATES[self._link.robot_state]
         kind = BusRequest.STOP if isinstance(request, Stop) else self._link.estop_kind
         asked = self._link.request(kind, number=number)
@@ -232,7 +232,7 @@ class Taker:
                 self._reply(None if due.route.once else due.route, event)
 
     def _reply(self, route: Route | None, event: Event) -> None:
-        """Send an event of this process, and let the front tell those who watch; without a route only them."""
+        """Send an event of this process to `route`, if any, and hand it to the front, which publishes it."""
         event.seq, event.t_mono = next(self._seq), time.monotonic()
         payload = encode(event)
         if route is not None:
@@ -275,7 +275,7 @@ def _decoded(route: Route, parts: list[bytes]) -> _Waiting:
 
 
 def _overtaken(request: CtlRequest) -> Rejected:
-    """The event of what an e-stop voids: it came before, and would undo it when it was carried out afterwards."""
+    """The event of a request that an e-stop voids: carried out afterwards, the request would undo the e-stop."""
     return Rejected(
         id=request.id, code="overtaken", asked=tag_of(request), found="an e-stop that came after it and was served first",
         allowed="reset, then arm", do="ask again once the e-stop is answered",

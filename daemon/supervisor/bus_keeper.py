@@ -1,4 +1,4 @@
-"""Keeps the bus process: starts it, notices that it is lost or frozen, starts it again in a latched fault."""
+"""Keeps the bus process: starts it, detects that it is lost or frozen, and starts it again in a latched fault."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ END_TIMEOUT_S = 5.0
 FROZEN_S = 2.5
 """Seconds of silence after which the bus process is killed and started again; from 1 s on the robot is in fault."""
 FROZEN_IN_AN_ESTOP_S = 1.0
-"""Seconds of silence after which it is killed while an e-stop waits for it."""
+"""Seconds of silence after which the bus process is killed while an e-stop waits for it."""
 
 
 class BusStartError(DaemonError):
-    """The bus process could not open the bus or found other servos; the message is its own."""
+    """The bus process could not open the bus or found other servos; its message says which."""
 
 
 class BusKeeper:
-    """The bus process, from its first start to the shutdown request.
+    """Owns the bus process, from its first start to the shutdown request.
 
     Attributes:
         child: the process.
@@ -37,9 +37,9 @@ class BusKeeper:
     Args:
         config: robot and bus.
         link: shared memory.
-        asked_to_end: set when the daemon is asked to end, which breaks a start off.
-        environment: set for the process.
-        more: arguments of the process beside robot, bus and shared memory.
+        asked_to_end: set when the daemon is asked to end, which breaks off a start.
+        environment: environment variables set for the process.
+        more: arguments of the process besides robot, bus and shared memory.
     """
 
     def __init__(
@@ -56,11 +56,11 @@ class BusKeeper:
         self._ending = False
 
     async def start(self) -> None:
-        """Start it and wait until it has verified the servos.
+        """Start the bus process and wait until it has verified the servos.
 
         Raises:
-            ConfigError: it refuses the bus URL.
-            BusStartError: it could not open the bus, ended, froze, or the daemon is asked to end.
+            ConfigError: the bus process refuses the bus URL.
+            BusStartError: the bus process could not open the bus, ended or froze, or the daemon is asked to end.
         """
         self._link.set_ready(Readiness.STARTING)
         await self.child.start()
@@ -86,7 +86,7 @@ class BusKeeper:
         raise BusStartError(f"the bus process did not open {self._url} in {START_TIMEOUT_S:g} s")
 
     async def keep(self, front: Front) -> None:
-        """Notice the end of the bus process and start it again: in a latched fault, which a person has to reset."""
+        """Start the bus process again whenever it ends, in a latched fault, which a person has to reset."""
         back_off = BackOff(FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S)
         while True:
             status = await self._lost(front)
@@ -109,7 +109,7 @@ class BusKeeper:
             log.warning("the bus process runs again, in fault: `mmmd reset`, then `mmmd arm`")
 
     async def end(self) -> None:
-        """Ask it to shut down and wait for its end; its loss is no loss any more."""
+        """Ask the bus process to shut down and wait for its end, which no longer counts as a loss."""
         self._ending = True
         self._link.request(BusRequest.SHUTDOWN)
         await self.child.end(END_TIMEOUT_S, terminate=False)

@@ -1,4 +1,4 @@
-"""Processes of the daemon: started apart from the terminal's signals, watched, ended."""
+"""Child processes of the daemon: shielded from the terminal's signals, watched, and ended."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ log = logging.getLogger(__name__)
 
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
 GOOD_LIFE_S = 2.0
-"""Seconds after which a process did not fail to start: the wait before its next start is short again."""
+"""Seconds after which a start counts as successful: the wait before the next start is short again."""
 
 
 class BackOff:
-    """Seconds to wait before the next start of a process: twice as long after each failure, short again after a success.
+    """Computes the seconds to wait before a process starts again: twice as long after each failure, short after a success.
 
     Args:
-        first_s: the wait after a success.
-        longest_s: the longest wait.
-        last_s: the wait that the first failure doubles; None: half of `first_s`.
+        first_s: seconds to wait after a success.
+        longest_s: seconds to wait at most.
+        last_s: seconds that the first failure doubles; None takes half of `first_s`.
     """
 
     def __init__(self, first_s: float, longest_s: float, *, last_s: float | None = None) -> None:
@@ -36,26 +36,26 @@ class BackOff:
         self._last_s = first_s / 2 if last_s is None else last_s
 
     def after(self, *, good: bool) -> float:
-        """Seconds to wait now that the process has ended; `good` says whether it had started well."""
+        """Seconds to wait now that the process has ended; `good`: whether it had started well."""
         self._last_s = self._first_s if good else min(2 * self._last_s, self._longest_s)
         return self._last_s
 
 
 class Child:
-    """A Python module as a process of its own.
+    """Runs a Python module as a process.
 
     Ctrl-C in a terminal goes to a whole process group; children have their own, so that the front alone decides.
 
     Attributes:
-        name: for the log.
-        said: the last lines of its stderr, when that is followed.
+        name: name in the log.
+        said: last lines of the process's stderr; empty unless `follow`.
 
     Args:
-        name: for the log.
-        module: what to run.
+        name: name in the log.
+        module: module to run.
         arguments: its arguments.
-        environment: set for it, beside what this process has.
-        follow: read its stderr. Not for a process that must go on when this one is frozen: it could block on the pipe.
+        environment: environment variables set for it, besides this process's own.
+        follow: whether to read its stderr. False for a process that must run on when this one is frozen: the pipe could block it.
     """
 
     def __init__(
@@ -70,29 +70,29 @@ class Child:
 
     @property
     def running(self) -> bool:
-        """Whether it was started and has not ended."""
+        """Whether the process was started and has not ended."""
         return self._process is not None and self._process.returncode is None
 
     @property
     def pid(self) -> int:
-        """Its process id."""
+        """Process id."""
         assert self._process is not None, "not started"
         return self._process.pid
 
     @property
     def status(self) -> int | None:
-        """Its exit status; None while it runs."""
+        """Exit status; None while the process runs."""
         return None if self._process is None else self._process.returncode
 
     @property
     def lived_s(self) -> float:
-        """Seconds since it was started last."""
+        """Seconds since the last start."""
         return time.monotonic() - self._started_s
 
     def stopped_s(self) -> float:
-        """Seconds since a call of this method first found it stopped by a signal; 0 where there is no /proc.
+        """Seconds since this method first found the process stopped by a signal; 0 without /proc.
 
-        A process that starves on a busy machine does not count: it waits for a processor.
+        A process that waits for a processor on a busy machine does not count as stopped.
         """
         now_s, state = time.monotonic(), ""
         with contextlib.suppress(OSError, IndexError):
@@ -102,12 +102,12 @@ class Child:
         return now_s - self._ran_s
 
     def add_argument(self, argument: str) -> None:
-        """Give it one more argument at its next start."""
+        """Add an argument from the next start on."""
         if argument not in self._arguments:
             self._arguments.append(argument)
 
     async def start(self, pass_fds: Sequence[int] = ()) -> None:
-        """Start it (again); it inherits `pass_fds`."""
+        """Start the process, or start it again; it inherits the descriptors `pass_fds`."""
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive", **self._environment}
         environment[PARENT_VARIABLE] = str(os.getpid())
         self.said.clear()
@@ -122,7 +122,7 @@ class Child:
             self._forward = asyncio.create_task(self._forward_stderr(self._process))
 
     async def ended(self) -> int:
-        """Wait for its end; its exit status, negative for a signal."""
+        """Wait for the end of the process; returns its exit status, negative for a signal."""
         assert self._process is not None, "not started"
         status = await self._process.wait()
         if self._forward is not None:
@@ -131,13 +131,13 @@ class Child:
         return status
 
     def kill(self) -> None:
-        """End it at once."""
+        """Kill the process at once."""
         if self.running and self._process is not None:
             with contextlib.suppress(ProcessLookupError):
                 self._process.kill()
 
     async def end(self, grace_s: float, *, terminate: bool = True) -> None:
-        """Let it end by itself (asked by SIGTERM, with `terminate`), kill it after `grace_s`."""
+        """Wait for the process to end, after SIGTERM when `terminate`, and kill it after `grace_s` seconds."""
         if not self.running or self._process is None:
             return
         if terminate:

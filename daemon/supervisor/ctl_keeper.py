@@ -1,4 +1,4 @@
-"""Keeps a process behind `ctl`: starts it, notices that it is lost or frozen, starts it again. Part of the supervisor."""
+"""Keeps the ctl process: starts it, detects that it is lost or frozen, and starts it again. Part of the supervisor."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ log = logging.getLogger(__name__)
 
 START_TIMEOUT_S = 20.0
 LOOK_S = 0.04
-"""Seconds between two looks at the heartbeat of the process."""
+"""Seconds between two readings of the ctl process's heartbeat."""
 SILENT_S = 0.2
-"""Seconds of looks without a heartbeat after which the process is killed; the bus process has made an e-stop of it by then."""
+"""Seconds without a heartbeat after which the ctl process is killed; the bus process has entered an e-stop by then."""
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.1, 5.0
 END_S = 2.0
 
 
 class CtlStartError(DaemonError):
-    """The process behind `ctl` could not be started."""
+    """The ctl process could not be started."""
 
 
 class CtlKeeper:
-    """The process behind `ctl`, again and again.
+    """Owns the ctl process through all its starts.
 
     Args:
-        config: endpoint and keys.
+        config: endpoint and keys of `ctl`.
         robot: the robot.
         link: shared memory.
-        environment: set for the process.
+        environment: environment variables set for the process.
     """
 
     def __init__(self, config: DaemonConfig, robot: RobotModel, link: BusLink, environment: Mapping[str, str]) -> None:
@@ -49,11 +49,11 @@ class CtlKeeper:
         self._child: Child | None = None
 
     async def start(self) -> Channel:
-        """Start it; the channel to it, once it serves.
+        """Start the ctl process; returns the channel to it once it serves.
 
         Raises:
             ConfigError: the endpoint cannot be bound.
-            CtlStartError: it ended, or did not begin to serve in time.
+            CtlStartError: the process ended, or did not begin to serve in time.
         """
         ours, theirs = pair()
         with theirs:
@@ -77,7 +77,7 @@ class CtlKeeper:
         raise CtlStartError(f"the process that takes e-stops did not start (status {await child.ended()})")
 
     async def keep(self, attach: Callable[[Channel], None]) -> None:
-        """Start it again whenever it ends or freezes, and `attach` the new channel."""
+        """Start the ctl process again whenever it ends or freezes, and call `attach` with the new channel."""
         back_off = BackOff(FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S)
         while True:
             assert self._child is not None, "not started"
@@ -92,12 +92,12 @@ class CtlKeeper:
             log.warning("the ctl process serves again: `mmmd reset`, then `mmmd arm`")
 
     async def close(self) -> None:
-        """End it."""
+        """End the ctl process."""
         if self._child is not None:
             await self._child.end(END_S)
 
     async def _lost(self, child: Child) -> int:
-        """Wait for its end, which a frozen one is brought to; its status."""
+        """Wait for the end of the process, kill a frozen one, and return its exit status."""
         silence, ended = HeartbeatWatch(SILENT_S, LOOK_S), asyncio.create_task(child.ended())
         while not ended.done():
             await asyncio.wait({ended}, timeout=LOOK_S)

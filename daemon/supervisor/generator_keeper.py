@@ -1,4 +1,4 @@
-"""Keeps the generator: starts it again when it ends or freezes, or follows one that somebody else runs."""
+"""Keeps the generator: starts it again when it ends or freezes, or watches one that somebody else runs."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ FIRST_PING_TIMEOUT_S = 0.25
 FOLLOWING_PING_TIMEOUT_S = 1.0
 """Seconds that a ping waits for a generator that somebody else runs, once it has answered."""
 START_TIMEOUT_S = 120.0
-"""Seconds for loading torch and the model from a slow card."""
+"""Seconds that the generator has to load torch and the model, also from a slow card."""
 NO_TORCH = "PyTorch is not installed: `mmmd install-torch`, or `--generator` names one elsewhere"
 
 
 class GeneratorKeeper:
-    """The generator behind one client; the robot holds while there is none.
+    """Keeps the generator of one client; the robot holds while there is none.
 
     Attributes:
         client: knows whether the generator answers.
-        child: the process; not started where the generator runs elsewhere or PyTorch is missing.
+        child: the generator process; not started when the generator runs elsewhere or PyTorch is missing.
 
     Args:
         config: the endpoint of a generator elsewhere, and the checkpoint.
-        client: is told whether the generator answers.
-        endpoint: where the process binds.
-        environment: set for the process.
+        client: client of the generator, informed whether it answers.
+        endpoint: endpoint that the process binds.
+        environment: environment variables set for the process.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class GeneratorKeeper:
         self._elsewhere, self.client = config.generator, client
 
     def work(self) -> Coroutine[None, None, None] | None:
-        """The task to run until the end; None where no generator can run, which the client then says."""
+        """The task to run until the end; None when no generator can run, which the client then reports."""
         if self._elsewhere is not None:
             return self._follow(self._elsewhere)
         if importlib.util.find_spec("torch") is None:
@@ -60,7 +60,7 @@ class GeneratorKeeper:
         return self._keep()
 
     async def _keep(self) -> None:
-        """Start the generator, and again whenever it ends or freezes."""
+        """Start the generator, and start it again whenever it ends or freezes."""
         child, client = self.child, self.client
         back_off = BackOff(FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S, last_s=FIRST_BACK_OFF_S)
         while True:
@@ -76,7 +76,7 @@ class GeneratorKeeper:
             await asyncio.sleep(wait_s)
 
     async def _attend(self) -> bool:
-        """Return when the generator has ended or does not answer; whether it ever did."""
+        """Wait until the generator has ended or does not answer; returns whether it ever answered."""
         client = self.client
         answered, timeouts = False, client.timeouts
         began_s = time.monotonic()
@@ -102,7 +102,7 @@ class GeneratorKeeper:
         return answered
 
     async def _follow(self, endpoint: str) -> None:
-        """Notice whether a generator that somebody else runs answers."""
+        """Watch whether a generator that somebody else runs answers, for ever."""
         client, ready = self.client, False
         while True:
             if not client.busy:

@@ -1,4 +1,4 @@
-"""The folder of a running daemon for what its processes share: removed at the end, and by the next daemon after a kill."""
+"""The folder of a running daemon for its processes' sockets: removed at the end, or after a kill by the next daemon."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from pathlib import Path
 
 _PREFIX = "mmmd-run-"
 _OWNED = "owned"
-"""File in it on which its daemon holds a lock: a lock ends with its process, also where others see other process ids."""
+"""Name of the file that the daemon keeps locked; a lock ends with its process, and works where process ids are not shared."""
 _BEGINS_S = 60.0
-"""Seconds in which a folder may be new and its lock not taken yet."""
+"""Seconds in which a new folder may exist without its lock."""
 
 
 class RunFolder:
-    """A folder that only this user can enter, while this process lives."""
+    """A folder that only this user can enter, for the life of this process."""
 
     def __init__(self) -> None:
         _remove_orphans(Path(tempfile.gettempdir()))
@@ -26,13 +26,13 @@ class RunFolder:
         fcntl.flock(self._fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     def close(self) -> None:
-        """Remove it."""
+        """Remove the folder."""
         shutil.rmtree(self.path, ignore_errors=True)
         os.close(self._fd)
 
 
 def _remove_orphans(folder: Path) -> None:
-    """Remove what daemons of this user that were killed left behind."""
+    """Remove folders that killed daemons of this user left behind."""
     for path in folder.glob(f"{_PREFIX}*"):
         try:
             found = path.lstat()

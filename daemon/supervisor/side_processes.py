@@ -1,4 +1,4 @@
-"""Processes that the robot goes on without: the web server, which is started again, and the recorder, which is not."""
+"""Processes that the robot can do without: the web server, which is started again, and the recorder, which is not."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def web_server(config: DaemonConfig, environment: Mapping[str, str]) -> Child:
 
 
 async def keep_web_server(child: Child) -> None:
-    """Start the web server, and again whenever it ends."""
+    """Start the web server, and start it again whenever it ends."""
     back_off = BackOff(FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S, last_s=FIRST_BACK_OFF_S)
     while True:
         await child.start()
@@ -46,7 +46,7 @@ def recorder(config: DaemonConfig, link: BusLink, events: str, environment: Mapp
 
 
 async def record(child: Child, feed: RecorderFeed, front: Front, out: str) -> None:
-    """Record until the end; after a recorder that fails `mmmd status` says that the robot has no log."""
+    """Run the recorder until the end; after it fails, `mmmd status` shows that the robot has no log."""
     await child.start()
     try:
         status = await child.ended()

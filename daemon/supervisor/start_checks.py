@@ -1,4 +1,4 @@
-"""Refusals before any process starts: a bus URL, web server, checkpoint or log file that cannot be."""
+"""Checks before any process starts: bus URL, web server, checkpoint and log file."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from daemon.network.web_access import address_of
 from daemon.settings.config import HTTP_ADDRESS, DaemonConfig, config_error
 
 SAFETENSORS_HEAD_BYTES = 9
-"""Bytes that hold the header's length, eight of them, and the brace that the header begins with."""
+"""Bytes read of a checkpoint: eight with the header's length, and the brace with which the header begins."""
 
 
 def check_config(config: DaemonConfig) -> None:
-    """Refuse settings that a process would fail on again and again.
+    """Refuse settings on which a process would fail again and again.
 
     Raises:
-        ConfigError: scheme of the bus, HTTP address, its library or the checkpoint.
+        ConfigError: the bus scheme, the HTTP address, its library or the checkpoint cannot be used.
     """
     check_scheme(config.bus)
     if config.http or config.view:
@@ -28,10 +28,10 @@ def check_config(config: DaemonConfig) -> None:
 
 
 def check_scheme(bus: str) -> None:
-    """Refuse a bus URL whose scheme nobody serves, before anything is started.
+    """Refuse a bus URL with an unknown scheme, before any process starts.
 
     Raises:
-        ConfigError: it is unknown.
+        ConfigError: the scheme is unknown.
     """
     known = sorted(point.name for point in entry_points(group="mmmd.ports"))
     if bus.partition(":")[0] not in known:
@@ -40,10 +40,10 @@ def check_scheme(bus: str) -> None:
 
 
 def check_web_server(address: str) -> None:
-    """Refuse an address that is none, and a server whose library is missing, before anything is started.
+    """Refuse a malformed address, and a server whose library is missing, before any process starts.
 
     Raises:
-        ConfigError: either.
+        ConfigError: the address is malformed, or the library is missing.
     """
     address_of(address)
     if importlib.util.find_spec("tornado") is None:
@@ -51,10 +51,10 @@ def check_web_server(address: str) -> None:
 
 
 def check_model(path: Path) -> None:
-    """Refuse a checkpoint that cannot be one, before a generator is started again and again for it.
+    """Refuse a file that cannot be a checkpoint, because a generator would be started again and again for it.
 
     Raises:
-        ConfigError: there is no such file, it cannot be read, or it is no safetensors file.
+        ConfigError: the file is missing, cannot be read, or is no safetensors file.
     """
     do = "write one with `mmmd train`, or leave --model out for the shipped one"
     try:
@@ -68,12 +68,12 @@ def check_model(path: Path) -> None:
 
 
 def log_file(path: Path) -> Path:
-    """The file to record into: in a folder one named by the time, so that each start of a service has its own."""
+    """The file to record into: `path`, or in a folder a file named by the time, so that each start of a service has its own."""
     return path / time.strftime("mmmd-%Y%m%dT%H%M%S.mcap", time.gmtime()) if path.is_dir() else path
 
 
 def log_path_error(path: Path) -> str | None:
-    """Why a log cannot be written there; None when it can."""
+    """The reason why a log cannot be written to `path`; None when it can."""
     if path.exists():
         return f"--log {path}: the file exists; choose another name, or a folder; logs are not overwritten"
     if not path.parent.is_dir():

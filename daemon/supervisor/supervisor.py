@@ -1,8 +1,7 @@
 """Starts the daemon's processes in their order, watches them, parks the robot at the end.
 
-Bus process and front are needed (`bus_keeper.py`), and so is the process that takes e-stops (`ctl_keeper.py`); a generator that
-dies or freezes is started again while the robot holds (`generator_keeper.py`); web server and recorder are extras
-(`side_processes.py`).
+The daemon needs front, bus process (`bus_keeper.py`) and ctl process (`ctl_keeper.py`); a generator that dies or freezes is
+started again while the robot holds (`generator_keeper.py`); web server and recorder are extras (`side_processes.py`).
 """
 
 from __future__ import annotations
@@ -42,11 +41,11 @@ from retarget.robot.robot import RobotModel
 log = logging.getLogger(__name__)
 
 GOOD, ROBOT_FAULT = 0, 3
-"""Exit statuses: after a park, and where the robot was left in a latched fault or e-stop."""
+"""Exit statuses: after parking, and when the robot was left in a latched fault or e-stop."""
 
 
 class Supervisor:
-    """One daemon, from start to park."""
+    """Runs one daemon, from start to park."""
 
     def __init__(self, config: DaemonConfig) -> None:
         check_config(config)
@@ -60,7 +59,7 @@ class Supervisor:
         self._asked_to_end = asyncio.Event()
         self._notifier = Notifier()
         self._metrics: MetricsServer | None = None
-        # One core for a process at normal priority would keep it from going where there is room.
+        # A process at normal priority is not kept to one core: that would keep it from going where there is room.
         self._core = CoreClaim() if may_fifo(BUS_PRIORITY) else CoreClaim(frozenset())
         core = ["--core", str(self._core.core)] if self._core.core is not None else []
         self._log_path = self._folder.path / "log"
@@ -70,10 +69,10 @@ class Supervisor:
         self._bus = BusKeeper(config, self._link, self._asked_to_end, self._environment, core)
 
     async def run(self) -> int:
-        """Serve until SIGTERM or SIGINT; 0 after a park, 3 when the robot was left in a latched fault or e-stop.
+        """Serve until SIGTERM or SIGINT; returns 0 after parking, 3 when the robot was left in a latched fault or e-stop.
 
         Raises:
-            DaemonError: a port is taken, the bus cannot be opened, other servos were found.
+            DaemonError: a port is taken, the bus cannot be opened, or other servos were found.
         """
         try:
             endpoint = self._config.generator or f"ipc://{self._folder.path}/generator"
@@ -88,7 +87,7 @@ class Supervisor:
             await asyncio.gather(*self._tasks, return_exceptions=True)
             for child in reversed(self._children):
                 await child.end(END_TIMEOUT_S)
-            await self._ctl.close()  # last: it takes e-stops as long as there is somebody to carry them out
+            await self._ctl.close()  # last: it takes e-stops as long as a bus process can carry them out
             self._context.destroy(linger=200)
             self._link.close()
             self._core.close()
@@ -101,7 +100,7 @@ class Supervisor:
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, self._end_asked)
         try:
-            # The robot first: whoever cannot drive it starts nothing else.
+            # The robot first: a daemon that cannot drive it starts nothing else.
             self._children.append(self._bus.child)
             channel = await self._start_bus_and_ctl()
             gc.collect()
@@ -147,7 +146,7 @@ class Supervisor:
         log.info("cmd %s, ctl %s, pub %s, stream %s", ends.cmd, ends.ctl, ends.pub, ends.stream)
 
     async def _start_extras(self, front: Front) -> None:
-        """Metrics and web server on request; readiness and signs of life for systemd."""
+        """Start metrics and web server on request, and report readiness and signs of life to systemd."""
         if self._config.metrics:
             self._metrics = MetricsServer(
                 self._config.metrics, lambda: exposition(front.state_event(), front.ledger.counts, front.view.health())
@@ -162,7 +161,7 @@ class Supervisor:
             self._watch(self._sign_of_life(self._notifier.watchdog_s / 3))
 
     async def _sign_of_life(self, period_s: float) -> None:
-        """The event loop runs: systemd may know. The bus process has its own supervision."""
+        """Report to systemd that the event loop runs. The bus process has its own supervision."""
         while True:
             self._notifier.alive()
             await asyncio.sleep(period_s)
@@ -177,7 +176,7 @@ class Supervisor:
         self._tasks.append(asyncio.ensure_future(work))  # type: ignore[arg-type]
 
     async def _start_bus_and_ctl(self) -> Channel:
-        """Start both at a time; the channel to the process that takes e-stops."""
+        """Start bus process and ctl process at the same time; returns the channel to the ctl process."""
         ctl_starts = asyncio.create_task(self._ctl.start())
         try:
             await self._bus.start()
@@ -187,7 +186,7 @@ class Supervisor:
 
 
 def run(config: DaemonConfig) -> int:
-    """Run a daemon in this process until it is asked to end; its exit status.
+    """Run a daemon in this process until it is asked to end; returns its exit status.
 
     Raises:
         DaemonError: see `Supervisor.run`.
