@@ -56,7 +56,11 @@ def crowd(endpoint: str, n: int):
             one.close()
 
 
-@pytest.mark.parametrize("name", ["cmd", "ctl", "pub", "stream"])
+@pytest.mark.parametrize(
+    ("running", "name"),
+    [("tcp", "cmd"), ("tcp", "ctl"), ("tcp", "pub"), ("tcp", "stream"), ("ipc", "cmd"), ("ipc", "ctl")],
+    indirect=["running"],
+)
 def test_1500_connections_to_a_socket_keep_no_new_client_out(running, name):
     """They took every descriptor of the daemon in 0.7 s: no new client got in; over ipc libzmq aborted the daemon."""
     with crowd(getattr(running.endpoints, name), CONNECTIONS) as sockets:
@@ -107,7 +111,11 @@ def test_peers_that_have_shaken_hands_with_ctl_keep_no_newcomer_out(running):
             assert client.stop().verb == "stop"
 
 
-@pytest.mark.parametrize(("name", "kind"), [("cmd", "DEALER"), ("pub", "SUB"), ("stream", "PUB")])
+@pytest.mark.parametrize(
+    ("running", "name", "kind"),
+    [("tcp", "cmd", "DEALER"), ("tcp", "pub", "SUB"), ("tcp", "stream", "PUB"), ("ipc", "cmd", "DEALER")],
+    indirect=["running"],
+)
 def test_a_message_of_endlessly_many_parts_takes_no_memory(running, name, kind):
     """ZeroMQ keeps the parts of a message that has not ended, beside every bound: 1.6 GB in 7 s."""
     before = most = memory_bytes(running)
@@ -122,7 +130,11 @@ def test_a_message_of_endlessly_many_parts_takes_no_memory(running, name, kind):
     assert most - before < MOST_GROWTH_BYTES, most
 
 
-@pytest.mark.parametrize(("topic_bytes", "n_topics"), [(1000, 200), (60, 200), (1, 1)])
+@pytest.mark.parametrize(
+    ("running", "topic_bytes", "n_topics"),
+    [("tcp", 1000, 200), ("tcp", 60, 200), ("tcp", 1, 1), ("ipc", 1000, 200)],
+    indirect=["running"],
+)
 def test_a_flood_of_subscriptions_is_cut_off_and_others_are_served(running, topic_bytes, n_topics):
     """200 topics of 1 kB subscribed to and given up again as fast as it goes kept the daemon from an e-stop for 12 s."""
     context = zmq.Context()
@@ -136,7 +148,7 @@ def test_a_flood_of_subscriptions_is_cut_off_and_others_are_served(running, topi
     try:
         with running.client() as client:
             before = client.status().bus_info["connections_shut"]
-            end_s = time.monotonic() + 2.0
+            end_s = time.monotonic() + 1.0
             while time.monotonic() < end_s:
                 with contextlib.suppress(OSError), RawPeer(running.endpoints.pub, "SUB") as peer:
                     while peer.send(flood) and time.monotonic() < end_s:

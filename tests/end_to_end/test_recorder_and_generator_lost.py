@@ -41,9 +41,10 @@ def test_the_recorder_killed_and_frozen_changes_nothing_for_the_robot(tmp_path, 
         daemon.close()
 
 
-@pytest.mark.parametrize("states", some_and_all(("moving", "fault"), ("idle", *ALL_STATES)))
+@pytest.mark.parametrize("states", some_and_all(("moving",), ("idle", *ALL_STATES)))
 def test_the_generator_killed_and_frozen_in_each_state_is_started_again(states):
-    """Frozen for good in the first state, killed in the others.
+    """Frozen for good in the first state, killed in the others: of those the soak run; a story's generator is killed in
+    test_compositions.py.
 
     On servos in the bus process: loading a model again and again takes the processor from others.
     """
@@ -65,8 +66,7 @@ def test_the_generator_killed_and_frozen_in_each_state_is_started_again(states):
                 within(12, "noticed", lambda: not client.status().generator.startswith("ready"))
                 if state in ("limp", "idle", "moving", "holding"):
                     assert client.gesture("nod").done  # the library needs no generator
-            client.reset()
-            client.wait_for("limp", timeout_s=5)
+            bring_to(client, "limp")
             within(60, "back", lambda: client.status().generator.startswith("ready"))
             client.arm()
             assert client.say("nod twice").done

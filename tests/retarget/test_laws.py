@@ -91,7 +91,7 @@ def held_before(motion: Motion, n: int) -> Motion:
 @pytest.mark.parametrize(
     ("name", "at_least"),
     [
-        *((name, 3) for name in ("reference", "op3", "toddlerbot")),
+        *((name, 3) for name in ("reference", "op3")),
         *(pytest.param(name, 12, marks=pytest.mark.soak) for name in RETARGETERS),
     ],
 )

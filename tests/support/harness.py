@@ -7,6 +7,7 @@ import contextlib
 import functools
 import io
 import os
+import re
 import shutil
 import signal
 import socket
@@ -165,16 +166,21 @@ class RunningDaemon:
         self._folder.cleanup()
 
 
-@functools.cache
 def slow_reference() -> str:
-    """Folder of a copy of the robot `reference` at `RATE_HZ`, which is removed when this process ends."""
+    """Folder of the robot `reference` at `RATE_HZ`."""
+    return slowed("reference")
+
+
+@functools.cache
+def slowed(robot: str) -> str:
+    """Folder of a copy of a packaged robot at `RATE_HZ`, which is removed when this process ends."""
     folder = Path(tempfile.mkdtemp(prefix="mmmd-test-robot-"))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    shutil.copytree(ROBOTS_DIR / "reference", folder, dirs_exist_ok=True)
+    shutil.copytree(ROBOTS_DIR / robot, folder, dirs_exist_ok=True)
     file = folder / "robot.toml"
-    usual, slow = "rate_hz = 100", f"rate_hz = {RATE_HZ}"
-    assert usual in file.read_text("utf-8")
-    file.write_text(file.read_text("utf-8").replace(usual, slow), "utf-8")
+    slow, n_rates = re.subn(r"^rate_hz = \d+", f"rate_hz = {RATE_HZ}", file.read_text("utf-8"), flags=re.MULTILINE)
+    assert n_rates == 1
+    file.write_text(slow, "utf-8")
     return str(folder)
 
 

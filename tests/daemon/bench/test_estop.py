@@ -33,9 +33,7 @@ def test_a_lost_estop_is_counted_and_its_time_is_none_of_the_figures():
 
 @pytest.mark.timeout(240)
 @pytest.mark.realtime
-@pytest.mark.parametrize(
-    "names", some_and_all(("front_killed", "bus_killed"), ("flood_pub", "front_killed", "bus_killed"))
-)
+@pytest.mark.parametrize("names", some_and_all(("bus_killed",), ("flood_pub", "front_killed", "bus_killed")))
 def test_disturbed_daemons_give_every_figure_and_lose_no_estop(names):
     disturbances, violations = measure_disturbed(1, 0, "reference", names)
     assert tuple(disturbances) == names and violations == 0

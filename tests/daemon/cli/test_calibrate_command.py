@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -10,6 +13,7 @@ import numpy as np
 import pytest
 
 from daemon.bench.tty_servos import served
+from daemon.cli import main
 from daemon.dynamixel.bus_opening import bus_on
 from daemon.dynamixel.events import BusEventKind
 from daemon.dynamixel.servo_bus import ServoBus
@@ -22,7 +26,6 @@ from sim.clock import VirtualClock
 from sim.faults import Fault, FaultSchedule
 from sim.port import SimPort
 from sim.pty import PtyServer
-from tests.support.harness import MMMD
 
 pytestmark = pytest.mark.realtime
 
@@ -38,10 +41,21 @@ def limp_op3(tmp_path_factory):
 
 
 def run(bus: str, folder: Path, typed: str, *options: str) -> subprocess.CompletedProcess[str]:
+    """The command in this process, with a folder to work in and the keys that a person presses."""
     if not (folder / "op3").exists():
         shutil.copytree(ROBOTS_DIR / "op3", folder / "op3")
-    command = [*MMMD, "calibrate", "--robot", "op3", "--bus", bus, "--limp", "--out", "op3/robot.toml", *options]
-    return subprocess.run(command, input=typed, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+    command = ["calibrate", "--robot", "op3", "--bus", bus, "--limp", "--out", "op3/robot.toml", *options]
+    read_end, write_end = os.pipe()  # the command waits for keys with `select`
+    os.write(write_end, typed.encode())
+    os.close(write_end)
+    out, err = io.StringIO(), io.StringIO()
+    with (
+        os.fdopen(read_end) as stdin, pytest.MonkeyPatch.context() as patch, contextlib.chdir(folder),
+        contextlib.redirect_stdout(out), contextlib.redirect_stderr(err),
+    ):  # fmt: skip
+        patch.setattr("sys.stdin", stdin)
+        status = main(command)
+    return subprocess.CompletedProcess(command, status, out.getvalue(), err.getvalue())
 
 
 @pytest.mark.parametrize("typed", ["\n\nno\n", "\n\n"])

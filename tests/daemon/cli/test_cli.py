@@ -15,7 +15,8 @@ import pytest
 
 from daemon.cli.program import COMMANDS, main
 from mmm_core.inference.checkpoint import MODEL_FILE
-from tests.support.harness import RunningDaemon, mmmd
+from tests.support.harness import RunningDaemon
+from tests.support.shipped import loaded_once
 
 pytestmark = pytest.mark.realtime
 
@@ -130,22 +131,12 @@ def test_stop_loads_nothing_heavy():
 
 
 @needs_model
-def test_generate_writes_what_the_design_names(tmp_path):
+def test_generate_writes_what_the_design_names(tmp_path, capsys):
     npz, bvh = tmp_path / "wave.npz", tmp_path / "wave.bvh"
-    made = mmmd(
-        "generate",
-        "wave with your right hand",
-        "--seed",
-        "7",
-        "--out",
-        str(npz),
-        "--bvh",
-        str(bvh),
-        "--json",
-        timeout_s=90,
-    )
-    assert made.returncode == 0, made.stderr
-    assert json.loads(made.stdout)["status"] == "accepted"
+    text, files = "wave with your right hand", ("--out", str(npz), "--bvh", str(bvh))
+    with loaded_once():
+        assert main(["generate", text, "--seed", "7", *files, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["status"] == "accepted"
     with np.load(npz) as data:
         T = len(data["joints"])
         assert data["joints"].shape == (T, 22, 3) and data["joints"].dtype == np.float32
@@ -158,7 +149,8 @@ def test_generate_writes_what_the_design_names(tmp_path):
     prompts.write_text(
         '{"id": "a", "text": "wave with your right hand", "seed": 7}\n{"id": "b", "text": "nod", "seconds": 2}\n'
     )
-    assert main(["generate", "--batch", str(prompts), "--out", str(tmp_path / "many")]) == 0
+    with loaded_once():
+        assert main(["generate", "--batch", str(prompts), "--out", str(tmp_path / "many")]) == 0
     with np.load(tmp_path / "many" / "a.npz") as again, np.load(tmp_path / "many" / "b.npz") as other:
         assert np.array_equal(again["joints"], joints)  # the same seed, the same motion
         assert len(other["joints"]) == 40

@@ -76,7 +76,7 @@ def test_a_machine_without_pytorch_runs_gestures_and_says_what_is_missing(tmp_pa
 @pytest.mark.realtime
 def test_a_port_in_use_is_status_1_so_that_a_service_tries_again(running):
     again = mmmd("run", *running.at, "--stream", running.endpoints.stream)
-    assert again.returncode == 1 and "already in use" in again.stderr
+    assert again.returncode == 1 and running.endpoints.cmd in again.stderr and "already in use" in again.stderr
 
 
 @pytest.mark.realtime

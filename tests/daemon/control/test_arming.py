@@ -148,7 +148,8 @@ def test_one_servo_that_stops_by_its_watchdog_is_a_named_fault(servo_id):
 
 
 @pytest.mark.parametrize(("robot", "servo_id", "before"), [
-    ("reference", None, None), ("ffw_bg2", None, None), ("reference", 13, BusRequest.ESTOP_HOLD), ("op3", 1, BusRequest.STOP),
+    ("reference", None, None), pytest.param("ffw_bg2", None, None, marks=pytest.mark.soak),
+    ("reference", 13, BusRequest.ESTOP_HOLD), ("op3", 1, BusRequest.STOP),
 ])  # fmt: skip
 def test_a_servo_stopped_by_its_watchdog_in_a_fault_gets_no_goals(robot, servo_id, before):
     """All of them silent is a fault before the watchdogs run out: found by a soak, after 2.7 hours."""

@@ -32,7 +32,7 @@ def test_nothing_moves_because_a_process_started():
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (1, 2))])
 def test_arming_pins_then_goes_slowly_to_rest(name, seed):
     """From any pose in which it is not in itself; those are in `test_park.py`."""
     robot = load_robot(name)

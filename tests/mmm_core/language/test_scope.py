@@ -91,13 +91,16 @@ class TestAuroc:
             auroc([1.0], [])
 
 
-def test_the_score_parts_the_development_prompts(engine: Engine) -> None:
-    inside = [*SCOPE_DEVELOPMENT.in_scope, *(p.text for p in PROBES)]
-    found = scope_figures(engine, inside, SCOPE_DEVELOPMENT.out_of_scope)
+@pytest.mark.parametrize("every", [2, pytest.param(1, id="all", marks=pytest.mark.soak)])
+def test_the_score_parts_the_development_prompts(engine: Engine, every: int) -> None:
+    """Every second prompt of each kind; all in the soak run, and in `mmmd eval scope`."""
+    inside = [*SCOPE_DEVELOPMENT.in_scope, *(p.text for p in PROBES)][::every]
+    outside = {kind: texts[::every] for kind, texts in SCOPE_DEVELOPMENT.out_of_scope.items()}
+    found = scope_figures(engine, inside, outside)
     assert found["auroc"] >= 0.97
     assert found["false_refusals"] <= 0.04 and found["false_acceptances"] <= 0.12
     assert found["decision_processor_ms"]["p50"] < 30
-    assert found["n"] == len(inside) + len(out_of(SCOPE_DEVELOPMENT.out_of_scope))
+    assert found["n"] == len(inside) + len(out_of(outside))
 
 
 def test_another_side_of_the_same_texts_is_seen(engine: Engine) -> None:
@@ -216,13 +219,13 @@ def test_training_texts_are_the_same_every_time() -> None:
 
 def test_own_captions_are_in_scope_only_where_the_recipe_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A model trained on recordings of a gesture that the grammar lacks refused the very captions that it was trained on."""
-    known = sorted(known_commands(1))[::20]  # reading all of them takes longer than the rest
+    known = sorted(known_commands(1))[::60]  # reading all of them takes longer than the rest
     monkeypatch.setattr(scope_training, "known_commands", lambda *_: set(known))
     own, encoder = ["milk a cow", "peel a potato"], load_text_encoder()
     vectors = encoder.encode(own).sentence
 
     def statuses(captions: Sequence[str]) -> list[str]:
-        scope = build_scope(encoder, ScopeRecipe(200, 400), captions)
+        scope = build_scope(encoder, ScopeRecipe(100, 200), captions)
         return [scope.judge(text, vector).status for text, vector in zip(own, vectors, strict=True)]
 
     assert statuses([]) == ["rejected", "rejected"]

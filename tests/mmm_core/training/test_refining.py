@@ -22,7 +22,7 @@ from mmm_core.training.run import Run, Schedule
 
 @pytest.fixture(scope="module")
 def clips() -> list[Clip]:
-    return [Clip(synthesise(np.random.default_rng((8, i)), BEAT_S).features, ["x"], False) for i in range(60)]
+    return [Clip(synthesise(np.random.default_rng((8, i)), BEAT_S).features, ["x"], False) for i in range(24)]
 
 
 @pytest.fixture(scope="module")
