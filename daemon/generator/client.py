@@ -1,4 +1,4 @@
-"""The front's side of the generator: asks without blocking the event loop. Holds no torch.
+"""The front's client of the generator: sends requests without blocking the event loop. It loads no torch.
 
 The generator is a ROUTER, its clients are DEALERs; the messages are in `daemon.generator.messages`.
 """
@@ -45,18 +45,18 @@ from mmm_core.motion.motion import Motion
 log = logging.getLogger(__name__)
 
 MOST_ANSWER_BYTES = 8 << 20
-"""Bytes of an answer: a motion of five minutes."""
+"""Bytes of an answer at most: a motion of five minutes."""
 START_TIMEOUT_S = 10.0
-"""Longest wait of a text for a generator that is being started."""
+"""Seconds that a text waits at most for a generator that is being started."""
 
 
 class GeneratorClient:
-    """Asks the generator without blocking the event loop; several requests may be open.
+    """Sends requests to the generator without blocking the event loop; several may be open at once.
 
     Attributes:
-        state: what people are told about the generator; `mark_ready` and `mark_down` set it.
-        checkpoint_hash: of the weights it said it uses last, empty before.
-        timeouts: requests that were not answered in time by the generator they were sent to.
+        state: state of the generator in words, for people; `mark_ready`, `mark_starting` and `mark_down` set it.
+        checkpoint_hash: hash of the weights that the generator last reported; empty before.
+        timeouts: number of requests not answered in time by the generator process to which they were sent.
     """
 
     def __init__(
@@ -84,13 +84,13 @@ class GeneratorClient:
         self._starting_since_s = time.monotonic()
 
     def mark_ready(self, checkpoint_hash: str) -> None:
-        """The generator answers."""
+        """Note that the generator answers."""
         self.state, self._down_reason = f"ready (checkpoint {checkpoint_hash[:12]})", ""
         self.checkpoint_hash = checkpoint_hash
         self._ready.set()
 
     def mark_starting(self) -> None:
-        """The generator is being started; requests wait for it."""
+        """Note that the generator is being started: open requests fail, new ones wait for it."""
         self.state, self._down_reason = "starting", ""
         self._starting_since_s = time.monotonic()
         self._ready.clear()
@@ -98,7 +98,7 @@ class GeneratorClient:
         self._lose_follows()
 
     def mark_down(self, reason: str) -> None:
-        """The generator is gone; requests fail at once."""
+        """Note that the generator is gone: open and new requests fail at once."""
         self.state, self._down_reason = f"down: {reason}", reason
         self._ready.clear()
         self._lose_follows()
@@ -121,10 +121,10 @@ class GeneratorClient:
         self, text: str, seed: int, seconds: float | None, timeout_s: float, *, before: Motion | None = None,
         prefix_s: float = 0.0,
     ) -> Generated:  # fmt: skip
-        """The motion for `text`; given what is there before it, one that goes on from the last `prefix_s` of that.
+        """The motion for `text`; with `before`, one that continues from the last `prefix_s` seconds of that motion.
 
         Raises:
-            GeneratorError: it failed, gave no usable motion, or not in time (`code` tells which).
+            GeneratorError: the generator failed, gave no usable motion, or did not answer in time (`code` says which).
         """
         asked = f"a motion for {text!r}"
         await self._until_ready(asked)
@@ -174,7 +174,7 @@ class GeneratorClient:
     async def scene(
         self, text: str | None, seed: int, seconds: float | None, told: bytes, timeout_s: float, *, last: bool
     ) -> Generated:
-        """The next piece of a story, which may have no frames; `told` is what the one before gave.
+        """The next scene of a story, which may have no frames; `told` is the state that the scene before returned.
 
         Raises:
             GeneratorError: as `generate`.
@@ -188,10 +188,10 @@ class GeneratorClient:
         self, motion: Motion, text: str, seed: int, parts: Sequence[str], start_s: float, end_s: float | None,
         timeout_s: float,
     ) -> Generated:  # fmt: skip
-        """`motion` with a stretch or some parts made again for `text`.
+        """`motion` with an interval or some parts of the body generated anew for `text`.
 
         Raises:
-            GeneratorError: as `generate`; `bad_edit` when it does not fit the motion or the model, `not_reached` when no
+            GeneratorError: as `generate`; `bad_edit` when the edit does not fit the motion or the model, `not_reached` when no
                 edited motion shows the text.
         """
         asked = f"an edit for {text!r}"
@@ -219,7 +219,7 @@ class GeneratorClient:
         return generated_of(await self._ask(request, timeout_s, asked), asked, min_frames)
 
     async def ping(self, timeout_s: float) -> str:
-        """The hash of the generator's checkpoint.
+        """Ask the generator for a sign of life; returns the hash of its checkpoint.
 
         Raises:
             GeneratorError: no answer in time, another version of the protocol, another checkpoint than agreed.
@@ -261,7 +261,7 @@ class GeneratorClient:
                 await self._socket.send(frame)
                 return await answer
         except TimeoutError:
-            self.timeouts += life == self._lives  # one that was started since is not to blame
+            self.timeouts += life == self._lives  # a generator started since then is not to blame
             raise no_answer(asked, timeout_s) from None
         finally:
             self._open.pop(request.id, None)
@@ -280,7 +280,7 @@ class GeneratorClient:
                     break
 
     async def close(self) -> None:
-        """Drop what is open and close the socket."""
+        """Drop open requests and close the socket."""
         if self._reader is not None:
             self._reader.cancel()
             with contextlib.suppress(asyncio.CancelledError):
@@ -289,6 +289,6 @@ class GeneratorClient:
 
 
 def _heard(whole: asyncio.Task[Generated]) -> None:
-    """Nobody may be waiting for it any more."""
+    """Log the failure of a motion after its draft, because nobody may be waiting for the task any more."""
     if not whole.cancelled() and whole.exception() is not None:
         log.warning("a draft goes on without its motion: %s", whole.exception())

@@ -1,4 +1,4 @@
-"""Motions as the generator gives them, and their way through its messages. Holds no torch."""
+"""Motions as the generator gives them, and their conversion to and from messages. Loads no torch."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from mmm_core.motion.motion import N_FEATURES, N_JOINTS, Motion
 from mmm_core.recognition.seen import Scene
 
 MIN_FRAMES = 2
-"""A motion of fewer frames is no motion."""
+"""Frames that an answer must have at least to count as a motion."""
 
 
 class GeneratorError(DaemonError):
-    """The generator gave no usable motion: why, and what to do."""
+    """The generator gave no usable motion; the message says why, and what to do."""
 
     def __init__(self, code: str, asked: str, found: str, allowed: str, do: str) -> None:
         self.code, self.asked, self.found, self.allowed, self.do = code, asked, found, allowed, do
@@ -26,7 +26,7 @@ class GeneratorError(DaemonError):
 
 
 def no_answer(asked: str, timeout_s: float) -> GeneratorError:
-    """The error of a generator that was silent."""
+    """The error of a generator that did not answer in time."""
     found, do = f"no answer from the generator in {timeout_s:g} s", "it is started again; say it once more"
     return GeneratorError("generator_timeout", asked, found, "an answer in that time", do)
 
@@ -35,7 +35,7 @@ def still_loading(asked: str, loading_s: float) -> GeneratorError:
     """The error of a text that came before the motion model was loaded.
 
     Args:
-        asked: what was asked for.
+        asked: the request, in words.
         loading_s: seconds since the generator was started.
     """
     found = f"the motion model has been loading for {loading_s:.0f} s and is not ready yet"
@@ -49,15 +49,15 @@ class Generated:
 
     Attributes:
         motion: the motion; of length zero when rejected.
-        understood: nearest known command and its score.
-        reason: why degraded or rejected, else empty.
-        timings_ms: the generator's stages.
-        checkpoint_hash: the weights it used.
-        told: where a story then stands; else empty.
-        draft_of: frames that the motion will have, about, of which this is a draft; 0 when it is the motion.
-        scenes: parts of the motion and the words that each was made for; empty where it is one.
-        commands: what was read in the text, step by step; empty where none was read.
-        denied: what the text says not to do.
+        understood: nearest known command and its score, as text.
+        reason: why the text was degraded or rejected; else empty.
+        timings_ms: milliseconds of each stage of the generator.
+        checkpoint_hash: hash of the weights used.
+        told: state of a story after this scene, for the next request; else empty.
+        draft_of: approximate number of frames of the motion of which this is a draft; 0 for a motion.
+        scenes: parts of the motion and the words that each was generated for; empty for a motion of one part.
+        commands: commands read in the text, step by step; empty when none was read.
+        denied: actions that the text says not to do.
     """
 
     motion: Motion
@@ -73,12 +73,12 @@ class Generated:
 
 
 def arrays_of(m: Motion) -> MotionArrays:
-    """A motion as it travels."""
+    """A motion as arrays of bytes, for a message."""
     return MotionArrays(**_fields(m))
 
 
 def generated_message(request_id: int, generated: Generated) -> GeneratedMessage:
-    """The message of a motion."""
+    """The message with a generated motion."""
     return GeneratedMessage(
         id=request_id,
         **_fields(generated.motion),
@@ -95,10 +95,10 @@ def generated_message(request_id: int, generated: Generated) -> GeneratedMessage
 
 
 def motion_from(arrays: MotionArrays) -> Motion:
-    """The motion that travelled, checked.
+    """The checked motion of a message's arrays.
 
     Raises:
-        ValueError: wrong sizes, or not finite.
+        ValueError: arrays of the wrong size, or values that are not finite.
     """
     n = arrays.n_frames
     return Motion(
@@ -116,10 +116,10 @@ def motion_from(arrays: MotionArrays) -> Motion:
 
 
 def generated_from(message: GeneratedMessage, min_frames: int = MIN_FRAMES, *, may_be_draft: bool = False) -> Generated:
-    """The motion in a message, checked.
+    """The checked motion of a message.
 
     Raises:
-        GeneratorError: wrong sizes, not finite, too few frames, or a draft that nobody asked for.
+        GeneratorError: wrong sizes, values that are not finite, too few frames, or a draft that was not requested.
     """
     if message.draft_of and not may_be_draft:
         raise bad_motion(message.text, "a draft that nobody asked for")
@@ -139,10 +139,10 @@ def generated_from(message: GeneratedMessage, min_frames: int = MIN_FRAMES, *, m
 def generated_of(
     reply: FromGenerator, asked: str, min_frames: int = MIN_FRAMES, *, may_be_draft: bool = False
 ) -> Generated:
-    """The motion in a reply.
+    """The motion of a reply.
 
     Raises:
-        GeneratorError: there is none.
+        GeneratorError: the reply is a failure, or holds no usable motion.
     """
     if isinstance(reply, FailureMessage):
         do = "see the daemon's output; say it in other words or with another seed"

@@ -1,9 +1,9 @@
 """The messages between the front and the generator: msgpack, one each way per request. Holds no torch.
 
 `generate`, `scene`, `edit`, `between` or `ping` to the generator; `generated`, `failure` or `pong` back with the same `id`.
-Who asks for a draft gets two: a `generated` that is a draft, then the motion, or the failure that there is none.
-No request needs one that came before it: what a story needs of its past travels in `told`, so that a generator may be
-killed, restarted or changed in the middle of one.
+A request for a draft gets two answers: a `generated` that is a draft, then the motion or a failure.
+No request depends on an earlier one: the state of a story travels in `told`, so that a generator may be killed, restarted or
+changed in the middle of a story.
 """
 
 from __future__ import annotations
@@ -17,15 +17,16 @@ from daemon.errors import DaemonError
 
 GENERATION_VERSION = 4
 MOST_REQUEST_BYTES = 1 << 20
-"""Bytes of a request: it may carry half a minute of motion that is to be edited."""
+"""Bytes of a request at most: it may carry half a minute of motion to edit."""
 MOST_TEXT_CHARS, MOST_TIMES, MOST_PARTS, MOST_TOLD_BYTES = 2000, 64, 16, 256 << 10
-"""Bounds of a request; those of `cmd` are inside them. A generator may be reached by more than one daemon."""
+"""Characters, times, parts and bytes of a request at most. The bounds of `cmd` are tighter, but more than one daemon may reach a
+generator."""
 Text = Annotated[str, Meta(max_length=MOST_TEXT_CHARS)]
 Seconds = Annotated[float, Meta(ge=0.0, le=60.0)]
 
 
 class UnfitRequestError(DaemonError):
-    """What was asked does not fit the motion or the model."""
+    """A request does not fit the motion or the model."""
 
     def __init__(self, code: str, found: str, allowed: str) -> None:
         self.code, self.found, self.allowed = code, found, allowed
@@ -49,14 +50,14 @@ class MotionArrays(msgspec.Struct, kw_only=True):
 
 
 class GenerateMessage(msgspec.Struct, tag="generate", kw_only=True):
-    """Ask for a motion.
+    """Requests a motion.
 
     Attributes:
         text: a command.
-        seconds: of the motion; None lets the model choose.
+        seconds: length of the motion; None lets the model choose.
         before: the motion that the new one continues; None for a motion by itself.
         prefix_s: seconds at the end of `before` that the new motion continues from.
-        draft: whether a draft, which can be played at once, is to come first; where none can be made none comes.
+        draft: whether a draft, which can be played at once, is to come first; none comes when none can be made.
     """
 
     v: int = GENERATION_VERSION
@@ -70,13 +71,13 @@ class GenerateMessage(msgspec.Struct, tag="generate", kw_only=True):
 
 
 class SceneMessage(msgspec.Struct, tag="scene", kw_only=True):
-    """Ask for the next piece of a story.
+    """Requests the next scene of a story.
 
     Attributes:
-        text: of the scene; None only leads to the story's end.
-        seconds: of the scene; None lets the model choose.
-        seed: of the story.
-        told: what the answer to the scene before gave; empty for the first.
+        text: text of the scene; None only leads to the story's end.
+        seconds: length of the scene; None lets the model choose.
+        seed: seed of the story.
+        told: state in the answer to the scene before; empty for the first.
         last: whether the story ends here.
     """
 
@@ -90,14 +91,14 @@ class SceneMessage(msgspec.Struct, tag="scene", kw_only=True):
 
 
 class EditMessage(msgspec.Struct, tag="edit", kw_only=True):
-    """Ask for a motion of which a stretch or some parts are made again.
+    """Requests a motion of which an interval or some parts of the body are generated anew.
 
     Attributes:
-        motion: what is edited.
-        text: what the new part is to be.
-        parts: of the body; empty for all of it.
-        start_s: of the stretch.
-        end_s: of the stretch; None is the motion's end.
+        motion: motion to edit.
+        text: text of the new part.
+        parts: parts of the body to generate anew; empty for the whole body.
+        start_s: start of the interval, seconds.
+        end_s: end of the interval, seconds; None is the motion's end.
     """
 
     v: int = GENERATION_VERSION
@@ -111,12 +112,12 @@ class EditMessage(msgspec.Struct, tag="edit", kw_only=True):
 
 
 class BetweenMessage(msgspec.Struct, tag="between", kw_only=True):
-    """Ask for a motion through poses.
+    """Requests a motion through poses.
 
     Attributes:
         poses: one frame for each pose.
-        at_s: when each is due, in order.
-        text: what happens between them; may be empty.
+        at_s: time of each pose, seconds, in order.
+        text: text of the motion between the poses; may be empty.
     """
 
     v: int = GENERATION_VERSION
@@ -128,7 +129,7 @@ class BetweenMessage(msgspec.Struct, tag="between", kw_only=True):
 
 
 class PingMessage(msgspec.Struct, tag="ping", kw_only=True):
-    """Ask whether the generator lives."""
+    """Requests a sign of life."""
 
     v: int = GENERATION_VERSION
     id: int
@@ -143,7 +144,7 @@ class PongMessage(msgspec.Struct, tag="pong", kw_only=True):
 
 
 class FailureMessage(msgspec.Struct, tag="failure", kw_only=True):
-    """A request failed: `bad_edit` and `bad_keyframes` when it does not fit the motion or the model."""
+    """A request failed; codes `bad_edit` and `bad_keyframes` mean that it does not fit the motion or the model."""
 
     id: int
     code: str
@@ -152,7 +153,7 @@ class FailureMessage(msgspec.Struct, tag="failure", kw_only=True):
 
 
 class GeneratedMessage(MotionArrays, tag="generated", kw_only=True):
-    """A motion, or a draft of one; `told` is where a story then stands."""
+    """A motion, or a draft of one; fields as in `daemon.generator.generated.Generated`."""
 
     id: int
     understood: str
@@ -179,7 +180,7 @@ def encode(message: ToGenerator | FromGenerator) -> bytes:
 
 
 def decode_request(frame: bytes) -> ToGenerator:
-    """What a client asks.
+    """The request in a client's frame.
 
     Raises:
         msgspec.MsgspecError: no such message.
@@ -189,7 +190,7 @@ def decode_request(frame: bytes) -> ToGenerator:
 
 
 def decode_reply(frame: bytes) -> FromGenerator:
-    """What the generator answers.
+    """The reply in a generator's frame.
 
     Raises:
         msgspec.MsgspecError: no such message.

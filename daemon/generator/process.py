@@ -1,6 +1,6 @@
 """The process that holds torch: `python -m daemon.generator.process --bind ENDPOINT`.
 
-One thread, lower priority. It ends when the process that started it does, so nothing stays behind.
+The process has one thread and lower priority, and ends when the process that started it does, so that nothing stays behind.
 """
 
 from __future__ import annotations
@@ -51,25 +51,26 @@ log = logging.getLogger(__name__)
 NICENESS = 5
 POLL_MS = 200
 AFTER_DRAFT_MS = 10
-"""Longest pause after a draft: meanwhile the front receives it and makes the first frames, and needs the cores."""
+"""Milliseconds of pause after a draft at most: the front then receives the draft and retargets its first frames, and needs the
+cores."""
 MOST_CONNECTIONS = 128
 MOST_BEGUN = 8
-"""Largest number of motions of which only the draft is made; beyond it the oldest is completed before anything else."""
+"""Number of motions of which only the draft is made at most; beyond it the oldest is completed first."""
 
 
 class MotionService(Protocol):
-    """What makes motions: `daemon.generator.service` with the model, others in tests."""
+    """Generates motions: `daemon.generator.service` with the model, others in tests."""
 
     def generate(self, request: GenerateMessage) -> Iterator[Generated]:
-        """A motion, after a draft of it where one is asked for and can be made."""
+        """Yield a motion, after a draft of it when one is requested and can be made."""
         ...
 
     def scene(self, request: SceneMessage) -> Generated:
-        """The next piece of a story."""
+        """The next scene of a story."""
         ...
 
     def edit(self, request: EditMessage) -> Generated:
-        """A motion of which a part is new."""
+        """A motion of which a part is generated anew."""
         ...
 
     def between(self, request: BetweenMessage) -> Generated:
@@ -78,7 +79,7 @@ class MotionService(Protocol):
 
 
 def answers(request: ToGenerator, maker: MotionService, checkpoint_hash: str) -> Iterator[FromGenerator]:
-    """What is replied to one request; an error of the model becomes a `failure`, never the end of the process."""
+    """Yield the replies to one request; an error of the model becomes a `failure`, never the end of the process."""
     if request.v != GENERATION_VERSION:
         found, allowed = f"version {request.v} of the generator's protocol", f"version {GENERATION_VERSION}"
         yield FailureMessage(id=request.id, code="version", found=found, allowed=allowed)
@@ -115,13 +116,13 @@ def serve(
     alive: Callable[[], bool],
     received: Callable[[int], None] = lambda _fd: None,
 ) -> None:
-    """Answer requests on a ROUTER socket while `alive()`: what is asked anew comes before what follows a draft.
+    """Answer requests on a ROUTER socket while `alive()`; a new request comes before the motion that follows a draft.
 
     Args:
-        socket: bound.
-        maker: makes the motions.
-        checkpoint_hash: told in answer to a ping.
-        alive: whether to go on.
+        socket: the bound socket.
+        maker: generates the motions.
+        checkpoint_hash: hash of the weights, for the answer to a ping.
+        alive: returns whether to go on.
         received: called with the descriptor of the connection of each message, see `ConnectionGuard.received`.
     """
     begun: deque[tuple[list[bytes], Iterator[FromGenerator]]] = deque()

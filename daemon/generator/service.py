@@ -25,11 +25,11 @@ from mmm_core.motion.features import RestPose
 from mmm_core.motion.motion import Motion
 
 HALVES = {"upper": ("left_arm", "right_arm"), "lower": ("rest",)}
-"""The halves of the body in a model without an upper and a lower codebook: both arms, and all the rest of it."""
+"""Parts for `upper` and `lower` in a model without an upper and a lower codebook: both arms, and the rest of the body."""
 
 
 _FIRST = (("wave with your right hand", None), ("nod and raise your left hand", LONGEST_S))
-"""Texts and seconds of the first motions, which allocate."""
+"""Texts and seconds of the warm-up motions, which allocate memory."""
 
 
 class EngineService:
@@ -41,10 +41,10 @@ class EngineService:
 
     @classmethod
     def load(cls, model: Path | None, threads: int) -> EngineService:
-        """With the checkpoint at `model` (the shipped one when None), warmed up.
+        """A service with the checkpoint at `model` (None takes the shipped one), warmed up.
 
         Raises:
-            CheckpointError: a file is missing or does not fit.
+            CheckpointError: a file is missing or does not fit the model.
         """
         maker = cls(Engine.load(model, threads=threads))
         warmed()
@@ -53,7 +53,7 @@ class EngineService:
         return maker
 
     def generate(self, request: GenerateMessage) -> Iterator[Generated]:
-        """A motion, by itself or going on from what is there; by itself after a draft of it if one is asked for.
+        """Yield a motion that continues `before`, or a new motion, after a draft of it when one is requested and can be made.
 
         Raises:
             GenerationError: seconds or prefix out of range.
@@ -69,11 +69,11 @@ class EngineService:
         yield self._of(generation.result())
 
     def scene(self, request: SceneMessage) -> Generated:
-        """The next piece of a story.
+        """The next scene of a story.
 
         Raises:
             GenerationError: seconds out of range, or `told` of another model.
-            msgspec.MsgspecError: `told` is nothing that a scene before gave.
+            msgspec.MsgspecError: `told` is no state of a story.
         """
         began_s = time.perf_counter()
         told = msgspec.msgpack.decode(request.told, type=StoryState) if request.told else StoryState()
@@ -83,10 +83,10 @@ class EngineService:
         return self._generated(piece, verdict, began_s, msgspec.msgpack.encode(told))
 
     def edit(self, request: EditMessage) -> Generated:
-        """A motion of which a stretch or some parts are new.
+        """A motion of which an interval or some parts of the body are generated anew.
 
         Raises:
-            UnfitRequestError: `bad_edit`, it does not fit the motion or the model; `not_reached`, no candidate shows the text.
+            UnfitRequestError: `bad_edit`: the edit does not fit motion or model; `not_reached`: no candidate shows the text.
         """
         parts = self._parts(request.parts)
         what = Edit(request.start_s, request.end_s, parts or None)
@@ -120,7 +120,7 @@ class EngineService:
         return Generated(made.motion, *how, draft_of=draft_of, scenes=made.scenes, commands=commands, denied=denied)
 
     def _unless_rejected(self, text: str, seed: int, make: Callable[[], Motion], code: str) -> Generated:
-        """The motion that `make` returns, unless the text is out of scope; no text at all is in scope."""
+        """The motion that `make` returns, unless the text is out of scope; an empty text is in scope."""
         began_s = time.perf_counter()
         verdict = self._engine.understand(text)[1] if text.strip() else ScopeVerdict("accepted", 1.0, "", "")
         if verdict.status == "rejected":
@@ -135,7 +135,7 @@ class EngineService:
         return Generated(motion, understood_as(verdict), verdict.reason, timings_ms, self.checkpoint_hash, told)
 
     def _parts(self, asked: list[str]) -> tuple[str, ...]:
-        """Names of this model's parts; `upper` and `lower` stand for several where it has no such codebook."""
+        """Names of this model's parts; `upper` and `lower` stand for several parts in a model without such a codebook."""
         names = part_names(self._engine)
         found: list[str] = []
         for part in asked:
@@ -145,14 +145,14 @@ class EngineService:
 
 
 def _with_features(motion: Motion, rest_pose: RestPose) -> Motion:
-    """The motion with the features of its joints, as a model knows them, where it came with neither features nor ids."""
+    """The motion with the features that its joints have for a model, when it came with neither features nor ids."""
     if motion.features.any() or len(motion.tokens):
         return motion
     return replace(motion, features=features_of(motion, rest_pose).numpy())
 
 
 def _frame(motion: Motion, i: int) -> Motion:
-    """One frame of a motion, without ids."""
+    """Frame `i` of a motion, without ids."""
     return replace(
         motion, joints_m=motion.joints_m[i : i + 1], head_quat_wxyz=motion.head_quat_wxyz[i : i + 1],
         forearm_twist_rad=motion.forearm_twist_rad[i : i + 1], features=motion.features[i : i + 1],

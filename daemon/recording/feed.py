@@ -1,4 +1,4 @@
-"""From the front to the recorder: a bounded queue that never keeps the front waiting."""
+"""The queue from the front to the recorder: bounded, so that it never keeps the front waiting."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ TELL_EVERY_S = 1.0
 
 
 class RecorderFeed:
-    """Hands requests and events to the recorder's bounded queue; what does not fit is dropped, counted and told.
+    """Hands requests and events to the recorder's bounded queue; messages that do not fit are dropped and counted.
 
-    It is told in the log of the daemon, once a second at most, and as soon as there is room again in that of the recorder.
+    Losses are reported in the daemon's log, once a second at most, and in the recorder's file as soon as there is room again.
 
     Attributes:
-        dropped: messages that did not fit so far.
+        dropped: number of messages that did not fit so far.
     """
 
     def __init__(self, endpoint: str, queue: int = RECORDER_QUEUE) -> None:
@@ -37,7 +37,7 @@ class RecorderFeed:
         self._socket.connect(endpoint)
 
     def __call__(self, topic: str, payload: bytes) -> None:
-        """Hand over one message."""
+        """Hand over one message, or count it as dropped."""
         if not self._open:
             return
         if self.dropped > self._recorded and self._sent(DROPPED_TOPIC, msgspec.json.encode(Dropped(self.dropped))):
@@ -50,7 +50,7 @@ class RecorderFeed:
             log.warning("%d messages dropped: the recorder is too slow", self.dropped)
 
     async def close(self) -> None:
-        """Hand over no more; what was not sent yet has half a second, for which the event loop is not held up."""
+        """Stop handing over; unsent messages have half a second, during which the event loop runs on."""
         if self._open:
             self._open = False
             self._socket.close(LINGER_MS)

@@ -1,4 +1,4 @@
-"""What a log holds in Foxglove's own message schemas, beside ours: joint states, transforms and the daemon's log.
+"""Messages of a log in Foxglove's own schemas, beside ours: joint states, transforms and the daemon's log.
 
 | topic | schema | what |
 |---|---|---|
@@ -29,12 +29,12 @@ from retarget.robot.ticks import JointServoMap
 Array = NDArray[np.float64]
 MEASURED_TOPIC, GOAL_TOPIC, TRANSFORMS_TOPIC, LOG_TOPIC = "/joint_states", "/joint_goals", "/tf", "/log"
 STATES_EVERY_S, TRANSFORMS_EVERY_S = 0.02, 0.05
-"""Seconds between messages, at least: `v1/cycle` has every bus cycle, and these cost the recorder two and a half times as much."""
+"""Seconds between messages at least: `v1/cycle` has every bus cycle, and these messages cost the recorder 2.5 times as much."""
 _VELOCITY_ITEMS = ("present_velocity", "present_speed")
 _EARLY_NS = 2_000_000
-"""Nanoseconds by which a cycle may come early and still count."""
+"""Nanoseconds by which a cycle may be early for the next message."""
 _STEP_S = 1e-3
-"""Seconds over which a linkage is taken as straight."""
+"""Seconds over which a linkage counts as linear when speeds are computed."""
 _LEVELS = {"debug": 1, "info": 2, "warning": 3, "error": 4, "critical": 5}
 
 
@@ -66,11 +66,11 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         line={"type": "integer"},
     ),
 }  # fmt: skip
-"""The JSON schema of each topic; its title is the name by which Foxglove knows it."""
+"""JSON schema of each topic; its title is Foxglove's name of the schema."""
 
 
 class FoxgloveMessages:
-    """Makes the messages of one robot."""
+    """Builds the messages of one robot."""
 
     def __init__(self, robot: RobotModel) -> None:
         self._names, self._map = robot.joint_names, JointServoMap(robot)
@@ -85,7 +85,7 @@ class FoxgloveMessages:
         self._next_states_ns = self._next_transforms_ns = 0
 
     def of_cycle(self, record: np.void, t_ns: int) -> Iterator[tuple[str, bytes]]:
-        """(topic, message) of one bus cycle; `t_ns` is its wall time."""
+        """Yield (topic, message) of one bus cycle; `t_ns` is its wall time in nanoseconds."""
         if t_ns < self._next_states_ns:
             return
         self._next_states_ns = t_ns + round(STATES_EVERY_S * 1e9) - _EARLY_NS
@@ -125,7 +125,7 @@ class FoxgloveMessages:
 
 
 def log_line(payload: bytes, t_ns: int) -> bytes:
-    """The `/log` message of a message of `v1/log`."""
+    """The `/log` message of a `v1/log` payload."""
     line = msgspec.json.decode(payload, type=LogEvent)
     return msgspec.json.encode({
         "timestamp": _time(t_ns), "level": _LEVELS.get(line.level, 0), "message": line.text, "name": line.process,
@@ -134,7 +134,7 @@ def log_line(payload: bytes, t_ns: int) -> bytes:
 
 
 def _rad_s_per_raw(model_number: int) -> float:
-    """Speed of the servo's shaft for 1 in the register of its measured speed."""
+    """Speed of the servo's shaft, rad/s, for 1 in its register of measured speed."""
     table = MODELS[model_number].table
     return next(table[name].scale for name in _VELOCITY_ITEMS if name in table)
 

@@ -1,4 +1,4 @@
-"""Logs in MCAP: what is written, and how it is read again, whole or cut off.
+"""Writes logs in MCAP.
 
 Channels: `v1/cycle` (one JSON message a bus cycle, floats exact) and the topics of the front's publisher
 (`v1/event`, `v1/state`, ...), each with the JSON schema of its messages; beside them joint angles, transforms and the log in
@@ -25,7 +25,7 @@ from daemon.shared_memory.bus_link import BusState
 from retarget.robot.robot import RobotModel
 
 FORMAT = 1
-"""Grows when an older reader would misread the log; new channels and fields do not count."""
+"""Version of the log; raised when an older reader would misread it. New channels and fields do not raise it."""
 CYCLE_TOPIC = "v1/cycle"
 EVENT_TOPIC = "v1/event"
 CHUNK_BYTES = 256 * 1024
@@ -61,12 +61,12 @@ def _cycle_schema() -> bytes:
 
 
 class LogWriter:
-    """Writes one log; finish it, or what was flushed stays readable.
+    """Writes one log; without `finish`, the part that was flushed stays readable.
 
     Args:
-        stream: to write to.
-        robot: whose log it is.
-        settings: of the daemon, as a JSON object; empty when nobody says.
+        stream: stream to write to.
+        robot: the robot of the log.
+        settings: settings of the daemon, as a JSON object; empty when unknown.
     """
 
     def __init__(self, stream: IO[bytes], robot: RobotModel, settings: str = "") -> None:
@@ -109,10 +109,10 @@ class LogWriter:
             self._add(self._channels[topic], t_mono_ns, data)
 
     def event(self, topic: str, payload: bytes) -> None:
-        """Write one message of the front, JSON as published; what is no JSON (a plain text for `say`) as a string."""
+        """Write one message of the front, JSON as published; a message that is no JSON (a plain text for `say`) as a string."""
         try:
             msgspec.json.decode(payload)
-        except Exception:  # RecursionError of a deep one among them: a frame of `stream` is written as it came
+        except Exception:  # RecursionError of deep JSON among them: a frame of `stream` is written as received
             payload = msgspec.json.encode({"text": payload.decode("utf-8", "replace")})
         if topic not in self._channels:
             schema = self._writer.register_schema(f"mmmd.{topic}", "jsonschema", schema_of(topic))
@@ -123,11 +123,11 @@ class LogWriter:
             self._add(self._channels[LOG_TOPIC], t_mono_ns, log_line(payload, t_mono_ns + self._wall_ns))
 
     def flush(self) -> None:
-        """End the chunk: what was written so far survives a kill."""
+        """End the chunk: everything written so far then survives a kill."""
         self._writer.flush()
 
     def finish(self, cycles_dropped: int = 0, messages_dropped: int = 0) -> None:
-        """Write how much could not be recorded since the recorder began, index and footer."""
+        """Write how many cycles and messages were lost since the recorder began, index and footer."""
         counts = {"cycles_dropped": str(cycles_dropped), "messages_dropped": str(messages_dropped)}
         self._writer.add_metadata(METADATA_AT_END, counts)
         self._writer.finish()

@@ -1,4 +1,4 @@
-"""Reads logs in MCAP, whole ones and those that are cut off; `mcap_log` says what they hold."""
+"""Reads logs in MCAP, whole or cut off; `mcap_log` describes their content."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from daemon.recording.foxglove import SCHEMAS
 from daemon.recording.mcap_log import CYCLE_TOPIC, EVENT_TOPIC, FORMAT, METADATA, METADATA_AT_END
 
 _LARGEST_RECORD_BYTES = 64 * 1024 * 1024
-"""A longer record is damage, not data: it is not even allocated."""
+"""Bytes of a record at most: a longer one is damage, and is not even allocated."""
 
 
 _MAGIC_START = b"\x89MCAP"
@@ -49,14 +49,14 @@ class _LoggedEvent(msgspec.Struct):
 
 @dataclass
 class Log:
-    """A log that was read.
+    """Content of a log.
 
     Attributes:
-        metadata: of the recorder; with `cycles_dropped` and `messages_dropped` when it came to the end.
+        metadata: metadata of the recorder; with `cycles_dropped` and `messages_dropped` when the log is finished.
         cycles: bus cycles in order.
-        n_events: messages on other topics.
+        n_events: number of messages on other topics, Foxglove's left out.
         plan_texts: text of each plan, by the id that its cycles carry.
-        problem: what is wrong with the file and how far it was read; empty for a whole one.
+        problem: damage of the file, and how far it was read; empty for a whole file.
     """
 
     metadata: dict[str, str] = field(default_factory=dict[str, str])
@@ -67,7 +67,7 @@ class Log:
 
     @property
     def is_cut(self) -> bool:
-        """Whether the file ends early or is damaged; everything up to there was read."""
+        """Whether the file ends early or is damaged; everything before that was read."""
         return bool(self.problem)
 
 
@@ -75,7 +75,7 @@ def read_log(path: Path) -> Log:
     """Read a whole log, or a cut-off one up to its last whole chunk.
 
     Raises:
-        LogError: no such file, no MCAP, of another format, or without a single cycle.
+        LogError: the file is missing, no MCAP, of another format, or without a single cycle.
     """
     log, library = Log(), ""
     topics: dict[int, str] = {}
@@ -96,7 +96,7 @@ def read_log(path: Path) -> Log:
                     log.problem = "is cut off (recorder killed or disk full)"
                 except (LogError, OSError):
                     raise
-                except Exception as error:  # whatever a damaged file can lead to
+                except Exception as error:  # a damaged file can lead to any error
                     log.problem = f"is damaged before byte {f.tell()} ({type(error).__name__}: {error})"
     except FileNotFoundError:
         raise LogError(f"{path}: no such file; logs are written by `mmmd run --log FILE`") from None
@@ -128,7 +128,7 @@ def _check_magic(path: Path, f: IO[bytes]) -> None:
 
 
 def _take(path: Path, records: list[McapRecord], topics: dict[int, str], log: Log) -> None:
-    """Add the records of one chunk, all of them or none."""
+    """Add the records of one chunk to the log, all of them or none."""
     cycles: list[LoggedCycle] = []
     n_events, texts = 0, dict[int, str]()
     for record in records:
@@ -156,7 +156,7 @@ def _take(path: Path, records: list[McapRecord], topics: dict[int, str], log: Lo
 
 
 def _plan_text(data: bytes) -> dict[int, str]:
-    """The text of a plan that an event names, by the plan's id; nothing where it names none."""
+    """The text of the plan that an `accepted` event names, by the plan's id; empty for other events."""
     event = msgspec.json.decode(data, type=_LoggedEvent)
     return {event.plan_id: event.text} if event.type == "accepted" and event.plan_id and event.text else {}
 

@@ -1,6 +1,6 @@
 """The recorder: its own process, so that a slow disk never reaches the bus.
 
-Reads cycles from shared memory and events from a bounded queue; what it cannot keep up with is dropped and counted.
+The recorder reads cycles from shared memory and events from a bounded queue; those that it is too slow for are dropped and counted.
 `python -m daemon.recording.recorder --robot R --link NAME --events ENDPOINT --out F.mcap`
 """
 
@@ -28,12 +28,12 @@ log = logging.getLogger(__name__)
 
 POLL_S = 0.1
 FLUSH_S = 1.0
-"""How much of a run a kill may cost."""
+"""Seconds between two flushes: a kill of the recorder loses as much."""
 EVENT_QUEUE = 2000
 
 
 def main() -> int:
-    """Record until SIGTERM or the daemon's death; 0: the log is finished, 1: the disk gave up (the robot goes on)."""
+    """Record until SIGTERM or the daemon's death; returns 0 with a finished log, 1 after a disk error (the robot goes on)."""
     parser = argparse.ArgumentParser(description="the recorder of mmmd; started by `mmmd run --log`")
     for name in ("--robot", "--link", "--events", "--out"):
         parser.add_argument(name, required=True)
@@ -53,7 +53,7 @@ def main() -> int:
     events = context.socket(zmq.PULL)
     events.setsockopt(zmq.RCVHWM, EVENT_QUEUE)
     events.bind(arguments.events)
-    index, flushed_s = max(0, link.cycles.count - N_CYCLES // 2), time.monotonic()  # what is still there
+    index, flushed_s = max(0, link.cycles.count - N_CYCLES // 2), time.monotonic()  # from the cycles still in the ring
     try:
         bounds = (arguments.size_mb, arguments.total_mb)
         with RotatingLog(Path(arguments.out), robot, *bounds, arguments.settings) as writer:

@@ -1,8 +1,8 @@
-"""A log again: its goals through the same gate and bus loop, and whether the servos got the same ticks.
+"""Replays a log: its goals pass the same gate and bus loop, and the ticks sent to the servos are compared with the log's.
 
-In virtual time for a simulated bus. Each stretch with torque on and no cycle missing is replayed by itself: arm where
-the servos stand, go slowly to the stretch's first goal, then one goal a cycle, then park. What is compared with the log
-are the ticks decoded from the bytes that went to the port, and the angles, bit for bit.
+A simulated bus runs in virtual time. Each stretch with torque on and no missing cycle is replayed by itself: arm where the servos
+stand, move slowly to the stretch's first goal, then one goal a cycle, then park. Compared with the log are the ticks decoded
+from the bytes sent to the port, and the angles, bit for bit.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ _LONGEST_APPROACH_S = 30.0
 
 
 class ReplayFaultError(DaemonError):
-    """The robot went into fault during a replay, or did not get where it should; it is limp now."""
+    """The robot went into fault during a replay, or did not reach a state in time; it is limp now."""
 
     exit_status = 3
 
 
 @dataclass(frozen=True)
 class ReplayResult:
-    """What came of a replay.
+    """Result of a replay.
 
     Attributes:
-        goals: sets of goals in the log while torque was on.
-        same: how many of them were written again, tick for tick and bit for bit.
-        first_difference: where they first differed, empty when they never did.
-        stretches: how many times the robot was armed.
-        missing_cycles: cycles that the log itself lost; the robot makes a new start behind each gap.
+        goals: number of sets of goals in the log while torque was on.
+        same: number of these that were written again, tick for tick and bit for bit.
+        first_difference: description of the first difference; empty when there is none.
+        stretches: number of stretches, each with an arming of its own.
+        missing_cycles: number of cycles that the log itself lost; the robot starts anew after each gap.
     """
 
     goals: int
@@ -52,7 +52,7 @@ class ReplayResult:
 
     @property
     def identical(self) -> bool:
-        """Whether every goal was the same."""
+        """Whether every goal was written as in the log."""
         return self.same == self.goals and not self.first_difference
 
 
@@ -60,7 +60,7 @@ def stretches(log: Log) -> list[list[LoggedCycle]]:
     """The stretches of a log in which torque was on and no cycle is missing.
 
     Raises:
-        LogError: there is none.
+        LogError: torque was never on.
     """
     found: list[list[LoggedCycle]] = []
     before: LoggedCycle | None = None
@@ -76,7 +76,7 @@ def stretches(log: Log) -> list[list[LoggedCycle]]:
 
 
 def missing_cycles(log: Log) -> int:
-    """Cycles that the recorder lost, by the gaps in their numbers."""
+    """Number of cycles that the recorder lost, from the gaps in their numbers."""
     return sum(b.cycle - a.cycle - 1 for a, b in pairwise(log.cycles) if b.cycle > a.cycle)
 
 
@@ -101,7 +101,7 @@ def _first_difference(found: tuple[str | None, ...], wanted: tuple[str, ...]) ->
 
 
 def robot_changed(log: Log, robot: RobotModel) -> str:
-    """A warning when the robot's file is not what it was; empty when it is."""
+    """A warning when the robot's file has changed since the log; empty when it has not."""
     if robot.path.read_text("utf-8") == log.metadata.get("robot_toml"):
         return ""
     return f"{robot.path} is not what it was when the log was written; goals and ticks may differ"
@@ -119,7 +119,7 @@ def replay(
 
     Raises:
         LogError: another robot's log, or one in which the robot was always limp.
-        ReplayFaultError: the robot went into fault on the way.
+        ReplayFaultError: the robot went into fault during the replay.
     """
     check_robot(log, robot)
     found = stretches(log)
@@ -135,7 +135,7 @@ def replay(
                 first = first or difference
                 progress(goals)
             player.end()
-    finally:  # also after Ctrl-C: no torque without somebody who watches it
+    finally:  # also after Ctrl-C: no torque without a program that watches the robot
         player.let_go()
     return ReplayResult(goals, same, first, len(found), missing_cycles(log))
 
@@ -153,14 +153,14 @@ class _Player:
         self._due_s = clock.now_s()
 
     def begin(self, first_rad: NDArray[np.float64]) -> None:
-        """Arm, and go slowly to the first goal."""
+        """Arm, and move slowly to the first goal (J,), radians."""
         self._streamer.rest_rad = first_rad.copy()
         self._link.request(BusRequest.ARM)
         self._cycle()
         self._cycle_until(BusState.HOLDING)
 
     def play(self, cycle: LoggedCycle, frame: int, *, last: bool) -> str:
-        """One goal, one cycle; how what went to the servos differs from the log, empty for not at all."""
+        """Play one goal in one cycle; returns the difference to the log, empty for none."""
         assert self._link.setpoints.queued_frames < N_SETPOINTS
         writes = self._tap.writes
         self._link.setpoints.push(cycle.goal_rad[None], 1, frame, self._link.epoch, last=last)

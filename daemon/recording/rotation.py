@@ -1,4 +1,4 @@
-"""A log in files of bounded size: the next one is begun when one is full, the oldest go when all are too much."""
+"""A log in files of bounded size: a full file is followed by the next, and the oldest are removed when all are too large."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ _MB = 1e6
 
 
 class RotatingLog:
-    """Writes NAME.mcap, NAME.1.mcap, NAME.2.mcap, ...; each is a whole log by itself, and none takes the place of a file.
+    """Writes NAME.mcap, NAME.1.mcap, NAME.2.mcap, ...; each is a whole log by itself, and none overwrites an existing file.
 
-    A number whose file is there already, from an earlier run, is passed over.
+    A number whose file exists already, from an earlier run, is skipped.
 
     Args:
-        path: of the first file.
-        robot: whose log it is.
-        size_mb: a file that has grown beyond is finished; 0 for never.
-        total_mb: beyond so much together the oldest finished files are removed; 0 for never.
-        settings: of the daemon, as JSON; stands in each file.
+        path: path of the first file.
+        robot: the robot of the log.
+        size_mb: megabytes beyond which a file is finished; 0 for no bound.
+        total_mb: megabytes of all files beyond which the oldest finished ones are removed; 0 for no bound.
+        settings: settings of the daemon, as JSON; written to each file.
 
     Raises:
-        FileExistsError: there is a file at `path`.
+        FileExistsError: a file exists at `path`.
 
     Attributes:
-        cycles_dropped: cycles that could not be recorded so far; whoever counts them sets it.
-        messages_dropped: messages of the front, likewise.
+        cycles_dropped: number of cycles that could not be recorded so far; the caller counts them.
+        messages_dropped: number of the front's messages that could not be recorded so far; the caller counts them.
     """
 
     def __init__(self, path: Path, robot: RobotModel, size_mb: float, total_mb: float, settings: str = "") -> None:
@@ -69,7 +69,7 @@ class RotatingLog:
         self._writer.event(topic, payload)
 
     def flush(self) -> None:
-        """End the chunk; what comes next goes to the next file when this one is full.
+        """End the chunk; the next message goes to a new file when this one is full.
 
         Raises:
             OSError: the disk is full or gone.
@@ -79,7 +79,7 @@ class RotatingLog:
         self._full = bool(self._size_bytes) and self._file.tell() > self._size_bytes
 
     def _go_on(self) -> None:
-        """Begin the next file when this one is full; not before there is something to write."""
+        """Begin the next file when this one is full; called only when there is something to write."""
         if not self._full:
             return
         self._finish()

@@ -1,4 +1,4 @@
-"""JSON schemas of what a log holds, by topic: those of the wire, so that viewers know fields and types. Sans-I/O."""
+"""JSON schemas of a log's topics: those of the wire, so that viewers know fields and types. No I/O."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from daemon.wire.requests import CMD_TYPES, STREAM_TYPES
 from daemon.wire.status import HealthEvent, LogEvent, StateEvent
 
 LOG_LINES = "v1/log"
-"""Lines of the daemon's log."""
+"""Topic of the daemon's log lines."""
 DROPPED_TOPIC = "v1/dropped"
-"""Messages of the front that the recorder was too slow for, so far: `{"messages": N}`, at the place of the loss."""
+"""Topic of the number of the front's messages that the recorder has lost so far, `{"messages": N}`, at the place of the loss."""
 
 
 class PlainText(msgspec.Struct):
@@ -23,7 +23,7 @@ class PlainText(msgspec.Struct):
 
 
 class Dropped(msgspec.Struct):
-    """How many messages were not recorded since the start."""
+    """Number of messages that were not recorded since the start."""
 
     messages: int
 
@@ -40,7 +40,7 @@ _KINDS: dict[str, tuple[type[msgspec.Struct], ...]] = {
 
 
 def schema_of(topic: str) -> bytes:
-    """The schema of a topic's messages: of the one kind there is, or `anyOf` several; any object for an unknown topic."""
+    """The schema of a topic's messages: that of its only type, `anyOf` several types, or any object for an unknown topic."""
     kinds = _KINDS.get(topic, ())
     if not kinds:
         return b'{"type": "object"}'

@@ -1,4 +1,4 @@
-"""A port that passes everything on and remembers the goals written through it, decoded from the bytes themselves."""
+"""A port that passes all bytes on and remembers the goals written through it, decoded from the bytes."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ class Wiretap:
     """A `Port` around another one.
 
     Args:
-        port: the other one.
-        servo_ids: of the servos.
+        port: the wrapped port.
+        servo_ids: ids of the servos.
         goal_places: (address, size) of goal_position in their control tables.
 
     Attributes:
-        goal_tick: (S,) the last goals sent to the servos, in the order of `servo_ids`.
-        writes: whole sets of goals sent so far, each in one write to the port.
+        goal_tick: (S,) last goals sent to the servos, ticks, in the order of `servo_ids`.
+        writes: number of whole sets of goals sent so far, each in one write to the port.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class Wiretap:
 
     @property
     def name(self) -> str:
-        """The URL of the port behind."""
+        """URL of the wrapped port."""
         return self._port.name
 
     @property
@@ -53,15 +53,15 @@ class Wiretap:
         self._port.write(data)
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """What the port behind reads."""
+        """Bytes that the wrapped port reads within `timeout_s`."""
         return self._port.read(max_bytes, timeout_s)
 
     def close(self) -> None:
-        """Close the port behind."""
+        """Close the wrapped port."""
         self._port.close()
 
     def _look(self, parameters: bytes) -> bool:
-        """Keep the goals of a sync write; whether there are any in it."""
+        """Keep the goals of a sync write; returns whether it is a write of goals."""
         if struct.unpack_from("<HH", parameters) not in self._places:
             return False
         for servo_id, tick in struct.iter_unpack("<Bi", parameters[4:]):
