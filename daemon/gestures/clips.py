@@ -1,5 +1,7 @@
 """Clips on disk: bones above the hips as 16-bit numbers, about 100 bytes a frame before compression.
 
+One .npz file holds any number of clips. The legs are not stored: the person of a clip stands.
+
 One .npz holds any number of clips. The legs are not kept: a clip is of a person who stands.
 """
 
@@ -24,11 +26,11 @@ from mmm_core.motion.skeleton import BONE_LENGTHS_M, normalise
 
 FORMAT = 1
 MOST_BYTES = 16 << 20
-"""Bytes of a file of clips, unpacked: the library that ships has 0.4 MB."""
+"""Bytes of a file of clips at most, unpacked: the library that ships has 0.4 MB."""
 _KEPT = np.array([3, 6, 9, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21])
 _UNIT = 32767.0
 _TWIST_RAD = 2 * np.pi
-"""Forearm twist of a full scale."""
+"""Radians of forearm twist at full scale of the 16-bit number."""
 
 
 @dataclass(frozen=True)
@@ -39,10 +41,10 @@ class Clip:
         name: lower case letters, digits and _.
         text: what it shows.
         posture: its frames.
-        marks: where it goes round and where it is held.
-        mirror: name of the clip that shows the same on the other side, empty when there is none.
-        source: what made it.
-        side: arms that it was taught with, left, right or both; empty where nobody said so.
+        marks: frames of its loop and of its hold.
+        mirror: name of the clip that shows its mirror image, empty when there is none.
+        source: origin of the motion.
+        side: arms with which it was taught, left, right or both; empty when unknown.
     """
 
     name: str
@@ -55,7 +57,7 @@ class Clip:
 
 
 def save_clips(path: Path, clips: Mapping[str, Clip]) -> None:
-    """Write clips; an older file stays whole if writing fails.
+    """Write clips; an older file stays intact if writing fails.
 
     Raises:
         OSError: the file cannot be written.
@@ -85,7 +87,7 @@ def load_clips(path: Path) -> dict[str, Clip]:
     """The clips of a file.
 
     Raises:
-        ClipError: it is missing, damaged or of another format; the path and what was found are named.
+        ClipError: the file is missing, damaged or of another format; the error names path and finding.
     """
     try:
         data = read_npz(path, MOST_BYTES)
@@ -95,7 +97,7 @@ def load_clips(path: Path) -> dict[str, Clip]:
         return {name: _clip(name, row, data) for name, row in meta["clips"].items()}
     except ClipError:
         raise
-    except Exception as error:  # whatever a file that somebody else made can lead to
+    except Exception as error:  # a file from another source can raise any error
         do = "gestures are written by `mmmd gesture add`, `record` and `teach`"
         raise ClipError(f"{path}: no clips to be read there ({error}); {do}") from error
 
@@ -115,5 +117,5 @@ def _clip(name: str, row: dict[str, Any], data: Mapping[str, NDArray[Any]]) -> C
         bones, BONE_LENGTHS_M.copy(), np.asarray(normalise(head), np.float64), twist / _UNIT * _TWIST_RAD, FPS
     )
     marks = Marks(loop, int(row["hold"]))
-    told = (str(row["mirror"]), str(row["source"]), str(row.get("side", "")))  # older files know no side
+    told = (str(row["mirror"]), str(row["source"]), str(row.get("side", "")))  # older files have no side
     return Clip(name, str(row["text"]), posture, marks, *told)

@@ -1,4 +1,4 @@
-"""Named gestures: those that ship, and the user's own in a folder, which win over shipped ones of the same name."""
+"""Named gestures: those that ship, and the user's own in a folder, which take precedence over shipped ones of the same name."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LONGEST_CLIP_S = 60.0
 
 
 def own_folder() -> Path:
-    """Where a user's gestures are kept: $MMMD_GESTURES, else mmmd/gestures in the user's data folder."""
+    """Folder of the user's gestures: $MMMD_GESTURES, else mmmd/gestures in the user's data folder."""
     if chosen := os.environ.get("MMMD_GESTURES"):
         return Path(chosen)
     data = os.environ.get("XDG_DATA_HOME") or str(Path.home() / ".local" / "share")
@@ -32,7 +32,7 @@ def own_folder() -> Path:
 
 
 class GestureLibrary:
-    """Clips by name. Own ones are read again when their file has changed; for one thread."""
+    """Clips by name. A user's file is read again when it has changed; for one thread."""
 
     def __init__(self, folder: Path | None = None) -> None:
         self.folder = folder or own_folder()
@@ -40,10 +40,10 @@ class GestureLibrary:
         self._own: dict[str, tuple[int, Clip]] = {}
 
     def get(self, name: str) -> Clip:
-        """The clip of that name.
+        """The clip with that name.
 
         Raises:
-            UnknownGestureError: there is none; the nearest names are told.
+            UnknownGestureError: no clip has the name; the error lists the nearest names.
             ClipError: the user's file of that name is damaged.
         """
         own = self._read_own(name) if _NAME.fullmatch(name) else None
@@ -54,7 +54,7 @@ class GestureLibrary:
         return clip
 
     def check_name(self, name: str, *, replace: bool = False) -> None:
-        """Refuse what `keep` would.
+        """Refuse a name that `keep` would refuse.
 
         Raises:
             GestureExistsError: there is one of that name, and `replace` is not given.
@@ -68,15 +68,15 @@ class GestureLibrary:
     def keep(
         self, name: str, text: str, posture: PoseSequence, source: str, *, side: str = "", replace: bool = False
     ) -> Clip:
-        """Make a clip of the user's own.
+        """Write a clip to the user's folder.
 
         Args:
             name: of the clip.
             text: what it shows.
             posture: its frames.
-            source: what made it.
-            side: arms that it was taught with.
-            replace: take the place of a clip of that name.
+            source: origin of the motion.
+            side: arms with which the clip was taught.
+            replace: overwrite a clip with the same name.
 
         Raises:
             GestureExistsError: there is one of that name, and `replace` is not given.
@@ -99,7 +99,7 @@ class GestureLibrary:
         return clip
 
     def infos(self) -> list[GestureInfo]:
-        """All clips by name, for people and programs; own files that are damaged are left out and logged."""
+        """All clips, sorted by name; damaged files of the user are left out and logged."""
         own: dict[str, Clip] = {}
         for name in self._own_names():
             try:

@@ -1,4 +1,6 @@
-"""Sorts a robot's joints by the effect of a cut of the torque: they hang, fall, sink or stay. The robot file tells which.
+"""Sorts a robot's joints by the effect of torque off: they hang, fall, sink or stay. Computed from the robot file.
+
+A joint of the trunk or head whose axis is not vertical carries the parts above it: without torque these fall to a stop.
 
 A joint of the trunk or head that does not turn about the vertical carries what is above it: without torque that falls to a stop.
 """
@@ -12,18 +14,18 @@ import numpy as np
 from retarget.robot.kinematics import Kinematics
 
 _UPRIGHT_COSINE = float(np.cos(np.deg2rad(10)))
-"""An axis within 10 degrees of the vertical counts as vertical."""
+"""Cosine of 10 degrees, the angle to the vertical up to which an axis counts as vertical."""
 
 
 @dataclass(frozen=True)
 class Limpness:
-    """Joint names, by what a cut of the torque does to them in the park pose.
+    """Joint names, sorted by the effect of torque off in the park pose.
 
     Attributes:
-        arms: they hang.
-        falls: of the trunk: all that is above would fall.
-        sinks: of the head: it sinks to its stop.
-        stays: of trunk or head, about the vertical: nothing moves them.
+        arms: joints of the arms, which hang.
+        falls: joints of the trunk; all parts above them would fall.
+        sinks: joints of the head, which sinks to its stop.
+        stays: joints of trunk or head with a vertical axis; gravity does not move them.
     """
 
     arms: tuple[str, ...]
@@ -32,7 +34,7 @@ class Limpness:
     stays: tuple[str, ...]
 
     def in_words(self) -> list[str]:
-        """A line for each kind that the robot has."""
+        """A line for each group that has joints."""
         kinds = {
             "arms, to be led by hand": self.arms,
             "FALLS without torque, so hold or support the trunk": self.falls,
@@ -43,7 +45,7 @@ class Limpness:
 
 
 def limpness_of(kinematics: Kinematics) -> Limpness:
-    """Sort the joints of a robot that stands upright."""
+    """The sorted joints of a robot that stands upright."""
     robot = kinematics.robot
     found: dict[str, list[str]] = {"arms": [], "falls": [], "sinks": [], "stays": []}
     for j, joint in enumerate(robot.joints):

@@ -1,4 +1,4 @@
-"""A gesture out of positions that a hand led the limp arms through: smoothed, cut, inside the limits. Sans-I/O.
+"""A gesture from positions through which a hand led the limp arms: smoothed, cut, inside the limits. No I/O.
 
 even -> arms that are kept -> smoothed -> still ends cut -> position limits -> velocity limits -> person -> the robot's own path.
 """
@@ -31,27 +31,27 @@ CUTOFF_HZ = 4.0
 _ORDER = 2
 _LOW_PASS: Any = scipy_signal.butter(_ORDER, CUTOFF_HZ, fs=FPS, output="sos")
 STILL_RAD = float(np.deg2rad(2.0))
-"""An end in which no joint is further than this from its first or last angle counts as still."""
+"""Radians that no joint exceeds, against its first or last angle, in an end that counts as still."""
 KEPT_STILL_FRAMES = 4
-"""Frames that are left of a still end (0.2 s): a motion sets out from rest."""
+"""Frames that are kept of a still end (0.2 s): a motion starts from rest."""
 MOVED_RAD = float(np.deg2rad(5.0))
-"""An arm of which a joint ranges over more than this was led."""
+"""Radians of range beyond which a joint shows that its arm was led."""
 _PLAY_DEG = 0.5
 """Further beyond a limit is told: less is play and rounding."""
 POSE_S = 0.5
-"""Seconds of positions whose mean is the pose; it is kept as a motion of a second."""
+"""Seconds of positions whose mean is the pose; a pose is kept as a motion of one second."""
 _LONGEST_GAP_S = 0.25
 """A longer pause between two positions is told; it is bridged by a straight line."""
 
 
 @dataclass(frozen=True)
 class Taught:
-    """A motion that a hand taught.
+    """A motion taught by hand.
 
     Attributes:
-        posture: its frames, on a person.
-        sides: which arms were kept.
-        notes: what was changed or found, a sentence each.
+        posture: its frames, as poses of a person.
+        sides: the arms that were kept.
+        notes: changes and observations, a sentence each.
     """
 
     posture: PoseSequence
@@ -60,13 +60,13 @@ class Taught:
 
 
 def taught_gesture(retargeter: Retargeter, t_s: Sequence[float], q_rad: Array, sides: Sides | None = None) -> Taught:
-    """The gesture in measured positions.
+    """The gesture in the measured positions.
 
     Args:
         retargeter: of the robot.
         t_s: (N,) times of the measurements, rising.
         q_rad: (N, J) measured joint angles.
-        sides: which arms count; None for those that were led.
+        sides: the arms to keep; None for those that were led.
 
     Raises:
         ClipError: fewer than two measurements, nothing moved, or no free path leads through it.
@@ -78,7 +78,7 @@ def taught_gesture(retargeter: Retargeter, t_s: Sequence[float], q_rad: Array, s
 
 
 def taught_pose(retargeter: Retargeter, t_s: Sequence[float], q_rad: Array, sides: Sides | None = None) -> Taught:
-    """The pose in which the arms were held at the end; arguments as for `taught_gesture`, both arms when `sides` is None.
+    """The pose in which the arms were held at the end; arguments as of `taught_gesture`, but both arms when `sides` is None.
 
     Raises:
         ClipError: too few measurements, the arms moved, or the robot cannot be in that pose.
@@ -98,7 +98,7 @@ def even(t_s: Sequence[float], q_rad: Array) -> tuple[Array, list[str]]:
     """Measurements (N, J) at times (N,) on an even grid of `FPS` frames a second, and a note of each long pause.
 
     Raises:
-        ClipError: fewer than two.
+        ClipError: fewer than two measurements.
     """
     t = np.asarray(t_s, np.float64)
     if len(t) < 2 or t[-1] - t[0] < 1 / FPS:
@@ -113,10 +113,10 @@ def even(t_s: Sequence[float], q_rad: Array) -> tuple[Array, list[str]]:
 
 
 def sides_led(robot: RobotModel, q_rad: Array) -> Sides:
-    """Which arms were led in (T, J) positions.
+    """The arms that were led in positions (T, J).
 
     Raises:
-        ClipError: none.
+        ClipError: no arm was led.
     """
     ranges = np.ptp(q_rad, axis=0)
     led = [side for side in ("left", "right") if ranges[arm_joints(robot, side)].max(initial=0.0) > MOVED_RAD]
@@ -132,7 +132,7 @@ def arm_joints(robot: RobotModel, sides: Sides) -> list[int]:
 
 
 def arms_alone(robot: RobotModel, q_rad: Array, sides: Sides) -> Array:
-    """(T, J) positions in which all joints but those of these arms are at rest: a limp head hangs, and teaches nothing."""
+    """(T, J) positions with all joints but those of these arms at rest: the position of a limp head means nothing."""
     q = np.repeat(robot.rest_rad[None], len(q_rad), 0)
     arms = arm_joints(robot, sides)
     q[:, arms] = q_rad[:, arms]
@@ -140,27 +140,27 @@ def arms_alone(robot: RobotModel, q_rad: Array, sides: Sides) -> Array:
 
 
 def smoothed(q_rad: Array) -> Array:
-    """(T, J) positions without what is faster than `CUTOFF_HZ`, not delayed (forward and backward, scipy)."""
+    """(T, J) positions without movement faster than `CUTOFF_HZ`, without delay (filtered forward and backward, scipy)."""
     padding = min(3 * (2 * _ORDER + 1), len(q_rad) - 1)
     return np.asarray(scipy_signal.sosfiltfilt(_LOW_PASS, q_rad, axis=0, padlen=padding), np.float64)
 
 
 def still_ends_cut(q_rad: Array) -> Array:
-    """The frames of (T, J) in which something moves, and `KEPT_STILL_FRAMES` before and after.
+    """The frames of (T, J) in which some joint moves, and `KEPT_STILL_FRAMES` before and after.
 
     Raises:
-        ClipError: nothing moves.
+        ClipError: no joint moves.
     """
     away = np.flatnonzero((np.abs(q_rad - q_rad[0]) > STILL_RAD).any(1))
     back = np.flatnonzero((np.abs(q_rad - q_rad[-1]) > STILL_RAD).any(1))
     if not len(away):
         raise ClipError(f"nothing moved by more than {np.rad2deg(STILL_RAD):.0f} degrees; nothing to keep")
-    last = int(back[-1]) if len(back) else int(away[-1])  # it may end where it began
+    last = int(back[-1]) if len(back) else int(away[-1])  # the motion may end where it began
     return q_rad[max(0, int(away[0]) - KEPT_STILL_FRAMES) : max(last, int(away[-1])) + 1 + KEPT_STILL_FRAMES]
 
 
 def inside_positions(q_rad: Array, limits: JointLimits, names: Sequence[str]) -> tuple[Array, list[str]]:
-    """(T, J) positions inside the position limits, and a note of each joint that was led beyond."""
+    """(T, J) positions clipped to the position limits, and a note for each joint that was led beyond its limits."""
     clipped = np.clip(q_rad, limits.position_min_rad, limits.position_max_rad)
     beyond_deg = np.rad2deg(np.abs(q_rad - clipped).max(0))
     return clipped, [
@@ -170,7 +170,9 @@ def inside_positions(q_rad: Array, limits: JointLimits, names: Sequence[str]) ->
 
 
 def slowed(q_rad: Array, velocity_rad_s: Array) -> tuple[Array, float]:
-    """The path (T, J), slower where a joint was faster than `velocity_rad_s` (J,); and the largest factor.
+    """The path (T, J), slowed down where a joint was faster than `velocity_rad_s` (J,), and the largest factor of slowing.
+
+    Every frame lies on the straight lines between the given ones, so that none is nearer to contact than they are.
 
     Every frame lies on the straight lines between the given ones, so that none is nearer to anything than they are.
     """
@@ -184,7 +186,7 @@ def slowed(q_rad: Array, velocity_rad_s: Array) -> tuple[Array, float]:
 
 
 def on_a_person(kinematics: Kinematics, q_rad: Array) -> PoseSequence:
-    """A person in a robot's positions (T, J): bones, head, and the twist of the forearms where the robot has that joint."""
+    """The poses of a person for a robot's positions (T, J): bones, head, and forearm twist where the robot has that joint."""
     joints_m, head_quat_wxyz = joints_of_path(kinematics, q_rad)
     points = {p.name: p.zero_m for p in kinematics.key_points}
     twist_rad = np.zeros((len(q_rad), 2))
@@ -197,10 +199,10 @@ def on_a_person(kinematics: Kinematics, q_rad: Array) -> PoseSequence:
 
 
 def _checked(retargeter: Retargeter, q_rad: Array, sides: Sides, notes: list[str]) -> Taught:
-    """Positions as a gesture that this robot can show, with notes of what it took.
+    """Positions as a gesture that this robot can show, with notes on the changes.
 
     Raises:
-        ClipError: the robot's path for it is not free of itself.
+        ClipError: the robot's path for the gesture has self-contact.
     """
     limits = retargeter.limits
     q, beyond = inside_positions(q_rad, limits, retargeter.robot.joint_names)

@@ -1,4 +1,4 @@
-"""Work of an event loop that nobody waits for."""
+"""Runs coroutines in an event loop that no caller awaits."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ log = logging.getLogger(__name__)
 
 
 class BackgroundTasks:
-    """Runs coroutines, keeps them from being collected, and logs what they fail with."""
+    """Runs coroutines, keeps references to them, and logs their exceptions."""
 
     def __init__(self) -> None:
         self._tasks: set[asyncio.Task[None]] = set()
 
     def start(self, work: Coroutine[Any, Any, None], failure: str) -> None:
-        """Run a coroutine; `failure` is the line that is logged where it raises."""
+        """Run a coroutine; `failure` is the line that is logged when it raises."""
         task = asyncio.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(lambda done: self._finished(done, failure))

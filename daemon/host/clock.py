@@ -1,4 +1,4 @@
-"""Time as the daemon sees it: real here, virtual in the simulator. Which clock it is, for messages between machines."""
+"""Clocks of the daemon: real here, virtual in the simulator; and the name of a clock, for messages between machines."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from pathlib import Path
 from typing import Protocol
 
 BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
-"""Drawn by Linux at each start of the machine (proc(5))."""
+"""File with an id that Linux draws at each start of the machine (proc(5))."""
 TIME_NAMESPACE = Path("/proc/self/ns/time")
-"""A container may have a monotonic clock of its own (time_namespaces(7))."""
+"""File that names the time namespace: a container may have a monotonic clock of its own (time_namespaces(7))."""
 TICK_S = 0.005
-"""Seconds between two looks of an event loop at a condition that it waits for."""
+"""Seconds between two checks of a condition that an event loop waits for."""
 
 
 @functools.cache
 def clock_id() -> str:
-    """Names this process's monotonic clock: the same for all who read the same one, empty where nobody can tell."""
+    """Name of this process's monotonic clock: equal for all processes that read the same clock, empty where unknown."""
     try:
         boot = BOOT_ID.read_text("ascii").strip()
     except OSError:
         return ""
     try:
         namespace = os.readlink(TIME_NAMESPACE)
-    except OSError:  # Linux before 5.6 has one clock for all
+    except OSError:  # Linux before 5.6 has one clock for all processes
         namespace = ""
     return hashlib.sha256(f"{boot} {namespace}".encode()).hexdigest()[:16]
 
@@ -37,11 +37,11 @@ class Clock(Protocol):
     """Monotonic seconds, and waiting for them."""
 
     def now_s(self) -> float:
-        """Seconds since some start; never goes back."""
+        """Seconds since some fixed time; the value never decreases."""
         ...
 
     def sleep_until(self, t_s: float) -> None:
-        """Return at `t_s` or at once when that is past."""
+        """Return at `t_s`, or at once if that time is past."""
         ...
 
 
@@ -59,7 +59,7 @@ class RealClock:
             time.sleep(left)
 
     async def sleep(self, seconds: float) -> None:
-        """Let others of the event loop run for a while."""
+        """Let other tasks of the event loop run for `seconds`."""
         await asyncio.sleep(seconds)
 
 

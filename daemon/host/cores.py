@@ -1,4 +1,9 @@
-"""A core for the bus process: it keeps to it, and the front keeps off it.
+"""A core for the bus process: the bus process stays on it, and the front keeps off it.
+
+The bus process has real-time priority and works in every cycle. On a core where the front retargets it would take a third of the
+front's time at unpredictable moments, so that the end of retargeting could not be predicted; the kernel does not separate the two.
+Of several daemons on one machine each needs a core of its own, and one core is left to all; a daemon that starts when no core is
+left gets none.
 
 The bus process has real-time priority and works in every cycle. On the core where the front makes a path it takes a third of the
 time from it, in pieces, so that nobody can tell when the path is ready. The kernel leaves both where they are. Of several
@@ -16,14 +21,14 @@ from pathlib import Path
 
 _FOLDER = Path("/dev/shm")
 _ALL: frozenset[int] = frozenset(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else frozenset()
-"""Where this process may run, as whoever started it wants."""
+"""Cores on which this process may run, as its parent set them."""
 
 
 class CoreClaim:
     """One core, claimed until `close` or the end of the process.
 
     Attributes:
-        core: its number; None where there is none to spare.
+        core: number of the core; None where none is left.
     """
 
     def __init__(self, cores: frozenset[int] = _ALL, folder: Path = _FOLDER) -> None:
@@ -31,7 +36,7 @@ class CoreClaim:
         self._cores = cores
         self._fd = -1
         for core in sorted(cores, reverse=True)[: max(0, len(cores) - 1)]:
-            with contextlib.suppress(OSError):  # no such folder, another user's link, or claimed
+            with contextlib.suppress(OSError):  # no such folder, another user's link, or a claimed core
                 fd = os.open(
                     folder / f"mmmd-core-{core}",
                     os.O_RDONLY | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC,
@@ -46,20 +51,20 @@ class CoreClaim:
                 return
 
     def keep_off(self) -> None:
-        """The calling thread, and the threads it starts from now on, leave the core alone."""
+        """Keep the calling thread, and threads that it starts from now on, off the core."""
         if self.core is not None:
-            with contextlib.suppress(OSError):  # a core that was taken away meanwhile
+            with contextlib.suppress(OSError):  # the core may have been taken from the process meanwhile
                 os.sched_setaffinity(0, self._cores - {self.core})
 
     def close(self) -> None:
-        """Leave the core to others."""
+        """Release the core."""
         if self._fd >= 0:
             os.close(self._fd)
         self.core, self._fd = None, -1
 
 
 def keep_to(core: int) -> bool:
-    """Keep the calling thread on one core; whether it is there."""
+    """Keep the calling thread on one core; return whether this succeeded."""
     try:
         os.sched_setaffinity(0, {core})
     except (OSError, AttributeError):
@@ -68,7 +73,7 @@ def keep_to(core: int) -> bool:
 
 
 class _Starting(threading.local):
-    """What a thread is starting.
+    """The open `on_all_cores` blocks of one thread.
 
     Attributes:
         n: blocks of `on_all_cores` that are open.
@@ -84,7 +89,9 @@ _starting = _Starting()
 
 @contextlib.contextmanager
 def on_all_cores() -> Generator[None]:
-    """What the calling thread starts meanwhile may run wherever this process might when it began.
+    """Let processes started inside the block run on every core that this process had at its start.
+
+    An event loop may start several processes at a time: the thread returns to its own cores at the end of the last block.
 
     An event loop may start several processes at a time: the thread goes back to its own cores at the end of the last block.
     """

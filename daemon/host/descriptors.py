@@ -1,4 +1,4 @@
-"""What a process has from the system: descriptors of sockets that ZeroMQ owns, memory, its parent's life. Linux."""
+"""System resources of a process: descriptors of sockets that ZeroMQ owns, memory, the parent's life. Linux."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ import socket
 import struct
 
 MOST_DESCRIPTORS = 65536
-"""File descriptors that a process asks for at most; the shares of its sockets together are far below."""
+"""Number of file descriptors that a process requests at most; its sockets together use far fewer."""
 _PR_SET_PDEATHSIG = 1
 _BYTES_RECEIVED = 128
 """Offset of tcpi_bytes_received in `struct tcp_info` (linux/tcp.h)."""
 
 
 class Held:
-    """A socket by its descriptor, held open as a second one, so that it cannot become another meanwhile.
+    """A socket given by its descriptor, held open by a duplicate, so that the descriptor cannot become another socket meanwhile.
 
     In the context it is None when the descriptor is no socket, or already another one. A process that has no descriptor left
     uses the first one itself.
@@ -56,15 +56,15 @@ class Held:
 
 
 def descriptors() -> list[int]:
-    """Every descriptor of this process that may be open."""
+    """All descriptors of this process that may be open."""
     try:
         return [int(name) for name in os.listdir("/proc/self/fd")]
-    except OSError:  # none is left to list them with
+    except OSError:  # no descriptor is left for listing them
         return list(range(resource.getrlimit(resource.RLIMIT_NOFILE)[0]))
 
 
 def raise_descriptor_limit() -> None:
-    """Let this process, and those that it starts, have as many file descriptors as the system allows."""
+    """Raise the limit of file descriptors of this process and its children as far as the system allows."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     most = MOST_DESCRIPTORS if hard == resource.RLIM_INFINITY else min(hard, MOST_DESCRIPTORS)
     if soft != resource.RLIM_INFINITY and soft < most:
@@ -72,13 +72,13 @@ def raise_descriptor_limit() -> None:
 
 
 def bytes_received(connection: socket.socket) -> int:
-    """Bytes that a TCP connection has received since it began; 0 where the system does not say."""
+    """Bytes that a TCP connection has received since its begin; 0 where the system does not report this."""
     info = connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, _BYTES_RECEIVED + 8)
     return struct.unpack_from("=Q", info, _BYTES_RECEIVED)[0] if len(info) == _BYTES_RECEIVED + 8 else 0
 
 
 def resident_bytes() -> int:
-    """Memory of this process."""
+    """Bytes of memory that this process uses."""
     with open("/proc/self/statm", encoding="ascii") as f:
         return int(f.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
@@ -90,6 +90,6 @@ def give_memory_back() -> None:
 
 
 def die_with_parent() -> None:
-    """Let the system kill the calling process when its parent ends, however that ends."""
+    """Let the system kill the calling process when its parent ends for any reason."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)

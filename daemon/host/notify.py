@@ -1,4 +1,4 @@
-"""systemd's readiness and watchdog protocol (sd_notify): one datagram to $NOTIFY_SOCKET. Nothing without systemd."""
+"""systemd's readiness and watchdog protocol (sd_notify): one datagram to $NOTIFY_SOCKET. Does nothing without systemd."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import socket
 
 
 class Notifier:
-    """Tells systemd how the service is.
+    """Reports the service's state to systemd.
 
     Attributes:
-        watchdog_s: how often systemd wants a sign of life at least; None when it does not.
+        watchdog_s: longest seconds between two signs of life that systemd expects; None for no watchdog.
     """
 
     def __init__(self) -> None:
@@ -21,15 +21,15 @@ class Notifier:
         self.watchdog_s = int(micro) * 1e-6 if micro.isdigit() and mine and self._address else None
 
     def ready(self, status: str) -> None:
-        """The service is up."""
+        """Report that the service is ready."""
         self._send(f"READY=1\nSTATUS={status}")
 
     def alive(self) -> None:
-        """The service works."""
+        """Report that the service works."""
         self._send("WATCHDOG=1")
 
     def stopping(self) -> None:
-        """The service parks and ends."""
+        """Report that the service parks the robot and ends."""
         self._send("STOPPING=1")
 
     def _send(self, text: str) -> None:

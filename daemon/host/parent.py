@@ -1,4 +1,7 @@
-"""Whether the process that started this one is still there.
+"""Whether the process that started this one still exists.
+
+The parent passes its id: if it was killed while this process was starting, `getppid` would return the id of the process that
+inherits orphans, and this process would stay for ever.
 
 Its id is handed over: asked for here it would be that of whoever inherits orphans, when the parent was killed while this
 process was starting, and this process would stay for ever.
@@ -9,11 +12,11 @@ from __future__ import annotations
 import os
 
 PARENT_VARIABLE = "MMMD_PARENT_PID"
-"""Set for every child of the daemon (`daemon.supervisor.children`)."""
+"""Name of the environment variable with the parent's id; set for every child of the daemon (`daemon.supervisor.children`)."""
 
 
 class Parent:
-    """The process that started this one: the id handed over, or whoever it is now where none was."""
+    """The process that started this one: the id it passed, or the present parent without one."""
 
     def __init__(self) -> None:
         handed = os.environ.get(PARENT_VARIABLE, "")
@@ -21,5 +24,5 @@ class Parent:
 
     @property
     def gone(self) -> bool:
-        """Whether it has ended."""
+        """Whether the parent has ended."""
         return os.getppid() != self._pid

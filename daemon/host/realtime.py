@@ -1,4 +1,4 @@
-"""Real-time rights: FIFO priority and locked memory, as far as this user may."""
+"""Real-time rights: FIFO priority and locked memory, as far as the user's limits allow."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import os
 
 BUS_PRIORITY = 40
 CONTROL_PRIORITY = 30
-"""Below the bus process, above everything else: the thread that takes stop and e-stop."""
+"""Priority of the thread that takes stop and e-stop: below the bus process, above everything else."""
 _MCL_CURRENT_AND_FUTURE = 3
 
 
 def take_fifo(priority: int) -> bool:
-    """FIFO priority for the calling thread; whether it was granted."""
+    """Give FIFO priority to the calling thread; return whether it was granted."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
     except (OSError, AttributeError):
@@ -22,13 +22,13 @@ def take_fifo(priority: int) -> bool:
 
 
 def give_back_fifo() -> None:
-    """Normal priority for the calling thread, where it may ever have had another."""
+    """Give the calling thread normal priority again."""
     with contextlib.suppress(OSError, AttributeError):
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 
 def may_fifo(priority: int) -> bool:
-    """Whether this user may have FIFO priority; the calling thread stays as it is."""
+    """Whether the user may have FIFO priority; the calling thread keeps its priority."""
     if not take_fifo(priority):
         return False
     give_back_fifo()
@@ -36,7 +36,7 @@ def may_fifo(priority: int) -> bool:
 
 
 def lock_memory() -> bool:
-    """Keep all memory of this process out of swap; whether it was granted."""
+    """Lock all memory of this process, so that no page is swapped out; return whether this was granted."""
     try:
         return ctypes.CDLL(None).mlockall(_MCL_CURRENT_AND_FUTURE) == 0
     except (OSError, AttributeError):

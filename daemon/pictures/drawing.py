@@ -14,17 +14,17 @@ from daemon.pictures.scene import COLOURS, VIEWS, Scene
 Show = Literal["both", "robot", "person"]
 _INK, _PALE_INK = (40, 44, 52), (110, 116, 126)
 INSTANTS = 8
-"""Pictures in a row of a contact sheet."""
+"""Number of pictures in a row of a contact sheet."""
 _PANEL_PX, _LABEL_PX = (300, 320), 28
 _DEPTH_SHARE = 0.6
-"""Hands that move forward and back by more than this share of their other movement are shown from the side as well."""
+"""Share of the hands' other movement above which movement forward and back adds a view from the side."""
 
 
 def frames(performance: Performance, show: Show, view: str, size_px: tuple[int, int]) -> Iterator[Image.Image]:
     """Every frame of a performance, in order.
 
     Args:
-        performance: what is drawn.
+        performance: the performance to draw.
         show: the robot, the person, or both side by side; a run has no person.
         view: a name of `scene.VIEWS`.
         size_px: width and height of a frame.
@@ -41,7 +41,7 @@ def frames(performance: Performance, show: Show, view: str, size_px: tuple[int, 
 
 
 def contact_sheet(performances: Sequence[Performance], show: Show = "both", view: str = "half") -> Image.Image:
-    """Eight instants of each performance: the person above, the robot below; from the side too where depth matters."""
+    """Eight instants of each performance: the person above, the robot below; also from the side where depth matters."""
     rows: list[Image.Image] = []
     for performance in performances:
         views = [view, *(["side"] if view != "side" and _depth_matters(performance) else [])]
@@ -60,7 +60,7 @@ def contact_sheet(performances: Sequence[Performance], show: Show = "both", view
 
 
 def instants(n_frames: int) -> list[int]:
-    """The frames that a contact sheet shows: from the first to the last, equally far apart."""
+    """The frames in a contact sheet: equally spaced from the first to the last."""
     return [round(k * (n_frames - 1) / (INSTANTS - 1)) for k in range(INSTANTS)]
 
 
@@ -112,7 +112,7 @@ def _write_on(picture: Image.Image, performance: Performance, frame: int, with_p
 
 
 def _legend(pen: ImageDraw.ImageDraw, right: float, top: float, size: int) -> None:
-    """The colours of the sides, written from right to left."""
+    """Draw the colours of the sides, from right to left."""
     for side in ("right", "left"):
         text = f"its {side}"
         right -= pen.textlength(text, _font(size))

@@ -1,4 +1,4 @@
-"""What keeps a picture from being drawn."""
+"""Errors of drawing pictures and films."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from daemon.errors import DaemonError
 
 
 class NoOpenGLError(DaemonError):
-    """No OpenGL that draws without a screen could be loaded."""
+    """No OpenGL library that draws without a screen could be loaded."""
 
 
 class FilmError(DaemonError):

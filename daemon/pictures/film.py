@@ -1,4 +1,4 @@
-"""Writes pictures one after the other into a film: GIF by Pillow, MP4 (H.264) by PyAV."""
+"""Writes a sequence of pictures as a film: GIF by Pillow, MP4 (H.264) by PyAV."""
 
 from __future__ import annotations
 
@@ -13,12 +13,14 @@ from PIL import Image
 from daemon.pictures.errors import FilmError
 
 GIF_FPS = 20.0
-"""A GIF shows a frame for whole hundredths of a second, and many viewers show none for less than two."""
+"""Frames a second of a GIF: it counts whole hundredths of a second, and many viewers show no frame for less than two."""
 _GIF_COLOURS = 96
 
 
 def write_film(pictures: Iterable[Image.Image], file: Path, fps: float) -> int:
-    """Write the pictures at `fps` a second to `file`; returns how many there were.
+    """Write the pictures at `fps` a second to `file`; return their number.
+
+    The file is written completely or not at all.
 
     The file appears whole or not at all.
 

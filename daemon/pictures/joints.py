@@ -16,7 +16,7 @@ from retarget.robot.ticks import JointServoMap
 Array = NDArray[np.float64]
 
 QUIET_DEG = 2.0
-"""Degrees: a joint whose goal moves less than this over the whole run is drawn small."""
+"""Degrees of range over the whole run below which a joint's panel is small."""
 _TALL_IN, _SMALL_IN, _STRIP_IN = 1.3, 0.45, 0.35
 _GOAL, _MEASURED, _LIMIT, _SEAM = "#2471a3", "#c0392b", "#8d6e63", "#9aa0a6"
 _BANDS = ("#e8f0fe", "#fef3e0")
@@ -24,7 +24,7 @@ _BANDS = ("#e8f0fe", "#fef3e0")
 
 @dataclass(frozen=True)
 class Span:
-    """Seconds in which one plan was performed, and its text."""
+    """Begin and end of one plan in seconds, and its text."""
 
     start_s: float
     end_s: float
@@ -32,7 +32,7 @@ class Span:
 
 
 def spans(log: Log) -> list[Span]:
-    """The plans of a run in order; where one begins at the end of another there is a seam."""
+    """The plans of a run in order; a plan that begins at another's end marks a seam."""
     found: list[Span] = []
     start_ns, plan_id = log.cycles[0].t_mono_ns, 0
     started = start_ns
@@ -48,7 +48,7 @@ def spans(log: Log) -> list[Span]:
 
 
 def joint_plot(log: Log, robot: RobotModel, path: Path) -> None:
-    """Draw one panel a joint, moving joints tall and quiet ones small, and save a PNG.
+    """Draw one panel for each joint, moving joints tall and quiet ones small, and save the picture.
 
     Each panel's title gives the joint's headroom: the fewest degrees between any goal and a limit.
     """
@@ -91,7 +91,7 @@ def joint_plot(log: Log, robot: RobotModel, path: Path) -> None:
 
 
 def _strip(axis: Any, plans: list[Span]) -> None:
-    """The commands over time."""
+    """Draw the commands over time."""
     _bands(axis, plans)
     for plan in plans:
         axis.text(plan.start_s, 0.5, f" {plan.text}", fontsize=7, va="center", clip_on=True)
@@ -108,7 +108,7 @@ def _bands(axis: Any, plans: list[Span]) -> None:
 
 
 def _range(*values_deg: Array) -> tuple[float, float]:
-    """Lowest and highest degree shown, with a margin."""
+    """Lowest and highest degree of the panel, with a margin."""
     low, high = min(float(v.min()) for v in values_deg), max(float(v.max()) for v in values_deg)
     margin = 0.12 * max(high - low, QUIET_DEG)
     return low - margin, high + margin

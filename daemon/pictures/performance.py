@@ -1,4 +1,4 @@
-"""What is to be drawn, frame by frame: a generated motion with the robot that performs it, or a recorded run."""
+"""The frames to draw: a generated motion with the robot that performs it, or a recorded run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from retarget.robot.ticks import JointServoMap
 
 Array = NDArray[np.float64]
 RUN_FPS = 20.0
-"""Frames a second that a run is sampled at for a film; a generated motion has as many."""
+"""Frames a second at which a run is sampled for a film; a generated motion has the same rate."""
 
 
 @dataclass(frozen=True)
@@ -27,13 +27,13 @@ class Performance:
     """T frames at `fps` a second.
 
     Attributes:
-        robot: whose angles these are.
+        robot: the robot that the angles belong to.
         fps: frames per second.
         robot_rad: (T, J) the robot's joint angles: measured ones of a run, planned ones of a motion.
         goal_rad: (T, J) the goals that were sent in a run; None for a motion.
         person_m: (T, 22, 3) the generated person's joints; None for a run.
         head_faces: (T, 3) unit vectors to where the person's head faces; None for a run.
-        captions: (T) what is being performed.
+        captions: (T) text of the command performed in each frame.
     """
 
     robot: RobotModel
@@ -59,12 +59,12 @@ def read_performance(file: Path, robot: str | None, *, fps: float, from_s: float
     Args:
         file: the motion or the run.
         robot: name or robot.toml; `reference` for a motion and the run's own robot if None.
-        fps: frames a second that a run is sampled at; a motion keeps its own.
-        from_s: seconds to leave out at the start.
+        fps: frames per second at which a run is sampled; a motion keeps its own.
+        from_s: seconds that are left out at the start.
         to_s: second to end at; the end of the file if None.
 
     Raises:
-        DaemonError: nothing is left between `from_s` and `to_s`.
+        DaemonError: no frame lies between `from_s` and `to_s`.
         LogError, MotionFileError, RobotFileError: the file or the robot cannot be read.
     """
     if file.suffix == ".mcap":
@@ -91,7 +91,7 @@ def of_motion(motion: Motion, robot: RobotModel, title: str, robot_rad: Array | 
 
 
 def of_run(log: Log, robot: RobotModel, fps: float) -> Performance:
-    """A recorded run, sampled at `fps`: at each frame's time the last bus cycle before it."""
+    """A recorded run, sampled at `fps`: each frame shows the last bus cycle before its time."""
     cycle_s = np.array([c.t_mono_ns for c in log.cycles]) * 1e-9
     cycle_s = cycle_s - cycle_s[0]
     frame_s = np.arange(0.0, cycle_s[-1] + 1e-9, 1.0 / fps)

@@ -1,4 +1,4 @@
-"""A person as bones to draw: limbs, hands, head and nose, in the robot's axes and at its size."""
+"""A person as bones for drawing: limbs, hands, head and nose, in the robot's axes and at its size."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 Colour = Literal["left", "right", "", "nose"]
 
 _TO_ROBOT_AXES = [2, 0, 1]
-"""A person's axes are x left, y up, z forward; a robot's are x forward, y left, z up."""
+"""Row order from a person's axes (x left, y up, z forward) to a robot's (x forward, y left, z up)."""
 _LIMB_RADIUS_M, _SKULL_RADIUS_M = 0.042, 0.105
 _PELVIS, _NECK, _HEAD = (JOINT_NAMES.index(name) for name in ("pelvis", "neck", "head"))
 _SHOULDERS = [JOINT_NAMES.index(f"{side}_shoulder") for side in ("left", "right")]
@@ -22,7 +22,7 @@ _SHOULDERS = [JOINT_NAMES.index(f"{side}_shoulder") for side in ("left", "right"
 
 @dataclass(frozen=True)
 class Bone:
-    """A capsule from start to end, or a ball where both are the same, in metres and the robot's axes."""
+    """A capsule from start to end, or a ball where both are equal, in metres and the robot's axes."""
 
     start_m: Array
     end_m: Array
@@ -32,18 +32,18 @@ class Bone:
 
 @dataclass(frozen=True)
 class Stand:
-    """Where the middle between the person's shoulders is to be (3,), and their size as a share of the true one."""
+    """Position (3,) of the middle between the person's shoulders, and the person's size as a share of the true one."""
 
     shoulders_m: Array
     scale: float
 
 
 _HAND_SHARE, _HAND_RADIUS_SHARE = 0.4, 0.85
-"""Length of a hand as a share of the forearm's, and its radius as one of a limb's."""
+"""Length of a hand as a share of the forearm's, and its radius as a share of a limb's."""
 
 
 def radii_m() -> dict[str, float]:
-    """Radii of limb, hand and skull of a person of true size."""
+    """Radii in metres of limb, hand and skull of a person of true size."""
     return {"limb": _LIMB_RADIUS_M, "hand": _HAND_RADIUS_SHARE * _LIMB_RADIUS_M, "skull": _SKULL_RADIUS_M}
 
 

@@ -1,4 +1,4 @@
-"""Names of picture files: which endings there are, refused before any work is done."""
+"""Endings of picture files, checked before any work is done."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ STILL = (".png", ".svg", ".pdf", ".jpg")
 
 
 def check_picture(path: Path, option: str, endings: Sequence[str] = STILL) -> None:
-    """Refuse a picture that could not be written.
+    """Refuse a picture file that could not be written.
 
     Args:
-        path: to write.
-        option: of the command line that named it, "--out".
-        endings: that are allowed.
+        path: file to write.
+        option: option of the command line that names the file, such as "--out".
+        endings: allowed endings.
 
     Raises:
-        CommandError: its ending is none of these, or there is no such folder.
+        CommandError: the ending is not allowed, or the folder does not exist.
     """
     if path.suffix.lower() not in endings:
         found = f"'{path.suffix}'" if path.suffix else "no ending"

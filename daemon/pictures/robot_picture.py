@@ -1,4 +1,4 @@
-"""A picture of a robot: its shapes from the front and from the left, in some poses. Drawn by matplotlib, no GPU needed."""
+"""A picture of a robot: its shapes from the front and from the left, in several poses. Drawn by matplotlib without a GPU."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Pose:
 
 
 def robot_picture(robot: RobotModel, poses: list[Pose], path: Path) -> None:
-    """Draw every pose from the front (its left on the right) above and from its left below, and save a PNG."""
+    """Draw every pose from the front (the robot's left on the right) above and from its left below, and save the picture."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -65,7 +65,7 @@ class _View:
         mujoco.mj_kinematics(self.model, self.data)
 
     def extent(self, poses: list[Pose]) -> tuple[Array, float]:
-        """Middle and half size of all that is shown: the parts that move and what they hang on."""
+        """Middle and half size of everything drawn: the parts that move and their supports."""
         seen: list[Array] = []
         for pose in poses:
             self.place(pose.q_rad)
@@ -76,7 +76,7 @@ class _View:
         return (low + high) / 2, float((high - low).max()) * 0.56
 
     def draw(self, axis: Any, across: int, depth: int, sign: float) -> None:
-        """All shapes as filled outlines, the far ones first."""
+        """Draw all shapes as filled outlines, the farthest first."""
         shapes = [(self._outline(g), self._part[int(self.model.geom_bodyid[g])]) for g in range(self.model.ngeom)]
         for points, part in sorted(
             shapes, key=lambda s: float(s[0][:, depth].mean()) * (1 if depth == 0 else sign * -1)
@@ -85,7 +85,7 @@ class _View:
             axis.fill(hull[:, 0], hull[:, 1], color=_COLOURS[part], alpha=0.75, linewidth=0.6, edgecolor="#1b2631")
 
     def _parts(self, robot: RobotModel) -> list[str]:
-        """Which colour each body has: that of the joint nearest above it."""
+        """The colour of each body: that of the nearest joint above it."""
         role = {int(self.model.jnt_bodyid[self.model.joint(j.name).id]): j.role.split("_")[0] for j in robot.joints}
         parts = [""] * self.model.nbody
         for body in range(1, self.model.nbody):
@@ -93,7 +93,7 @@ class _View:
         return [p if p in _COLOURS else "" for p in parts]
 
     def _outline(self, geom: int) -> Array:
-        """(N, 3) points whose hull is the shape."""
+        """(N, 3) points whose convex hull is the shape."""
         kind, size = int(self.model.geom_type[geom]), self.model.geom_size[geom]
         sphere, capsule, cylinder = (
             int(getattr(mujoco.mjtGeom, f"mjGEOM_{k}")) for k in ("SPHERE", "CAPSULE", "CYLINDER")
@@ -111,7 +111,7 @@ class _View:
 
 
 def _circle(radius: float, normal: int, along: float) -> Array:
-    """(16, 3) points of a circle, moved `along` z."""
+    """(16, 3) points of a circle, shifted along z by `along`."""
     points = np.zeros((len(_ROUND), 3))
     points[:, (normal + 1) % 3], points[:, (normal + 2) % 3] = radius * np.cos(_ROUND), radius * np.sin(_ROUND)
     points[:, 2] += along

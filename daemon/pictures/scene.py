@@ -1,6 +1,6 @@
 """A robot and a person in one three-dimensional picture, drawn by MuJoCo's renderer without a screen.
 
-The renderer needs OpenGL: EGL as a rule (Debian's libegl1 and libgl1-mesa-dri draw on the CPU where there is no GPU), or
+The renderer needs OpenGL: EGL by default (Debian's libegl1 and libgl1-mesa-dri draw on the CPU where there is no GPU), or
 OSMesa where the environment variable MUJOCO_GL says so. Coordinates are those of the robot: x forward, y left, z up, metres.
 """
 
@@ -33,12 +33,12 @@ _STAGE_RADIUS = 6.0
 ASIDE = 3.4
 """Lengths of the robot's arm from the robot to the person at its left."""
 _PERSON_ARM_M, _PERSON_SHOULDER_M = 0.514, 1.42
-"""Metres: shoulder to wrist, and height of the shoulders, of the skeleton that motions are made for."""
+"""Metres from shoulder to wrist, and height of the shoulders, of the skeleton that motions use."""
 
 
 @dataclass(frozen=True)
 class View:
-    """Where the camera looks from: degrees to the left of the robot's front, degrees above the horizon."""
+    """Direction of the camera: degrees to the left of the robot's front, degrees above the horizon."""
 
     azimuth_deg: float
     elevation_deg: float = 6.0
@@ -51,9 +51,9 @@ class Scene:
     """A robot, a person, or both side by side, seen by a camera that shows all of them.
 
     Args:
-        robot: whose description is drawn, with its meshes where their files are; None for a person alone.
+        robot: the robot, drawn with meshes where their files exist; None for a person alone.
         size_px: width and height of a picture.
-        person: whether room is kept for a person at the robot's left, scaled so that their arms are as long as the robot's.
+        person: whether space is left for a person at the robot's left, scaled to arms as long as the robot's.
 
     Raises:
         NoOpenGLError: OpenGL without a screen is missing.
@@ -97,7 +97,7 @@ class Scene:
         """One picture (height, width, 3).
 
         Args:
-            view: where the camera looks from.
+            view: direction of the camera.
             robot_rad: (J,) the robot's joint angles.
             ghost_rad: (J,) a second pose of the robot, drawn transparent.
             person_m: (22, 3) joints of the person, in a person's axes (x left, y up, z forward).
@@ -127,7 +127,7 @@ class Scene:
         return np.flipud(image)
 
     def close(self) -> None:
-        """Give the renderer back; a second call does nothing."""
+        """Release the renderer; a second call does nothing."""
         with contextlib.suppress(AttributeError):
             self._context.free()
             self._opengl.free()
@@ -162,14 +162,14 @@ class Scene:
 
 
 def person_stand(shoulder_m: Array, arm_m: float) -> tuple[Stand, float]:
-    """Where a person stands at the left of a robot with shoulders at (3,) and arms of `arm_m`; the floor's height in metres."""
+    """Position and size of a person at the left of a robot with shoulders at (3,) and arms of `arm_m`; the floor's height, m."""
     scale = arm_m / _PERSON_ARM_M
     stand = Stand(shoulder_m + np.array([0.0, ASIDE * arm_m, 0.0]), scale)
     return stand, float(shoulder_m[2]) - _PERSON_SHOULDER_M * scale
 
 
 def shoulder_and_arm(robot: RobotModel | None) -> tuple[Array, float]:
-    """Where the middle between the shoulders is, and metres from shoulder to wrist; those of a person without a robot."""
+    """(3,) middle between the shoulders, and metres from shoulder to wrist; those of a person when `robot` is None."""
     if robot is None:
         return np.array([0.0, 0.0, _PERSON_SHOULDER_M]), _PERSON_ARM_M
     kinematics = Kinematics(robot)
@@ -217,7 +217,7 @@ def _add_column(spec: Any, radius_m: float, bottom_m: float, top_m: float, grey:
 
 
 def lowest_m(robot: RobotModel) -> float:
-    """Height of the lowest shape that does not move with the arms: where the robot stands."""
+    """Height in metres of the lowest shape that does not move with the arms: the robot stands on it."""
     model = load_description(robot)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -235,7 +235,7 @@ def lowest_m(robot: RobotModel) -> float:
 
 
 def limb_of_bodies(model: Any, robot: RobotModel) -> list[str]:
-    """What each body moves with: left, right, head, waist, or nothing; by the joint nearest above it."""
+    """The limb that each body moves with: left, right, head, waist, or "" for none; by the nearest joint above it."""
     role = {int(model.jnt_bodyid[model.joint(j.name).id]): j.role.split("_")[0] for j in robot.joints}
     sides = [""] * model.nbody
     for body in range(1, model.nbody):
@@ -244,7 +244,7 @@ def limb_of_bodies(model: Any, robot: RobotModel) -> list[str]:
 
 
 def _paint(model: Any, robot: RobotModel) -> None:
-    """Colour each shape of the robot by the side of the limb that it moves with."""
+    """Colour each shape of the robot by the side of its limb."""
     sides = limb_of_bodies(model, robot)
     for geom in range(model.ngeom):
         if body := int(model.geom_bodyid[geom]):
@@ -253,12 +253,12 @@ def _paint(model: Any, robot: RobotModel) -> None:
 
 
 def _opengl_context(width: int, height: int) -> Any:
-    """An OpenGL context without a screen, made current."""
+    """Make an OpenGL context without a screen, and make it current."""
     backend = os.environ.get("MUJOCO_GL", "").lower() or "egl"
     try:
         context = importlib.import_module(f"mujoco.{backend}").GLContext(width, height)
         context.make_current()
-    except Exception as error:  # which exception it is depends on what the driver lacks
+    except Exception as error:  # the kind of exception depends on the driver's defect
         raise NoOpenGLError(
             f"no OpenGL that draws without a screen ({backend}: {type(error).__name__}: {str(error)[:200]}); install it, "
             "on Debian with `apt install libegl1 libgl1-mesa-dri`; or `apt install libosmesa6` and set MUJOCO_GL=osmesa"

@@ -1,4 +1,4 @@
-"""The poses of a generated motion, with or without the small movements of `mmm_core.motion.life`."""
+"""Poses of a generated motion, with or without the small movements of `mmm_core.motion.life`."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from mmm_core.motion.life import alive
 from mmm_core.motion.motion import Motion
 
 SEED_STRIDE = 15_485_863
-"""Distance between the seeds of a story's pieces."""
+"""Distance between the seeds of a story's scenes."""
 
 
 class Aliveness:
     """Makes poses of motions.
 
     Args:
-        on: whether trunk and head go along with the arms.
+        on: whether trunk and head move along with the arms.
     """
 
     def __init__(self, on: bool) -> None:
         self._on = on
 
     def posture_of(self, motion: Motion, piece: int = 0) -> PoseSequence:
-        """The poses of a generated motion; `piece` is its number in a story.
+        """The poses of a generated motion; `piece` is the index of the scene in a story.
 
         A preview and its motion begin alike, and a text's mirror image gives the mirrored poses.
         """

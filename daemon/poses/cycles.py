@@ -1,4 +1,4 @@
-"""Which part of a motion can go round without a seam, and at which frame it can be held."""
+"""Finds the part of a motion that can loop without a seam, and the frame in which the motion can be held."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ Array = NDArray[np.float64]
 
 SHORTEST_LOOP_S = 0.8
 LOOP_ALIKE_DEG = 15.0
-"""Poses (and, over a tenth of a second, movements) that are this alike can be made one without being seen."""
+"""Degrees by which poses (and, over 0.1 s, movements) may differ and be blended into each other without visible change."""
 CLOSING_S = 0.4
-"""Over this time before its end a loop is led to where it began."""
+"""Seconds before a loop's end over which the loop is led back to its beginning."""
 _STILL_DEG_S = 20.0
 
 
 @dataclass(frozen=True)
 class Marks:
-    """What is known of a clip beforehand, in frames; None where it has to be found.
+    """Loop and hold of a clip, in frames; a mark is None until it is computed.
 
     Attributes:
-        loop: first frame and end of the part that goes round; None when there is none.
-        hold: frame that is held.
+        loop: first frame and end of the part that loops; None when there is none.
+        hold: frame in which the motion is held.
     """
 
     loop: tuple[int, int] | None
@@ -38,7 +38,10 @@ def marks_of(posture: PoseSequence) -> Marks:
 
 
 def find_loop(p: PoseSequence) -> tuple[int, int] | None:
-    """First frame and end of the part that best goes round; None when there is none.
+    """First frame and end of the part that loops best; None when no part does.
+
+    The part ends as it begins, is lively, and stays away from standing where possible: a wave loops above the shoulder. A part from
+    rest to rest counts: the loop is then the whole gesture.
 
     It ends as it begins, is lively, and stays away from standing where it can: a wave goes on above the shoulder. A part
     from rest to rest counts: it is the whole gesture, done again.
@@ -66,7 +69,7 @@ def find_loop(p: PoseSequence) -> tuple[int, int] | None:
 
 
 def closed(p: PoseSequence, loop: tuple[int, int]) -> PoseSequence:
-    """The frames of a loop, the last of which are led to those before its first: going round makes no step."""
+    """The frames of a loop, the last of which lead back to those before its first, so that looping makes no step."""
     a, b = loop
     n = min(round(CLOSING_S * p.fps), (b - a) // 2)
     weight = np.zeros(b - a)
@@ -75,7 +78,7 @@ def closed(p: PoseSequence, loop: tuple[int, int]) -> PoseSequence:
 
 
 def after_loop(p: PoseSequence, loop: tuple[int, int]) -> PoseSequence:
-    """What follows the last round: it grows out of the loop's beginning into the end of the motion."""
+    """The frames after the last round: from the loop's beginning they lead into the end of the motion."""
     a, b = loop
     tail = p[b:]
     n = min(round(CLOSING_S * p.fps), len(tail))
@@ -85,7 +88,7 @@ def after_loop(p: PoseSequence, loop: tuple[int, int]) -> PoseSequence:
 
 
 def find_hold(p: PoseSequence) -> int:
-    """The frame in which the motion says most while it moves least: where it is held."""
+    """The most expressive frame with little movement, in which the motion is held."""
     away = distance_deg(_stand(p), p)
     speed = np.concatenate([[0.0], distance_deg(p[1:], p[:-1])]) * p.fps
     return int((away - 0.3 * speed).argmax())

@@ -1,4 +1,7 @@
-"""Small movements of a robot that has nothing to do: breath in chest and shoulders, weight that shifts, a wandering gaze.
+"""Small movements of an idle robot: breath in chest and shoulders, weight that shifts, a wandering gaze.
+
+They are made as poses like any motion, so that retargeting keeps limits and self-contact as always. They begin from the standing
+person and never stray far from that pose: amplitudes are a few degrees.
 
 Made as a posture like any motion, so that limits and self-contact are kept where they always are. It begins from the
 standing person and never strays far from there: amplitudes are a few degrees.
@@ -20,21 +23,21 @@ Array = NDArray[np.float64]
 
 STRETCH_S = 2.0
 RISE_S = 3.0
-"""From stillness to full movement."""
+"""Seconds from stillness to full movement."""
 _BREATH_HZ = 0.25
 _SPINE = [JOINT_NAMES.index(name) for name in ("spine2", "spine3", "neck")]
 _SHOULDERS = [JOINT_NAMES.index(name) for name in ("left_shoulder", "right_shoulder")]
 _ELBOWS = [JOINT_NAMES.index(name) for name in ("left_elbow", "right_elbow")]
 _GAZE_HZ = ((0.043, 0.071, 0.113), (0.037, 0.083, 0.101))
-"""Slow frequencies without a common period, for yaw and pitch: the gaze wanders and does not repeat."""
+"""Hz of slow oscillations without a common period, for yaw and pitch, so that the gaze wanders without repeating."""
 _WEIGHT_HZ = (0.021, 0.047, 0.061)
 _WEIGHT_HELD = 4.0
-"""How steeply the weight goes over: it rests on one leg for some seconds and then on the other, as a person's does."""
+"""Steepness of the weight's shift: the weight rests on one leg for some seconds and then on the other, as a person's does."""
 
 
 @dataclass(frozen=True)
 class IdleStyle:
-    """How much of everything, in degrees."""
+    """Amplitudes of an idle style in degrees."""
 
     breath_deg: float
     gaze_yaw_deg: float
@@ -46,7 +49,7 @@ STYLES = {"calm": IdleStyle(1.5, 6.0, 2.5, 1.0), "lively": IdleStyle(2.5, 16.0, 
 
 
 class IdleSource(MotionSource):
-    """Idle movements without end."""
+    """Endless idle movements."""
 
     def __init__(self, style: str, seed: int = 0) -> None:
         self._style = STYLES[style]
@@ -55,11 +58,11 @@ class IdleSource(MotionSource):
         self._finishing = False
 
     def finish(self) -> None:
-        """The next stretch leads to stillness and is the last."""
+        """Let the next segment lead to stillness and be the last."""
         self._finishing = True
 
     def next(self) -> tuple[PoseSequence, bool]:
-        """The next two seconds."""
+        """The next two seconds of poses, and whether they are the last."""
         n = round(STRETCH_S * FPS)
         t_s = (self._frame + np.arange(n)) / FPS
         self._frame += n
@@ -85,7 +88,7 @@ class IdleSource(MotionSource):
         return replace(stand, bones=normalise(bones), head_quat_wxyz=head_wxyz(yaw, pitch))
 
     def _wander(self, t_s: Array, k: int, hz: tuple[float, float, float]) -> Array:
-        """Within -1 and 1, from 0 at the start."""
+        """A wandering value between -1 and 1 for each time, from 0 at the start."""
         w = 2 * np.pi * np.array(hz)
         return (np.sin(np.outer(t_s, w) + self._phase[k]) - np.sin(self._phase[k])).sum(1) / 6
 
@@ -94,7 +97,7 @@ def head_wxyz(yaw_rad: Array, pitch_rad: Array) -> Array:
     """(T, 4) orientation of a head turned left by `yaw_rad` (T,) and then down by `pitch_rad` (T,)."""
     zero = np.zeros_like(yaw_rad)
     cy, sy, cp, sp = np.cos(yaw_rad / 2), np.sin(yaw_rad / 2), np.cos(pitch_rad / 2), np.sin(pitch_rad / 2)
-    # About y (up), then about x (the person's left): the product of (cy, 0, sy, 0) and (cp, sp, 0, 0).
+    # Rotate about y (up), then about x (the person's left): the product of (cy, 0, sy, 0) and (cp, sp, 0, 0).
     return np.stack([cy * cp, cy * sp, sy * cp, zero - sy * sp], -1)
 
 

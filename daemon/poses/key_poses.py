@@ -1,4 +1,4 @@
-"""A motion led through poses: what the model met to a few degrees is met exactly, and nothing jumps on the way."""
+"""Leads a motion exactly through given poses, which the model meets within a few degrees; transitions are smooth."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import numpy as np
 from daemon.poses.pose_sequence import PoseSequence, mixed
 
 REACH_S = 1.0
-"""Seconds before a pose is due at which the motion begins to be led to it, and seconds after it at which it is free again."""
+"""Seconds before a pose's time from which the motion is led towards the pose, and seconds after it until the motion is unchanged
+again."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class KeyPose:
 
 
 def led_through(p: PoseSequence, keys: Sequence[KeyPose]) -> PoseSequence:
-    """`p` that shows each pose in the frame in which it is due.
+    """`p`, changed so that each key pose appears exactly in its frame.
 
     The weight of a pose rises and falls on a minimum-jerk curve over `REACH_S`, or over the time to the next pose where
     that is shorter, so that poses do not disturb each other.

@@ -1,4 +1,4 @@
-"""What is laid over motions and silence: where the head looks, and idle movements."""
+"""Layers over motions and idle times: the gaze, and idle movements."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from retarget.robot.robot import RobotModel
 
 
 class Layers:
-    """Gaze and idling, as people set them.
+    """Gaze and idle style, as set by requests.
 
     Attributes:
         idle_style: style of the idle movements; empty for none.
-        gaze_deg: where the head is told to look, left and down; None leaves it to the motion.
+        gaze_deg: requested direction of the head, left and down; None leaves the head to the motion.
     """
 
     def __init__(self, idle_style: str) -> None:
@@ -22,7 +22,7 @@ class Layers:
         self.gaze_deg: tuple[float, float] | None = None
 
     def over(self, p: PoseSequence) -> PoseSequence:
-        """`p` as it is to be played."""
+        """`p` with the layers applied."""
         if self.gaze_deg is None:
             return p
         yaw, pitch = np.deg2rad(self.gaze_deg)
@@ -30,7 +30,7 @@ class Layers:
 
 
 def gaze_note(robot: RobotModel, yaw_deg: float, pitch_deg: float) -> str:
-    """How much of a gaze the robot's head cannot follow; empty when it can follow all."""
+    """The part of a gaze that the robot's head cannot follow, in words; empty when it can follow all of it."""
     notes: list[str] = []
     for role, wanted_deg in (("head_yaw", yaw_deg), ("head_pitch", pitch_deg)):
         j = robot.joint_with_role(role)

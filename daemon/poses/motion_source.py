@@ -1,4 +1,4 @@
-"""Poses of one command in time order, segment by segment: a clip, a preview, a story, idle movements, a pose that is held."""
+"""Poses of one command in time order, segment by segment: a clip, a preview, a story, idle movements, a held pose."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from daemon.wire.events import Progress
 
 
 class MotionSource(ABC):
-    """Segments of poses. `next` and `rest` may run in a worker thread, all else in the event loop."""
+    """Segments of poses. `next` and `rest` may run in a worker thread, all other methods run in the event loop."""
 
     @property
     def ready(self) -> bool:
@@ -18,12 +18,12 @@ class MotionSource(ABC):
 
     @property
     def is_at_hand(self) -> bool:
-        """Whether `next` only gives out what is there, so that a worker thread would take longer than the call."""
+        """Whether `next` returns an existing segment at once, so that a worker thread would cost more than the call."""
         return False
 
     @property
     def revised(self) -> bool:
-        """Whether a better motion than the one being played has come, whose `rest` may take its place."""
+        """Whether a better motion than the running one is available, whose `rest` may replace the remaining poses."""
         return False
 
     @abstractmethod
@@ -31,11 +31,11 @@ class MotionSource(ABC):
         """The next segment, and whether it is the last; not called again after the last."""
 
     def rest(self, n_left: int) -> PoseSequence:
-        """The poses of a revised motion that take the place of the last `n_left` frames of the one being played."""
+        """The poses of a revised motion that replace the last `n_left` frames of the running one."""
         raise NotImplementedError
 
     def settle(self) -> None:  # noqa: B027 - most sources have no revision
-        """The revised motion is being played, or cannot be."""
+        """Note that the revised motion is being played, or cannot be."""
 
     def reports(self, plan_id: int) -> list[Progress]:
         """Events since the last call, of the trajectory `plan_id`."""
@@ -43,11 +43,11 @@ class MotionSource(ABC):
         return []
 
     def finish(self) -> None:  # noqa: B027 - most sources end by themselves
-        """Lead to the end instead of going round again."""
+        """Lead to the end instead of starting another round."""
 
 
 class HeldPose(MotionSource):
-    """One segment, which holds a pose."""
+    """A single segment, which holds a pose."""
 
     def __init__(self, segment: PoseSequence) -> None:
         self._segment = segment

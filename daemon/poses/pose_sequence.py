@@ -1,4 +1,7 @@
-"""How a person is held, frame by frame: bone directions, head and forearm twist, wherever the person stands and faces.
+"""Poses of a person, frame by frame: bone directions, head and forearm twist, independent of the person's place and facing.
+
+The daemon makes every change to a motion before retargeting (tempo, size, mirror, seams, loops, gaze, idling) here, on the human
+poses, so that only retargeting has to keep limits and self-contact.
 
 Everything the daemon does to a motion before retargeting (tempo, size, mirror, seams, loops, gaze, idling) is done
 here, on the human, so that limits and self-contact stay the business of retargeting alone.
@@ -43,7 +46,7 @@ class PoseSequence:
 
     Attributes:
         bones: (T, 22, 3) unit direction of the bone that ends in each joint; the pelvis's row is zero.
-        lengths_m: (22,) their lengths.
+        lengths_m: (22,) lengths of the bones, m.
         head_quat_wxyz: (T, 4) orientation of the head against the person's facing.
         forearm_twist_rad: (T, 2) forearm twist, left and right.
         fps: frames per second.
@@ -67,7 +70,7 @@ class PoseSequence:
         )
 
     def at(self, frames: NDArray[np.intp]) -> PoseSequence:
-        """The frames at `frames`; before the first and after the last these go on."""
+        """The poses at the frame numbers `frames`; numbers before the first or after the last frame give that frame."""
         k = np.clip(frames, 0, len(self) - 1)
         return replace(
             self,
@@ -78,14 +81,14 @@ class PoseSequence:
 
     @property
     def joints_m(self) -> Array:
-        """(T, 22, 3) places of the joints in metres."""
+        """(T, 22, 3) joint positions in metres."""
         joints = np.zeros((len(self), len(PARENTS), 3))
         for j, parent in enumerate(PARENTS[1:], 1):
             joints[:, j] = joints[:, parent] + self.lengths_m[j] * self.bones[:, j]
         return joints
 
     def faces(self) -> Array:
-        """(T, 3) unit vectors to where the head faces."""
+        """(T, 3) unit vectors of the direction that the head faces."""
         return np.asarray(matrix_from_quat(self.head_quat_wxyz)[..., 2], np.float64)
 
     def motion(self, like: Motion | None = None, text: str = "") -> Motion:
@@ -105,7 +108,7 @@ class PoseSequence:
 
 
 def posture_of(motion: Motion) -> PoseSequence:
-    """The poses of a motion's person."""
+    """The poses of a motion."""
     joints, head_quat_wxyz = motion.joints_m.astype(np.float64), motion.head_quat_wxyz.astype(np.float64)
     return poses_of_joints(joints, head_quat_wxyz, motion.forearm_twist_rad.astype(np.float64), motion.fps)
 
@@ -135,7 +138,7 @@ def standing() -> PoseSequence:
 
 
 def mixed(a: PoseSequence, b: PoseSequence, weight: Array) -> PoseSequence:
-    """Frame by frame from `a` (weight 0) to `b` (weight 1), along the shortest arcs; beyond 1 past `b`.
+    """Blend frame by frame from `a` (weight 0) to `b` (weight 1), along the shortest arcs; a weight above 1 goes beyond `b`.
 
     `a` may be a single frame. Lengths and rate are those of `b`.
     """
@@ -151,7 +154,7 @@ def mixed(a: PoseSequence, b: PoseSequence, weight: Array) -> PoseSequence:
 
 
 def joined(parts: list[PoseSequence]) -> PoseSequence:
-    """One after the other; lengths and rate are those of the first."""
+    """The parts one after the other; lengths and rate are those of the first."""
     return replace(
         parts[0],
         bones=np.concatenate([p.bones for p in parts]),
@@ -161,7 +164,7 @@ def joined(parts: list[PoseSequence]) -> PoseSequence:
 
 
 def mirrored(p: PoseSequence) -> PoseSequence:
-    """Left for right."""
+    """`p` with left and right exchanged."""
     return replace(
         p,
         bones=p.bones[:, _MIRROR] * _FLIP_X,
@@ -172,18 +175,18 @@ def mirrored(p: PoseSequence) -> PoseSequence:
 
 
 def scaled(p: PoseSequence, amplitude: float) -> PoseSequence:
-    """Every deviation from standing times `amplitude`."""
+    """`p` with every deviation from standing multiplied by `amplitude`."""
     return mixed(standing(), p, np.full(len(p), amplitude))
 
 
 def at_tempo(p: PoseSequence, tempo: float) -> PoseSequence:
-    """`tempo` times as fast, at the same rate of frames."""
+    """`p` played `tempo` times as fast, at the same frame rate."""
     n = max(2, round((len(p) - 1) / tempo) + 1)
     return at_steps(p, np.linspace(0, len(p) - 1, n))
 
 
 def at_steps(p: PoseSequence, places: Array) -> PoseSequence:
-    """`p` at (n,) places between its frames, counted in frames."""
+    """`p` interpolated at (n,) fractional frame numbers."""
     before = np.floor(places).astype(np.intp)
     return mixed(p.at(before), p.at(before + 1), places - before)
 
@@ -195,14 +198,14 @@ def smooth_step(n: int) -> Array:
 
 
 def faded_in(p: PoseSequence, before: PoseSequence, n: int) -> PoseSequence:
-    """`p` whose first `n` frames grow out of `before`, which goes on from its last frame where it is shorter."""
+    """`p` with its first `n` frames blended from `before`, whose last frame is held where it is shorter."""
     n = min(n, len(p))
     grown = mixed(before.at(np.arange(n)), p[:n], smooth_step(n))
     return joined([grown, p[n:]])
 
 
 def distance_deg(a: PoseSequence, b: PoseSequence) -> Array:
-    """(T,) largest angle between the two in arms, spine and head."""
+    """(T,) largest angle in degrees between the two in arms, spine and head."""
     seen = [3, 6, 9, 12, 18, 19, 20, 21]
     cos = np.clip((a.bones[:, seen] * b.bones[:, seen]).sum(-1), -1, 1)
     head = np.clip(np.abs((a.head_quat_wxyz * b.head_quat_wxyz).sum(-1)), -1, 1)
@@ -210,12 +213,12 @@ def distance_deg(a: PoseSequence, b: PoseSequence) -> Array:
 
 
 def _same_half(a: Array, b: Array) -> tuple[Array, Array]:
-    """Quaternions `a` with the sign that is nearer to `b`."""
+    """The quaternions `a` with the sign that is nearer to `b`, and `b`."""
     return np.where((a * b).sum(-1, keepdims=True) < 0, -a, a), b
 
 
 def _slerp(a: Array, b: Array, w: Array) -> Array:
-    """Unit vectors between `a` and `b` (..., n), by weight; opposite ones go over to `b` half way."""
+    """Unit vectors between `a` and `b` (..., n), by weight; opposite vectors switch to `b` half way."""
     angle = np.arccos(np.clip((a * b).sum(-1, keepdims=True), -1, 1))
     sine = np.sin(angle)
     small = sine < 1e-6

@@ -1,9 +1,9 @@
-"""Addresses of the web server that answer by themselves: files of the page, OpenAPI, shapes of the robot, a recorded run."""
+"""Addresses that the web server answers by itself: files of the page, OpenAPI, shapes of the robot, a recorded run."""
 
 from __future__ import annotations
 
 # pyright: reportUnknownMemberType=false
-# Tornado's `finish` and `write` take a `dict` without saying of what.
+# Tornado's `finish` and `write` take a `dict` of unknown element types.
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +16,13 @@ FILE_TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"
 _SERVED = (
     "POST or WebSocket /v1/cmd", "POST or WebSocket /v1/ctl", "WebSocket /v1/pub", "WebSocket /v1/stream", "GET /v1/openapi.json",
 )  # fmt: skip
-"""Addresses for programs, as the answer 404 lists them; the page has others besides."""
+"""Addresses for programs, as a 404 answer lists them; the page uses others besides."""
 _PAGE = "GET / (the page)"
 _POLICY = "default-src 'self'; img-src 'self' data:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
 
 
 class BaseHandler(RequestHandler):
-    """Base of all addresses: checks who may use them, and forbids browsers to keep answers and other sites to frame them."""
+    """Base of all addresses: checks access, and forbids browsers to cache answers and other sites to frame them."""
 
     @property
     def server(self) -> WebState:
@@ -58,7 +58,7 @@ class BaseHandler(RequestHandler):
 
 
 class FileHandler(BaseHandler):
-    """A file of the page; without a token, as it holds nothing of the robot."""
+    """A file of the page; served without a token, as it contains no data of the robot."""
 
     def initialize(self, file: Path) -> None:
         self._file = file
@@ -81,7 +81,7 @@ class OpenApiHandler(BaseHandler):
 
 
 class RobotHandler(BaseHandler):
-    """Shapes of a robot, by its name."""
+    """Shapes of a robot, by the robot's name."""
 
     def get(self, name: str) -> None:
         shapes = self.server.shapes.get(name)
@@ -93,7 +93,7 @@ class RobotHandler(BaseHandler):
 
 
 class RunHandler(BaseHandler):
-    """A recorded run; 204 where a daemon is shown."""
+    """The recorded run; 204 when a daemon is shown."""
 
     def get(self) -> None:
         if self.server.run is None:
@@ -105,7 +105,7 @@ class RunHandler(BaseHandler):
 
 
 class UnknownAddressHandler(BaseHandler):
-    """Answers 404 for an address at which nothing is served, with the addresses that are."""
+    """Answers 404 for an unknown address, with a list of the known ones."""
 
     def initialize(self, page: bool) -> None:
         self._page = page

@@ -1,4 +1,4 @@
-"""The OpenAPI description of the web server, made from the structs that the messages are decoded with."""
+"""The OpenAPI description of the web server, generated from the structs that decode the messages."""
 
 from __future__ import annotations
 

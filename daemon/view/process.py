@@ -1,4 +1,4 @@
-"""The web server as a process of its own, so that nothing a page does reaches the bus.
+"""The web server in a process of its own, so that the page's load does not reach the bus.
 
 `python -m daemon.view.process --http HOST:PORT [--page] [--robot R] [--run F.mcap] --cmd E --ctl E --pub E --stream E [--keys D]`
 """
@@ -26,12 +26,12 @@ from retarget.robot.loading import list_robots, load_robot
 log = logging.getLogger(__name__)
 
 NICENESS = 5
-"""The page's server gives way to the robot's processes."""
+"""Niceness of the page's server, which gives way to the robot's processes."""
 PARENT_CHECK_S = 0.5
 
 
 def main() -> int:
-    """Serve until SIGTERM or the daemon's death; 0, or 2 when the address cannot be had."""
+    """Serve until SIGTERM or the daemon's death; return 0, or 2 when the address cannot be bound."""
     parser = argparse.ArgumentParser(description="the web server of mmmd; started by `mmmd run --view` and `mmmd view`")
     parser.add_argument("--http", required=True)
     parser.add_argument("--page", action="store_true")
@@ -72,11 +72,11 @@ async def serve(
         robot: name or robot.toml of the daemon's robot, or of the run; None for one that ships.
         run: .mcap to scrub through; None for the daemon alone.
         page: whether the page is served beside the messages.
-        parent: process with which this one ends; None for nobody.
+        parent: process with which this one ends; None for none.
         open_page: open the page in a browser.
 
     Raises:
-        ConfigError: the address cannot be had.
+        ConfigError: the address cannot be bound.
         LogError, RobotFileError: the run or the robot cannot be read.
     """
     from daemon.view.recorded_run import recorded_run

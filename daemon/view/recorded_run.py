@@ -1,4 +1,4 @@
-"""A recorded run as a web page scrubs through it."""
+"""A recorded run as one message for the web page."""
 
 from __future__ import annotations
 

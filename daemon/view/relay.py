@@ -1,4 +1,7 @@
-"""Frames between the web and the daemon's ZeroMQ sockets, unread: the daemon judges them, as those of any client.
+"""Passes frames between the web and the daemon's ZeroMQ sockets without parsing them: the daemon checks them as any client's.
+
+Every web client has a connection of its own to the daemon, so that no client receives another's events. Messages that no client
+reads are dropped here, before they cost the daemon anything.
 
 Every peer of the web has a connection of its own to the daemon, so that nobody gets another's events. What nobody reads is
 dropped here, before it costs the daemon anything.
@@ -20,11 +23,11 @@ from daemon.wire.codec import encode
 from daemon.wire.events import ErrorEvent
 
 SEND_TIMEOUT_S = 1.0
-"""Seconds until a frame that the daemon does not take is given up."""
+"""Seconds until a frame that the daemon does not accept is given up."""
 MOST_KEPT = 256
-"""Messages of `pub` kept for a peer that is slow to read, beside the newest state and health."""
+"""Messages of `pub` kept for a slow client, besides the newest state and health."""
 _REPLACED = (b"v1/state", b"v1/health")
-"""Topics of which a slow reader gets the newest message alone."""
+"""Topics of which a slow client gets only the newest message."""
 _QUEUE = 100
 
 
@@ -48,7 +51,7 @@ class Relay:
         return self._connected(zmq.PUB, self.endpoints.stream)
 
     def published(self) -> zmq.asyncio.Socket:
-        """All that the daemon publishes."""
+        """A new connection to `pub`, with all topics."""
         socket = self._connected(zmq.SUB, self.endpoints.pub)
         socket.subscribe(b"v1/")
         return socket
@@ -71,7 +74,7 @@ class Relay:
 
 
 async def send(socket: zmq.asyncio.Socket, frame: bytes) -> bytes | None:
-    """Hand a frame to the daemon; an `error` event where no daemon takes it."""
+    """Send a frame to the daemon; return an `error` event when no daemon accepts it, else None."""
     try:
         await asyncio.wait_for(socket.send(frame), SEND_TIMEOUT_S)
     except TimeoutError:
@@ -80,7 +83,7 @@ async def send(socket: zmq.asyncio.Socket, frame: bytes) -> bytes | None:
 
 
 def unreached(frame: bytes) -> bytes:
-    """The `error` event for a frame that no daemon took."""
+    """The `error` event for a frame that no daemon accepted."""
     do = "start it with `mmmd run`, and look whether the addresses are the same"
     event = ErrorEvent(
         code="no_daemon", asked="reach the daemon", found="no answer", allowed="a daemon that runs", do=do
@@ -90,7 +93,7 @@ def unreached(frame: bytes) -> bytes:
 
 
 def _id_of(frame: bytes) -> str:
-    """The id that a request names; empty where it names none."""
+    """The id in a request; empty without one."""
     try:
         found: Any = msgspec.json.decode(frame)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
@@ -100,7 +103,7 @@ def _id_of(frame: bytes) -> str:
 
 
 class Reader:
-    """What one peer has still to get of `pub`: the newest state and health, and the newest `MOST_KEPT` others."""
+    """Messages of `pub` that one client has not received yet: the newest state and health, and the newest `MOST_KEPT` others."""
 
     def __init__(self) -> None:
         self._newest: OrderedDict[bytes, bytes] = OrderedDict()
@@ -109,7 +112,7 @@ class Reader:
         self.dropped = 0
 
     def give(self, topic: bytes, payload: bytes) -> None:
-        """A message for the peer; an older one gives way where the peer does not keep up."""
+        """Add a message for the client; the oldest one is dropped when the client does not keep up."""
         if topic in _REPLACED:
             self._newest[topic] = payload
         else:
@@ -118,7 +121,7 @@ class Reader:
         self._there.set()
 
     async def take(self) -> bytes:
-        """The next message, once there is one."""
+        """Wait for the next message and return it."""
         while not self._others and not self._newest:
             self._there.clear()
             await self._there.wait()
@@ -126,7 +129,7 @@ class Reader:
 
 
 class Feed:
-    """What the daemon publishes, for every reader; the last state and health for those who come later."""
+    """Distributes the daemon's published messages to all readers; keeps the last state and health for later readers."""
 
     def __init__(self, relay: Relay) -> None:
         self._relay = relay
@@ -134,7 +137,7 @@ class Feed:
         self._readers: set[Reader] = set()
 
     def join(self) -> Reader:
-        """A new reader, with the last state and health."""
+        """Add a reader, which begins with the last state and health."""
         reader = Reader()
         for topic, payload in self._last.items():
             reader.give(topic, payload)
@@ -142,16 +145,16 @@ class Feed:
         return reader
 
     def leave(self, reader: Reader) -> None:
-        """A reader that has gone."""
+        """Remove a reader."""
         self._readers.discard(reader)
 
     async def follow(self) -> None:
-        """Hand on what is published, without end."""
+        """Pass on published messages, for ever."""
         socket = self._relay.published()
         while True:
             topic, payload = await socket.recv_multipart()
             if topic in _REPLACED:
-                if self._last.get(topic) == payload:  # sent again, for somebody who has just subscribed
+                if self._last.get(topic) == payload:  # sent again for a client that has just subscribed
                     continue
                 self._last[topic] = payload
             for reader in self._readers:

@@ -1,4 +1,7 @@
-"""A robot as a web page draws it: a tree of bodies with their joints, and each body's triangles.
+"""A robot for drawing on a web page: a tree of bodies with their joints, and each body's triangles.
+
+The page places the bodies itself from joint angles, so that only angles are sent while the robot moves. Shapes are those of the
+robot's description: capsules, boxes, spheres, cylinders, and meshes where their files exist.
 
 The page places the bodies itself from joint angles, so that nothing but angles has to be sent while the robot moves. Shapes are
 those of the robot's description: capsules, boxes, spheres, cylinders, and meshes where their files are.
@@ -20,7 +23,7 @@ from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 _AROUND = 14
-"""Corners of the circles that round shapes are drawn with."""
+"""Number of corners of the circles in round shapes."""
 _Mesh = tuple[Array, Array, NDArray[np.int64]]
 """Vertices (V, 3) in metres, their normals (V, 3), zero for a flat face's own, and triangles (F, 3) of vertex indices."""
 
@@ -92,7 +95,7 @@ def robot_shapes(robot: RobotModel) -> bytes:
 
 
 def _joined(meshes: list[_Mesh]) -> tuple[Array, NDArray[np.int64]]:
-    """Vertices and normals of all meshes (V, 6), and the indices of their triangles among them."""
+    """Vertices and normals of all meshes (V, 6), and the indices of their triangles in these."""
     starts = np.cumsum([0, *(len(points) for points, _, _ in meshes)])
     vertices = np.concatenate([np.concatenate([points, normals], 1) for points, normals, _ in meshes])
     indices = [triangles.ravel() + start for (_, _, triangles), start in zip(meshes, starts, strict=False)]
@@ -100,7 +103,7 @@ def _joined(meshes: list[_Mesh]) -> tuple[Array, NDArray[np.int64]]:
 
 
 def _mesh_of_body(model: Any, body: int) -> _Mesh:
-    """All shapes of a body in its own axes."""
+    """All shapes of a body in the body's axes."""
     found: list[_Mesh] = []
     for geom in np.flatnonzero(model.geom_bodyid == body):
         points, normals, triangles = _mesh_of_geom(model, int(geom))
@@ -119,7 +122,7 @@ def _mesh_of_body(model: Any, body: int) -> _Mesh:
 
 
 def _mesh_of_geom(model: Any, geom: int) -> _Mesh:
-    """One shape in its own axes; a plane, which is scenery, has no triangles."""
+    """One shape in the body's axes; a plane, which is scenery, has no triangles."""
     kinds = {getattr(mujoco.mjtGeom, f"mjGEOM_{kind}").value: kind for kind in _KINDS}
     kind, size = kinds.get(int(model.geom_type[geom]), ""), model.geom_size[geom]
     if kind == "MESH":
@@ -147,7 +150,7 @@ def _mesh_of_file(model: Any, mesh: int) -> _Mesh:
 
 
 def _round(radii_m: Array, half_length_m: float) -> _Mesh:
-    """An ellipsoid, drawn out along z by `half_length_m` to both sides as a capsule is."""
+    """An ellipsoid, extended along z by `half_length_m` on both sides as a capsule is."""
     rings = np.concatenate([np.linspace(-np.pi / 2, 0, _AROUND // 2), np.linspace(0, np.pi / 2, _AROUND // 2)])
     turns = np.linspace(0, 2 * np.pi, _AROUND + 1)
     latitude, longitude = np.meshgrid(rings, turns, indexing="ij")

@@ -1,4 +1,7 @@
-"""The web server: the page, and the daemon's messages over HTTP and WebSocket. One event loop that only hands bytes on.
+"""The web server: the page, and the daemon's messages over HTTP and WebSocket. One event loop that only passes bytes on.
+
+`POST /v1/cmd` and `/v1/ctl` take one request (JSON, or plain text as on the ZeroMQ sockets) and answer with its first event; a
+WebSocket at the same address takes any number of requests and receives all events. `/v1/pub` and `/v1/stream` are WebSockets only.
 
 `POST /v1/cmd` and `/v1/ctl` take one request (JSON, or plain text as on the ZeroMQ sockets) and answer with its first event; a
 WebSocket at the same address takes any number and gets all events. `/v1/pub` and `/v1/stream` are WebSockets alone.
@@ -29,7 +32,7 @@ from daemon.view.web_state import WebState
 
 PAGE = Path(__file__).parent / "page"
 MOST_BYTES = 64 * 1024
-"""Bytes of a request, as on the ZeroMQ sockets."""
+"""Bytes of a request at most, as on the ZeroMQ sockets."""
 
 
 class WebServer:
@@ -38,9 +41,9 @@ class WebServer:
     Args:
         access: address, port and token.
         endpoints: where the daemon is.
-        shapes: of the robot by its name, as `robot_shapes` gives them.
+        shapes: shapes of a robot by its name, as `robot_shapes` returns them.
         page: whether the page is served, or the messages alone.
-        run: a recorded run as `recorded_run` gives it, shown instead of a daemon; None for none.
+        run: a recorded run as `recorded_run` returns it, shown instead of a daemon; None for none.
     """
 
     def __init__(
@@ -78,14 +81,14 @@ class WebServer:
 
     @property
     def access(self) -> Access:
-        """Address, port and token; the port that was taken after `bind`."""
+        """Address, port and token; after `bind` the port that was bound."""
         return self._state.access
 
     def bind(self) -> None:
-        """Take the port.
+        """Bind the port.
 
         Raises:
-            ConfigError: somebody else has it, or the address is not this machine's.
+            ConfigError: another program has the port, or the address is not this machine's.
         """
         try:
             sockets = bind_sockets(self.access.port, self.access.host)
@@ -106,4 +109,4 @@ class WebServer:
 
 
 def _unlogged(_: TornadoHandler) -> None:
-    """Requests are not logged: their addresses may hold the token."""
+    """Log no request: addresses may contain the token."""

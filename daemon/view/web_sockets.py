@@ -1,9 +1,9 @@
-"""Addresses of the web server behind which the daemon is: `cmd`, `ctl`, `pub` and `stream`, as WebSockets and by POST."""
+"""Addresses of the web server that lead to the daemon: `cmd`, `ctl`, `pub` and `stream`, as WebSockets and by POST."""
 
 from __future__ import annotations
 
 # pyright: reportUnknownMemberType=false
-# Tornado's `finish` and `write` take a `dict` without saying of what.
+# Tornado's `finish` and `write` take a `dict` of unknown element types.
 import asyncio
 import contextlib
 import time
@@ -19,13 +19,13 @@ from daemon.view.relay import Reader, send, unreached
 from daemon.view.web_state import MOST_POSTS, MOST_SOCKETS, RATE_HZ, is_stop, type_of
 
 STREAM_RATE_HZ, STREAM_BURST = 500.0, 500
-"""Targets a second, and at once, of one connection to `stream`; more are dropped, as only the newest counts."""
+"""Targets per second, and targets at once, of one connection to `stream`; more are dropped, as only the newest counts."""
 CTL_TIMEOUT_S = 5.0
 _STATUS = {"error": 400, "rejected": 409, "failed": 409}
 
 
 class _Socket(WebSocketHandler, BaseHandler):
-    """A WebSocket whose frames go to the daemon and back."""
+    """A WebSocket whose frames are passed to the daemon and back."""
 
     def prepare(self) -> None:
         super().prepare()
@@ -46,7 +46,7 @@ class _Socket(WebSocketHandler, BaseHandler):
         self.refuse(426, f"a GET that asks for no WebSocket; connect to ws://{at}{post}", "upgrade_required")
 
     def check_origin(self, origin: str) -> bool:
-        return True  # `prepare` has judged it
+        return True  # `prepare` has checked the origin
 
     def open(self, *_: str, **__: str) -> None:
         self.server.sockets += 1
@@ -140,7 +140,7 @@ class PublishedHandler(_Socket):
         self._task = asyncio.create_task(self._hand_on(self._reader))
 
     def on_message(self, message: str | bytes) -> None:
-        """Nothing is asked here."""
+        """Ignore the message: this address takes no requests."""
 
     def on_close(self) -> None:
         super().on_close()
@@ -152,11 +152,11 @@ class PublishedHandler(_Socket):
     async def _hand_on(self, reader: Reader) -> None:
         with contextlib.suppress(WebSocketClosedError):
             while True:
-                await self.write_message(await reader.take())  # bytes go as text, as they are
+                await self.write_message(await reader.take())  # bytes are sent unchanged as text
 
 
 class TargetHandler(_Socket):
-    """`stream`: joint targets under a lease, which `cmd` gives."""
+    """`stream`: joint targets under a lease obtained through `cmd`."""
 
     _daemon: zmq.asyncio.Socket | None = None
 

@@ -1,4 +1,4 @@
-"""State shared by the addresses of the web server: access, the daemon behind it, bounds on requests and connections."""
+"""State shared by the addresses of the web server: access, the daemon behind it, limits on requests and connections."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from daemon.settings.config import Endpoints
 from daemon.view.relay import Feed, Relay
 
 MOST_SOCKETS = 64
-"""WebSockets open at a time: a page has three."""
+"""Number of WebSockets open at a time, at most; a page has three."""
 MOST_POSTS = 32
-"""Requests by POST under way at a time."""
+"""Number of POST requests under way at a time."""
 RATE_HZ, BURST = 50.0, 200
-"""Requests a second, and at once, of all web clients of one address; stops are never counted."""
+"""Requests per second, and requests at once, of all web clients of one address; stops are not counted."""
 
 
 class WebState:
@@ -28,13 +28,13 @@ class WebState:
     Attributes:
         relay: sockets to the daemon.
         feed: the daemon's published messages.
-        posts: places for requests by POST.
-        sockets: WebSockets that are open.
+        posts: semaphore for POST requests.
+        sockets: the open WebSockets.
 
     Args:
         access: address, port and token.
         endpoints: where the daemon is.
-        shapes: of the robot by its name.
+        shapes: shapes of a robot by its name.
         run: a recorded run that is shown instead of a daemon; None for none.
     """
 
@@ -47,7 +47,7 @@ class WebState:
         self._rates = Rates(RATE_HZ, BURST)
 
     def allows(self, request: HTTPServerRequest, frame: bytes) -> bool:
-        """Whether a request may go on to the daemon now; a stop always may."""
+        """Whether a request may be sent to the daemon now; a stop always may."""
         return self._rates.allows((request.remote_ip or "").encode(), time.monotonic()) or is_stop(frame)
 
 
@@ -61,10 +61,14 @@ def type_of(event: bytes) -> str:
 
 
 def is_stop(frame: bytes) -> bool:
-    """Whether a frame is a `stop`, an `estop` or a text that means to stop: handed on however many requests came before it."""
+    """Whether a frame is a `stop`, an `estop` or a text that means to stop: these are sent on regardless of the rate limit."""
     if frame.strip() == b"estop" or stops([frame]):
         return True
     try:
         return msgspec.json.decode(frame, type=_Typed).type in ("stop", "estop")
-    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError):  # the daemon names what is wrong with it
+    except (
+        msgspec.MsgspecError,
+        UnicodeDecodeError,
+        RecursionError,
+    ):  # the daemon's answer says what is wrong with the frame
         return False
