@@ -1,10 +1,10 @@
-"""Commands done at the same time: each fills the ids of its own body parts, and its part of the motion is decoded from its own ids.
+"""Puts commands done at the same time into one motion: each gives the ids and the joints of its own body parts.
 
-MMM (arXiv 2312.03596) sec. 3.4 edits the upper body with the lower one's ids as context; here the model has three parts: either
-arm, and trunk with head and legs. Head and trunk share one part, so the features of both are put together and encoded. The
-decoder reads all parts, and ids of parts that were not generated together mislead it: of 96 pairs of commands, each of which
-was seen by itself in 99 of 100, both were seen in 80. So every command's row is decoded by itself and the joints of its parts
-are taken from there.
+MMM (arXiv 2312.03596) sec. 3.4 edits the upper body with the lower one's ids as context. Here the model has three parts: left
+arm, right arm, and trunk with head and legs. Head and trunk share one part, so the features of both are put together and
+encoded. The decoder reads all parts, and ids of parts that were not generated together mislead it: of 96 pairs of commands
+both were seen in 80, though each command by itself is seen in 99 of 100. Therefore every command's row is decoded by itself,
+and the joints of its parts are taken from that motion.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from mmm_core.motion.performing import motion_of
 from mmm_core.motion.posture_features import posture_features
 
 _HEAD_CHANNELS = slice(67 + 6 * 11, 67 + 6 * 12), slice(67 + 6 * 14, 67 + 6 * 15)
-"""6-D rotations of neck and head."""
+"""Feature channels of the 6-D rotations of neck and head."""
 _ARMS: tuple[BodyPart, BodyPart] = ("left_arm", "right_arm")
 
 
@@ -36,8 +36,8 @@ class StepIds:
 
     Attributes:
         ids: (L, C) ids in which every command has its own parts.
-        rows: (L, C) ids of each command by itself; empty where there is only one.
-        owners: which command moves a body part.
+        rows: (L, C) ids of each command by itself; empty for a single command.
+        owners: index of the command that moves a body part.
     """
 
     ids: Tensor
@@ -55,12 +55,12 @@ def composed(
     engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequence[Tensor],
     arms: Sequence[tuple[BodyPart, ...]] | None = None,
 ) -> StepIds:  # fmt: skip
-    """The ids of commands in which every command has its own parts; the first has what is left.
+    """The ids of commands in which every command has its own body parts; arms that no command has go to the first.
 
     Args:
         engine: the model.
         commands: done at once; each with its limbs.
-        rows: their ids (L, C); a shorter one stays at its end.
+        rows: the commands' ids (L, C); a shorter row is lengthened by repeating its last id.
         arms: the arms of each command; None finds them (`arms_of`).
     """
     if len(rows) == 1:
@@ -82,7 +82,7 @@ def composed(
 
 
 def arms_of(engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequence[Tensor]) -> list[tuple[BodyPart, ...]]:
-    """The arms that each command has: those its words name, else those that its motion moves and no other has."""
+    """The arms of each command: the ones that its words name, else the ones that its motion moves and no other command has."""
     named: list[tuple[BodyPart, ...]] = [tuple(arm for arm in _ARMS if arm in c.limbs) for c in commands]
     free: list[BodyPart] = [arm for arm in _ARMS if not any(arm in arms for arms in named)]
     found: list[tuple[BodyPart, ...]] = []
@@ -101,11 +101,11 @@ def arms_of(engine: MotionModel, commands: Sequence[ReadCommand], rows: Sequence
 
 
 def features_of(engine: MotionModel, ids: Tensor, steps: Sequence[tuple[int, StepIds]]) -> NDArray[np.float32]:
-    """(T, 263) features of ids (L, C): the body parts of commands done at once are those of each command's own ids.
+    """(T, 263) features of ids (L, C); body parts of commands done at once are decoded from each command's own ids.
 
     Args:
         engine: the model.
-        ids: of the whole motion, with the ids of every step in them.
+        ids: of the whole motion, which contains every step.
         steps: the steps, each with the token at which it begins.
     """
     several = [(first, step) for first, step in steps if step.rows]
@@ -128,7 +128,7 @@ def features_of(engine: MotionModel, ids: Tensor, steps: Sequence[tuple[int, Ste
 
 
 def _rest(engine: MotionModel, head: Tensor, trunk: Tensor) -> Tensor:
-    """(L,) ids of trunk, head and legs, given the rows (L, C) of which one moves the head and the other the trunk."""
+    """(L,) ids of trunk, head and legs, given the rows (L, C) of the command for the head and of the one for the trunk."""
     place = engine.model.tokenizer.part_names.index("rest")
     if head is trunk:
         return trunk[:, place]

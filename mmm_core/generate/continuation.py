@@ -1,4 +1,4 @@
-"""Prefix conditioning: a motion for a text that continues another motion, whose last ids are its context.
+"""Prefix conditioning: generates a motion that continues another one, with the last ids of that one as context.
 
 MMM (arXiv 2312.03596) sec. 3.3: all ids but the committed ones are [MASK]. The committed motion is given as frames of any
 origin, and the tokenizer encodes them. A longer prefix continues the old motion more smoothly and shows less of the text
@@ -30,11 +30,11 @@ LONGEST_PREFIX_TOKENS = 8
 def continue_motion(
     engine: Engine, before: Motion, prefix_s: float, text: str, *, seed: int = 0, seconds: float | None = None
 ) -> GenerationResult:
-    """The motion for `text` that continues `before`; its first frame follows the last of `before`, whose frames are left out.
+    """The motion for `text` that continues `before`. Its first frame follows the last one of `before`, which it does not contain.
 
     Args:
         engine: the model.
-        before: the committed motion. It is encoded whole, so frames before the prefix make the prefix's ids more accurate.
+        before: the committed motion. All of it is encoded, so frames before the prefix make the prefix's ids more accurate.
         prefix_s: seconds at the end of `before` that serve as context, 0.2 to 1.6 in steps of 0.2, shortened where the
             first command leaves less room.
         text: a command in English, never mirrored: `before` decides on left and right.

@@ -1,4 +1,4 @@
-"""Edits of a motion: each masks the ids to generate anew and keeps the rest as context (`shown_edits` fills them).
+"""Edits a motion: masks the ids to generate anew and keeps the rest as context (`shown_edits` fills the masked ones).
 
 MMM (arXiv 2312.03596) sec. 3.3 and 3.4: in-betweening, a new beginning or end, any other segment, and single body parts
 (the paper's upper body given the lower; here any of the tokenizer's parts).
@@ -19,6 +19,7 @@ from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, tokens_for_frame
 from mmm_core.motion.motion import FPS, Motion
 
 TOKEN_S = FRAMES_PER_TOKEN / FPS
+"""Seconds of a token."""
 
 
 @dataclass(frozen=True)

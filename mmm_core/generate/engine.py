@@ -20,8 +20,9 @@ from mmm_core.model.tokens import frames_for_seconds
 from mmm_core.motion.motion import FPS
 
 Precision = Literal["fp32", "bf16", "int8"]
-"""Number format of the matrix products. Another one than fp32 now and then changes the choice of a token."""
+"""Number format of the matrix products. A format other than fp32 now and then changes the choice of a token."""
 MOST_CANDIDATES = 64
+"""Motions that one generation makes at most, to keep the likeliest."""
 _CALIBRATION_TEXTS = (
     ("wave with your right hand", 9.6), ("raise both arms, then clap twice", 3.2), ("bow deeply", 2.0),
     ("turn your head to the left", 1.2), ("play the guitar", 3.2), ("point up with your left hand", 1.6),
@@ -30,7 +31,7 @@ _CALIBRATION_TEXTS = (
 
 
 class Engine(MotionModel):
-    """The motion model with its fast layers in place. Not for several threads at once."""
+    """The motion model with its fast layers in place; one thread at a time may use it."""
 
     def __init__(
         self,
@@ -59,11 +60,11 @@ class Engine(MotionModel):
             threads: torch's threads for the whole process; None leaves them as they are.
             settings: how tokens are sampled; None takes the settings that suit the checkpoint.
             precision: of the transformer; None takes int8 for a model of this repository on a processor that multiplies
-                eight-bit integers, else fp32; "auto" times fp32 and bf16. The text encoder is fp32 beside int8.
+                eight-bit integers, else fp32; "auto" times fp32 and bf16. With int8 the text encoder stays fp32.
 
         Raises:
             CheckpointError: a file is missing or does not fit.
-            GenerationError: the precision cannot be had here.
+            GenerationError: this machine or this model does not support the precision.
         """
         if threads is not None:
             torch.set_num_threads(threads)
@@ -76,7 +77,9 @@ class Engine(MotionModel):
             expected = "one with CLIP's text tower in it: import it with --clip and --vocabulary"
             raise CheckpointError(path, "text", "no text encoder of its width", expected)
         config = model.transformer.config
-        shows_inputs = config.n_out == config.n_codebooks  # a model that only edits cannot be calibrated
+        shows_inputs = (
+            config.n_out == config.n_codebooks
+        )  # a model that only edits cannot generate the calibration texts
         can_int8 = int8_is_supported() and shows_inputs
         if precision is None:
             precision = "int8" if model.is_ours and can_int8 else "fp32"
@@ -92,7 +95,9 @@ class Engine(MotionModel):
         pack(encoder, words)
         engine = cls(model, encoder, file_hash(path), settings or plain, chosen)
         if chosen == "int8":
-            pack(model.transformer.word_layers, words)  # as the text encoder: their inputs have outliers
+            pack(
+                model.transformer.word_layers, words
+            )  # not in int8: like the text encoder's, their inputs have outliers
             convert_to_int8(model.transformer, engine.calibrate)
         else:
             pack(model.transformer, chosen)
@@ -112,9 +117,9 @@ class Engine(MotionModel):
             text: a command in English.
             seed: any integer from 0 to 2^31 - 1.
             seconds: length of the motion, at most 9.8; None lets the model choose.
-            candidates: motions generated at once, of which the model's likeliest is kept; with two or more, a number of
-                more than eight repetitions that the text names is met (`mmm_core.generate.repetition_editing`). None means
-                two for such a text where no length is given, else one.
+            candidates: motions generated at once, of which the likeliest is kept. For a text that names more than eight
+                repetitions, two or more candidates also let the number be met (`mmm_core.generate.repetition_editing`).
+                None means two for such a text without `seconds`, else one.
 
         Raises:
             GenerationError: seed, seconds or candidates out of range, or no seconds for a model without lengths.
@@ -124,7 +129,7 @@ class Engine(MotionModel):
     def begin(
         self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int | None = None
     ) -> MotionGeneration:
-        """The generation of `generate`, not yet run: offers a preview of the motion before the motion itself.
+        """The generation that `generate` runs, not yet run; it can also give a preview before the motion.
 
         Raises:
             GenerationError: as `generate`.

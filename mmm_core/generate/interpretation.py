@@ -1,8 +1,8 @@
-"""A text as the model is given it: the commands of its reading with their encoder states, and the verdict on them.
+"""Turns a text into the model's input: the commands that are read in it, with encoder states and scope verdict.
 
-The model reads only one of a text and its mirror image (`mmm_core.language.mirroring.canonical`), so that the mirrored text
-gives the mirrored motion. A text of several commands is mirrored as a whole; a command whose side is then still the other one
-is read as its image, and its ids are mirrored back.
+Of a text and its mirror image the model reads only the canonical one (`mmm_core.language.mirroring.canonical`), so that the
+mirrored text gives the mirrored motion. A text of several commands is mirrored as a whole; a command that is then not
+canonical itself is read as its own mirror image, and its ids are mirrored back.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ class ReadCommand:
     """One command as the model reads it.
 
     Attributes:
-        text: its words, mirrored where the whole text is.
+        text: the command's words, mirrored where the whole text is.
         states: the encoder's states of the words, or of their mirror image.
         is_mirrored: whether the states are those of the mirror image, so that the ids have to be mirrored.
         manner: tempo, size and hold.
-        limbs: as `mmm_core.language.limbs.limbs_of`.
-        is_pose: whether it lasts as long as what is done beside it.
+        limbs: limbs that the command moves, as `mmm_core.language.limbs.limbs_of` names them.
+        is_pose: whether the command lasts as long as the commands that are done at the same time.
         understood: the nearest known command and its score; empty in a text of one command.
     """
 
@@ -51,8 +51,8 @@ class Interpreted:
 
     Attributes:
         reading: the text as it was read.
-        verdict: scope verdict, in the text's own sides.
-        steps: commands in turn, each with those done at once; none where the text is rejected.
+        verdict: scope verdict, with left and right as in the text.
+        steps: groups of commands done at the same time, in the order of the text; none where the text is rejected.
         is_mirrored: whether the motion of the steps has to be mirrored.
     """
 
@@ -63,12 +63,18 @@ class Interpreted:
 
 
 def interpret(engine: MotionModel, text: str, *, fresh: bool = True) -> Interpreted:
-    """A text for a motion that continues no other; where it continues one, `fresh` is False and nothing is mirrored."""
+    """The commands of one text; see `interpret_all`."""
     return interpret_all(engine, [text], fresh=fresh)[0]
 
 
 def interpret_all(engine: MotionModel, texts: Sequence[str], *, fresh: bool = True) -> list[Interpreted]:
-    """Several texts, encoded in one batch."""
+    """The commands of several texts, encoded in one batch.
+
+    Args:
+        engine: encodes and judges.
+        texts: in English.
+        fresh: whether the motion continues no other; a text that continues a motion is not mirrored.
+    """
     drafts = [_Draft.of(engine, text, fresh and engine.model.is_ours) for text in texts]
     said = [words for draft in drafts for words in draft.words]
     if not said:
@@ -80,7 +86,7 @@ def interpret_all(engine: MotionModel, texts: Sequence[str], *, fresh: bool = Tr
 
 @dataclass(frozen=True)
 class _Draft:
-    """What has to be encoded of a text: itself, then its commands, or the clauses of its only one."""
+    """The words of a text that have to be encoded: the whole text, then its commands or, for a single command, its clauses."""
 
     reading: Reading
     words: tuple[str, ...]
@@ -154,7 +160,7 @@ def _seen_in_mirror(words: str, image: bool) -> str:
 
 
 def _said(verdict: ScopeVerdict, is_mirrored: bool) -> ScopeVerdict:
-    """The verdict in the text's own sides."""
+    """The verdict with left and right as in the text."""
     if not is_mirrored:
         return verdict
     return replace(verdict, **{key: mirror_words(getattr(verdict, key)) for key in ("nearest", "reason", "kept")})

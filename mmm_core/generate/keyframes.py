@@ -1,7 +1,7 @@
-"""Motion through given poses at given times; the model generates the frames between them.
+"""Generates a motion through given poses at given times; the model makes the frames between them.
 
-In-betweening of MMM (arXiv 2312.03596, sec. 3.3) with poses instead of motions: each pose becomes the id of a person who
-stands still in it, at the position of its time; all other ids are [MASK]. Ids are coarse, so the motion passes a pose within
+This is the in-betweening of MMM (arXiv 2312.03596, sec. 3.3) with poses instead of motions: at its time each pose becomes the
+id of a person who stands still in the pose, and all other ids are [MASK]. Ids are coarse, so the motion passes a pose within
 a few degrees; a caller that needs the exact pose bends the motion towards it afterwards (`daemon.poses.key_poses`).
 """
 
@@ -26,7 +26,7 @@ from mmm_core.motion.motion import FPS, Motion
 from mmm_core.motion.skeleton import matrix_from_quat
 
 STILL_FRAMES = 24
-"""Frames, 1.2 s, for which a person holds the pose that the tokenizer encodes; the token in their middle is used."""
+"""Frames (1.2 s) for which a pose is held when the tokenizer encodes it; the middle token becomes the pose's id."""
 
 
 @dataclass(frozen=True)
@@ -52,8 +52,8 @@ def between(engine: Engine, keyframes: Sequence[Keyframe], text: str = "", *, se
         seed: any integer from 0 to 2^31 - 1.
 
     Raises:
-        GenerationError: no keyframe, two in one token, a time out of range, a text that is rejected, or none for a model
-            that was never trained without.
+        GenerationError: there is no keyframe, two lie in one token, a time is out of range, the text is rejected, or it is
+            empty and the model was not trained without texts.
     """
     check_seed(seed)
     if not keyframes:
@@ -96,9 +96,9 @@ def still_ids(engine: Engine, pose: Motion) -> Tensor:
 
 
 def features_of(motion: Motion, rest_pose: RestPose = "mmmd") -> Tensor:
-    """(T, 263) features: the motion's own, or those of its joints, with the lowest one on the floor.
+    """(T, 263) features of a motion: its own, or else features computed from its joints, with the lowest joint on the floor.
 
-    Those of the joints are of the definition that a model of this `rest_pose` was trained on: ours, or HumanML3D's.
+    Computed features follow the definition of `rest_pose`: ours, or HumanML3D's.
     """
     if motion.features.any():
         return torch.from_numpy(motion.features.copy())

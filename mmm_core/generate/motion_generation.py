@@ -1,4 +1,4 @@
-"""The generation of one motion: a preview of it after one decoding step, then the motion.
+"""Generates one motion: first a preview after one decoding step, then the motion.
 
 MMM (arXiv 2312.03596) sec. 3.3 predicts all tokens in every step, so that the first step yields a whole motion already. The
 first tokens of that preview are not masked again (`DecodeSettings.opening`): a robot may begin with the preview and continue
@@ -23,12 +23,12 @@ from mmm_core.generate.result import GenerationResult, StageTimer, no_motion, un
 from mmm_core.generate.sequence import (
     COMMAND_STRIDE,
     TOGETHER_STRIDE,
-    TRANSITION_TOKENS,
     Step,
     joined,
     steps_of,
     stretches_of,
 )
+from mmm_core.generate.transitions import TRANSITION_TOKENS
 from mmm_core.language.count_words import count_asked
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.sampling import FirstStep, SamplingSettings, empty_row, fill, pseudo_log_likelihood
@@ -42,11 +42,11 @@ from mmm_core.recognition.seen import Scene
 
 OPENING_TOKENS = 2
 """Tokens that the preview and the motion share: 0.4 s, longer than generating and retargeting the motion usually takes.
-Their cost in probes: docs/model.md."""
+docs/model.md says what they cost in probes."""
 MOST_LEARNT_STROKES = 8
-"""Most strokes of a gesture of the corpus. The model makes up to as many itself; more are made by repeating its strokes."""
+"""Strokes of a gesture in the corpus at most. The model makes so few itself; for more, strokes of its motion are repeated."""
 CANDIDATES_TO_COUNT = 2
-"""Candidates for a text that names more strokes. A third takes longer and is near their number no more often (docs/model.md)."""
+"""Candidates for a text that names more strokes. A third takes longer and comes no nearer to the number (docs/model.md)."""
 CANDIDATE_STRIDE = 7_919_999
 """Distance between the seeds of candidates, so that neighbouring seeds share none."""
 
@@ -55,8 +55,7 @@ class MotionGeneration:
     """One motion to generate; `Engine.begin` makes it.
 
     Attributes:
-        n_frames: length of the motion as far as it is known: a motion whose strokes are counted may become longer or
-            shorter.
+        n_frames: expected length of the motion; a motion whose strokes are counted may become longer or shorter.
     """
 
     def __init__(self, engine: MotionModel, text: str, seed: int, n_frames: int | None, candidates: int | None) -> None:
@@ -88,8 +87,8 @@ class MotionGeneration:
     def preview(self) -> GenerationResult | None:
         """The first command's motion after a single decoding step; None where there is no motion or no opening.
 
-        Its first 0.4 s are those of the motion, but for the last frames, which later tokens still change. Words of size or
-        hold leave no opening: they depend on the whole motion.
+        Preview and motion share their first 0.4 s, but for the last frames of these, which later tokens still change. A text
+        with words of size or hold has no opening, because they depend on the whole motion.
         """
         if not self._steps or not self._opens:
             return None
@@ -115,7 +114,7 @@ class MotionGeneration:
 
     @property
     def _opens(self) -> bool:
-        """Whether the first step's preview begins as its motion does."""
+        """Whether the preview of the first step begins as the motion does."""
         manner = self._steps[0].manner
         return bool(self.settings.opening) and manner.size == 1.0 and not manner.hold_s
 
@@ -136,7 +135,7 @@ class MotionGeneration:
 
     @cached_property
     def _preview_arms(self) -> list[tuple[BodyPart, ...]]:
-        """The arms of each command of the first step: those that its draft moves, where its words name none."""
+        """The arms of each command of the first step; a command whose words name none has the arms that its draft moves."""
         commands = self._steps[0].commands
         return arms_of(self._engine, commands, self._mirrored_where_asked(commands, self._drafts))
 
@@ -212,7 +211,7 @@ class MotionGeneration:
         return GenerationResult(motion, understood, verdict.reason, timings, self._scenes(ends), self._read.reading)
 
     def _scenes(self, ends: Sequence[int]) -> tuple[Scene, ...]:
-        """Where each step ends; a transition belongs to the step that it leads to."""
+        """One scene for each step, with the second at which it ends; a transition belongs to the step after it."""
         if len(ends) < len(self._steps):  # a preview has the first step alone
             ends = [*ends, *(ends[-1] + s.n_tokens * FRAMES_PER_TOKEN for s in self._steps[len(ends) :])]
         return tuple(
@@ -222,6 +221,6 @@ class MotionGeneration:
 
 
 def _count_to_make(step: Step) -> int | None:
-    """The number of strokes that the words of a step name, where the model has not learnt to make as many."""
+    """The number of strokes that the words of a step name, if the model has not learnt to make so many, else None."""
     count = count_asked(step.commands[0].text) if len(step.commands) == 1 else None
     return count if count is not None and count > MOST_LEARNT_STROKES else None

@@ -21,11 +21,11 @@ from mmm_core.motion.features import Root, mirror, recover, recover_from_positio
 from mmm_core.motion.motion import FPS, Motion
 
 SHORTEST_TOKENS = 4
-"""Tokens that a predicted length is raised to: 0.8 s."""
+"""Tokens (0.8 s) of the shortest predicted length; shorter predictions are raised to it."""
 
 
 class MotionModel:
-    """A checkpoint ready for use. Not for several threads at once.
+    """A checkpoint ready for use; one thread at a time may use it.
 
     Attributes:
         model: the checkpoint's modules.
@@ -52,7 +52,7 @@ class MotionModel:
         return _without_scope(text) if self.model.scope is None else self.model.scope.judge(text, sentence)
 
     def reading_of(self, text: str) -> Reading:
-        """What is read in a text; an imported model is given every text as it is."""
+        """The commands that are read in a text; an imported model is given every text as it is."""
         if not self.model.is_ours or self.model.scope is None or unreadable(text):
             exact = read_exactly(text)
             said = text if exact is None else exact.words
@@ -62,7 +62,7 @@ class MotionModel:
     def understand_all(self, texts: list[str]) -> list[tuple[TextStates, ScopeVerdict]]:
         """States and scope verdicts of several texts, encoded in one batch.
 
-        Texts are taken as they stand. A text of which only a part can be done (`ScopeVerdict.kept`) has the states of that part.
+        Texts are not rewritten. A text of which only a part can be done (`ScopeVerdict.kept`) has the states of that part.
         """
         states = self.read(texts)
         scope = self.model.scope
@@ -83,7 +83,7 @@ class MotionModel:
         ]
 
     def read(self, texts: list[str]) -> TextStates:
-        """States of texts as they stand, without a scope verdict. A text without words is read as a full stop.
+        """States of texts that are not rewritten, without a scope verdict. A text without words is read as a full stop.
 
         CLIP knows emoji; from the compact encoder's texts they are removed (`strip_emoji`).
         """
@@ -92,7 +92,7 @@ class MotionModel:
         return self.encoder.encode([strip_emoji(text) or "." for text in texts])
 
     def predicted_frames(self, states: TextStates) -> int:
-        """Frames that the length predictor gives for the first text, a multiple of a token's.
+        """Frames that the length predictor gives for the first text: a whole number of tokens.
 
         Raises:
             GenerationError: the model has no length predictor.
@@ -111,7 +111,7 @@ class MotionModel:
         *,
         is_mirrored: bool = False,
     ) -> Motion:
-        """The motion of a row of ids (L, C), cut to `n_frames`. A mirrored motion carries the ids its features encode to."""
+        """The motion of a row of ids (L, C), cut to `n_frames`. A mirrored motion carries the ids of its mirrored features."""
         with torch.inference_mode():
             whole = self.model.tokenizer.decode(ids[None])[0]
             if is_mirrored:
@@ -130,7 +130,7 @@ class MotionModel:
         *,
         is_mirrored: bool = False,
     ) -> Motion:
-        """The motion of features (T, 263) that no ids were decoded to; it carries the ids that they encode to."""
+        """The motion of features (T, 263) that were changed after decoding; it carries the ids that encode them."""
         features = (mirror(features) if is_mirrored else features)[:n_frames]
         over = -len(features) % FRAMES_PER_TOKEN
         padded = np.concatenate([features, np.repeat(features[-1:], over, 0)]).astype(np.float32)
@@ -157,10 +157,10 @@ class MotionModel:
         )
 
     def ids_of(self, motion: Motion) -> Tensor:
-        """(L, C) ids of a motion: its own if they fit its frames, else those that its features encode to.
+        """(L, C) ids of a motion: its own if they fit its frames, else the ids that encode its features.
 
         Raises:
-            GenerationError: the motion has neither, or another frame rate or other features than the model.
+            GenerationError: the motion has neither ids nor features, or another frame rate or other features than the model.
         """
         tokenizer = self.model.tokenizer
         if motion.fps != FPS or motion.features.shape[1] != len(tokenizer.mean):
@@ -188,7 +188,7 @@ def check_seed(seed: int) -> None:
 
 
 def _without_scope(text: str) -> ScopeVerdict:
-    """An imported model takes every text but an empty one."""
+    """The verdict of an imported model, which accepts every text but an empty one."""
     return (
         ScopeVerdict("accepted", 1.0, "", "")
         if text.strip()

@@ -23,14 +23,14 @@ from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS
 from mmm_core.motion.repetitions import Strokes, strokes_of
 
 CLEAR = 0.3
-"""Largest misfit of a cycle for strokes to be removed: a motion that repeats itself less clearly keeps them all."""
+"""Largest misfit of a cycle whose strokes may be removed; a motion that repeats itself less clearly keeps all strokes."""
 ALIKE = 0.5
-"""Largest distance between the body before and after a single stroke, as a share of the way to the stroke's peak."""
+"""Largest distance between the body before and after a single stroke, as a share of the distance to the stroke's peak."""
 _LONGEST_FRAMES, _SHORTEST_FRAMES, _AWAY = 28, 4, 0.6
 """Frames from the peak of a single stroke to its beginning or end, at most and at least; least distance of the body from the
-peak there, as a share of the way."""
+peak at those frames, as a share of the greatest distance nearby."""
 _UNCLEAR, _NONE, _PER_MISFIT = 0.5, 3.0, 0.8
-"""Weights against a missing or surplus stroke, which counts 1: an unsure count, no stroke at all, a unit of misfit."""
+"""Costs of an unsure count, of a motion without a stroke and of a unit of misfit; a missing or surplus stroke costs 1."""
 _TAKEN = ScopeVerdict("accepted", 1.0, "", "")
 
 
@@ -46,7 +46,7 @@ def ids_of_count(engine: MotionModel, states: TextStates, made: Sequence[Tensor]
 
 
 def with_count(ids: Tensor, strokes: Strokes, count: int, mask_id: int) -> Tensor | None:
-    """(L, C) ids with `count` strokes, as far as the longest motion has room, and a [MASK] at each seam.
+    """(L, C) ids with `count` strokes, or as many as fit into the longest motion, and a [MASK] at each seam.
 
     None where the count is right already or no stroke can be repeated or removed.
     """
@@ -67,7 +67,7 @@ def with_count(ids: Tensor, strokes: Strokes, count: int, mask_id: int) -> Tenso
 
 
 def _far_from(count: int, strokes: Strokes | None) -> float:
-    """Cost of a candidate: missing or surplus strokes first, then how clearly they are found."""
+    """Cost of a candidate: its missing or surplus strokes, and how unclear its strokes are."""
     if strokes is None:
         return float("inf")
     found = len(strokes.frames)
@@ -85,7 +85,7 @@ def _between_peaks(strokes: Strokes) -> tuple[int, int]:
 
 
 def _around_peak(strokes: Strokes) -> tuple[int, int] | None:
-    """First frame and end of the only stroke, with the body in nearly the same place; None where there is no such pair."""
+    """First frame and end of the only stroke, with the body in nearly the same pose at both; None where there are none."""
     peak = strokes.frames[0]
     first, end = max(0, peak - _LONGEST_FRAMES), min(len(strokes.path), peak + _LONGEST_FRAMES + 1)
     way = max(strokes.apart(i, peak) for i in range(first, end))
@@ -101,7 +101,7 @@ def _around_peak(strokes: Strokes) -> tuple[int, int] | None:
 
 
 def _without(ids: Tensor, strokes: Strokes, n: int, mask_id: int) -> Tensor | None:
-    """(L, C) ids without `n` strokes: the frames from a peak to the n-th peak after it, in the most similar places, are cut out."""
+    """(L, C) ids without `n` strokes: the tokens from one peak to the n-th peak after it are cut out, at the most similar pair."""
     frames = strokes.frames
     first = min(range(len(frames) - n), key=lambda i: strokes.apart(frames[i], frames[i + n]))
     start = _token(frames[first])

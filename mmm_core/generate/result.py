@@ -22,8 +22,8 @@ class GenerationResult:
         understood: the nearest known command and its score.
         reason: why the text was degraded or rejected, else empty.
         timings_ms: milliseconds spent in each stage.
-        scenes: the motion's parts and the words that each was made for; empty where it is one.
-        read: the commands that were read in the text; None where nothing was read.
+        scenes: the parts of the motion with the words of each; empty for a motion of one part.
+        read: the commands that were read in the text; None where no text was read.
     """
 
     motion: Motion
@@ -35,17 +35,17 @@ class GenerationResult:
 
     @property
     def status(self) -> str:
-        """accepted, degraded or rejected."""
+        """Scope verdict: accepted, degraded or rejected."""
         return self.motion.status
 
     @property
     def scope_score(self) -> float:
-        """Score of the text from 0, nothing that the model can do, to 1."""
+        """Score of the text from 0 (the model can do nothing of it) to 1."""
         return self.motion.scope_score
 
 
 class StageTimer:
-    """Measures the stages of one generation, which follow each other without a pause."""
+    """Measures the duration of each stage of one generation."""
 
     def __init__(self) -> None:
         self.laps_ms: dict[str, float] = {}
@@ -59,7 +59,7 @@ class StageTimer:
 
 
 def no_motion(text: str, seed: int, verdict: ScopeVerdict) -> Motion:
-    """The motion of a rejected text: without frames."""
+    """The motion of a rejected text, which has no frames."""
     return Motion(
         joints_m=np.zeros((0, N_JOINTS, 3), np.float32),
         fps=FPS,

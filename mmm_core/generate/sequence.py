@@ -1,14 +1,12 @@
-"""Steps done one after another in one motion: a row of ids for each, and generated transitions between them.
+"""Arranges steps one after another in one motion: a row of ids for each, and transitions between them (`transitions.py`).
 
-A text of several commands (`mmm_core.language.reading`) and a story (`mmm_core.generate.story`) both use it. Transitions:
-MMM (arXiv 2312.03596) sec. 3.3, a few masked tokens filled with the end of one motion and the beginning of the next as
-context.
+Texts of several commands (`mmm_core.language.reading`) and stories (`mmm_core.generate.story`) use this module.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import torch
@@ -16,16 +14,14 @@ from torch import Tensor
 
 from mmm_core.generate.interpretation import Interpreted, ReadCommand
 from mmm_core.generate.motion_model import MotionModel
+from mmm_core.generate.transitions import TRANSITION_TOKENS, transitions
 from mmm_core.language.manner import Manner
-from mmm_core.model.sampling import fill
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN, MAX_TOKENS, tokens_for_frames
 from mmm_core.motion.performing import Stretch
 
-TRANSITION_TOKENS = 2
-"""Tokens generated between two commands: 0.4 s, as in the released model."""
 FEWEST_TOKENS = 4
-"""Tokens that a command among several keeps at least, however short the whole motion is to be."""
+"""Tokens of a command among several at least, however short the requested motion is."""
 COMMAND_STRIDE = 15_485_863
 """Distance between the seeds of a text's steps."""
 TOGETHER_STRIDE = 1_299_709
@@ -38,8 +34,8 @@ class Step:
 
     Attributes:
         commands: one or more.
-        n_tokens: length of their motion.
-        own_tokens: length of each command's own motion; empty where they are all `n_tokens`.
+        n_tokens: length of the step's motion.
+        own_tokens: length of each command's own motion; empty where all have `n_tokens`.
     """
 
     commands: tuple[ReadCommand, ...]
@@ -47,13 +43,13 @@ class Step:
     own_tokens: tuple[int, ...] = ()
 
     def tokens_of(self, k: int) -> int:
-        """Length of the k-th command's own motion: a pose lasts as long as the step, a stroke no longer than it would alone."""
+        """Length of the k-th command's own motion. A pose lasts as long as the step, a gesture no longer than it would alone."""
         is_whole = len(self.commands) == 1 or not self.own_tokens or self.commands[k].is_pose
         return self.n_tokens if is_whole else min(self.n_tokens, self.own_tokens[k])
 
     @property
     def manner(self) -> Manner:
-        """The manner of the step: the strongest that one of its commands names."""
+        """The manner of the step: the strongest tempo, size and hold among its commands."""
         manners = [c.manner for c in self.commands]
         return Manner(
             max((m.tempo for m in manners), key=lambda f: abs(f - 1)),
@@ -63,7 +59,7 @@ class Step:
 
     @property
     def words(self) -> str:
-        """The words of its commands."""
+        """The words of the step's commands."""
         return " and ".join(c.text for c in self.commands)
 
     @property
@@ -73,7 +69,7 @@ class Step:
 
     @property
     def states(self) -> TextStates:
-        """States of its first command."""
+        """Encoder states of the step's first command."""
         return self.commands[0].states
 
 
@@ -106,9 +102,9 @@ def steps_of(engine: MotionModel, read: Interpreted, n_frames: int | None) -> li
 
 
 def stretches_of(steps: Sequence[Step], n_tokens: Sequence[int]) -> list[Stretch]:
-    """Frames of a motion in the manner of each step, given the lengths of its rows.
+    """The frames and the manner of each step, given the lengths of the steps' rows.
 
-    A transition goes with the step that it leads to.
+    A transition has the manner of the step after it.
     """
     found: list[Stretch] = []
     for i, (n, step) in enumerate(zip(n_tokens, steps, strict=False)):
@@ -119,7 +115,7 @@ def stretches_of(steps: Sequence[Step], n_tokens: Sequence[int]) -> list[Stretch
 
 
 def _before_tempo(n_frames: int, manner: Manner) -> int:
-    """Frames that a motion has before its tempo brings it to `n_frames`."""
+    """Frames to generate for a motion that has `n_frames` once its tempo is applied."""
     return max(FRAMES_PER_TOKEN, min(MAX_TOKENS * FRAMES_PER_TOKEN, round(n_frames * manner.tempo)))
 
 
@@ -137,29 +133,3 @@ def joined(engine: MotionModel, steps: Sequence[Step], rows: Sequence[Tensor], s
     for hole, row in zip(between, rows[1:], strict=True):
         ids = torch.cat([ids, hole, row])
     return ids
-
-
-def transitions(engine: MotionModel, rows: Sequence[Tensor], texts: Sequence[TextStates], seed: int) -> list[Tensor]:
-    """(2, C) ids between neighbouring rows, filled in one step and one batch.
-
-    The text is that of the left row; half of each row is the context.
-    """
-    if len(rows) < 2:
-        return []
-    transformer = engine.model.transformer
-    holes = [transition_row(a, b, transformer.ids.mask) for a, b in pairwise(rows)]
-    settings = replace(engine.settings, steps=1)
-    filled = fill(transformer, TextStates.stacked(list(texts[:-1])), holes, [seed] * len(holes), settings)
-    return [new[(row == transformer.ids.mask).any(-1)] for new, row in zip(filled, holes, strict=True)]
-
-
-def transition_row(left: Tensor, right: Tensor, mask_id: int) -> Tensor:
-    """The end of `left`, [MASK]s, the beginning of `right`."""
-    hole = left.new_full((TRANSITION_TOKENS, left.shape[1]), mask_id)
-    return torch.cat([left[len(left) - _half(left) :], hole, right[: _half(right)]])
-
-
-def _half(ids: Tensor) -> int:
-    """Tokens of a row that serve as context: half of them, one less in the longest rows, so that both halves and the hole fit."""
-    half = len(ids) // 2
-    return half - 1 if 2 * half >= MAX_TOKENS - 1 else half

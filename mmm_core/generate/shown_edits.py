@@ -1,9 +1,9 @@
-"""Fills the [MASK]s of an edit so that the new ids show what the text asks: several candidates, judged by their motion.
+"""Fills the [MASK]s of an edit so that the new ids show the gestures of the text: several candidates, judged by their motion.
 
-Ids that are kept hold a motion back: the model has learnt that a clip goes on as it began, so with the old motion as context
-alone three edits of ten show their text (`mmmd eval edits`). Therefore the candidates after the first are generated for the text
-without context and put in the place of the [MASK]s; only the ids beside kept ones are masked again and filled with both sides
-as context. Asked is what a motion for the text alone shows; the first candidate that shows it as well is taken.
+Kept ids hold a motion back: the model has learnt that a clip goes on as it began, so of edits that are filled with the old
+motion as context, three in ten show their text (`mmmd eval edits`). Therefore the candidates after the first are generated for
+the text without context and replace the [MASK]s; only the ids beside kept ones are masked again and filled with both sides as
+context. A motion for the text alone says which gestures must be seen; the first candidate that shows them is taken.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from mmm_core.recognition.named import families_named, sentences
 from mmm_core.recognition.seen import NOTHING_MOVES, STILL_FAMILIES, Act, Scene, lost, scenes_seen, sentence
 
 CANDIDATES = 8
-"""Motions generated for a text alone, at most, after the one that is filled in context."""
+"""Candidates generated for the text alone, at most, after the one that is filled in context."""
 SEAM_TOKENS = 2
 """Tokens beside kept ids that are masked again and filled in context; as many as between two scenes of a story."""
 REFERENCES = 3
-"""Motions for the text alone, at most, until each of its commands shows a gesture with a name."""
+"""Motions for the text alone that are tried, at most, until each command shows a gesture that the recognition can name."""
 EDIT_STRIDE = 32_452_843
 """Distance between the seeds of candidates."""
 _LIMBS = {"left_arm": ("left",), "right_arm": ("right",)}
@@ -37,13 +37,13 @@ _LIMBS = {"left_arm": ("left",), "right_arm": ("right",)}
 
 @dataclass(frozen=True)
 class Edited:
-    """An edited motion and whether its new part shows what the text asks.
+    """An edited motion and whether its new part shows the gestures of the text.
 
     Attributes:
         motion: the whole motion.
-        asked: what a motion for the text alone shows, as a sentence without its subject; "" where it is not judged, because
-            the model was imported.
-        missing: what of it the edited motion does not show; "" where it shows all.
+        asked: gestures that a motion for the text alone shows, as a sentence without its subject; "" for an imported model,
+            whose motions are not judged.
+        missing: gestures among them that the edited motion does not show; "" where it shows all.
     """
 
     motion: Motion
@@ -52,13 +52,13 @@ class Edited:
 
     @property
     def reached(self) -> bool:
-        """Whether nothing is missing."""
+        """Whether the edited motion shows all gestures of the text."""
         return not self.missing
 
 
 @dataclass(frozen=True)
 class _Asked:
-    """What a text asks for: acts in each of its scenes."""
+    """The acts that a text asks for in each of its scenes."""
 
     scenes: tuple[Scene, ...]
     acts: tuple[tuple[Act, ...], ...]
@@ -69,13 +69,13 @@ class _Asked:
 
     @property
     def is_still(self) -> bool:
-        """Whether it shows nothing that moves, though the text names no standing."""
+        """Whether the motion for the text alone stands still, though the text names no standing."""
         acts = [act for acts in self.acts for act in acts]
         named = [family for scene in self.scenes for family in families_named(scene.words)]
         return all(act.sentence == NOTHING_MOVES for act in acts) and not any(f in STILL_FAMILIES for f in named)
 
     def missing(self, motion: Motion, span: tuple[int, int]) -> list[str]:
-        """What of it the motion does not show at the positions of `span`."""
+        """Descriptions of the acts that the motion does not show at the positions of `span`."""
         if self.is_still:
             return ["a motion for the text alone shows nothing that moves"]
         part = _frames(motion, *(at * FRAMES_PER_TOKEN for at in span))
@@ -85,14 +85,14 @@ class _Asked:
 
 
 def filled(engine: Engine, row: Tensor, text: str, seed: int, n_frames: int | None) -> Edited:
-    """The motion of a row (L, C) whose [MASK]s are filled, of all candidates the first that shows what the text asks.
+    """The motion of a row (L, C) whose [MASK]s are filled: the first candidate that shows the gestures of the text.
 
-    Where none does, the one that misses least.
+    If no candidate shows all, the one that misses fewest is taken.
 
     Args:
         engine: the model.
         row: kept ids, and [MASK] in the body parts and at the positions that are edited.
-        text: a command for them.
+        text: a command for the edited part.
         seed: any integer from 0 to 2^31 - 1.
         n_frames: length that the motion is cut to; None keeps all frames of the row.
 
@@ -127,7 +127,10 @@ def filled(engine: Engine, row: Tensor, text: str, seed: int, n_frames: int | No
 def _candidates(
     engine: Engine, row: Tensor, in_context: Tensor, text: str, states: TextStates, seed: int
 ) -> Iterator[Tensor]:
-    """(L, C) ids: those filled in context, then those of motions for the text alone, of the segment's length and of their own."""
+    """Yields candidates, (L, C) ids each: first the row filled in context, then motions for the text alone put in its place.
+
+    These motions have by turns the segment's length and the length that the model chooses.
+    """
     yield in_context
     mask = engine.model.transformer.ids.mask
     opened = row == mask
@@ -155,7 +158,7 @@ def _fresh(engine: Engine, text: str, seed: int, n_tokens: int, *, own_length: b
 
 
 def _seams(start: int, end: int, n_tokens: int) -> list[slice]:
-    """Positions of a segment beside kept ones; none in a segment that would have no others."""
+    """Positions of a segment that lie beside kept ids; none in a segment too short to have any others."""
     if end - start <= 2 * SEAM_TOKENS:
         return []
     first, last = slice(start, start + SEAM_TOKENS), slice(end - SEAM_TOKENS, end)
@@ -172,7 +175,7 @@ def _spans(opened: Tensor) -> list[tuple[int, int]]:
 def _asked(
     engine: Engine, text: str, seed: int, spans: Sequence[tuple[int, int]], sides: tuple[str, ...] | None
 ) -> _Asked:
-    """What a motion for the text alone shows, of the first of `REFERENCES` seeds that shows gestures with a name."""
+    """The acts of a motion for the text alone; among `REFERENCES` seeds, the first whose acts all have names is taken."""
     found: _Asked | None = None
     longest_s = max(end - start for start, end in spans) * FRAMES_PER_TOKEN / FPS
     for k in range(REFERENCES):
@@ -188,7 +191,7 @@ def _asked(
 
 
 def _of_text(acts: Sequence[Act], text: str, sides: tuple[str, ...] | None) -> tuple[Act, ...]:
-    """Acts with a name rather than without, on edited arms rather than on others, with the number that the text names."""
+    """The named acts, or all if none has a name, on edited arms and with the number that the text names."""
     acts = [act for act in acts if act.family] or list(acts)
     number = count_asked(text)
     return tuple(replace(act, count=None if act.count is None else number, side=_side(act, sides)) for act in acts)

@@ -1,7 +1,7 @@
-"""Long motion from a list of texts, with generated transitions, in constant memory, from the first segment on.
+"""Generates long motion from a list of texts, with generated transitions and in constant memory; it begins with the first text.
 
 MMM (arXiv 2312.03596) sec. 3.3: each text is a row of its own; between neighbours a few masked tokens are filled with the
-end of one and the beginning of the next as context. The paper decodes everything at the end; here the decoder runs over
+end of one and the beginning of the next as context. The paper decodes all ids at the end; here the decoder runs over
 a moving window, so motion begins with the first scene and a story may last for ever.
 """
 
@@ -27,8 +27,8 @@ from mmm_core.generate.sequence import (
     joined,
     steps_of,
     stretches_of,
-    transitions,
 )
+from mmm_core.generate.transitions import transitions
 from mmm_core.language.scope import ScopeVerdict
 from mmm_core.model.sampling import empty_row, fill
 from mmm_core.model.streaming_decoder import StreamingDecoder
@@ -39,7 +39,7 @@ from mmm_core.motion.motion import FPS, Motion
 from mmm_core.motion.performing import performed
 
 READ_AHEAD = 8
-"""Scenes generated in one batch, once the first scene has been given."""
+"""Scenes that are generated in one batch, after the first scene."""
 SCENE_STRIDE = 104_729
 """Distance between the seeds of scenes."""
 
@@ -61,10 +61,10 @@ class _Segment:
 
 
 def generate_story(engine: Engine, scenes: Iterable[Scene], *, seed: int = 0) -> Iterator[Motion]:
-    """Yields one long motion in chunks, in order; each carries the text that most of its frames belong to.
+    """Yields one long motion in chunks, in order; each chunk carries the text of most of its frames.
 
-    Scenes are read when they are needed, at most `READ_AHEAD` + 1 ahead of their motion. A rejected scene is left out: its
-    chunk has no frames and the status "rejected".
+    Scenes are read when they are needed, at most `READ_AHEAD` + 1 ahead of their motion. A rejected scene yields a chunk
+    without frames and with the status "rejected".
 
     Raises:
         GenerationError: seed or a scene's seconds out of range.
@@ -101,7 +101,7 @@ class StoryState:
         command: the last command of that text.
         segment: ids of that scene, L rows of C.
         window: ids that the decoder still needs, rows of C.
-        n_context: rows of `window` whose frames were given already.
+        n_context: rows of `window` whose frames are part of an earlier motion.
     """
 
     n_scenes: int = 0
@@ -117,9 +117,9 @@ def continue_story(
 ) -> tuple[Motion, StoryState, ScopeVerdict]:
     """The motion of a story's next scene, the story's state after it, and the scope verdict of its text.
 
-    Scene by scene this yields the ids of `generate_story`. The engine keeps nothing between the calls: the caller keeps the
-    state, so another engine can continue the story. A motion may have no frames (a rejected scene, or one too short for the
-    decoder's halo). The joints of each motion start at the origin.
+    Scene by scene the ids are those of `generate_story`. The caller keeps the state between the calls and the engine nothing, so
+    another engine can continue the story. A motion may have no frames (a rejected scene, or one shorter than the context that
+    the decoder needs after a token). The joints of each motion start at the origin.
 
     Args:
         engine: the model.
@@ -215,7 +215,8 @@ def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> lis
 def _ids(engine: Engine, steps: list[Step], made: Iterator[Tensor], seed: int) -> Tensor:
     """(L, C) ids of a scene's steps in their manner, given the rows of all commands in order.
 
-    Commands at once are put together as body parts of a motion, which is encoded again: the decoder of a story is given ids alone.
+    Commands done at the same time are put together as body parts of a motion, which is encoded again, because the decoder of a
+    story takes ids only.
     """
     rows = [[next(made) for _ in step.commands] for step in steps]
     with torch.inference_mode():

@@ -177,6 +177,17 @@ LIMB_FIRST = _pattern(
     r"^(?:your |the |both )?(?:left |right )?(?:hands?|arms?|fists?|palms?|head|chin|eyes|gaze|shoulders|body|upper body)\s"
 )
 """'Head up', a command without a verb."""
+BOTH_ARMS_POSED = _pattern(
+    r"^(?:(?:put|raise|lift|hold|stretch|spread|open|throw|extend) )?(?:(?:your|both|the|both your) )?(?:arms|hands|both)"
+    r"(?: straight| high| all the way)? (?:up|down|out|wide|forward|back|in the air|overhead|to the sides?|behind .+|on your (?:hips|head|waist|knees))"
+    r"(?: (?:in the air|high|wide|to the sides?|over your head))?$"
+)
+"""'Hands up', a pose of both arms."""
+ONE_ARM_PLACED = _pattern(
+    r"^(?:now |then )?(?:your |the )?(?:left|right)(?: (?:hand|arm|one|fist))? (?:up|down|out|forward|back|(?:on|over|behind|to) (?:your|the) "
+    r"(?!side)(?:\w+))(?: again)?$"
+)
+"""'Left hand on your heart', 'right one down'."""
 LIMB_ALONE = _pattern(
     r"^(?:(?:your |the )?(?:left|right|both)(?: (?:arm|hand|fist)s?)?|(?:your |the )?(?:arms|hands|head)) (?:straight |back )?"
     r"(?:up|down|left|right|forward|back|out|wide|on (?:your |the )?\w+|to the sides?)$"

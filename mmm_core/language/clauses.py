@@ -137,6 +137,7 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
         verbs.append(
             words.BEGINS_WITH_A_VERB.match(part)
             or _is_of_the_same_limb(parts, i)
+            or (i > 0 and _takes_an_arm(part, parts[i - 1]))
             or (i == 0 and len(parts) > 1 and words.LIMB_AND_WAY.match(part) and completed(parts[1], part))
             or filled
             or everyday(part)
@@ -164,6 +165,12 @@ def _is_of_the_same_limb(parts: list[str], i: int) -> bool:
     neighbour = parts[i - 1] if i else parts[1]
     ours, theirs = words.LIMB_FIRST.match(parts[i]), words.LIMB_FIRST.match(neighbour)
     return bool(ours and theirs and ours[0] == theirs[0] and parts[i] != neighbour)
+
+
+def _takes_an_arm(part: str, before: str) -> bool:
+    """Whether a part without a verb takes one of both arms to another place: "hands up, left hand on your heart"."""
+    both = words.BOTH_ARMS_POSED.match(before)
+    return bool(both and words.ONE_ARM_PLACED.match(part))
 
 
 def _reordered(part: str) -> list[str]:

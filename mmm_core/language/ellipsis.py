@@ -176,7 +176,7 @@ def _other_object(clause: str, before: str) -> str | None:
 def _with_pronoun(clause: str, before: str) -> str | None:
     """A clause with its pronoun resolved: "wave it" after "raise your right arm" -> "wave your right arm"; None without one."""
     limbs = forms.NAMED_LIMB.findall(before)
-    if re.match(r"(?:hold|keep|do|repeat|stop|continue|stay|leave)(?:s|es|ing)?\b", clause):
+    if forms.KEEPS_ON.match(clause):
         return None
     several = [limb for limb in limbs if limb.endswith("s") and not limb.endswith("fists")]
     if re.search(r"\bthem\b", clause):

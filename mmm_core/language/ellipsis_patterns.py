@@ -81,6 +81,11 @@ AT_TARGET = re.compile(r"\bat (?:me|yourself|you|us|the \w+)$")
 NAMED_LIMB = re.compile(
     r"\b(?:(?:your|the|both|one|a) )?(?:both )?(?:(?:left|right) )?(?:hands?|arms?|fists?|palms?|fingers?|head|shoulders)\b"
 )
+KEEPS_ON = re.compile(
+    r"(?:hold|keep|do|repeat|stop|continue|stay|leave)(?:s|es|ing)?\b"
+    r"(?! (?:it|them) (?:out|forward|away|above|against|behind|in front|over your|to your|towards?)\b)"
+)
+"""What is said of a pose that goes on; "hold it out to me" is another pose."""
 BODY_PLACE = re.compile(
     r"^(?:(?:the|your) )?(?P<part>hips?|waist|heads?|shoulders?|knees?|heart|chest|belly|chin|nose|eyes|ears|mouth|back|neck|forehead|face)$"
 )

@@ -19,6 +19,7 @@ from mmm_core.language.denial import without_denial
 from mmm_core.language.ellipsis import with_sides
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
+from mmm_core.language.one_arm import of_one_arm
 from mmm_core.language.one_gesture import as_said, held_together
 from mmm_core.language.requests import everyday, greeting, restated, rewritten, without_request
 from mmm_core.language.run_on import with_marks
@@ -75,7 +76,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     notes: list[str] = []
     rest, hand = _for_all(rest)
     hand = hand or first_hand
-    for clause in commands_in_turn(with_sides(rest)):
+    for clause in of_one_arm(commands_in_turn(with_sides(rest))):
         steps += _steps(clause + hand if hand and limbs_of(clause) == SOME_ARM else clause, notes)
     if _is_plain(text, said, steps):
         return Reading(text, ((replace(steps[0][0], text=normalised(text)),),), plain=True)

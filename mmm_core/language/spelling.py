@@ -63,7 +63,13 @@ def mended(text: str) -> str:
         said = _STUTTER.sub("", said)
     said = _homophones(said)
     without = without_slips(said)
-    return " ".join((said if without == said else _taken_back(_homophones(without))).split())
+    said = said if without == said else _taken_back(_homophones(without))
+    return " ".join(_without_other_senses(said).split())
+
+
+def _without_other_senses(said: str) -> str:
+    """A text with other words for "left" and "right" where these name no side: "what is left", "look right at me"."""
+    return replaced(said, substitutions("no_side")) if "left" in said or "right" in said else said
 
 
 def _repeats(said: str) -> bool:

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from mmm_core.errors import GenerationError
 from mmm_core.generate.engine import Engine
-from mmm_core.generate.sequence import FEWEST_TOKENS, TRANSITION_TOKENS, shared_out
+from mmm_core.generate.sequence import FEWEST_TOKENS, shared_out
+from mmm_core.generate.transitions import TRANSITION_TOKENS
 from mmm_core.language.clauses import MOST_COMMANDS, MOST_WORDS, commands_in_turn
 from mmm_core.model.tokens import MAX_TOKENS, tokens_for_frames
 from mmm_core.motion.motion import Motion

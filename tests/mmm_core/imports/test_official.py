@@ -15,7 +15,7 @@ import torch
 from torch import Tensor
 
 from mmm_core.errors import CheckpointError, GenerationError
-from mmm_core.generate.sequence import transition_row
+from mmm_core.generate.transitions import transition_row
 from mmm_core.imports.clip_weights import clip_from_openai
 from mmm_core.imports.official import (
     read_pickle,

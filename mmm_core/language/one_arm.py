@@ -1,0 +1,44 @@
+"""The arm of commands in turn that name it once: "raise your left hand, salute, and lower it again".
+
+A command takes the side that the commands around it name where it names none, and where no other side is named. It stands
+between two commands of that arm, or it speaks of a part of an arm ("bend the elbow", "make a fist") after one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from mmm_core.language.limbs import SOME_ARM, limbs_of
+
+_NAMED = re.compile(r"\b(left|right) (?:hand|arm|fist|palm|elbow|wrist|forearm|fingers?|thumb)\b")
+_ANY_SIDE = re.compile(r"\b(?:left|right|both|other|one (?:hand|arm)|hands|arms)\b")
+_PART = re.compile(r"\b(?:the|your) (?=(?:elbow|wrist|palm|fist|forearm|fingers?|thumb|hand|arm)\b)")
+_MAKES_A_FIST = re.compile(r"(?:make|form|clench|ball|close|open)\b.*\bfist\b(?: tight(?:ly)?)?$")
+
+
+def of_one_arm(commands: Sequence[str]) -> list[str]:
+    """Commands in turn, in lower case, each with the arm that those around it name.
+
+    >>> of_one_arm(["raise your left hand", "salute", "lower your left hand"])[1]
+    'salute with your left hand'
+    >>> of_one_arm(["stretch out your right arm", "bend the elbow"])[1], of_one_arm(["raise your right arm", "clap"])[1]
+    ('bend your right elbow', 'clap')
+    """
+    naming = [i for i, command in enumerate(commands) if _NAMED.search(command)]
+    sides = {side for command in commands for side in re.findall(r"\b(?:left|right)\b", command)}
+    if len(commands) < 2 or not naming or len(sides) != 1:
+        return list(commands)
+    side = sides.pop()
+    found: list[str] = []
+    for i, command in enumerate(commands):
+        is_between = naming[0] < i < naming[-1]
+        is_part = i > naming[0] and bool(_PART.search(command) or _MAKES_A_FIST.match(command))
+        free = limbs_of(command) == SOME_ARM and not _ANY_SIDE.search(command)
+        found.append(_with(command, side) if free and (is_between or is_part) else command)
+    return found
+
+
+def _with(command: str, side: str) -> str:
+    named, n = _PART.subn(f"your {side} ", command, count=1)
+    return named if n else f"{command} with your {side} hand"
