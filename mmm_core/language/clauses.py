@@ -16,6 +16,7 @@ from mmm_core.language import clause_patterns as words
 from mmm_core.language.at_once import are_at_once, goes_on
 from mmm_core.language.count_words import NUMBERS
 from mmm_core.language.ellipsis import OTHER, completed, is_manner
+from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.requests import everyday
 
 MOST_COMMANDS, MOST_WORDS = 4, 60
@@ -68,7 +69,7 @@ def _divided(text: str) -> list[str]:
     spans = _spans(text, _Span(0, len(text)), words.DIVIDES)
     spans = [s for s in spans if _READS.search(_bare(s.of(text)))]
     if len(spans) == 1:
-        late = words.A_FIRST_B_LATER.fullmatch(text.rstrip(" .!"))
+        late = words.ENDS_IN_ORDER.search(ended := text.rstrip(" .!")) and words.A_FIRST_B_LATER.fullmatch(ended)
         if late and (whole := completed(_bare(late[2]), _bare(late[1]))):
             return [late[1], whole]
         if late and not _leans(late[2]):
@@ -141,6 +142,7 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
             or (i == 0 and len(parts) > 1 and words.LIMB_AND_WAY.match(part) and completed(parts[1], part))
             or filled
             or everyday(part)
+            or (len(parts) > 2 and is_gesture_verb(part))
         )
         wholes.append(filled or part)
     if _are_counted(parts) or (len(parts) > 2 and all(map(_NOUN.match, parts))):

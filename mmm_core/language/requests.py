@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache, lru_cache
+from itertools import cycle
 
 from mmm_core.language.at_once import base_of
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
@@ -78,11 +79,11 @@ def without_request(said: str) -> str:
     >>> without_request("could you please wave for me"), without_request("i would love it if you could bow")
     ('wave', 'bow')
     """
-    rest, before = said.strip(), ""
-    while rest != before:
-        before = rest
-        for table in _frames():
-            rest = _without(rest, table)
+    rest, unchanged = said.strip(), 0
+    tables = cycle(_frames())
+    while unchanged < len(_frames()):  # until no rule of either table finds anything more
+        shorter = _without(rest, next(tables))
+        unchanged, rest = (unchanged + 1 if shorter == rest else 0), shorter
     return _gerund_request(rest)
 
 
@@ -158,8 +159,8 @@ def _names_an_act(talk: str) -> bool:
 def _said_again(bare: str) -> str:
     """The command that each of several everyday phrases means: "shoo, go away"; "" where they mean different ones."""
     parts = [part for part in _MARKS.split(bare) if part] if _MARKS.search(bare) else []
-    meant = {everyday(part) for part in parts} if len(parts) > 1 else set()
-    return meant.pop() if len(meant) == 1 else ""
+    first = everyday(parts[0]) if len(parts) > 1 else ""
+    return first if first and all(everyday(part) == first for part in parts[1:]) else ""
 
 
 @cache

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Iterable
 from functools import cache
@@ -82,12 +83,19 @@ class RuleTable:
             for letters in needed:
                 by_letters[letters].append(number)
         self._by_letters, self._letters = dict(by_letters), frozenset(by_letters)
+        self._last: tuple[str, list[int]] = "", self._found("")
 
     def possible(self, text: str, after: int = -1) -> list[int]:
         """Numbers of the rules after one that may be found in a text, in order."""
+        last, found = self._last  # one tuple, so that threads never see the text of one and the numbers of another
+        if last != text:
+            self._last = text, (found := self._found(text))
+        return found if after < 0 else found[bisect_right(found, after) :]
+
+    def _found(self, text: str) -> list[int]:
         found = set(self._always)
         found.update(*map(self._by_letters.__getitem__, self._letters & letters_of(text)))
-        return sorted(found) if after < 0 else sorted(number for number in found if number > after)
+        return sorted(found)
 
 
 @cache
