@@ -1,6 +1,6 @@
 """Clients of the daemon: `from daemon.client import Client`, or `AsyncClient` for asyncio.
 
-Each is loaded when it is asked for: asyncio costs a command line a tenth of a second.
+Each is imported on first use: importing asyncio costs a command line a tenth of a second.
 """
 
 from __future__ import annotations

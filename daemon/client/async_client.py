@@ -1,7 +1,7 @@
 """The client for asyncio: `async with AsyncClient() as robot: await robot.say("wave with your right hand")`.
 
-The same requests, events and errors as `daemon.client.Client`; every call has a time-out, and several may be under way at once.
-ZeroMQ connects again by itself when the daemon comes back; what could not be sent meanwhile is not sent then.
+Requests, events and errors are those of `daemon.client.Client`; every call has a time-out, and several may run at once.
+ZeroMQ connects again by itself when the daemon comes back; a request that could not be sent meanwhile is not sent later.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
     """Talks to one daemon from one event loop.
 
     Args:
-        endpoints: where the daemon is.
-        timeout_s: longest wait for a reply.
+        endpoints: the daemon's endpoints.
+        timeout_s: seconds to wait for a reply at most.
     """
 
     async def say(
@@ -93,9 +93,9 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
         """Send a request that plays something; return when it has ended, or without `wait` once it is accepted.
 
         Raises:
-            RefusedError: rejected, failed, or no valid request.
-            CancelledByError: ended by another command, with `wait`.
-            NoAnswerError: not in time.
+            RefusedError: the request is invalid, was rejected, or failed.
+            CancelledByError: another command ended it; only with `wait`.
+            NoAnswerError: no answer in time.
         """
         heard: list[AnyEvent] = []
         async with contextlib.aclosing(self.events_of(request, timeout_s)) as events:
@@ -114,7 +114,7 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
         """Send a request and yield its events as they come, the last one terminal.
 
         Raises:
-            NoAnswerError: not in time.
+            NoAnswerError: no answer in time.
         """
         line, asked = self._line(self.endpoints.cmd), f"{tag_of(request)} {request.words[:60]!r}"
         timeout_s = patience_s(request) if timeout_s is None else timeout_s
@@ -132,12 +132,12 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
         return await self._command(Cancel(id=uuid.uuid4().hex, command=command_id))
 
     async def look(self, yaw_deg: float | None = None, pitch_deg: float | None = None) -> Ack:
-        """Turn the head left and down, whatever the body does; without angles it is let go again."""
+        """Turn the head left and down, whatever the body does; without angles the head is free again."""
         request = Look(id=uuid.uuid4().hex, yaw_deg=yaw_deg, pitch_deg=pitch_deg)
         return await self._command(request)
 
     async def idle(self, on: bool = True, style: Literal["calm", "lively"] = "calm") -> Ack:
-        """Small movements while there is nothing to play, or none."""
+        """Switch the small movements while nothing is played on or off."""
         return await self._command(Idle(id=uuid.uuid4().hex, on=on, style=style))
 
     @contextlib.asynccontextmanager
@@ -170,7 +170,7 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
         return await self._command(request)
 
     async def capabilities(self) -> CapabilitiesEvent:
-        """What this robot and this daemon can do."""
+        """The abilities of this robot and this daemon."""
         event = await self._ask(Capabilities(id=uuid.uuid4().hex), self.endpoints.cmd)
         if not isinstance(event, CapabilitiesEvent):
             raise unexpected(event, "capabilities")
@@ -195,7 +195,7 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
                 except TimeoutError:
                     asked = f"watch {' '.join(topics) or 'v1/'}"
                     raise NoAnswerError(self.endpoints.pub, asked, timeout_s) from None
-                if last.get(topic) == payload:  # sent again, for somebody who has just subscribed
+                if last.get(topic) == payload:  # sent again for a new subscriber
                     continue
                 last[topic] = payload
                 yield topic.decode(), decode_event(payload)

@@ -1,4 +1,4 @@
-"""The sockets of the asyncio client: opened when first needed, every wait for a reply with an end."""
+"""The sockets of the asyncio client: opened on first use; every wait for a reply has a time-out."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from daemon.wire.requests import Request, tag_of
 
 
 class AsyncConnection:
-    """Requests out and events in, over `cmd` and `ctl`, from one event loop.
+    """Sends requests and receives events over `cmd` and `ctl`, from one event loop.
 
     Args:
-        endpoints: where the daemon is.
-        timeout_s: longest wait for a reply.
+        endpoints: the daemon's endpoints.
+        timeout_s: seconds to wait for a reply at most.
     """
 
     def __init__(self, endpoints: Endpoints | None = None, timeout_s: float = REPLY_TIMEOUT_S) -> None:
@@ -40,7 +40,7 @@ class AsyncConnection:
         await self.close()
 
     async def close(self) -> None:
-        """Close the sockets; what was not sent yet has 200 ms."""
+        """Close the sockets; unsent requests have 200 ms."""
         for line in self._lines.values():
             await line.close()
         self._context.destroy(linger=200)

@@ -15,7 +15,7 @@ from daemon.wire.status import StateEvent
 
 
 class AsyncControlCalls(AsyncConnection):
-    """The `ctl` process answers them whatever the rest of the daemon does."""
+    """Calls that the ctl process answers even when the rest of the daemon does not."""
 
     async def stop(self, *, wait: bool = True) -> Ack:
         """Brake within the limits and hold; with `wait`, return once nothing is played any more."""
@@ -39,7 +39,7 @@ class AsyncControlCalls(AsyncConnection):
         return ack
 
     async def arm(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
-        """Torque on over a pinned goal, slow move to the rest pose; limp again where that was broken off (`status` tells)."""
+        """Switch torque on over a pinned goal and move slowly to the rest pose; the robot is limp again if that is broken off."""
         ack = await self._control(Arm(id=uuid.uuid4().hex))
         if wait:
             began_s = time.monotonic()
@@ -49,21 +49,21 @@ class AsyncControlCalls(AsyncConnection):
         return ack
 
     async def torque_off(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
-        """Brake within the limits, then limp where the robot stands; it moves again only after `arm`."""
+        """Brake within the limits, then go limp where the robot stands; it moves again only after `arm`."""
         ack = await self._control(Torque(id=uuid.uuid4().hex, on=False))
         if wait:
             await self.wait_for("limp", "fault", "estop", timeout_s=timeout_s)
         return ack
 
     async def park(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
-        """Slow move to the park pose, then torque off."""
+        """Move slowly to the park pose, then switch torque off."""
         ack = await self._control(Park(id=uuid.uuid4().hex))
         if wait:
             await self.wait_for("limp", "fault", "estop", timeout_s=timeout_s)
         return ack
 
     async def status(self) -> StateEvent:
-        """The robot and the daemon now, by way of `ctl`."""
+        """The present state of robot and daemon, over `ctl`."""
         event = await self._ask(Status(id=uuid.uuid4().hex), self.endpoints.ctl)
         if not isinstance(event, StateEvent):
             raise unexpected(event, "status")
@@ -73,7 +73,7 @@ class AsyncControlCalls(AsyncConnection):
         """Poll until the robot is in one of `states`.
 
         Raises:
-            NoAnswerError: not in time.
+            NoAnswerError: the robot was in none of them in time.
         """
         end_s = time.monotonic() + timeout_s
         while True:

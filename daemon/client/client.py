@@ -58,18 +58,18 @@ class Client(ControlCalls, CompositionCalls[Said]):
 
         Args:
             text: what to do, in English.
-            seed: the same text, seed and seconds give the same motion.
+            seed: seed of the motion; equal text, seed and seconds give equal motions.
             seconds: length of the motion; None lets the model choose.
-            prefix_s: so much of what is played just then (0.2 to 1.6) is what the new motion goes on from; 0 for none.
+            prefix_s: seconds of the running motion that the new one continues from, 0.2 to 1.6; 0 for none.
             context: whether the text may refer to what this client said last: "again", "slower", "with the other hand".
-            wait: return when the motion has ended; else once it is accepted.
-            timeout_s: longest wait for the end; None takes one that fits the request.
-            command_id: the same id twice is one command; empty chooses one.
+            wait: whether to return when the motion has ended; else once it is accepted.
+            timeout_s: seconds to wait for the end at most; None takes a time that fits the request.
+            command_id: id of the command; a repeated id is one command, an empty one is replaced by a new id.
             options: tempo, amplitude, mirror, repeat, loop, hold, when, at_s, deadline_s; see `daemon.wire.requests.Play`.
 
         Raises:
-            RefusedError: rejected, failed, or no valid request.
-            CancelledByError: ended by another command, with `wait`.
+            RefusedError: the request is invalid, was rejected, or failed.
+            CancelledByError: another command ended it; only with `wait`.
             NoAnswerError: not in time.
         """
         name = command_id or uuid.uuid4().hex
@@ -112,7 +112,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
         return Said(request.id, tuple(heard))
 
     def events_of(self, request: Play, timeout_s: float | None = None) -> Iterator[AnyEvent]:
-        """Send a text and yield its events as they come, the last one terminal.
+        """Send a request and yield its events as they come, the last one terminal.
 
         Raises:
             NoAnswerError: not in time.
@@ -141,7 +141,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
         return self._command(Cancel(id=uuid.uuid4().hex, command=command_id))
 
     def look(self, yaw_deg: float | None = None, pitch_deg: float | None = None) -> Ack:
-        """Turn the head left and down, whatever the body does; without angles it is let go again.
+        """Turn the head left and down, whatever the body does; without angles the head is free again.
 
         Raises:
             NoAnswerError: not in time.
@@ -149,7 +149,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
         return self._command(Look(id=uuid.uuid4().hex, yaw_deg=yaw_deg, pitch_deg=pitch_deg))
 
     def idle(self, on: bool = True, style: Literal["calm", "lively"] = "calm") -> Ack:
-        """Small movements while there is nothing to play, or none.
+        """Switch the small movements while nothing is played on or off.
 
         Raises:
             NoAnswerError: not in time.
@@ -163,12 +163,12 @@ class Client(ControlCalls, CompositionCalls[Said]):
         """A lease on the robot's joints, once it has begun: `with robot.stream() as s: s.send(q_rad)`, again and again.
 
         Args:
-            holder: who asks, in a word or two; a second asker is told.
-            silence_s: without a target for so long the robot brakes and holds; None takes the daemon's time.
-            timeout_s: longest wait for the lease to begin (the robot may have to be armed) and to end.
+            holder: name of the asking program, in a word or two; a second asker is told it.
+            silence_s: seconds without a target after which the robot brakes and holds; None takes the daemon's setting.
+            timeout_s: seconds to wait at most for the lease to begin (the robot may have to be armed) and to end.
 
         Raises:
-            RefusedError: somebody else holds it, the robot's state forbids it, or the lease has failed.
+            RefusedError: somebody else holds a lease, the robot's state forbids it, or the lease has failed.
             CancelledByError: a stop or another command ended it.
             NoAnswerError: not in time.
         """
@@ -197,13 +197,13 @@ class Client(ControlCalls, CompositionCalls[Said]):
         """Keep the motion of a command, the newest when no id is given, as a gesture.
 
         Raises:
-            RefusedError: there is none, it cannot be kept, or there is a gesture of that name and `replace` is not given.
+            RefusedError: the command is unknown, its motion cannot be kept, or the name is taken and `replace` is not given.
             NoAnswerError: not in time.
         """
         return self._command(Record(id=uuid.uuid4().hex, name=name, command=command_id, replace=replace))
 
     def capabilities(self) -> CapabilitiesEvent:
-        """What this robot and this daemon can do.
+        """The abilities of this robot and this daemon.
 
         Raises:
             NoAnswerError: not in time.
@@ -230,7 +230,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
                 if not socket.poll(int(1000 * timeout_s)):
                     raise NoAnswerError(self.endpoints.pub, f"watch {' '.join(topics) or 'v1/'}", timeout_s)
                 topic, payload = socket.recv_multipart()
-                if last.get(topic) == payload:  # sent again, for somebody who has just subscribed
+                if last.get(topic) == payload:  # sent again for a new subscriber
                     continue
                 last[topic] = payload
                 yield topic.decode(), decode_event(payload)

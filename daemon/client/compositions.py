@@ -1,4 +1,4 @@
-"""Calls that both clients have for motion that is put together or played again: story, inbetween, edit, replay."""
+"""Calls of both clients for composed or repeated motion: story, inbetween, edit, replay."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from daemon.wire.requests import Edit, Inbetween, KeyPoseOf, Play, PlayOptions, 
 
 R = TypeVar("R")
 REPLY_TIMEOUT_S = 5.0
-"""For a reply that no motion has to be waited for."""
+"""Seconds to wait for a reply that depends on no motion."""
 FIRST_REPLY_TIMEOUT_S = 15.0
-"""For the first word about a text: longer than the daemon waits for its generator."""
+"""Seconds to wait for the first event of a text: longer than the daemon waits for its generator."""
 MOTION_TIMEOUT_S = 60.0
-"""For a motion to end: the longest is 10 s, before which the robot may have to be armed."""
+"""Seconds to wait for the end of a motion: the longest is 10 s, before which the robot may have to be armed."""
 NOT_MOVING = ("limp", "idle", "holding", "fault", "estop")
 """States in which nothing is played."""
 
 
 class CompositionCalls(Generic[R]):
-    """Mixed into a client, whose `play` sends a request and returns what became of it."""
+    """Mixed into a client, whose `play` sends a request and returns its result."""
 
     def play(self, request: Play, *, wait: bool = True, timeout_s: float | None = None) -> R:
-        """Send a request that plays something; the client says how."""
+        """Send a request that plays something; each client implements this."""
         raise NotImplementedError
 
     def story(
@@ -36,13 +36,13 @@ class CompositionCalls(Generic[R]):
         command_id: str = "",
         **options: Unpack[PlayOptions],
     ) -> R:
-        """Do one thing after the other in one motion.
+        """Play several scenes one after the other in one motion.
 
         Args:
             scenes: texts, or (text, seconds).
-            seed: the same scenes and seed give the same motion.
-            wait: return when the story has ended; else once it is accepted.
-            timeout_s: longest wait for the end; None takes one that fits the number of scenes.
+            seed: seed of the story; equal scenes and seed give equal motions.
+            wait: whether to return when the story has ended; else once it is accepted.
+            timeout_s: seconds to wait for the end at most; None takes a time that fits the number of scenes.
             command_id: the same id twice is one command; empty chooses one.
             options: as for `say`; a story has no `hold`.
 
@@ -65,12 +65,12 @@ class CompositionCalls(Generic[R]):
         command_id: str = "",
         **options: Unpack[PlayOptions],
     ) -> R:
-        """Go through poses at given times, e.g. `[KeyPoseOf(at_s=1, gesture="bow"), KeyPoseOf(at_s=2, standing=True)]`.
+        """Pass poses at given times, e.g. `[KeyPoseOf(at_s=1, gesture="bow"), KeyPoseOf(at_s=2, standing=True)]`.
 
         Args:
-            poses: in order of time.
-            text: what happens between them.
-            seed: the same poses, text and seed give the same motion.
+            poses: the poses, in order of time.
+            text: text of the motion between the poses.
+            seed: seed of the motion; equal poses, text and seed give equal motions.
             wait: return when the motion has ended; else once it is accepted.
             timeout_s: longest wait for the end.
             command_id: the same id twice is one command; empty chooses one.
@@ -100,18 +100,18 @@ class CompositionCalls(Generic[R]):
         command_id: str = "",
         **options: Unpack[PlayOptions],
     ) -> R:
-        """Play a motion of which a stretch or some parts of the body are made again for `text`.
+        """Play a motion of which an interval or some parts of the body are generated anew for `text`.
 
         Args:
-            text: what the new part is to be.
-            gesture: what is edited: a named clip,
-            command: or the motion of a command,
-            plan: or of a plan,
-            file: or a file in the daemon's folder of motions.
-            parts: upper, lower, or parts of the model; none is all of the body.
-            start_s: of the stretch, in the motion's own time.
-            end_s: of the stretch; None is the end.
-            seed: the same motion, edit and seed give the same result.
+            text: text of the new part.
+            gesture: name of the clip to edit, if it is a clip.
+            command: id of the command whose motion is edited, if it is a command.
+            plan: id of the plan whose motion is edited, if it is a plan.
+            file: name of the file to edit in the daemon's folder of motions, if it is a file.
+            parts: "upper", "lower", or parts of the model; empty for the whole body.
+            start_s: start of the interval in the motion's own time, seconds.
+            end_s: end of the interval, seconds; None is the end of the motion.
+            seed: seed of the edit; equal motion, edit and seed give equal results.
             wait: return when the motion has ended; else once it is accepted.
             timeout_s: longest wait for the end.
             command_id: the same id twice is one command; empty chooses one.
@@ -157,7 +157,7 @@ def scene_of(scene: str | tuple[str, float | None] | SceneOf) -> SceneOf:
 
 
 def patience_s(request: Play) -> float:
-    """How long to wait for a motion to end: without limit where it has no end, or begins nobody knows when."""
+    """Seconds to wait for a motion to end; infinite for a loop, and for a motion whose beginning is unknown."""
     if request.loop or request.when != "now":
         return float("inf")
     n = len(request.scenes) if isinstance(request, Story) else 1

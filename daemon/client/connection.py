@@ -1,4 +1,4 @@
-"""The sockets of the client: opened when first needed, every wait for a reply with an end."""
+"""The sockets of the client: opened on first use; every wait for a reply has a time-out."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from daemon.wire.events import Ack, AnyEvent, Refusal
 from daemon.wire.requests import Request, tag_of
 
 LONGEST_POLL_S = 60.0
-"""A wait without limit is polled in turns: what ZeroMQ takes is a whole number of milliseconds."""
+"""Seconds of one poll at most: a wait without limit is a series of polls, because ZeroMQ takes whole milliseconds."""
 
 
 class Connection:
-    """Requests out and events in, over `cmd` and `ctl`. Not for several threads at once.
+    """Sends requests and receives events over `cmd` and `ctl`. Not for several threads at once.
 
-    ZeroMQ connects again by itself when the daemon comes back; what could not be sent meanwhile is not sent then.
+    ZeroMQ connects again by itself when the daemon comes back; a request that could not be sent meanwhile is not sent later.
 
     Args:
-        endpoints: where the daemon is.
-        timeout_s: longest wait for a reply.
+        endpoints: the daemon's endpoints.
+        timeout_s: seconds to wait for a reply at most.
     """
 
     def __init__(self, endpoints: Endpoints | None = None, timeout_s: float = REPLY_TIMEOUT_S) -> None:
@@ -47,7 +47,7 @@ class Connection:
         self.close()
 
     def close(self) -> None:
-        """Close the sockets; what was not sent yet has 200 ms."""
+        """Close the sockets; unsent requests have 200 ms."""
         self._context.destroy(linger=200)
 
     def _command(self, request: Request) -> Ack:

@@ -1,4 +1,4 @@
-"""Calls of the client that go through `ctl`: what stops, arms and parks the robot, and what it is doing."""
+"""Calls of the client over `ctl`: stop, arm and park the robot, and read its state."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from daemon.wire.status import StateEvent
 
 
 class ControlCalls(Connection):
-    """They are answered whatever the rest of the daemon does."""
+    """Calls that the ctl process answers even when the rest of the daemon does not."""
 
     def stop(self, *, wait: bool = True) -> Ack:
         """Brake within the limits and hold; with `wait`, return once nothing is played any more.
@@ -30,8 +30,8 @@ class ControlCalls(Connection):
     def estop(self, *, wait: bool = True) -> Ack:
         """Cut torque at once (or hold, as the daemon is set), latched; with `wait`, return once the bus process has confirmed it.
 
-        Where `carried_out` of the reply is false (the bus process is dead, frozen or starting, its port is lost) it stays asked
-        for, and is carried out when the bus process is back; the state is `estop` then.
+        While `carried_out` of the reply is false (the bus process is dead, frozen or starting, or its port is lost) the e-stop
+        stays pending, and is carried out when the bus process is back; the state is `estop` then.
 
         Raises:
             NoAnswerError: not in time.
@@ -54,7 +54,9 @@ class ControlCalls(Connection):
         return ack
 
     def arm(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
-        """Torque on over a pinned goal, slow move to the rest pose; limp again where that was broken off (`status` tells).
+        """Switch torque on over a pinned goal and move slowly to the rest pose.
+
+        The robot is limp again if arming is broken off; `status` says why.
 
         Raises:
             RefusedError: the state does not allow it.
@@ -69,7 +71,7 @@ class ControlCalls(Connection):
         return ack
 
     def torque_off(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
-        """Brake within the limits, then limp where the robot stands; it moves again only after `arm`.
+        """Brake within the limits, then go limp where the robot stands; it moves again only after `arm`.
 
         Raises:
             RefusedError: the state does not allow it.
@@ -81,7 +83,7 @@ class ControlCalls(Connection):
         return ack
 
     def park(self, *, wait: bool = True, timeout_s: float = 30.0) -> Ack:
-        """Slow move to the park pose, then torque off.
+        """Move slowly to the park pose, then switch torque off.
 
         Raises:
             RefusedError: the state does not allow it.
@@ -93,7 +95,7 @@ class ControlCalls(Connection):
         return ack
 
     def status(self) -> StateEvent:
-        """The robot and the daemon now, by way of `ctl`.
+        """The present state of robot and daemon, over `ctl`.
 
         Raises:
             NoAnswerError: not in time.

@@ -1,4 +1,4 @@
-"""What a client may run into, what it hears of a command, and how it says when it was sent."""
+"""Errors of a client, the events that it received for a command, and the time stamp of its requests."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from daemon.wire.showing import in_words
 from daemon.wire.status import StateEvent
 
 _BAD_NAMES = ("unknown_gesture", "unknown_motion", "bad_file")
-"""Codes of refusals that say that a request names what there is not."""
+"""Codes of refusals of requests that name an unknown gesture, motion or file."""
 ARMING_ENDS = ("idle", "moving", "holding", "fault", "estop")
-"""States in which arming has come to an end; once it has begun it may end in limp as well, when something breaks it off."""
+"""States in which arming has ended; arming that was broken off may end in limp as well."""
 
 
 class NoAnswerError(DaemonError, TimeoutError):
@@ -31,7 +31,7 @@ class NoAnswerError(DaemonError, TimeoutError):
 
 
 class RefusedError(DaemonError):
-    """The daemon rejected a request, or could not carry it out; `event` tells why."""
+    """The daemon rejected a request, or could not carry it out; `event` says why."""
 
     def __init__(self, event: Refusal) -> None:
         self.event = event
@@ -41,7 +41,7 @@ class RefusedError(DaemonError):
 
 
 def exit_status(event: Refusal) -> int:
-    """The exit status of a command that is refused: 3 for a robot in fault, 2 for a bad request or name, else 1."""
+    """The exit status of a refused command: 3 for a robot in fault, 2 for a bad request or name, else 1."""
     if event.code == "fault":
         return 3
     return 2 if isinstance(event, ErrorEvent) or event.code in _BAD_NAMES else 1
@@ -57,7 +57,7 @@ class CancelledByError(DaemonError):
 
 @dataclass(frozen=True)
 class Said:
-    """A command and what has been heard of it.
+    """A command and the events received for it.
 
     Attributes:
         id: id of the command.
@@ -69,18 +69,18 @@ class Said:
 
     @property
     def done(self) -> Done | None:
-        """The figures of the motion, when it was played to its end."""
+        """The `done` event with the figures of the motion; None when it was not played to its end."""
         last = self.events[-1] if self.events else None
         return last if isinstance(last, Done) else None
 
 
 def stamp(request: Request) -> None:
-    """Write into a request when it is sent, and on which clock."""
+    """Write into a request the time of sending, and the clock that it is read from."""
     request.t_mono, request.clock = time.monotonic(), clock_id() or None
 
 
 def waited_in_vain(endpoint: str, states: tuple[str, ...], status: StateEvent, timeout_s: float) -> NoAnswerError:
-    """The error of a robot that came to none of `states` in time."""
+    """The error of a wait in which the robot reached none of `states`."""
     why = f": {status.reason}" if status.reason else ""
     return NoAnswerError(
         endpoint, f"wait for {' or '.join(states)} (the robot is {in_words(status.state)}{why})", timeout_s
@@ -88,7 +88,7 @@ def waited_in_vain(endpoint: str, states: tuple[str, ...], status: StateEvent, t
 
 
 def unexpected(event: Event, asked: str) -> DaemonError:
-    """The error of an answer that is none to what was asked."""
+    """The error of an answer that does not fit the request."""
     if isinstance(event, Refusal):
         return RefusedError(event)
     return DaemonError(f"{asked}: the daemon answered '{tag_of(event)}'; is it of another version?")

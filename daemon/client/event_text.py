@@ -48,7 +48,7 @@ def repeatable(events: Iterable[object]) -> str:
     """Sentences about a motion that a language model can repeat to a person; they name no figures of joints.
 
     Args:
-        events: of a command that was accepted, up to its end or to its acceptance.
+        events: events of an accepted command, up to its end or to its acceptance.
     """
     told, began = list[str](), ""
     for event in events:

@@ -1,4 +1,4 @@
-"""JSON-RPC 2.0, one message a line: whatever bytes come in, each line becomes one call or one error."""
+"""JSON-RPC 2.0, one message a line: each line of any bytes becomes one call or one error."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from daemon.wire.showing import shortened, shown
 
 PARSE_ERROR, BAD_REQUEST, NO_METHOD, BAD_PARAMETERS, INTERNAL = -32700, -32600, -32601, -32602, -32603
 MOST_LINE_BYTES = 1 << 20
-"""Bytes of a line; a longer one is one error."""
+"""Bytes of a line at most; a longer line is one error."""
 MOST_ID_CHARS = 256
 MOST_UNWRITTEN = 1000
-"""Answers that wait for a reader who does not read; those beyond are dropped."""
+"""Number of answers that wait for a peer that does not read at most; further answers are dropped."""
 
 RpcId = str | int | float | None
 
 
 class RpcError(DaemonError):
-    """A call that cannot be taken, as JSON-RPC names it.
+    """A call that cannot be carried out, as JSON-RPC names it.
 
     Attributes:
-        code: as in JSON-RPC 2.0, section 5.1.
-        id: of the call; None where it cannot be told.
+        code: error code of JSON-RPC 2.0, section 5.1.
+        id: id of the call; None when it is unknown.
     """
 
     def __init__(self, code: int, message: str, call_id: RpcId = None) -> None:
@@ -48,7 +48,7 @@ def decode_call(line: bytes) -> Call:
     """The call in a line.
 
     Raises:
-        RpcError: there is none.
+        RpcError: the line holds no call.
     """
     if len(line) > MOST_LINE_BYTES:
         raise RpcError(PARSE_ERROR, f"a line of more than {MOST_LINE_BYTES} bytes; send less in one message")
@@ -74,12 +74,12 @@ def result(call_id: RpcId, value: dict[str, Any]) -> dict[str, Any]:
 
 
 def failure(error: RpcError) -> dict[str, Any]:
-    """The answer to what is no call."""
+    """The answer to a call in error."""
     return {"jsonrpc": "2.0", "id": error.id, "error": {"code": error.code, "message": str(error)}}
 
 
 def lines(source: IO[bytes]) -> Iterator[bytes]:
-    """The lines of a stream; of one that is too long only as much as tells that it is."""
+    """The lines of a stream; a line that is too long is cut just above the bound."""
     while line := source.readline(MOST_LINE_BYTES + 1):
         end = line
         while end and not end.endswith(b"\n") and len(line) > MOST_LINE_BYTES:
@@ -88,7 +88,7 @@ def lines(source: IO[bytes]) -> Iterator[bytes]:
 
 
 class AnswerWriter:
-    """Writes answers from a thread of its own: a peer that does not read them must not keep a stop from being carried out."""
+    """Writes answers from a thread of its own, because a peer that does not read them must not delay a stop."""
 
     def __init__(self, out: IO[str]) -> None:
         self._out = out

@@ -1,4 +1,4 @@
-"""One socket of the asyncio client, over which several requests are under way at once."""
+"""One socket of the asyncio client, over which several requests run at once."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LONGEST_WAIT_S = 1e9
 
 
 class Line:
-    """One DEALER socket whose events are handed to whoever waits for their id."""
+    """A DEALER socket that hands each event to the waiter for its id."""
 
     def __init__(self, socket: zmq.asyncio.Socket, endpoint: str) -> None:
         self._socket, self.endpoint = socket, endpoint
@@ -26,10 +26,10 @@ class Line:
 
     @contextlib.asynccontextmanager
     async def asked(self, request: Request, timeout_s: float) -> AsyncGenerator[asyncio.Queue[AnyEvent]]:
-        """Send a request; its events come through the queue.
+        """Send a request; yields the queue of its events.
 
         Raises:
-            NoAnswerError: nobody was there in time to send it to; it is not sent later.
+            NoAnswerError: no daemon was connected in time; the request is not sent later.
         """
         if self._reader is None:
             self._reader = asyncio.create_task(self._read())
@@ -47,7 +47,7 @@ class Line:
             self._waiting.pop(request.id, None)
 
     async def close(self) -> None:
-        """Hear nothing more."""
+        """Stop receiving events and close the socket."""
         if self._reader is not None:
             self._reader.cancel()
             with contextlib.suppress(asyncio.CancelledError):
@@ -59,16 +59,16 @@ class Line:
             event = decode_event(await self._socket.recv())
             if event.id in self._waiting:
                 self._waiting[event.id].put_nowait(event)
-            elif isinstance(event, Refusal) and not event.id:  # a frame that had no id to be named by
+            elif isinstance(event, Refusal) and not event.id:  # the refused frame had no id
                 for heard in self._waiting.values():
                     heard.put_nowait(event)
 
 
 async def within(heard: asyncio.Queue[AnyEvent], timeout_s: float, endpoint: str, asked: str) -> AnyEvent:
-    """The next event.
+    """The next event of a queue.
 
     Raises:
-        NoAnswerError: not in time.
+        NoAnswerError: no event in time.
     """
     try:
         return await asyncio.wait_for(heard.get(), timeout_s if timeout_s < LONGEST_WAIT_S else None)

@@ -1,9 +1,9 @@
-"""A Model Context Protocol server over stdio: a language model says, stops and looks, with the daemon's own limits.
+"""A Model Context Protocol server over stdio: a language model moves and stops the robot, within the daemon's own limits.
 
-JSON-RPC 2.0, one message a line (MCP revision 2025-06-18, tools only). Every line is taken as it comes and answered when
-it is done, so that `stop`, `estop` and `status` do not wait for a motion; motions that are waited for are played one after
-the other, and a stop ends those that have not begun. Nothing here can go round the daemon: a tool is a
-request like any other, refused with the same words. Arming after a fault or e-stop stays with people: there is no tool.
+The server speaks JSON-RPC 2.0, one message a line (MCP revision 2025-06-18, tools only). Each line is answered when its call is
+done, so that `stop`, `estop` and `status` do not wait for a motion; motions with `wait` are played one after the other, and a stop
+ends those that have not begun. No tool can bypass the daemon: a tool is a request like any other, refused with
+the daemon's words. Arming after a fault or e-stop stays with people: there is no tool.
 """
 
 from __future__ import annotations
@@ -50,9 +50,9 @@ log = logging.getLogger(__name__)
 
 PROTOCOL_REVISIONS = ("2025-06-18", "2025-03-26", "2024-11-05")
 MOST_WAITING = 64
-"""Motions that wait for their turn; one more is refused."""
+"""Number of motions that wait for their turn at most; another is refused."""
 END_S = 2.0
-"""Seconds that the last answers have to be read."""
+"""Seconds that the peer has to read the last answers."""
 INSTRUCTIONS = (
     "A humanoid upper body: head, arms and torso. Say short English commands, one motion each, or several with `story`. "
     "'again', 'slower', 'with the other hand', 'three more', 'keep going' refer to what you said last. "
@@ -118,7 +118,7 @@ class McpServer:
         }
 
     async def serve(self, source: IO[bytes], out: IO[str]) -> None:
-        """Answer each line of the source, which is read in a thread, until it ends and all are answered."""
+        """Answer each line of `source`, read in a thread, until it ends and all lines are answered."""
         loop = asyncio.get_running_loop()
         unread: asyncio.Queue[bytes] = asyncio.Queue()
         answers = AnswerWriter(out)
@@ -142,7 +142,7 @@ class McpServer:
         await asyncio.to_thread(answers.close, END_S)
 
     async def answer(self, line: bytes) -> dict[str, Any] | None:
-        """The reply to one message, whatever it is; None for a notification."""
+        """The reply to one message of any content; None for a notification."""
         call_id: RpcId = None
         try:
             call = decode_call(line)
@@ -197,7 +197,7 @@ class McpServer:
 
     async def _say(self, arguments: dict[str, Any]) -> str:
         text, wait = _string(arguments.pop("text")), bool(arguments.pop("wait", True))
-        if means_stop(text):  # waits for no motion that is being played
+        if means_stop(text):  # a stop waits for no running motion
             return await self._stop({})
         return await self._play(lambda: self._client.say(text, wait=wait, **arguments))
 
@@ -220,7 +220,7 @@ class McpServer:
         return "ended; the robot brakes and holds" + (f": {note}" if note else "")
 
     async def _play(self, ask: Callable[[], Awaitable[Said]]) -> str:
-        """Ask for a motion when those before are done with; one that a stop finds waiting is not asked for any more."""
+        """Request a motion once the earlier ones have ended; a motion that a stop finds waiting is dropped."""
         halts = self._halts
         if self._waiting >= MOST_WAITING:
             raise ValueError(f"{self._waiting} motions wait already; wait for their answers, or call `stop`")
@@ -260,10 +260,10 @@ def _text(text: str, *, failed: bool = False) -> dict[str, Any]:
 
 
 def _string(value: object) -> str:
-    """A text as it was given.
+    """A text argument, unchanged.
 
     Raises:
-        TypeError: it is none.
+        TypeError: the argument is no text.
     """
     if not isinstance(value, str):
         raise TypeError(f"found {shown(value)}; allowed: a string")

@@ -1,4 +1,4 @@
-"""Sending joint targets: `with robot.stream() as stream: stream.send(q_rad)`, for the client and its asyncio sister.
+"""Sending joint targets: `with robot.stream() as stream: stream.send(q_rad)`, for both clients.
 
 The targets go out through a PUB socket of their own; the lease and its events through `cmd`. A context that ends well
 releases the lease; one that ends in an exception cancels it.
@@ -21,17 +21,17 @@ from daemon.wire.events import AnyEvent, Cancelled, Progress, Refusal
 from daemon.wire.requests import Lease, Target
 
 Angles = Sequence[float] | Mapping[str, float]
-"""For every joint in the robot's order, or for some joints by name; radians."""
+"""Angles in radians: of every joint in the robot's order, or of some joints by name."""
 
 
 class LeaseNews:
-    """What a holder has heard of its lease.
+    """The events that a holder has received for its lease.
 
     Attributes:
-        id: of the lease.
-        secret: of the lease, for those who send targets by other means.
-        events: all of them so far.
-        held_by: self-collision, silence, or nothing; what keeps the robot from its target, as last heard.
+        id: id of the lease.
+        secret: secret of the lease, for programs that send targets by other means.
+        events: all events so far.
+        held_by: what keeps the robot from its target, as last reported: "self-collision", "silence", or "" for nothing.
     """
 
     def __init__(self, lease: Lease) -> None:
@@ -46,7 +46,7 @@ class LeaseNews:
         return self.events[-1] if self.events and self.events[-1].terminal else None
 
     def take(self, event: AnyEvent) -> None:
-        """An event of the lease."""
+        """Take an event of the lease."""
         self.events.append(event)
         if isinstance(event, Progress):
             self.held_by = {"held": "self-collision", "silent": "silence", "streaming": ""}.get(
@@ -54,11 +54,11 @@ class LeaseNews:
             )
 
     def check(self) -> None:
-        """Tell by an exception that the lease has ended.
+        """Raise an exception when the lease has ended otherwise than by `release`.
 
         Raises:
-            RefusedError: it was rejected, or has failed.
-            CancelledByError: something else ended it.
+            RefusedError: the lease was rejected, or has failed.
+            CancelledByError: a stop or another command ended the lease.
         """
         if isinstance(self.end, Refusal):
             raise RefusedError(self.end)
@@ -66,7 +66,7 @@ class LeaseNews:
             raise CancelledByError(self.end.by)
 
     def frame(self, q_rad: Angles) -> bytes:
-        """A target as it goes over the wire."""
+        """The bytes of a target message."""
         self._sent += 1
         angles = {k: float(v) for k, v in q_rad.items()} if isinstance(q_rad, Mapping) else [float(v) for v in q_rad]
         return encode(Target(id=self.id, secret=self.secret, q_rad=angles, seq=self._sent, t_mono=time.monotonic()))
@@ -86,14 +86,14 @@ class Stream:
     """A lease that has begun; `Client.stream` makes it. Not for several threads at once.
 
     Attributes:
-        news: what was heard of it.
+        news: the events received for it.
     """
 
     def __init__(self, news: LeaseNews, targets: zmq.Socket[bytes], cmd: zmq.Socket[bytes]) -> None:
         self.news, self._targets, self._cmd = news, targets, cmd
 
     def send(self, q_rad: Angles) -> None:
-        """Lead the joints there: all in the robot's order, or some by name. Never waits.
+        """Send a target to which the joints move: all joints in the robot's order, or some by name. Never waits.
 
         Raises:
             RefusedError: the lease has failed.
@@ -108,7 +108,7 @@ class Stream:
         """Wait for an event of the lease, or its end.
 
         Raises:
-            RefusedError, CancelledByError: it has ended otherwise than by `release`.
+            RefusedError, CancelledByError: the lease has ended otherwise than by `release`.
             NoAnswerError: not in time.
         """
         end_s = time.monotonic() + timeout_s
@@ -130,21 +130,21 @@ class AsyncStream:
     """A lease for asyncio, see `Stream`; `AsyncClient.stream` makes it.
 
     Attributes:
-        news: what was heard of it.
+        news: the events received for it.
     """
 
     def __init__(self, news: LeaseNews, targets: zmq.asyncio.Socket, heard: asyncio.Queue[AnyEvent]) -> None:
         self.news, self._targets, self._heard = news, targets, heard
 
     async def send(self, q_rad: Angles) -> None:
-        """Lead the joints there; as `Stream.send`."""
+        """Send a target; see `Stream.send`."""
         while not self._heard.empty():
             self.news.take(self._heard.get_nowait())
         self.news.check()
         await self._targets.send(self.news.frame(q_rad))
 
     async def until(self, wanted: Callable[[AnyEvent], bool], timeout_s: float, endpoint: str) -> None:
-        """Wait for an event of the lease, or its end; as `Stream.until`."""
+        """Wait for an event of the lease, or its end; see `Stream.until`."""
         try:
             async with asyncio.timeout(timeout_s):
                 while self.news.end is None and not any(map(wanted, self.news.events)):
