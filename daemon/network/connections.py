@@ -1,9 +1,9 @@
-"""Bounds what the peers of a process's ZeroMQ sockets may hold of it: connections, and bytes that never become a message.
+"""Bounds the resources that peers of a process's ZeroMQ sockets may use: connections, and bytes that never become a message.
 
 ZeroMQ bounds neither. It accepts connections until the process has no file descriptor left (over ipc it then aborts), and it keeps
-the parts of a message that has not ended, however many there are, beside every high-water mark. So a thread looks at the
-descriptors of the process (/proc/self/fd, Linux), finds the connections of the sockets that it guards by their local address,
-and shuts down those that are too many or bring too much; ZeroMQ takes that for the end of the peer and frees what it kept.
+the parts of a message that has not ended, however many there are, beside every high-water mark. A thread therefore reads the
+descriptors of the process (/proc/self/fd, Linux), finds the connections of the guarded sockets by their local address, and shuts
+down those that are too many or bring too much; ZeroMQ takes that for the end of the peer and frees what it kept.
 """
 
 from __future__ import annotations
@@ -36,24 +36,24 @@ log = logging.getLogger(__name__)
 
 LOOK_EVERY_S = 0.05
 MOST_UNREAD_BYTES = 3 << 20
-"""Bytes of one connection since the last message that was received through it; its queue and the system's buffer hold less."""
+"""Bytes of one connection at most since the last message received through it; its queue and the system's buffer hold less."""
 MOST_UNREAD_TOGETHER_BYTES = 12 << 20
-"""Unread bytes of all connections together beyond which the one with most is shut down. A byte may take 20 of memory."""
+"""Unread bytes of all connections together beyond which the one with most is shut down. A byte may take 20 bytes of memory."""
 MOST_GROWTH_BYTES = 256 << 20
-"""Memory that a process may grow by before silent ipc connections are shut down: their bytes cannot be counted."""
+"""Bytes by which a process may grow before silent ipc connections are shut down, because their bytes cannot be counted."""
 TELL_EVERY_S = 1.0
 NO_MESSAGE = "bytes that are no whole message"
 
 
 @dataclass(frozen=True)
 class Share:
-    """What the peers of one socket may have together.
+    """Bounds for all peers of one socket together.
 
     Attributes:
-        connections: at most so many at a time.
-        gives_way: which ones are shut down when there are more: the newest, so that who is served goes on being served;
-            or the oldest, so that a newcomer always gets in.
-        most_unread_bytes: see `MOST_UNREAD_BYTES`; infinite for a socket of which nobody tells what was received.
+        connections: number of connections at a time at most.
+        gives_way: which connections are shut down when there are more: the newest, so that the others are served on, or the oldest,
+            so that a newcomer always gets in.
+        most_unread_bytes: see `MOST_UNREAD_BYTES`; infinite for a socket whose owner does not call `ConnectionGuard.received`.
     """
 
     connections: int
@@ -63,7 +63,7 @@ class Share:
 
 @dataclass
 class _Connection:
-    """One descriptor of this process that is a socket; `place` is None when it is no connection of a guarded socket."""
+    """A descriptor of this process that is a socket; `place` is None when it is no connection of a guarded socket."""
 
     fd: int
     inode: int
@@ -78,11 +78,11 @@ class ConnectionGuard:
     """Guards the bound sockets of one process from a thread of its own.
 
     Args:
-        sockets: what is guarded, by name, with its share; each is bound already.
+        sockets: the guarded sockets, already bound, and their shares, by name.
         most_growth_bytes: see `MOST_GROWTH_BYTES`; infinite for a process that needs more memory itself.
 
     Attributes:
-        shut: connections that were shut down so far, by reason.
+        shut: number of connections shut down so far, by reason.
     """
 
     def __init__(
@@ -109,7 +109,7 @@ class ConnectionGuard:
         self._thread.start()
 
     def close(self) -> None:
-        """Guard no longer."""
+        """Stop guarding."""
         self._stopping.set()
         if self._thread.ident is not None:
             self._thread.join(2.0)
@@ -119,14 +119,14 @@ class ConnectionGuard:
         self._delivered.add(fd)
 
     def shut_down(self, fd: int, reason: str, found: str) -> None:
-        """Shut down a connection by its descriptor; nothing happens when it is none of a guarded socket any more."""
+        """Shut down a connection by its descriptor; does nothing when it is no connection of a guarded socket any more."""
         connection = self._look_at(fd)
         if connection is not None and connection.place is not None:
             self._known[fd] = connection
             self._shut(connection, reason, found)
 
     def look(self) -> None:
-        """Look at all connections once."""
+        """Read all connections once, and shut down those beyond the bounds."""
         found: dict[int, _Connection] = {}
         for fd in descriptors():
             connection = self._look_at(fd)
@@ -145,7 +145,7 @@ class ConnectionGuard:
                 log.exception("connections could not be looked at")
 
     def _look_at(self, fd: int) -> _Connection | None:
-        """What is known of a descriptor; None when it is no socket."""
+        """The connection of a descriptor; None when it is no socket."""
         try:
             status = os.fstat(fd)
         except OSError:  # closed meanwhile
@@ -167,7 +167,7 @@ class ConnectionGuard:
 
     def _bound_number(self, guarded: Sequence[_Connection]) -> None:
         for name, share in self._shares.items():
-            mine = sorted((c for c in guarded if c.place == name), key=lambda c: c.inode)  # numbered as they come
+            mine = sorted((c for c in guarded if c.place == name), key=lambda c: c.inode)  # inodes rise with time
             excess = len(mine) - share.connections
             if excess > 0:
                 found = f"{len(mine)}; allowed: {share.connections}"
@@ -219,7 +219,7 @@ class ConnectionGuard:
 
 
 def connection_of(frame: zmq.Frame) -> int:
-    """Descriptor of the connection that a frame came through; -1 for what ZeroMQ made itself."""
+    """Descriptor of the connection through which a frame came; -1 for a frame that ZeroMQ made itself."""
     try:
         return frame.get(zmq.SRCFD)
     except zmq.ZMQError:
@@ -227,6 +227,6 @@ def connection_of(frame: zmq.Frame) -> int:
 
 
 def _place(last_endpoint: bytes) -> int | str:
-    """What tells the connections of a bound socket from others: its TCP port, or its path."""
+    """The mark of a bound socket's connections: its TCP port, or its path."""
     endpoint = last_endpoint.decode().rstrip("\0")
     return endpoint.removeprefix("ipc://") if endpoint.startswith("ipc://") else int(endpoint.rpartition(":")[2])

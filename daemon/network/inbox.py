@@ -1,4 +1,4 @@
-"""Receives whole messages of few parts from an asyncio socket; what has more parts is discarded as it comes."""
+"""Receives whole messages of few parts from an asyncio socket; further parts of a message are discarded as they come."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import zmq.asyncio
 from daemon.network.connections import ConnectionGuard, connection_of
 
 MOST_PARTS = 8
-"""Parts of a message that are kept: an address, an empty delimiter, and more than any request of ours has."""
+"""Parts of a message that are kept: an address, an empty delimiter, and more parts than any request has."""
 DISCARDED_AT_ONCE = 256
-"""Parts that are discarded before the event loop has its turn."""
+"""Parts discarded before the event loop continues with other tasks."""
 MOST_DISCARDED = 1000
-"""Parts after which the sender is cut off as well."""
+"""Discarded parts of a message after which its sender is cut off."""
 
 
 class Message(NamedTuple):
@@ -23,7 +23,7 @@ class Message(NamedTuple):
 
     Attributes:
         parts: its parts, at most `MOST_PARTS`; the first ones of a longer message.
-        fd: file descriptor of the connection it came through; -1 for what ZeroMQ made itself, as at the end of a subscriber.
+        fd: descriptor of its connection; -1 for a message that ZeroMQ made itself, as at the end of a subscriber.
         frame: the first part, with what ZeroMQ knows about the sender.
     """
 
@@ -33,7 +33,7 @@ class Message(NamedTuple):
 
     @property
     def peer(self) -> str:
-        """Who is at the other end: the name of its key, else its address, else empty."""
+        """The sender: the name of its key, else its address, else empty."""
         for name in ("User-Id", "Peer-Address"):
             try:
                 if found := self.frame.get(name):
@@ -50,13 +50,13 @@ class Inbox:
     loop. Several tasks may receive from one `Inbox`: each gets messages of its own.
 
     Args:
-        socket: received from by nobody else.
-        guard: of its connections.
+        socket: socket from which nothing else receives.
+        guard: guard of its connections.
     """
 
     def __init__(self, socket: zmq.asyncio.Socket, guard: ConnectionGuard) -> None:
         self._socket, self._guard = socket, guard
-        # As the asyncio socket itself receives with DONTWAIT, but without a future.
+        # Receives with DONTWAIT, as the asyncio socket itself does, but without a future.
         self._at_once: zmq.Socket[bytes] = zmq.Socket(shadow=socket)
         self._discarding = False
         self._discarded = 0
@@ -69,7 +69,7 @@ class Inbox:
         return message
 
     async def waiting(self) -> Message | None:
-        """The next message that is there already, else None."""
+        """The next message that has arrived already; None without one."""
         while True:
             await self._discard()
             frame = self._next()
@@ -79,7 +79,7 @@ class Inbox:
                 return message
 
     def _message(self, frame: zmq.Frame) -> Message | None:
-        """The message that begins with a frame; None for a frame in the middle of one that is discarded."""
+        """The message that begins with a frame; None for a frame of a message that is being discarded."""
         if self._discarding:
             self._discard_one(frame)
             return None
@@ -94,7 +94,7 @@ class Inbox:
         return Message([part.bytes for part in parts], fd, frame)
 
     async def _discard(self) -> None:
-        """Discard what is left of a message that is too long."""
+        """Discard the remaining parts of a message that is too long."""
         while self._discarding:
             for _ in range(DISCARDED_AT_ONCE):
                 frame = self._next()
@@ -113,7 +113,7 @@ class Inbox:
             self._guard.shut_down(connection_of(frame), "a message of too many parts", f"more than {MOST_DISCARDED}")
 
     def _next(self) -> zmq.Frame | None:
-        """The next frame that is there, else None."""
+        """The next frame that has arrived; None without one."""
         try:
             return self._at_once.recv(zmq.DONTWAIT, copy=False)
         except zmq.Again:

@@ -1,7 +1,7 @@
-"""CURVE keys: one's own pair, the clients that are allowed, the daemons and generators that are trusted.
+"""CURVE keys: the own pair, the allowed clients, the trusted daemons and generators.
 
 A folder holds `own.key` (mode 600), `allowed/NAME.pub` and `trusted/daemon.pub`, `trusted/generator.pub`. Both sides have
-one: what the daemon has in `allowed` is what a client has in `own.key`, and the other way round with `trusted`.
+such a folder: the daemon has in `allowed` the public key of a client's `own.key`, and the client has the daemon's in `trusted`.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from daemon.errors import ConfigError
 log = logging.getLogger(__name__)
 
 KEY_LENGTH = 40
-"""Characters of a CURVE key in Z85, as ZeroMQ writes it; among them are many that a shell reads as its own."""
+"""Characters of a CURVE key in Z85, ZeroMQ's notation; many of them have a meaning in a shell."""
 HEX_LENGTH = 64
-"""Digits of a CURVE key in hexadecimal, as people paste it."""
+"""Digits of a CURVE key in hexadecimal, the notation that people paste."""
 ZAP = "inproc://zeromq.zap.01"
 _POLL_MS = 100
 _NAME = re.compile(r"[A-Za-z0-9_.-]{1,64}")
@@ -55,10 +55,10 @@ class KeyFolder:
         self.path = path
 
     def new(self) -> KeyPair:
-        """Make one's own pair.
+        """Create the own key pair.
 
         Raises:
-            ConfigError: there is one already, or it cannot be written.
+            ConfigError: a pair exists already, or cannot be written.
         """
         file = self.path / "own.key"
         if file.exists():
@@ -75,10 +75,10 @@ class KeyFolder:
         return KeyPair(public, secret)
 
     def own(self) -> KeyPair:
-        """One's own pair.
+        """The own key pair.
 
         Raises:
-            ConfigError: there is none, it is damaged, or others may read it.
+            ConfigError: the pair is missing, damaged, or readable by others.
         """
         file = self.path / "own.key"
         try:
@@ -94,38 +94,38 @@ class KeyFolder:
             raise ConfigError(f"{file}: no key pair to be read there ({error}); remove it, `mmmd keys new`") from error
 
     def allow(self, name: str, public: str) -> None:
-        """Let the owner of a public key in.
+        """Allow the owner of a public key to connect.
 
         Raises:
-            ConfigError: name or key is none, or cannot be written.
+            ConfigError: the name or the key is malformed, or cannot be written.
         """
         if not _NAME.fullmatch(name):
             raise ConfigError(f"name {name!r}; allowed: 1 to 64 letters, digits, '_', '.' and '-'")
         self._write("allowed", name, checked_key(public))
 
     def trust(self, role: str, public: str) -> None:
-        """Name the daemon or the generator that one talks to.
+        """Set the public key of the daemon or generator to connect to.
 
         Raises:
-            ConfigError: role or key is none, or cannot be written.
+            ConfigError: the role is unknown, or the key is malformed or cannot be written.
         """
         if role not in ROLES:
             raise ConfigError(f"trust {role!r}; allowed: {', '.join(ROLES)}")
         self._write("trusted", role, checked_key(public))
 
     def allowed(self) -> dict[str, bytes]:
-        """Public keys that are let in, by name; what is no key is left out and logged."""
+        """Public keys of the allowed clients, by name; malformed files are left out and logged."""
         return self._read("allowed")
 
     def trusted(self) -> dict[str, bytes]:
-        """Public keys of daemon and generator, as far as they are known."""
+        """The known public keys of daemon and generator, by role."""
         return self._read("trusted")
 
     def server_of(self, role: str) -> bytes:
         """The public key of the daemon or the generator.
 
         Raises:
-            ConfigError: it is not known.
+            ConfigError: the key is not known.
         """
         found = self.trusted().get(role)
         if found is None:
@@ -152,15 +152,15 @@ class KeyFolder:
 
 
 def as_hex(key: bytes) -> str:
-    """A key in hexadecimal: letters and digits alone, which every shell takes as they are."""
+    """A key in hexadecimal: letters and digits only, which have no meaning in any shell."""
     return zmq.utils.z85.decode(key).hex()
 
 
 def checked_key(text: str) -> bytes:
-    """A key in Z85, of one in hexadecimal or in Z85.
+    """A key in Z85, from a text in hexadecimal or in Z85.
 
     Raises:
-        ConfigError: it is none.
+        ConfigError: the text is no key.
     """
     key = text.strip()
     allowed = f"allowed: {HEX_LENGTH} hexadecimal digits, as `mmmd keys list` prints them, or {KEY_LENGTH} of Z85"
@@ -178,7 +178,7 @@ def checked_key(text: str) -> bytes:
 
 
 def serve_curve(socket: zmq.Socket[Any], keys: KeyFolder) -> None:
-    """Make a socket take only clients with a CURVE key; `Doorkeeper` of its context says which."""
+    """Make a socket accept only clients with a CURVE key; the context's `Doorkeeper` decides which."""
     own = keys.own()
     socket.setsockopt(zmq.CURVE_SERVER, 1)
     socket.setsockopt(zmq.CURVE_PUBLICKEY, own.public)
@@ -187,7 +187,7 @@ def serve_curve(socket: zmq.Socket[Any], keys: KeyFolder) -> None:
 
 
 def connect_curve(socket: zmq.Socket[Any], keys: KeyFolder, role: str) -> None:
-    """Make a socket talk to the trusted daemon or generator only."""
+    """Make a socket connect only to the trusted daemon or generator."""
     own = keys.own()
     socket.setsockopt(zmq.CURVE_SERVERKEY, keys.server_of(role))
     socket.setsockopt(zmq.CURVE_PUBLICKEY, own.public)
@@ -195,12 +195,12 @@ def connect_curve(socket: zmq.Socket[Any], keys: KeyFolder, role: str) -> None:
 
 
 class Doorkeeper:
-    """Answers ZeroMQ's question (RFC 27) whether a key is allowed; for all CURVE sockets of one context.
+    """Answers ZeroMQ's requests (RFC 27) whether a key is allowed, for all CURVE sockets of one context.
 
-    A key that is not allowed is answered with status 300, upon which the connection is closed without a word: the
-    stranger cannot tell it from a daemon that is not there. The folder is read for each question, so that a key
-    can be allowed or removed while the daemon runs. ZeroMQ asks when a connection begins and never again: one that
-    stands when its key is removed goes on until either side ends.
+    A key that is not allowed gets status 300, upon which the connection is closed silently: the stranger cannot
+    distinguish it from a daemon that is not there. The folder is read for each request, so that a key can be allowed or
+    removed while the daemon runs. ZeroMQ asks when a connection begins and never again: a connection that exists when
+    its key is removed stays open until either side ends.
     """
 
     def __init__(self, context: zmq.Context[Any], keys: KeyFolder) -> None:
@@ -214,7 +214,7 @@ class Doorkeeper:
         self._thread.start()
 
     def close(self) -> None:
-        """Let nobody in any more."""
+        """Stop answering: no new client is let in."""
         self._stopping.set()
         self._thread.join(2.0)
         self._socket.close(0)
@@ -229,7 +229,7 @@ class Doorkeeper:
                 self._stopping.wait(_POLL_MS / 1e3)
 
     def _reply(self, question: list[bytes]) -> list[bytes]:
-        """The answer; no, where none can be found: without this thread nobody at all would be let in."""
+        """The answer to a request; a refusal after an error, because the thread must live on for other clients."""
         try:
             return self._answer(question)
         except Exception:

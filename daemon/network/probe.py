@@ -1,4 +1,4 @@
-"""Whether anything listens at an endpoint: ZeroMQ itself would wait for it in silence, or take over its ipc path."""
+"""Probes whether anything listens at an endpoint: ZeroMQ itself would wait in silence, or take over its ipc path."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The daemon's sockets: bound with limits, sent to without waiting."""
+"""Binds the daemon's sockets with limits, and sends through them without waiting."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from daemon.network.probe import listening
 from daemon.settings.config import EndpointInUseError, config_error
 
 MAX_RECEIVE_BYTES = 256 << 10
-"""Bytes of a frame. ZeroMQ drops the connection of a peer that sends more; below it the peer is told what is allowed."""
+"""Bytes of a frame at most. ZeroMQ drops the connection of a peer that sends more; a smaller frame gets an answer."""
 RECEIVE_QUEUE = 8
 RECEIVE_BUFFER_BYTES = 256 << 10
-"""Bytes that the system keeps of each peer besides."""
+"""Bytes that the system buffers for each peer, besides ZeroMQ's queue."""
 HANDSHAKE_MS = 3000
-"""Milliseconds that a peer has to shake hands. ZeroMQ's 30 s let silent connections pile up."""
+"""Milliseconds that a peer has for the handshake. ZeroMQ's 30 s let silent connections pile up."""
 
 
 def bind(
@@ -29,15 +29,15 @@ def bind(
     most_bytes: int = MAX_RECEIVE_BYTES,
     queue: int = RECEIVE_QUEUE,
 ) -> None:
-    """Bind a socket; one that machines can reach takes only allowed `keys`, where there are any.
+    """Bind a socket; over tcp it accepts only clients with an allowed key, if `keys` is given.
 
     Args:
         socket: the socket.
-        key: names the setting, for errors.
-        endpoint: where to bind it.
-        keys: of the clients that are let in over tcp; None lets all in.
-        most_bytes: of a frame that it receives.
-        queue: messages that ZeroMQ keeps of each peer until they are received; more wait at the peer.
+        key: name of the setting, for errors.
+        endpoint: endpoint to bind.
+        keys: keys of the clients that are accepted over tcp; None accepts all.
+        most_bytes: bytes of a received frame at most.
+        queue: messages that ZeroMQ keeps of each peer until they are received; further ones wait at the peer.
 
     Raises:
         ConfigError: the endpoint is taken or cannot be bound.
@@ -50,7 +50,7 @@ def bind(
     if keys is not None and endpoint.startswith("tcp://"):
         serve_curve(socket, keys)
     do = "stop the other daemon (`mmmd status` shows it), or choose another endpoint"
-    if endpoint.startswith("ipc://") and listening(endpoint):  # ZeroMQ would take the path from it
+    if endpoint.startswith("ipc://") and listening(endpoint):  # ZeroMQ would take the path from its owner
         raise _in_use(key, endpoint, "Address already in use", do)
     try:
         socket.bind(endpoint)
@@ -65,12 +65,12 @@ def _in_use(key: str, endpoint: str, why: str, do: str) -> EndpointInUseError:
 
 
 def send_now(socket: zmq.asyncio.Socket, frames: list[bytes]) -> bool:
-    """Send without waiting; a peer that never reads loses its own messages and slows nobody.
+    """Send without waiting; a peer that never reads loses its own messages and slows no other.
 
-    Through the asyncio socket: a send past it would swallow the edge that tells of received frames.
+    The message goes through the asyncio socket: a send past it would swallow the edge that announces received frames.
 
     Returns:
-        False when the queue of who should have it is full, of a ROUTER only if it is `ROUTER_MANDATORY`.
+        False when the receiver's queue is full; for a ROUTER only if it is `ROUTER_MANDATORY`.
     """
     sent = cast("Any", socket.send_multipart(frames, zmq.DONTWAIT))  # pyright: ignore[reportUnknownMemberType]
     assert sent.done(), "with DONTWAIT it is known at once"
@@ -78,13 +78,13 @@ def send_now(socket: zmq.asyncio.Socket, frames: list[bytes]) -> bool:
 
 
 def publish_now(socket: zmq.asyncio.Socket, frames: list[bytes]) -> bool:
-    """Send to all subscribers of an XPUB that is `XPUB_NODROP`, without waiting; one whose queue is full does without.
+    """Send to all subscribers of an `XPUB_NODROP` socket without waiting; a subscriber whose queue is full loses the message.
 
-    With that option a send fails as a whole when one queue is full, which is how a loss is noticed; without it all but
-    the full ones get the message. ZeroMQ then passes over a subscriber whose queue was full until it reads again.
+    With that option a send fails as a whole when one queue is full, which reveals the loss; without it all other subscribers
+    get the message. ZeroMQ then skips a subscriber whose queue was full until it reads again.
 
     Returns:
-        False when a queue has become full: from this message on one subscriber or more loses messages.
+        False when a queue has become full: from this message on at least one subscriber loses messages.
     """
     if send_now(socket, frames):
         return True

@@ -1,7 +1,7 @@
-"""Who may use the web server: this machine alone, or whoever has the token; and no page of another site. No I/O.
+"""Access to the web server: from this machine alone, or with a token; never from a page of another site. No I/O.
 
-A browser sends requests for any page that a person has open. So a request that names another site as its origin is refused, and
-on loopback one whose Host is no name of this machine: a name that another site made point here.
+A browser sends requests for any page that a person has open. A request that names another site as its origin is therefore
+refused, and on loopback a request whose Host is no name of this machine: another site may have made a name point here.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from daemon.settings.config import config_error
 TOKEN_VARIABLE = "MMMD_TOKEN"
 """Environment variable that holds the token."""
 SHORTEST_TOKEN = 16
-"""Characters of a token: enough that nobody guesses it."""
+"""Characters of a token at least: enough that nobody guesses it."""
 
 
 @dataclass(frozen=True)
 class Access:
-    """Where the server is bound, and the token that it wants.
+    """Address of the server, and the token that it requires.
 
     Attributes:
-        host: address that it is bound to.
+        host: address to which the server is bound.
         port: its port.
-        token: what a request has to bring; empty for none, on a loopback address alone.
+        token: token that a request must carry; empty for none, on a loopback address only.
     """
 
     host: str
@@ -48,16 +48,16 @@ class Access:
 
     @property
     def url(self) -> str:
-        """What a person opens; the token stands behind the #, which browsers do not send."""
+        """The address for a person to open; the token stands behind the #, which browsers do not send."""
         host = "localhost" if self.host in ("0.0.0.0", "::") else f"[{self.host}]" if ":" in self.host else self.host
         return f"http://{host}:{self.port}/" + (f"#token={self.token}" if self.token else "")
 
     def refusal(self, headers: Mapping[str, str], token: str = "") -> tuple[int, str] | None:
-        """Why a request is refused, as an HTTP status and a sentence; None for one that is served.
+        """The reason why a request is refused, as an HTTP status and a sentence; None for a request that is served.
 
         Args:
-            headers: of the request.
-            token: as its address names it, for WebSockets, whose headers a page cannot set.
+            headers: headers of the request.
+            token: token in the request's address, for WebSockets, whose headers a page cannot set.
         """
         host = headers.get("Host", "")
         if not self.token and not is_loopback(_name(host)):
@@ -80,7 +80,7 @@ def address_of(text: str) -> tuple[str, int]:
     """Host and port of `HOST:PORT`, `[HOST]:PORT` or `PORT`.
 
     Raises:
-        ConfigError: it is none of these.
+        ConfigError: the text is none of these.
     """
     host, _, port = text.rpartition(":")
     host = host.strip("[]") or "127.0.0.1"
