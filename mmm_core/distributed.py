@@ -1,8 +1,8 @@
-"""Several processes, one training: each takes its share of every batch, and gradients are averaged.
+"""Trains with several processes: each takes its share of every batch, and gradients are averaged.
 
-Started by torchrun, which sets RANK, WORLD_SIZE and where the first process is. All processes draw the same whole batch
-from the same seed and keep every n-th row, so n processes take the steps that one would take with the whole batch.
-Without torchrun everything here does nothing.
+torchrun starts the processes and sets RANK, WORLD_SIZE and the address of the first process. All processes draw the same
+whole batch from the same seed and keep every n-th row, so n processes take the steps that one would take with the whole
+batch. Without torchrun the functions of this module do nothing.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def world() -> int:
 
 
 def share(rows: int) -> slice:
-    """Rows of a batch that are this process's; what does not divide evenly is left out."""
+    """Rows of a batch that belong to this process; a remainder that does not divide evenly is left out."""
     return slice(rank(), rows // world() * world(), world())
 
 
@@ -49,7 +49,7 @@ def average(tensors: Iterable[Tensor]) -> None:
 
 
 def gathered(rows: Tensor) -> Tensor:
-    """(N, ...) rows of all processes in the order of the whole batch: (world * N, ...)."""
+    """(world * N, ...) rows of all processes in the order of the whole batch, from each one's (N, ...) rows."""
     if world() == 1:
         return rows
     parts = [torch.empty_like(rows) for _ in range(world())]
@@ -58,13 +58,13 @@ def gathered(rows: Tensor) -> Tensor:
 
 
 def from_first(tensors: Iterable[Tensor]) -> None:
-    """Take the first process's values, in place."""
+    """Replace tensors by those of the first process, in place."""
     if world() > 1:
         for tensor in tensors:
             dist.broadcast(tensor, 0)
 
 
 def wait() -> None:
-    """Wait until all processes are here."""
+    """Wait until all processes have called this function."""
     if world() > 1:
         dist.barrier()

@@ -3,7 +3,7 @@
 MmmError
 ├── MotionFileError(path, key, found, allowed)   a motion or caption file that cannot be used   (ValueError)
 ├── CheckpointError(path, key, found, expected)  weights that do not fit this code              (ValueError)
-├── GenerationError(asked, allowed)              a request outside what the model can be asked   (ValueError)
+├── GenerationError(asked, allowed)              a request outside the model's range            (ValueError)
 ├── TrainingDataError(path, key, found, allowed) a training corpus that cannot be read           (ValueError)
 └── EvaluationError(found, allowed)              things that cannot be measured together         (ValueError)
 """
@@ -14,7 +14,7 @@ from pathlib import Path
 
 
 class MmmError(Exception):
-    """Anything that goes wrong between a text and a motion."""
+    """Base class of every error that the motion model raises."""
 
 
 class _FileError(MmmError, ValueError):
@@ -27,7 +27,7 @@ class _FileError(MmmError, ValueError):
 
 
 class MotionFileError(_FileError):
-    """A motion file that cannot be read as one."""
+    """A file that cannot be read as a motion."""
 
 
 class CheckpointError(_FileError):
@@ -39,7 +39,7 @@ class TrainingDataError(_FileError):
 
 
 class GenerationError(MmmError, ValueError):
-    """A seed, length or text that the model cannot be asked for."""
+    """A request outside the model's range, such as a seed, a length or a text."""
 
     def __init__(self, asked: str, allowed: str) -> None:
         self.asked, self.allowed = asked, allowed

@@ -68,12 +68,15 @@ def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -
         robots: names of packaged robots or paths of robot files; every packaged one when empty.
 
     Raises:
-        CommandError: a robot that was asked for has servos without a control table here.
+        CommandError: a robot that was asked for has servos without a control table here, or two robots have one name.
     """
     from mmm_core.generate.engine import Engine
 
     stderr = Console(stderr=True)
-    asked = {name: load_robot(name) for name in robots or list_robots()}
+    loaded = [load_robot(name) for name in robots or list_robots()]
+    asked = {robot.name: robot for robot in loaded}
+    if len(asked) < len(loaded):
+        raise CommandError(f"--robot {' '.join(robots)}: two of these robots have the same name; give each robot once")
     without = sorted(name for name, robot in asked.items() if not _has_tables(robot))
     if robots and without:
         raise CommandError(

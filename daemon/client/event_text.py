@@ -28,8 +28,7 @@ def describe(event: object) -> str:
         after = "the text" if event.target_t_mono is None else "the first target"
         return f"{event.stage}: first servo frame {event.first_motion_ms:.0f} ms after {after}"
     if isinstance(event, Done):
-        missing = f", but {event.missing}" if event.missing else ""
-        verdict = f"{event.shown}: {event.seen}{missing}; " if event.shown else ""
+        verdict = f"{event.shown}: {_verdict(event)}; " if event.shown else ""
         return (
             f"done: {verdict}{event.duration_s:.2f} s; fastest {event.peak_speed_joint}, {degrees(event.peak_speed_rad_s):.0f} of "
             f"{degrees(event.peak_speed_limit_rad_s):.0f} deg/s; {event.clipped_frames} of {event.frames} frames clipped; "
@@ -62,11 +61,17 @@ def repeatable(events: Iterable[object]) -> str:
             shown = f"left out, {event.reason}" if event.status == "rejected" else event.understood or event.status
             told.append(f"scene {event.scene}, {event.text!r}: {shown}")
         elif isinstance(event, Done):
-            seen = f"; seen on the robot: {event.seen}" if event.seen else ""
-            missing = f"; not seen on the robot: {event.missing}" if event.missing else ""
-            told.append(f"done after {event.duration_s:.1f} s{seen}{missing}")
+            seen = (
+                f"; {_verdict(event)}" if event.missing else f"; seen on the robot: {event.seen}" if event.seen else ""
+            )
+            told.append(f"done after {event.duration_s:.1f} s{seen}")
             began = ""
         elif isinstance(event, Ack):
             told.append("stopped" if event.verb == "stop" else f"{event.verb} was carried out")
             began = ""
     return "\n".join([*told, began] if began else told)
+
+
+def _verdict(event: Done) -> str:
+    """What the motion shows and, where the robot does not show all of it, what is missing there."""
+    return f"its motion {event.seen}; on the robot: {event.missing}" if event.missing else event.seen

@@ -1,6 +1,6 @@
 """The last commands of each client, for texts that refer to them: "again", "slower", "with the other hand".
 
-A client is one connection of one peer, as the request limits count it. What one client asked for is never referred to by another.
+A client is one connection of one peer, as for the request limits. No client can refer to another client's commands.
 """
 
 from __future__ import annotations
@@ -22,24 +22,24 @@ from mmm_core.language.reading import read
 from mmm_core.language.warming import warmed
 
 KEPT = 512
-"""Clients that are remembered; the one that asked least recently is forgotten first."""
+"""Clients that are remembered; the one with the oldest request is forgotten first."""
 KEPT_COMMANDS = 4
-"""Newest commands of a client: of those that were refused the one before counts."""
+"""Newest commands kept for each client: a refused command does not count, and the one before it does."""
 FORGET_S = 120.0
-"""Seconds after its last event in which a command may be referred to; one that is not over may be at any time."""
+"""Seconds after its last event in which a command may be referred to; a command that is not over may be at any time."""
 _HOW_OFTEN = ("repeat", "loop", "hold")
 _HOLD_ON = ("tempo", "amplitude", "mirror", "seconds", "seed", *_HOW_OFTEN)
-"""Options of the last command that hold on where the request that refers to it does not give others."""
+"""Options of the last command that stay in force when the request that refers to it does not set them."""
 Client = tuple[bytes, str]
 """A connection's address, and the name of its key or else its network address."""
 
 
 class Conversations:
-    """What was asked last on each connection.
+    """Remembers the last commands of each connection.
 
     Args:
-        words_of: the words of a named gesture; empty for an unknown one.
-        now_s: the monotonic clock.
+        words_of: returns the words of a named gesture; empty for an unknown one.
+        now_s: monotonic clock, seconds.
     """
 
     def __init__(self, words_of: Callable[[str], str], now_s: Callable[[], float] = time.monotonic) -> None:
@@ -50,10 +50,10 @@ class Conversations:
         in_context("again", self._read("nod"))  # loads the table of words that refer to the last command
 
     def take(self, entry: Entry, client: Client) -> None:
-        """Remember a new command of a client; a text that refers to the last one becomes what it means.
+        """Remember a new command of a client; a text that refers to the last command is replaced by its full meaning.
 
         Raises:
-            NotPlayableError: there is nothing that it can refer to.
+            NotPlayableError: there is no command that the text can refer to.
         """
         request = entry.request
         if isinstance(request, Lease):
@@ -68,14 +68,14 @@ class Conversations:
             self._clients.popitem(last=False)
 
     def read_ahead(self, entry: Entry) -> None:
-        """Read the words of a command before the next text may refer to it, so that the robot does not wait for that then."""
+        """Read the words of a command before the next text refers to it, so that the robot does not wait for the reading then."""
         self._reading_of(entry)
 
     def _resolve(self, entry: Entry, request: Say, last: Entry | None) -> None:
-        """What a text asks for after the last command.
+        """Replace a text that refers to the last command by its full meaning.
 
         Raises:
-            NotPlayableError: it refers to that, and cannot.
+            NotPlayableError: the text refers to a command, and there is none that it can refer to.
         """
         try:
             meant = in_context(request.text, None if last is None else self._reading_of(last))
@@ -90,7 +90,7 @@ class Conversations:
         entry.refers_to = last.id
 
     def _last(self, client: Client) -> Entry | None:
-        """The client's newest command that was not refused, if it is not forgotten."""
+        """The client's newest command that was not refused; None without one, or when it is forgotten."""
         for entry in reversed(self._clients.get(client, ())):
             if entry.ended and not entry.accepted:
                 continue
@@ -99,7 +99,7 @@ class Conversations:
         return None
 
     def _reading_of(self, entry: Entry) -> Reading | None:
-        """The words of a command as they are read; None of one that is no text."""
+        """The parsed words of a command; None for a command without words."""
         if isinstance(entry.request, Say):
             return self._read(entry.request.text)
         words = self._words_of(entry.request.name) if isinstance(entry.request, Gesture) else ""
@@ -107,7 +107,7 @@ class Conversations:
 
 
 def _played(request: Say, last: Entry, meant: InContext, text: str) -> Say:
-    """The request with what it means, and the options of the last command that it does not give itself."""
+    """The request with its full text, and with the options of the last command that it does not set itself."""
     default = Say(text=text)
     given = {name for name in _HOLD_ON if getattr(request, name) != getattr(default, name)}
     options = {name: getattr(last.request, name, getattr(default, name)) for name in _HOLD_ON if name not in given}

@@ -1,7 +1,7 @@
-"""The front's side of `ctl`: ends what a stop ends, and decides on what is not for the bus process alone.
+"""The front's side of `ctl`: ends the commands that a stop ends, and decides on requests that need more than the bus process.
 
-A stop or an e-stop is with the bus process before the front is told of it (`daemon.ctl`). What it ends here is bookkeeping: the
-front's setpoints are void already, and stay so until the front knows of it.
+A stop or an e-stop reaches the bus process before the front learns of it (`daemon.ctl`). Ending commands here is bookkeeping: the
+front's setpoints are void already, and stay void until the front knows of the halt.
 """
 
 from __future__ import annotations
@@ -27,23 +27,23 @@ from daemon.wire.status import StateEvent
 log = logging.getLogger(__name__)
 
 DRAIN_TIMEOUT_S = 0.05
-"""Longest wait of the answer to `park` and `torque off` for the texts that came before it."""
+"""Seconds that the answer to `park` and `torque off` waits at most for the texts that came before it."""
 AT_ONCE = 64
-"""Messages that are taken before the event loop has its turn."""
+"""Number of messages taken before the event loop continues with other tasks."""
 UNTOLD_S = 0.1
-"""Seconds after which the front serves a halt that it was not told of: the process that had to tell it was killed."""
+"""Seconds after which the front serves a halt that no message told it of: the ctl process was killed before it could."""
 
 
 class CtlHandler:
-    """Serves what the process behind `ctl` hands over, in the event loop.
+    """Serves the requests that the ctl process hands over, in the event loop.
 
     Args:
         link: shared memory.
-        performer: plays the commands that a halt ends.
+        performer: scheduler of the commands that a halt ends.
         ledger: numbers events.
-        drain_cmd: takes the requests that wait on `cmd`.
-        state: makes the state event.
-        publish: tells those who watch.
+        drain_cmd: takes the requests that wait in the socket `cmd`.
+        state: returns the state event.
+        publish: publishes an event on `pub`.
     """
 
     def __init__(
@@ -63,13 +63,13 @@ class CtlHandler:
         self._ending: set[asyncio.Task[None]] = set()
 
     def attach(self, channel: Channel) -> None:
-        """Serve this channel from now on; the one before belongs to a process that is gone."""
+        """Serve this channel from now on; the previous channel belonged to a process that is gone."""
         self.detach()
         self._channel = channel
         asyncio.get_running_loop().add_reader(channel.fileno(), self.take_waiting)
 
     def detach(self) -> None:
-        """Serve none."""
+        """Serve no channel."""
         if self._channel is not None:
             if self._channel.fileno() >= 0:
                 asyncio.get_running_loop().remove_reader(self._channel.fileno())
@@ -77,7 +77,7 @@ class CtlHandler:
             self._channel = None
 
     def take_waiting(self) -> None:
-        """Take the messages that are there. Called before each text as well: a stop that came before it is known then."""
+        """Take the messages that have arrived. Called before each text too, so that an earlier stop is known by then."""
         for _ in range(AT_ONCE):
             message = None if self._channel is None else self._channel.receive()
             if message is None:
@@ -91,7 +91,7 @@ class CtlHandler:
         self._send_answers()
 
     def tick(self) -> None:
-        """Notice halts that nobody has told of: the process that took them may have been killed in between."""
+        """Serve halts for which no message came: the ctl process may have been killed before it sent one."""
         self._send_answers()
         for asked in self._link.epochs.unknown_halts:
             if time.monotonic_ns() - asked.number // 2 > 1e9 * UNTOLD_S:
@@ -129,7 +129,7 @@ class CtlHandler:
             self._answer(handed.number, request, lambda: self._decide(handed.number, request))
 
     def _halted(self, trigger: Trigger, asked: Asked, request: Stop | Estop | None) -> None:
-        """The bus process was asked for a stop or an e-stop: end what came before it."""
+        """End the commands that came before a stop or e-stop, which the bus process has received already."""
         if self._link.epochs.knows_of(asked):
             self._reply(Answered(asked.number))
             return
@@ -139,14 +139,14 @@ class CtlHandler:
         self._start(self._end_halted(lambda: self._reply(Answered(asked.number))))
 
     def _halt(self, number: int, request: Park | Torque) -> None:
-        """Park or torque off: the robot's state decides, then it is as a stop."""
+        """Serve park or torque off: the robot's state decides whether it is allowed, then commands end as for a stop."""
         kind, trigger = (
             (BusRequest.PARK, Trigger.PARK)
             if isinstance(request, Park)
             else (BusRequest.TORQUE_OFF, Trigger.TORQUE_OFF)
         )
         if trigger is Trigger.TORQUE_OFF:
-            self._machine.limp_by_person()  # first: no text may arm it meanwhile
+            self._machine.limp_by_person()  # first, so that no text arms the robot meanwhile
         state = self._machine.state
         try:
             self._machine.check(trigger)
@@ -164,7 +164,7 @@ class CtlHandler:
         self._start(self._end_halted(lambda: self._send_event(number, event)))
 
     def _decide(self, number: int, request: CtlRequest) -> Event:
-        """Serve a request that ends nothing.
+        """Serve a request that ends no command.
 
         Raises:
             CommandRefusedError: the robot's state does not allow it.
@@ -199,13 +199,13 @@ class CtlHandler:
         self._send_event(number, event)
 
     async def _end_halted(self, then: Callable[[], None]) -> None:
-        """End what came before a halt; `then` is called when that is done, or after a while in which it is not."""
+        """End the commands that came before a halt; `then` is called when that is done, or after `DRAIN_TIMEOUT_S`."""
         late = asyncio.get_running_loop().call_later(DRAIN_TIMEOUT_S, then)
         try:
             await self._drain_cmd()
             await asyncio.sleep(0)  # a request that was already received is taken now
             self._performer.end_halted()
-        finally:  # what comes later is no longer taken for what came before
+        finally:  # commands that arrive from here on count as sent after the halt
             self._performer.halts.served()
             if not late.cancelled() and late.when() > asyncio.get_running_loop().time():
                 late.cancel()

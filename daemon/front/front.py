@@ -1,7 +1,7 @@
-"""The front: an asyncio shell around wire, ledger and performer. Holds no torch.
+"""The front: an asyncio shell around wire, ledger and scheduler. It loads no torch.
 
-`cmd` (ROUTER) takes texts and returns their events; `pub` (XPUB) carries state and events to all; `ctl` has its own
-process (`daemon.ctl`), which reaches the bus process without this one and hands over what is to be decided here.
+`cmd` (ROUTER) takes texts and returns their events; `pub` (XPUB) carries state and events to all; `ctl` has its own process
+(`daemon.ctl`), which reaches the bus process directly and hands over the requests that the front decides.
 """
 
 from __future__ import annotations
@@ -50,24 +50,24 @@ DRAIN_LIMIT = 10_000
 PARK_AGAIN_S = 1.0
 HEALTH_EVERY_S = 1.0
 STREAM_PAUSE_S = 0.001
-"""Seconds between two looks at `stream`; of the targets that one sender sends meanwhile the newest counts."""
+"""Seconds between two readings of `stream`; of the targets that one sender sends meanwhile, the newest counts."""
 MOST_TARGETS = 256
-"""Targets that are received at one look, so that a flood of them does not keep the event loop."""
+"""Number of targets received in one reading at most, so that a flood of targets does not block the event loop."""
 SWITCH_S = 0.001
-"""Longest that a worker thread keeps the interpreter from the event loop."""
+"""Seconds that a worker thread keeps the interpreter from the event loop at most."""
 SHARES = {"cmd": Share(256), "pub": Share(256), "stream": Share(64)}
-"""Connections of each socket."""
+"""Number of connections that each socket serves at a time at most."""
 
 
 class Front:
-    """Takes commands, hands them on, tells what happens.
+    """Receives commands, hands them to the scheduler, and publishes events and state.
 
     Args:
         config: endpoints, rates and time-outs.
         robot: the robot.
         link: shared memory with the bus process.
-        context: of the asyncio sockets.
-        generator: asks the generator.
+        context: context of the asyncio sockets.
+        generator: client of the generator.
         record: called with (channel, payload) for every request and event, for the log.
 
     Raises:
@@ -100,7 +100,7 @@ class Front:
         self._tasks: list[asyncio.Task[None]] = []
         self._events_dropped = 0
         self._cmd = context.socket(zmq.ROUTER)
-        self._cmd.setsockopt(zmq.ROUTER_MANDATORY, 1)  # a peer that does not read is noticed
+        self._cmd.setsockopt(zmq.ROUTER_MANDATORY, 1)  # sending to a peer that does not read fails
         self._stream = context.socket(zmq.SUB)
         self._stream.subscribe(b"")  # not CONFLATE, with which libzmq aborts the process upon a message of two parts
         self._targets = TargetHandler(robot, self.performer, self.ledger, self._publisher.event)
@@ -139,17 +139,17 @@ class Front:
         self._guard.start()
 
     async def failure(self) -> None:
-        """Wait for a task of the front to end, which none should.
+        """Wait for a task of the front to end, which none should do.
 
         Raises:
-            Exception: what ended it.
+            Exception: the error that ended the task.
         """
         done, _ = await asyncio.wait(self._tasks, return_when=asyncio.FIRST_COMPLETED)
         for task in done:
             task.result()
 
     async def park(self) -> RobotState:
-        """End all commands and park, as far as the robot's state allows; the state it is left in."""
+        """End all commands and park, as far as the robot's state allows; returns the state in which the robot is left."""
         self.performer.end_all("shutdown")
         state = self.machine.state
         if state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP) or not self.follower.bus_alive:
@@ -158,11 +158,11 @@ class Front:
         asked_s = float("-inf")
         ticking = next((t for t in self._tasks if t.get_name() == self._tick_forever.__name__), None)
         while time.monotonic() < end_s:
-            if ticking is None or ticking.done():  # it failed, which is why the robot is to be parked
+            if ticking is None or ticking.done():  # the ticking task failed, which is why the robot is to be parked
                 self.performer.tick()
             if self.machine.state in (RobotState.LIMP, RobotState.FAULT, RobotState.ESTOP):
                 return self.machine.state
-            parking = self.machine.state is RobotState.PARKING and asked_s > 0  # one that began before may stay a while
+            parking = self.machine.state is RobotState.PARKING and asked_s > 0  # an earlier parking may stay there
             if not parking and time.monotonic() - asked_s > PARK_AGAIN_S:
                 self.link.request(BusRequest.PARK)
                 asked_s = time.monotonic()
@@ -191,7 +191,7 @@ class Front:
             await asyncio.sleep(0)  # receiving what is there already never yields: a flood would hold up the robot
 
     async def _serve_stream(self) -> None:
-        """Take the newest target of each sender, so that one who floods does not displace those of another."""
+        """Take the newest target of each sender, so that a sender that floods does not displace the targets of another."""
         while True:
             newest: dict[int, list[bytes]] = {}
             message: Message | None = await self._stream_inbox.receive()
@@ -207,7 +207,7 @@ class Front:
             await asyncio.sleep(STREAM_PAUSE_S)
 
     def _take_message(self, message: Message) -> None:
-        self.ctl.take_waiting()  # a stop that came before it
+        self.ctl.take_waiting()  # serve a stop that came before this message
         t_received_ns = time.monotonic_ns()
         route, parts = split_route(message.parts)
         allowed = self._rates.allows(route.frames[0], message.peer, t_received_ns * 1e-9)
@@ -230,14 +230,14 @@ class Front:
             self.ledger.reply(route, event)
 
     def _refuse_rate(self, route: Route) -> None:
-        """Tell a client that asks too much, but not as often as it asks."""
+        """Tell a client that it sends too many requests, once in a thousand of them."""
         if self._rates.refused % 1000 == 1:
             do, allowed = "ask less often; texts that were dropped were not accepted", f"{RATE_HZ:g} requests a second"
             error = WireError("too_fast", "read a request", "more than that for a while", allowed, do)
             self.ledger.reply(route, error_event(error))
 
     async def drain_cmd(self) -> None:
-        """Take the requests that wait in the socket; the robot is followed between them."""
+        """Take the requests that wait in the socket; the other tasks run between them."""
         for _ in range(DRAIN_LIMIT):
             message = await self._cmd_inbox.waiting()
             if message is None:
@@ -255,7 +255,7 @@ class Front:
         self._events_dropped += not send_now(self._cmd, [*route.frames, encode(event)])
 
     def publish_log(self, event: LogEvent) -> None:
-        """Publish a line of the log, with the time at which it was written."""
+        """Publish a log line, with the time at which it was written."""
         written_s = event.t_mono
         self.ledger.stamp(event)
         event.t_mono = written_s
@@ -266,7 +266,7 @@ class Front:
         return HealthEvent(robot=self._robot.name, servos=self.view.health(), silent_ms=silent_ms)
 
     def state_event(self) -> StateEvent:
-        """The robot and the daemon now."""
+        """The present state of robot and daemon."""
         posture = self._planner.posture_now
         return StateEvent(
             robot=self._robot.name,

@@ -35,7 +35,7 @@ _COUNTERS = (
 
 
 def exposition(state: StateEvent, events: Mapping[str, int], servos: Sequence[ServoHealth] = ()) -> str:
-    """The figures of a state event, how many events of each type there have been, and the health of each servo."""
+    """Text of all figures: those of a state event, the number of events of each type, and the health of each servo."""
     label = f'robot="{_escaped(state.robot)}"'
     lines = ["# HELP mmmd_state 1 for the state the robot is in", "# TYPE mmmd_state gauge"]
     lines += [f'mmmd_state{{{label},state="{s.value}"}} {int(s.value == state.state)}' for s in RobotState]
@@ -60,7 +60,7 @@ def exposition(state: StateEvent, events: Mapping[str, int], servos: Sequence[Se
 
 
 def _servo_lines(label: str, servos: Sequence[ServoHealth]) -> list[str]:
-    """Per servo: 1 for the state it is in, and its counters."""
+    """Lines for each servo: 1 for the state in which the servo is, and its counters."""
     labels = [f'{label},servo="{s.id}",joint="{_escaped(s.joint)}"' for s in servos]
     lines = ["# HELP mmmd_servo_state 1 for the state the servo is in", "# TYPE mmmd_servo_state gauge"]
     lines += [
@@ -79,10 +79,10 @@ def _escaped(text: str) -> str:
 
 
 class MetricsServer:
-    """Answers GET /metrics; anything else is 404. One answer a connection, to this machine only.
+    """Answers GET /metrics, and anything else with 404: one answer a connection, to this machine only.
 
     Raises:
-        ConfigError: of `metrics_address`.
+        ConfigError: the address is not one that `metrics_address` allows.
     """
 
     def __init__(self, address: str, text: Callable[[], str]) -> None:

@@ -1,4 +1,4 @@
-"""The socket `pub`: state, health, events and log lines for all who subscribe, each topic with its last value."""
+"""The socket `pub`: state, health, events and log lines for all subscribers; state and health are also sent on subscribing."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ class Publisher:
 
     Attributes:
         socket: `pub`; the front binds it.
-        overruns: messages that a subscriber was too slow for.
+        overruns: number of messages that a subscriber was too slow to receive.
 
     Args:
-        context: of the asyncio sockets.
+        context: context of the asyncio sockets.
         record: called with (topic, payload) for every message, for the log.
     """
 
@@ -52,12 +52,12 @@ class Publisher:
         self._last_values: LastValues | None = None
 
     def guarded_by(self, guard: ConnectionGuard) -> LastValues:
-        """The last values, whose `serve` answers subscriptions; once the socket is bound."""
+        """The last values, whose `serve` answers subscriptions. Call this once the socket is bound."""
         self._last_values = LastValues(TOPICS, Inbox(self.socket, guard), guard, self._send)
         return self._last_values
 
     def publish(self, topic: str, message: Event) -> None:
-        """Publish a message, and keep it for those who subscribe later."""
+        """Publish a message, and keep it for later subscribers."""
         payload = encode(message)
         assert self._last_values is not None, "the socket is bound"
         self._last_values.keep(topic.encode(), payload)
@@ -66,7 +66,7 @@ class Publisher:
         self._send(topic.encode(), payload)
 
     async def publish_every(self, period_s: float, topic: str, message: Callable[[], Event]) -> None:
-        """Publish a message, made anew each time, until cancelled."""
+        """Publish a new message from `message` in every period, until cancelled."""
         while True:
             self.publish(topic, message())
             await asyncio.sleep(period_s)
@@ -81,7 +81,7 @@ class Publisher:
 
 
 def _line(event: Event) -> str:
-    """An event as one line of the log, without what every event has and without fields that are empty."""
+    """An event as one log line, without the fields that every event has and without empty fields."""
     skip = ("v", "seq", "t_mono", "id")
     fields = msgspec.structs.asdict(event).items()
     text = " ".join(f"{k}={v!r}" for k, v in fields if k not in skip and v not in (None, "", [], {}))

@@ -1,4 +1,4 @@
-"""Requests whose text means to stop: they brake the robot, and no rate limit holds them up."""
+"""Requests whose text means to stop: they brake the robot, and no rate limit delays them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LONGEST_FRAME_BYTES = 600
 _HINT = re.compile(
     rb"stop|stp|halt|freez|cancel|abort|still|mov|pause|quit|wait|enough|emergency|cease|arr|alt|basta", re.IGNORECASE
 )
-"""A short frame without any of these is not looked at more closely: a flood must cost little."""
+"""A frame without any of these words is not read any further: a flood must cost little."""
 
 
 def asks_to_stop(request: Command) -> bool:
@@ -21,7 +21,7 @@ def asks_to_stop(request: Command) -> bool:
 
 
 def stops(frames: list[bytes]) -> bool:
-    """Whether the frames of a client that asks too much are one request that means to stop."""
+    """Whether the frames are one request that means to stop; asked for a client above its rate limit."""
     if len(frames) != 1 or len(frames[0]) > _LONGEST_FRAME_BYTES or not _HINT.search(frames[0]):
         return False
     try:

@@ -1,4 +1,4 @@
-"""Subscriptions of `pub`: each is sent the last value of its topic, and who subscribes more than anybody needs is cut off."""
+"""Subscriptions of `pub`: each subscriber gets the last value of its topic; one that sends too many subscriptions is cut off."""
 
 from __future__ import annotations
 
@@ -11,26 +11,27 @@ from daemon.network.connections import ConnectionGuard
 from daemon.network.inbox import Inbox
 
 RECEIVE_QUEUE = 4
-"""Subscriptions that ZeroMQ reads ahead of each peer: before it does anything else it enters all that are there into its tree."""
+"""Number of subscriptions that ZeroMQ reads ahead for each peer; it enters all of them into its tree before anything else."""
 MOST_BYTES = 2048
-"""Bytes of a frame on `pub`: of a handshake with keys, which is longer than any topic."""
+"""Bytes of a frame on `pub` at most: of a handshake with keys, which is longer than any topic."""
 MOST_TOPIC_BYTES = 64
-"""Length of a topic. ZeroMQ keeps a tree of all that are subscribed to, with a node for each byte."""
+"""Bytes of a topic at most. ZeroMQ keeps a tree of all subscribed topics, with a node for each byte."""
 RATE_HZ, BURST = 20.0, 500
-"""Subscriptions and their ends that one connection may send; a program that connects again sends all of its own at once."""
+"""Subscriptions and unsubscriptions a second, and at once, that a connection may send; a program that connects again sends all of
+its own at once."""
 COST_OF_OTHERS = 8.0
-"""Cost of a topic that is not published, where a published one costs 1."""
+"""Cost of a subscription to a topic that is not published; one to a published topic costs 1."""
 PAUSE_S = 0.01
-"""Seconds between two looks; a last value is sent once for all who subscribe meanwhile."""
+"""Seconds between two readings; a last value is sent once for all who subscribed meanwhile."""
 MOST_AT_A_LOOK, MOST_AT_ONCE = 2048, 32
-"""Subscriptions that are taken at one look, and before the event loop has its turn."""
+"""Number of subscriptions taken in one reading, and number taken before the event loop continues with other tasks."""
 
 
 class Subscriptions:
-    """What is subscribed to. Sans-I/O.
+    """Knows which topics are subscribed to. No I/O.
 
     Args:
-        topics: what is published.
+        topics: the published topics.
 
     Attributes:
         owed: topics that were subscribed to since their last value was sent.
@@ -42,7 +43,11 @@ class Subscriptions:
         self.owed: set[bytes] = set()
 
     def take(self, frame: bytes, connection: int, now_s: float) -> str:
-        """Note a subscription (1 and a topic) or its end (0 and a topic); why its sender is to be cut off, else empty."""
+        """Note a subscription (byte 1 and a topic) or its end (byte 0 and a topic).
+
+        Returns:
+            The reason to cut its sender off; empty when there is none.
+        """
         verb, topic = frame[:1], frame[1:]
         if len(topic) > MOST_TOPIC_BYTES:
             return f"a topic of {len(topic)} bytes; allowed: {MOST_TOPIC_BYTES}"
@@ -59,9 +64,9 @@ class LastValues:
     """The last message of each topic, for those who subscribe later.
 
     Args:
-        topics: what is published.
-        inbox: of the XPUB socket.
-        guard: of its connections.
+        topics: the published topics.
+        inbox: inbox of the XPUB socket.
+        guard: guard of its connections.
         publish: sends a topic and its payload.
     """
 
@@ -73,7 +78,7 @@ class LastValues:
         self._values: dict[bytes, bytes] = {}
 
     def keep(self, topic: bytes, payload: bytes) -> None:
-        """Note what is published."""
+        """Keep the last payload of a topic."""
         self._values[topic] = payload
 
     async def serve(self) -> None:
@@ -87,7 +92,7 @@ class LastValues:
             await asyncio.sleep(PAUSE_S)
 
     async def _take_subscriptions(self) -> None:
-        """Wait for a subscription, and take all that are there by then."""
+        """Wait for a subscription, and take all that have arrived by then."""
         message = await self._inbox.receive()
         for n in range(1, MOST_AT_A_LOOK):
             too_much = self._subscriptions.take(message.parts[0], message.fd, time.monotonic())

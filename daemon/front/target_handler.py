@@ -1,4 +1,4 @@
-"""Takes the frames of the `stream` socket one by one: a target for the lease that is held, or one more bad message."""
+"""Takes the frames of the `stream` socket one by one: each is a target for the lease that is held, or counts as a bad message."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ log = logging.getLogger(__name__)
 
 
 class TargetHandler:
-    """Hands targets to the performer.
+    """Hands targets to the scheduler.
 
     Args:
-        robot: whose joints they are.
-        performer: plays them.
-        ledger: tells the holder of its bad messages.
-        publish: tells all of those that belong to no lease.
+        robot: the robot.
+        performer: scheduler that plays the targets.
+        ledger: sends the holder events about its bad messages.
+        publish: publishes events about bad messages that belong to no lease.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class TargetHandler:
         return lease.request.secret if lease is not None and isinstance(lease.request, Lease) else ""
 
     def take(self, parts: list[bytes]) -> None:
-        """Read a message; what is wrong with it moves nothing and does not count as a sign of life."""
+        """Read a message; a bad message moves nothing and does not count as a sign of life."""
         lease, lease_id, holder = self._performer.lease, "", ""
         if lease is not None:
             lease_id, holder = lease.id, lease.request.words
@@ -57,7 +57,7 @@ class TargetHandler:
             log.exception("a target failed")
 
     def info(self, endpoint: str) -> StreamInfo:
-        """What `status` tells."""
+        """The state of the stream and its lease for `status`."""
         return StreamInfo(endpoint, self._lease_info(), dict(self._inbox.bad))
 
     def _lease_info(self) -> LeaseInfo | None:

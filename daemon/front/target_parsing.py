@@ -1,4 +1,4 @@
-"""Frames of the `stream` socket to checked targets; what is wrong is counted, named now and then, and moves nothing."""
+"""Reads frames of the `stream` socket as checked targets; bad frames are counted, reported now and then, and move nothing."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Array = NDArray[np.float64]
 NAMED_EVERY_S = 1.0
 """Seconds between two reports of the same kind of bad message; a report counts the messages since the last."""
 FARTHEST_RAD = 1000.0
-"""Angle that no joint of any robot reaches: a larger number is of another unit, or none."""
+"""Radians that no joint of any robot reaches: a larger number is in another unit, or meaningless."""
 
 
 class TargetParser:
     """Reads targets for one robot.
 
     Attributes:
-        bad: bad messages so far, by code.
+        bad: number of bad messages so far, by code.
     """
 
     def __init__(self, robot: RobotModel) -> None:
@@ -33,16 +33,16 @@ class TargetParser:
         self._told: dict[str, tuple[float, int]] = {}
 
     def read(self, parts: list[bytes], lease_id: str, holder: str, secret: str) -> Array:
-        """(J,) radians, NaN for joints that are not named.
+        """The target (J,) of a message, radians; NaN for joints that it does not name.
 
         Args:
-            parts: of the message that came.
-            lease_id: of the lease that is held, empty for none.
-            holder: whose it is, in words.
-            secret: what shows that a target is its holder's.
+            parts: frames of the message.
+            lease_id: id of the lease that is held; empty for none.
+            holder: its holder, in words.
+            secret: secret that a target of its holder carries.
 
         Raises:
-            WireError: it is no target of this lease.
+            WireError: the message is no target of this lease.
         """
         try:
             target = decode_target(only_frame(parts))
@@ -53,7 +53,7 @@ class TargetParser:
             raise
 
     def due(self, code: str, now_s: float) -> int:
-        """How many messages of a kind are to be told of now; 0 when one was a moment ago."""
+        """Number of messages of a kind to report now; 0 when the last report was less than `NAMED_EVERY_S` ago."""
         told_s, told = self._told.get(code, (float("-inf"), 0))
         if now_s - told_s < NAMED_EVERY_S:
             return 0

@@ -95,22 +95,22 @@ class GeneratorClient:
         self._starting_since_s = time.monotonic()
         self._ready.clear()
         self._lives += 1
-        self._lose_follows()
+        self._lose_requests()
 
     def mark_down(self, reason: str) -> None:
         """Note that the generator is gone: open and new requests fail at once."""
         self.state, self._down_reason = f"down: {reason}", reason
         self._ready.clear()
-        self._lose_follows()
+        self._lose_requests()
 
-    def _lose_follows(self) -> None:
-        """Fail all requests that wait for the motion after their draft."""
-        for follows in self._follows.values():
-            if not follows.done():
-                found, do = f"the generator is {self.state}", "see the daemon's output"
-                follows.set_exception(
-                    GeneratorError("generator_down", "what follows a draft", found, "a generator that runs", do)
-                )
+    def _lose_requests(self) -> None:
+        """Fail all open requests: the process that they were sent to is gone, so no answer will come."""
+        found, do = f"the generator is {self.state}", "see the daemon's output"
+        waiting = [(answer, "an answer") for answer in self._open.values()]
+        waiting += [(follows, "a motion after its draft") for follows in self._follows.values()]
+        for answer, asked in waiting:
+            if not answer.done():
+                answer.set_exception(GeneratorError("generator_down", asked, found, "a generator that runs", do))
 
     @property
     def busy(self) -> bool:

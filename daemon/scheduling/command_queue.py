@@ -1,9 +1,9 @@
-"""Commands on their way: being made, waiting for their turn or their time. The newest `now` wins over older ones.
+"""The queue of commands that are being generated or wait for their turn or time. The newest `now` wins over older ones.
 
-The order of commands is that in which they are to take effect: a `now` and an `after` from when they came, an `at` from
-when its time has come. A command ends those before it in that moment in which it is accepted (an `at`: in which its time
-has come), never by being asked alone: one that is refused ends nothing but itself. As long as a `now` is being made that
-may be about to win, an older one does not begin to move (`Scheduler`), but only so long as that usually takes.
+Commands take effect in this order: a `now` and an `after` by their arrival, an `at` by the time for which it asks. A command ends
+those before it at the moment in which it is accepted (an `at`: in which its time has come), never by its request alone: a
+command that is refused ends no other. While a `now` that may soon win is being generated, an older command does not begin to move
+(`Scheduler`), but waits no longer than generation usually takes.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ SHADOW_S = 0.1
 CLOCKS_KEPT = 64
 """Number of other machines' clocks for which the newest halt is remembered."""
 LONGEST_WAY_S = 10.0
-"""Seconds by which a message of another machine may come later than one that it sent after it: TCP sends lost packets anew.
-Stamps that would need more than that to be true are taken for wrong."""
+"""Seconds by which a message of another machine may arrive later than one sent after it: TCP sends lost packets again. Stamps
+that would need more than that to be true count as wrong."""
 
 
 @dataclass(eq=False)
 class QueuedCommand:
-    """One command on its way.
+    """One command in the queue.
 
     Attributes:
-        entry: of the ledger.
-        epoch: of the link when it came; a stop makes it old.
-        task: what makes and plays it.
-        cancelled_by: what ended it, empty while it lives.
-        committing: whether it is just taking over, which is not interrupted half way.
-        turn: whether its turn or time has come.
+        entry: its entry in the ledger.
+        epoch: epoch of the link at its arrival; a stop makes it old.
+        task: task that generates and plays it.
+        cancelled_by: cause of its end; empty before.
+        committing: whether it is now taking over, which is not interrupted.
+        turn: whether its turn or its time has come.
     """
 
     entry: Entry
@@ -49,12 +49,12 @@ class QueuedCommand:
 
     @property
     def when(self) -> str:
-        """now, after or at."""
+        """When the command takes effect: "now", "after" or "at"."""
         return self.entry.request.when
 
     @property
     def undecided(self) -> bool:
-        """Whether it is a `now` of which is not known yet whether it is accepted or refused."""
+        """Whether it is a `now` that is neither accepted nor refused yet."""
         return self.when == "now" and not (self.turn or self.entry.accepted)
 
 
@@ -71,17 +71,17 @@ class _Stamp:
     came_s: float
 
     def sent_before(self, other: _Stamp) -> bool:
-        """Whether it was sent before (or with) one that came before it, and no longer on its way than messages are."""
+        """Whether this message was sent no later than `other`, which came before it, and was no longer on its way than possible."""
         return (
             self.sent_s <= other.sent_s and (other.sent_s - self.sent_s) + (self.came_s - other.came_s) <= LONGEST_WAY_S
         )
 
 
 class StopOrdering:
-    """When a person last stopped, parked or cut torque, and what that means for a command.
+    """Knows when a person last stopped, parked or cut torque, and whether a command was sent before that.
 
-    Times are compared only where they are of one clock: what was sent from this machine against when the halt came here,
-    what was sent from another against when a halt was sent from there.
+    Times are compared only on one clock: a command from this machine with the arrival of the halt here, a command from another
+    machine with the sending of a halt from that machine.
     """
 
     def __init__(self, clock: str | None = None) -> None:
@@ -92,7 +92,7 @@ class StopOrdering:
         self.at_s, self.by = float("-inf"), ""
 
     def note(self, by: str, request: Request | None = None, *, at_s: float | None = None) -> None:
-        """A halt was given, by a request that may say when it was sent; it came at `at_s`, now where that is None."""
+        """Note a halt, with the request that may say when it was sent; it came at `at_s`, None for now."""
         sent_s, clock = (None, None) if request is None else (request.t_mono, request.clock)
         self._n_given += 1
         self.at_s, self.by, self._from = time.monotonic() if at_s is None else at_s, by, clock or ""
@@ -103,13 +103,14 @@ class StopOrdering:
                 self._stamps.popitem(last=False)
 
     def served(self) -> None:
-        """What had arrived before a halt has ended. Called by the event loop, once for each halt."""
+        """Note that all commands that had arrived before a halt have ended. The event loop calls this once for each halt."""
         self._n_served += 1
 
     def overtook(self, entry: Entry) -> bool:
-        """Whether a command that arrives now was sent before the halt; of one that cannot show it, that is assumed.
+        """Whether a command that arrives now was sent before the halt.
 
-        It is as long as the halt is being served, which takes a while behind many requests, and a moment longer.
+        A command that cannot show its time of sending counts as sent before while the halt is being served, which takes a while
+        behind many requests, and `SHADOW_S` longer.
         """
         after = self._sent_after(entry)
         if after is not None:
@@ -121,7 +122,7 @@ class StopOrdering:
         return self._sent_after(entry) is True
 
     def _sent_after(self, entry: Entry) -> bool | None:
-        """Whether it was sent after the newest halt; None when no clock tells."""
+        """Whether the command was sent after the newest halt; None when no clock tells."""
         sent_s, clock = entry.request.t_mono, entry.request.clock
         if sent_s is None or not clock:
             return None
@@ -139,7 +140,7 @@ class StopOrdering:
 
 
 class CommandQueue:
-    """The commands on their way, in order of arrival."""
+    """The commands that are not played yet, in order of arrival."""
 
     def __init__(self) -> None:
         self._all: list[QueuedCommand] = []
@@ -155,7 +156,7 @@ class CommandQueue:
 
     @property
     def full(self) -> bool:
-        """Whether no more may wait."""
+        """Whether the queue takes no more commands."""
         return len(self._all) >= MOST_WAITING
 
     def add(self, pending: QueuedCommand) -> None:
@@ -173,22 +174,22 @@ class CommandQueue:
         self._all.append(pending)
 
     def overtaken_by(self, newest: QueuedCommand) -> list[QueuedCommand]:
-        """Commands that end because `newest` takes over: all before it but those whose time has not come."""
+        """Commands that end because `newest` takes over: all before it, except an `at` whose time has not come."""
         before = self._all[: self._all.index(newest)]
         return [p for p in before if not p.committing and not (p.when == "at" and not p.turn)]
 
     def may_be_overtaken(self, pending: QueuedCommand) -> bool:
-        """Whether a newer `now` is being made of which is not known yet whether it is accepted."""
+        """Whether a newer `now` is being generated that is neither accepted nor refused yet."""
         newer = self._all[self._all.index(pending) + 1 :]
         return any(p.undecided for p in newer)
 
     @property
     def oldest_undecided(self) -> QueuedCommand | None:
-        """The first `now` that is still being made."""
+        """The first `now` that is still being generated; None without one."""
         return next((p for p in self._all if p.undecided), None)
 
     def is_next(self, pending: QueuedCommand) -> bool:
-        """Whether no command stands before this one that waits for its turn."""
+        """Whether no command before this one waits for its turn."""
         for p in self._all:
             if p is pending:
                 return True
@@ -198,10 +199,10 @@ class CommandQueue:
 
     @property
     def someone_is_about(self) -> bool:
-        """Whether a `now` is on its way to take over."""
+        """Whether a `now` is in the queue."""
         return any(p.when == "now" for p in self._all)
 
     @property
     def someone_waits_after(self) -> bool:
-        """Whether a command waits for what is played to end."""
+        """Whether a command waits for the running motion to end."""
         return any(p.when == "after" for p in self._all)

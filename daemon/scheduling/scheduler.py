@@ -1,7 +1,7 @@
-"""Carries commands out: make the motion, wait for its turn, arm where allowed, take over, watch it to its end.
+"""Carries commands out: generate the motion, wait for its turn, arm where allowed, take over, follow it to its end.
 
 At most one motion is played; the newest `now` that is accepted wins (`daemon.scheduling.command_queue` has the rule).
-Runs in the front's event loop.
+The scheduler runs in the front's event loop.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Scheduler:
 
     Attributes:
         follower: the robot's state.
-        halts: when a person last stopped it.
+        halts: knows when a person last stopped the robot.
         layers: gaze and idle movements.
     """
 
@@ -78,7 +78,7 @@ class Scheduler:
         return self.follower.machine
 
     def play(self, entry: Entry) -> None:
-        """Begin a command; those that it overtakes end in `cancelled` once it is accepted."""
+        """Begin a command; older commands that it overtakes end in `cancelled` once it is accepted."""
         try:
             self.machine.check(Trigger.SAY)
         except CommandRefusedError as error:
@@ -91,7 +91,7 @@ class Scheduler:
             self._ledger.emit(entry, lease_held(lease))
             return
         pending = QueuedCommand(entry, self.planner.epoch)
-        if self._waiting.full and entry.request.when == "now":  # which is let in always: one still being made gives way
+        if self._waiting.full and entry.request.when == "now":  # a `now` always gets in; one being generated gives way
             if (oldest := self._waiting.oldest_undecided) is not None:
                 self._drop(oldest, _named(entry))
         elif self._waiting.full:
@@ -104,7 +104,7 @@ class Scheduler:
         pending.task = asyncio.create_task(self._perform(pending))
 
     def stop_for(self, entry: Entry) -> None:
-        """Brake within the limits and hold because a command's text means that, and end all other commands."""
+        """Brake within the limits and hold, because a command's text means to stop, and end all other commands."""
         state, n_ended = self.machine.state, len(self.running_ids())
         try:
             self.machine.check(Trigger.STOP)
@@ -126,25 +126,25 @@ class Scheduler:
 
     @property
     def lease(self) -> Entry | None:
-        """The lease that is held, from its request to its end."""
+        """The lease that is held, from its request to its end; None without one."""
         playing = self._player.entry
         entries = [p.entry for p in self._waiting] + ([playing] if playing is not None else [])
         return next((entry for entry in entries if isinstance(entry.request, Lease) and not entry.ended), None)
 
     @property
     def stream(self) -> StreamSource | None:
-        """The lease that is played."""
+        """The stream of the lease that is played; None without one."""
         return self._player.stream
 
     def release(self) -> None:
-        """The holder gives its lease back: one that is played goes to its last target, one that waits is cancelled."""
+        """Give the lease back for its holder: a lease that is played moves on to its last target, one that waits is cancelled."""
         if (score := self._player.stream) is not None:
             score.clock.release()
         elif (lease := self.lease) is not None:
             self.cancel(lease.id)
 
     def target(self, q_rad: NDArray[np.float64]) -> bool:
-        """A checked target (J,) of the lease that is played; false when it takes none now."""
+        """Take a checked target (J,) of the lease that is played, radians; returns whether the lease takes it."""
         return self._player.target(q_rad)
 
     def waiting_ids(self) -> list[str]:
@@ -159,7 +159,7 @@ class Scheduler:
             self.follower.stopped = True
             self._link.request(BusRequest.STOP)
             for pending in self._waiting:
-                if pending.epoch == before:  # what waits for its turn has not been stopped
+                if pending.epoch == before:  # a command that waits for its turn has not been stopped
                     pending.epoch = self.planner.epoch
             self._player.end("cancel")
         for pending in self._waiting:
@@ -167,9 +167,9 @@ class Scheduler:
                 self._drop(pending, "cancel")
 
     def end_halted(self) -> None:
-        """End everything but what was sent after the halt, as its own clock says.
+        """End all commands except those sent after the halt, by their own clock.
 
-        Also what began to play before the halt was known of: the bus process has thrown its setpoints away.
+        A motion ends as well that began to play before the front knew of the halt: the bus process has thrown its setpoints away.
         """
         playing = self._player.entry
         if playing is None or not self.halts.spares(playing) or not self.planner.running:
@@ -181,21 +181,21 @@ class Scheduler:
                 self._drop(pending, self.halts.by)
 
     def end_all(self, by: str, failure: Failed | None = None) -> None:
-        """End what waits and what is played, in `cancelled`, or in `failed` when that is given."""
+        """End all commands that wait or are played, in `cancelled`, or in `failed` when `failure` is given."""
         for pending in self._waiting:
             self._drop(pending, by, failure)
         self._player.end(by, failure)
 
     def current_command(self) -> CurrentCommand | None:
-        """What is being played."""
+        """The command that is being played; None without one."""
         return self._player.current_command()
 
     def look_again(self) -> None:
-        """The gaze has changed: what is played, or the pose that is held, goes on with it."""
+        """Apply a changed gaze to the running motion, or to the pose that is held."""
         self._player.start(self._player.follow_gaze())
 
     def tick(self) -> None:
-        """Follow the bus process, end what is over, feed what goes on, idle."""
+        """Follow the bus process, end what is over, supply the running motion with frames, idle."""
         for state in self.follower.update():
             self._entered(state)
         waiting = self._waiting
@@ -204,7 +204,7 @@ class Scheduler:
         self._player.idle(free=not len(self._waiting))
 
     def _end_silent_lease(self) -> None:
-        """A lease whose holder has fallen silent for good has failed: the robot parks, unless a command waits for it."""
+        """End a lease in failure when its holder was silent for too long; the robot then parks, unless a command waits for it."""
         score = self._player.stream
         if score is None or score.clock.state is not LeaseState.OVER:
             return
@@ -214,14 +214,14 @@ class Scheduler:
             self._link.request(BusRequest.PARK, stay_s=self._config.lease_limp_s)
 
     def _entered(self, state: RobotState) -> None:
-        """End what a state of the robot ends."""
+        """End the commands that the robot's new state ends."""
         if state is RobotState.FAULT:
             do = "find the cause, then `mmmd reset` and `mmmd arm`"
             self.end_all("fault", failed("fault", self.follower.fault_reason, "a robot without fault", do))
         elif state is RobotState.ESTOP:
             self.end_all("estop")
         elif state in (RobotState.LIMP, RobotState.PARKING):
-            self._player.end("park")  # a command on its way is refused or arms again by itself
+            self._player.end("park")  # a command in the queue is refused or arms again by itself
 
     def _overtake(self, newest: QueuedCommand) -> None:
         for pending in self._waiting.overtaken_by(newest):
@@ -266,7 +266,7 @@ class Scheduler:
             self._waiting.remove(pending)
 
     def _begins_now(self, pending: QueuedCommand) -> bool:
-        """Whether the robot can set out for a command at once: what the motion shows is read after its first frames are made."""
+        """Whether the robot can begin a command at once; the description for `accepted` is then read after the first frames."""
         is_now = pending.entry.request.when == "now" and not self._waiting.may_be_overtaken(pending)
         return is_now and self.follower.can_take_over
 
@@ -275,7 +275,7 @@ class Scheduler:
             self._ledger.emit(entry, await prepared.accepted(entry, plan_id))
 
     async def _take_over(self, pending: QueuedCommand, prepared: PreparedSource, plan_id: int) -> None:
-        """Make it what is played; what was played ends in `cancelled`."""
+        """Play the command from now on; the command played before ends in `cancelled`."""
         entry = pending.entry
         pending.committing = True
         alive: Callable[[], bool] = lambda: not pending.cancelled_by and pending.epoch == self.planner.epoch  # noqa: E731
@@ -294,5 +294,5 @@ class Scheduler:
 
 
 def _named(entry: Entry) -> str:
-    """The `by` of the events of those commands that this one ends."""
+    """The `by` in the events of the commands that this one ends."""
     return f"{tag_of(entry.request)} {entry.id}"

@@ -1,4 +1,4 @@
-"""When a command may take over: its deadline, its turn or time, an armed robot, and no newer command that is about to win."""
+"""Conditions for a command to take over: its deadline, its turn or time, an armed robot, and no newer command about to win."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from daemon.state.machine import CommandRefusedError, RobotState, Trigger
 from daemon.state.replies import too_late
 
 YIELD_S = 0.25
-"""Seconds that a motion which is ready waits at most for a newer one that is being generated: most take a tenth of that."""
+"""Seconds that a finished motion waits at most for a newer one that is being generated: most take a tenth of that."""
 ARMING_S = 1.5
 """Seconds that a limp robot needs at least to begin a motion: a command with a shorter deadline is rejected at once."""
 ARM_TIMEOUT_S = 30.0
@@ -25,15 +25,15 @@ ARM_ANSWER_S = 2.0
 
 
 class TurnTaking:
-    """Lets one command after another take over.
+    """Decides when each command takes over.
 
     Args:
-        queue: the commands on their way.
+        queue: the commands that are not played yet.
         playback: the command that is played.
-        planner: frames that are still to be played.
+        planner: buffer of the frames still to be played.
         follower: the robot's state.
-        link: asks the bus process to arm.
-        clock: time.
+        link: shared memory, through which the bus process is asked to arm.
+        clock: clock of the waiting.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class TurnTaking:
         """Refuse at once a command that cannot begin in time.
 
         Raises:
-            NotPlayableError: it cannot.
+            NotPlayableError: the command cannot begin before its deadline.
         """
         request, earliest_s = entry.request, self._clock.now_s()
         if request.deadline_s is None:
@@ -68,10 +68,10 @@ class TurnTaking:
             raise too_late(entry, found)
 
     async def come(self, pending: QueuedCommand, overtake: Callable[[QueuedCommand], None]) -> None:
-        """Wait for the command's turn or time; a command that does not wait for others overtakes them then.
+        """Wait for the command's turn or time, then call `overtake` for a command that ends older ones.
 
         Raises:
-            NotPlayableError: its turn did not come before its deadline.
+            NotPlayableError: the command's turn did not come before its deadline.
         """
         request = pending.entry.request
         if request.when == "now":
@@ -89,7 +89,7 @@ class TurnTaking:
         pending.turn = True
 
     async def until_armed(self, entry: Entry, tell: Callable[[], None]) -> None:
-        """Arm where a command may do so, and wait until the robot can move; `tell` is called when it has to be armed first.
+        """Arm where a command may do so, and wait until the robot can move; `tell` is called when the robot must be armed first.
 
         Raises:
             CommandRefusedError: the robot went into a state in which it takes no command, or did not get ready.
@@ -114,6 +114,6 @@ class TurnTaking:
             raise too_late(entry, "its turn came too late")
 
     async def give_way(self, pending: QueuedCommand) -> None:
-        """Wait a moment where a newer command may be about to take over: the robot does not set out twice."""
+        """Wait a moment for a newer command that may soon take over, so that the robot does not start two motions."""
         at_most_s = min(YIELD_S, pending.entry.deadline_s - self._clock.now_s())
         await sleep_while(self._clock, lambda: self._queue.may_be_overtaken(pending), at_most_s)

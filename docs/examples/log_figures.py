@@ -1,5 +1,6 @@
 """Figures of a recorded run, as a notebook would begin: `python docs/examples/log_figures.py run.mcap`, from `mmmd run --log`.
 
+The log only names its robot, so a robot of your own is given by its file: `log_figures.py run.mcap my_robot.toml`.
 The arrays are plain NumPy: `pandas.DataFrame(goal_deg, columns=robot.joint_names, index=time_s)` goes on from here.
 """
 
@@ -15,10 +16,10 @@ from retarget.robot.loading import load_robot
 from retarget.robot.ticks import JointServoMap
 
 
-def main(file: Path) -> None:
-    """Print how far, how fast and how well each joint moved."""
+def main(file: Path, robot_file: str = "") -> None:
+    """Print how far, how fast and how well each joint moved. `robot_file` is needed where the robot is not a packaged one."""
     log = read_log(file)
-    robot = load_robot(log.metadata["robot"])
+    robot = load_robot(robot_file or log.metadata["robot"])
     time_s = np.array([c.t_mono_ns for c in log.cycles]) * 1e-9
     goal_deg = np.rad2deg([c.goal_rad for c in log.cycles])
     measured_deg = np.rad2deg(JointServoMap(robot).tick_to_rad(np.array([c.present_tick for c in log.cycles])))
@@ -34,4 +35,4 @@ def main(file: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), *sys.argv[2:3])

@@ -1,4 +1,4 @@
-"""OpenAI's CLIP weights -> our text tower (`mmm_core.model.clip`). The image tower is left out."""
+"""Reads OpenAI's CLIP weights into the text tower (`mmm_core.model.clip`). The image tower is left out."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def read_clip(path: Path, vocabulary: Path) -> ClipText:
     """The text tower from OpenAI's `ViT-B-32.pt` (a TorchScript archive), or from a state dict (.pt, .safetensors).
 
     Raises:
-        CheckpointError: a file is missing, holds something else, or the two do not fit each other.
+        CheckpointError: a file is missing or of another kind, or weights and vocabulary do not fit each other.
     """
     if not path.is_file():
         raise CheckpointError(path, "", "no such file", "CLIP ViT-B/32's weights")

@@ -1,4 +1,4 @@
-"""HumanML3D and KIT-ML folders as they are, read without a change to them.
+"""Reads HumanML3D and KIT-ML folders in their published layout.
 
     FOLDER/new_joint_vecs/ID.npy   (T, 263) or (T, 251) features
     FOLDER/new_joints/ID.npy       (T, 22, 3) or (T, 21, 3) joints, where features are missing
@@ -9,9 +9,9 @@
 Guo et al. 2022 (CVPR, "Generating Diverse and Natural 3D Human Motions from Text") sec. 4. A motion is used when it has
 40 (KIT-ML: 24) to 199 frames; a caption with a span cuts its own motion out.
 
-A HumanML3D folder made by its own notebooks lists a few motions that they cannot make (009707 and 011059 have one frame) or
-that hold NaN (007975), each also mirrored. So up to one in a hundred of a split may be missing or not finite: they are left
-out and named in the log. More than that is a broken folder.
+A HumanML3D folder made by its own notebooks lists a few motions that the notebooks cannot make (009707 and 011059 have one
+frame) or that hold NaN (007975), each also mirrored. So up to one in a hundred motions of a split may be missing or not finite:
+they are left out and named in the log. With more of them the folder counts as broken.
 """
 
 from __future__ import annotations
@@ -33,8 +33,10 @@ from mmm_core.motion.motion import FPS
 
 log = logging.getLogger(__name__)
 SHORTEST_FRAMES, SHORTEST_KIT_FRAMES, LONGEST_FRAMES = 40, 24, 200
-"""Motions shorter than the first (KIT-ML: the second), or as long as the third, are left out, as in the published protocol."""
+"""Frames of the shortest motion of HumanML3D and of KIT-ML, and length from which on motions are left out, as in the published
+protocol."""
 UNUSABLE_SHARE = 0.01
+"""Share of a split's motions that may be missing or not finite."""
 _MISSING, _NOT_FINITE = "no motion", "NaN or infinite values"
 Split = Literal["train", "val", "test"]
 
@@ -60,7 +62,7 @@ class Example:
 
 @dataclass(frozen=True)
 class MotionFolder:
-    """A folder that was looked at: its layout, rate and statistics; `examples` reads a split."""
+    """An opened folder: its layout, frame rate and statistics; `examples` reads a split."""
 
     path: Path
     layout: FeatureLayout
@@ -93,7 +95,7 @@ class MotionFolder:
         return names
 
     def examples(self, split: Split) -> Iterator[Example]:
-        """Motions of a split with the captions of the whole; a caption with a span gives an example of its own.
+        """Motions of a split with the captions that describe all of them; a caption with a span gives an example of its own.
 
         Raises:
             TrainingDataError: a listed file is broken, more than one in a hundred is missing or not finite, or a span lies
@@ -133,7 +135,7 @@ class MotionFolder:
         """(T, F) features of a motion: as stored, else made from its joints.
 
         Raises:
-            TrainingDataError: neither file is there, or one is broken.
+            TrainingDataError: neither file exists, or the file is broken.
         """
         path = self.path / "new_joint_vecs" / f"{name}.npy"
         if path.is_file():
@@ -150,10 +152,11 @@ class MotionFolder:
 
 
 def open_folder(path: Path) -> MotionFolder:
-    """Look at a HumanML3D or KIT-ML folder.
+    """Open a HumanML3D or KIT-ML folder: find its layout and read its statistics.
 
     Raises:
-        TrainingDataError: no folder, no motions, statistics missing, or of another size than the motions.
+        TrainingDataError: the folder, its motions or its statistics are missing, or the statistics have another size than
+            the motions.
     """
     if not path.is_dir():
         raise TrainingDataError(path, "", "no such folder", "a HumanML3D or KIT-ML folder")
@@ -176,7 +179,8 @@ def read_captions(path: Path) -> list[Caption]:
     """Sentences of a text file.
 
     Raises:
-        TrainingDataError: missing, not UTF-8, no sentence, or a line without its four fields or with a bad span.
+        TrainingDataError: the file is missing, not UTF-8 or without a sentence, or a line lacks one of its four fields or has
+            a bad span.
     """
     try:
         lines = path.read_text("utf-8").splitlines()

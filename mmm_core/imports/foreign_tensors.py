@@ -1,4 +1,4 @@
-"""Checks of tensors that somebody else wrote, before anything is computed or allocated from them.
+"""Checks tensors from files of other programs, before anything is computed or allocated from them.
 
 A state dict can hold tensors that no layer can use (sparse, without data, complex, not finite), and shapes or block
 numbers that ask for more memory than a machine has. Each is refused with the tensor's name.
@@ -22,7 +22,7 @@ def check_tensors(state: Mapping[str, object], path: Path) -> State:
     """The tensors of `state`, each of them dense, real, finite and held in memory.
 
     Raises:
-        CheckpointError: an entry is no such tensor; the first is named.
+        CheckpointError: an entry is not such a tensor; the first one is named.
     """
     checked: State = {}
     for key, tensor in state.items():
@@ -53,10 +53,10 @@ def shape_of(state: State, key: str, n_dimensions: int, path: Path) -> torch.Siz
 
 
 def n_blocks(state: State, prefix: str, path: Path) -> int:
-    """Number of blocks below `prefix`, which numbers them from 0 on without a gap.
+    """Number of blocks in the keys below `prefix`, which must be numbered from 0 on without a gap.
 
     Raises:
-        CheckpointError: a block without a plain decimal number, or a number missing below another.
+        CheckpointError: a block has no plain decimal number, or there is a gap.
     """
     numbers: dict[str, str] = {}
     for key in state:
@@ -76,7 +76,7 @@ def load_exactly(module: nn.Module, state: State, path: Path) -> None:
     """Fill `module` with `state`, which must hold each of its tensors in the module's shape and no other.
 
     Raises:
-        CheckpointError: a tensor is missing, too many or of another shape.
+        CheckpointError: a tensor is missing, unknown to the module or of another shape.
     """
     wanted = module.state_dict()
     for name, tensor in wanted.items():
@@ -91,7 +91,7 @@ def load_exactly(module: nn.Module, state: State, path: Path) -> None:
 
 
 def _unusable(tensor: Tensor) -> str:
-    """Why no layer can use `tensor`; empty when one can."""
+    """The reason why no layer can use `tensor`; empty for a usable one."""
     if tensor.layout != torch.strided or tensor.is_nested or tensor.is_quantized:
         return f"stored as {'nested' if tensor.is_nested else tensor.dtype if tensor.is_quantized else tensor.layout}"
     if tensor.is_meta:

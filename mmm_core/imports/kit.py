@@ -1,4 +1,4 @@
-"""KIT-ML's skeleton: 21 joints, 251 features, 12.5 fps, lengths in millimetres; and its way to our 22 joints.
+"""KIT-ML's skeleton (21 joints, 251 features, 12.5 fps, lengths in millimetres) and its conversion to our 22 joints.
 
 Plappert et al. 2016 (the KIT Motion-Language Dataset) in the form of Guo et al. 2022. Chains: trunk 0-4, right arm 5-7,
 left arm 8-10, right leg 11-15, left leg 16-20.
@@ -14,13 +14,13 @@ from mmm_core.motion.skeleton import Array, normalise
 KIT_FPS = 12.5
 KIT_UNIT_M = 0.001
 KIT = FeatureLayout(21, (19, 20), (14, 15), 0.05)
-"""The contact threshold is in KIT's units, as the data set was made."""
+"""Layout of KIT's features; its contact threshold is in KIT's units, as in the data set's own code."""
 
 _SAME = {
     0: 0, 2: 11, 1: 16, 5: 12, 4: 17, 8: 13, 7: 18, 11: 15, 10: 20, 3: 1, 9: 2, 12: 3, 15: 4,
     17: 5, 19: 6, 21: 7, 16: 8, 18: 9, 20: 10,
 }  # fmt: skip
-"""Our joint: theirs, where both skeletons have it."""
+"""KIT's joint for each of our joints that both skeletons have."""
 
 
 def kit_facing_yaw_rad(joints: Array) -> Array:
@@ -31,10 +31,10 @@ def kit_facing_yaw_rad(joints: Array) -> Array:
 
 
 def joints_from_kit(kit_joints: Array, unit_m: float = KIT_UNIT_M) -> Array:
-    """(T, 22, 3) joints in metres from (T, 21, 3).
+    """(T, 22, 3) joints in metres from KIT's (T, 21, 3).
 
-    Three of ours are not among theirs: the middle of the spine lies half-way, each collar a third of the way from the
-    chest to the shoulder. Arms, head, pelvis and legs are theirs.
+    KIT's skeleton lacks three joints: the middle of the spine is put half-way between its neighbours, each collar a third of
+    the way from the neck to the shoulder.
     """
     joints = np.empty((len(kit_joints), 22, 3))
     for ours, theirs in _SAME.items():

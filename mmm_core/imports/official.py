@@ -1,8 +1,8 @@
-"""The released model's files -> our modules. Nothing of them ships; a user who has them names them.
+"""Reads the files of the released model into our modules. No such file ships with mmmd; users name theirs.
 
 Layout of exitudio/MMM's checkpoints: two pickled dicts, the tokenizer under `net` and the transformer under `trans`, the
-second with a whole copy of the first. Every key is accounted for: renamed, joined, checked against what we compute, or on
-the list of tensors that the released code never reads. Anything else is refused by name.
+second with a whole copy of the first. Every key is accounted for: renamed, joined, compared with our own computation, or on
+the list of tensors that the released code never reads. Any other key is refused by name.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from mmm_core.model.transformer import MotionTransformer, TransformerConfig, sin
 from mmm_core.model.vqvae import VqVae, VqVaeConfig
 
 ROOT_STD = (5.147e-4, 6.769e-4, 6.769e-4, 6.121e-3)
-"""Spread of the root's four features in the statistics the released model was trained with; HumanML3D's own `Std.npy`
-is 25 times larger there, and the root would run 25 times too fast."""
+"""Standard deviations of the root's four features in the statistics that the released model was trained with. Those in
+HumanML3D's own `Std.npy` are 25 times larger, and the root would move 25 times too fast."""
 
 RELEASED_DILATION_GROWTH = 3
 """Factor between the dilations of neighbouring residual blocks in the released tokenizers."""
 TRAINING_LOG = "run.log"
-"""Where the released training writes its options as JSON, in the folder of its checkpoints."""
+"""File in the folder of checkpoints to which the released training writes its options as JSON."""
 GREATEST_DILATION_GROWTH = 9
-"""The third block of a greater one would reach further than the longest motion has tokens."""
+"""Greatest factor between dilations; with a greater one the third block would reach beyond the longest motion."""
 
 
 def read_pickle(path: Path, key: str) -> State:
     """Tensors under `key` of a PyTorch file; nothing but tensors is ever unpickled.
 
     Raises:
-        CheckpointError: missing, not a PyTorch file, with code in it, without `key`, or with a tensor that no layer can
+        CheckpointError: the file is missing, no PyTorch file, contains code, lacks `key`, or holds a tensor that no layer can
             use (sparse, without data, complex, not finite).
     """
     if not path.is_file():
@@ -63,8 +63,8 @@ def read_pickle(path: Path, key: str) -> State:
 def tokenizer_from_official(state: State, path: Path, dilation_growth: int = RELEASED_DILATION_GROWTH) -> VqVae:
     """The tokenizer of a `net` dict (whole body: keys begin with `vqvae.`; upper and lower: with their half's name).
 
-    Statistics are not in the file: `mean` and `std` are left 0 and 1, see `read_statistics`. Nor is `dilation_growth`, the
-    factor from one residual block's dilation to the next, see `dilation_growth_of`.
+    The file holds no statistics: `mean` and `std` stay 0 and 1 until `read_statistics` sets them. Nor does it hold
+    `dilation_growth`, the factor from one residual block's dilation to the next, which `dilation_growth_of` finds.
 
     Raises:
         CheckpointError: a key is missing, unknown or of another shape; the first is named.
@@ -132,12 +132,13 @@ def transformer_from_official(
 
 
 def dilation_growth_of(checkpoint: Path, given: int | None) -> tuple[int, str]:
-    """The growth of the dilations of a tokenizer's file, and where it is known from.
+    """The growth of the dilations of a tokenizer's file, and its source: "given", the name of the log, or "assumed".
 
-    Shapes do not show it. It is `given`, or stands in the training log beside the file; without both it is the released one.
+    The shapes of the tensors do not show the growth. The caller gives it, or the training log beside the file names it;
+    otherwise the released tokenizers' growth is assumed.
 
     Raises:
-        CheckpointError: `given` and the log differ, or the growth is none that a tokenizer can have.
+        CheckpointError: `given` and the log differ, or the growth is out of range.
     """
     log = checkpoint.parent / TRAINING_LOG
     found = re.search(r'"dilation_growth_rate": *(-?[0-9]{1,9})', _beginning_of(log))
@@ -153,7 +154,7 @@ def dilation_growth_of(checkpoint: Path, given: int | None) -> tuple[int, str]:
 
 
 def _beginning_of(log: Path) -> str:
-    """The first part of a text file, where the training log has its options; empty when it cannot be read."""
+    """The first 65,536 characters of the training log, which contain its options; empty when it cannot be read."""
     try:
         with log.open(encoding="utf-8", errors="replace") as lines:
             return lines.read(65536)
@@ -162,11 +163,11 @@ def _beginning_of(log: Path) -> str:
 
 
 def read_statistics(mean_path: Path, std_path: Path, tokenizer: VqVae, *, any_statistics: bool = False) -> None:
-    """Put the mean and spread of the features into `tokenizer`.
+    """Read mean and standard deviation of the features into `tokenizer`.
 
     Raises:
-        CheckpointError: not arrays of the tokenizer's features, a spread that is not positive, or (unless
-            `any_statistics`) another root spread than the released model was trained with.
+        CheckpointError: the files hold no arrays of the tokenizer's features, a deviation is not positive, or (unless
+            `any_statistics`) the root's deviations are not those that the released model was trained with.
     """
     values: list[Tensor] = []
     for path in (mean_path, std_path):

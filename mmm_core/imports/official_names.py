@@ -1,7 +1,7 @@
-"""Names of the released checkpoints' tensors, and ours. Everything else is in `official.py`.
+"""Translates the names of the released checkpoints' tensors into ours, for `official.py`.
 
 Every key is accounted for: renamed, joined (keys and values), or on the list of tensors that the released code never
-reads. Anything else is refused by name.
+reads. Any other key is refused by name.
 """
 
 from __future__ import annotations
@@ -23,12 +23,16 @@ _UNUSED = (
     r"trans_base\.cross_att\.[0-9]+\.attn\.mask",
     r"trans_base\.pos_embed\.embed",
 )
-"""In the file, but never read by the released code, or (the last) computed and checked here."""
+"""Names of tensors in the file that the released code never reads, and last of one that is computed and compared instead."""
 HALF_NAMES = ("_upper", "_lower")
 
 
 def rename_tokenizer(state: State, path: Path) -> State:
-    """The tensors of a `net` dict under our names; see `tokenizer_from_official` for the errors."""
+    """The tensors of a `net` dict under our names.
+
+    Raises:
+        CheckpointError: an unknown tensor.
+    """
     halves = any(k.startswith("quantizer_upper") for k in state)
     prefix, marks = ("", HALF_NAMES) if halves else ("vqvae.", ("",))
     return {_tokenizer_key(name.removeprefix(prefix), marks, path, name): tensor for name, tensor in state.items()}
@@ -88,7 +92,7 @@ def _convolution(part: str, rest: str) -> str | None:
 
 
 def _transformer_key(name: str, n_base: int, path: Path) -> str:
-    """Our name of a transformer tensor; `key` and `value` are still apart."""
+    """Our name of a transformer tensor; `key` and `value` are not joined yet."""
     fixed = {
         "trans_base.learn_tok_emb.weight": "specials",
         "trans_head.head.weight": "head.weight",

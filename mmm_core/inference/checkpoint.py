@@ -1,7 +1,7 @@
 """Weights on disk: one safetensors file with its configuration, and the text encoder beside it.
 
-A model file holds tensors under `tokenizer.`, `transformer.`, `length.`, `scope.` and `text.` (those it has), and in its
-metadata the sizes, the names of the reference commands and where the weights come from. Nothing is ever unpickled.
+A model file holds the tensors of its modules under `tokenizer.`, `transformer.`, `length.`, `scope.` and `text.`, and in its
+metadata the sizes, the names of the reference commands and the origin of the weights. Nothing is ever unpickled.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ class Model:
         transformer: the masked model.
         length: seconds from text; None in imported models, which take the caller's seconds.
         scope: texts in and out of scope; None in imported models, which accept everything.
-        provenance: where the weights come from.
+        provenance: record of the weights' origin.
         text: CLIP's text tower, in imported models; None means the packed MiniLM.
-        rest_pose: definition of the features it takes and gives, above all the rest directions of the rotation channels.
+        rest_pose: definition of the model's features, above all the rest directions of the rotation channels.
             "mmmd": `features_from_joints`, joints come back from the rotations; "humanml3d":
             `humanml3d_features_from_joints`, joints come back from the position channels, as the reference recovers them.
     """
@@ -64,7 +64,7 @@ class Model:
 
     @property
     def is_ours(self) -> bool:
-        """Whether this repository trained the model: sampling, int8, mirroring, counting and previews are tuned for such."""
+        """Whether this repository trained the model; sampling, int8, mirroring, counting and previews are tuned for its models."""
         return self.rest_pose == "mmmd"
 
     @property
@@ -102,7 +102,7 @@ def load_model(path: Path | None = None) -> Model:
     """Read a model file, `MODEL_FILE` when None.
 
     Raises:
-        CheckpointError: missing, not a safetensors file, another kind or format, or a tensor that does not fit.
+        CheckpointError: the file is missing, no safetensors file or of another kind or format, or a tensor does not fit.
     """
     path = path or MODEL_FILE
     tensors, metadata = _load(path, "mmmd-model")
@@ -148,7 +148,7 @@ class _Uninitialised(TorchFunctionMode):
 
 
 def _length(config: dict[str, Any]) -> LengthPredictor | None:
-    """The length predictor that a checkpoint names; older ones say only whether they have one, which is log-normal."""
+    """The length predictor that a checkpoint names. Older checkpoints say only whether they have one; theirs is log-normal."""
     kind = config.get("length", True)
     if not kind:
         return None
@@ -163,7 +163,7 @@ def _tokenizer(config: dict[str, Any]) -> Tokenizer | VqVae:
 
 
 def load_text_encoder(path: Path | None = None, word_pieces: Path | None = None, n_left_out: int = 0) -> MiniLm:
-    """Read the text encoder, the packed one when None, for a model that has the last `n_left_out` layers for its own.
+    """Read the text encoder, the packed one when None, without its last `n_left_out` layers, which the model brings itself.
 
     Raises:
         CheckpointError: as `load_model`.
@@ -191,7 +191,7 @@ def load_tensors(path: Path, kind: str) -> tuple[dict[str, Tensor], dict[str, An
     """Read what `save_tensors` wrote.
 
     Raises:
-        CheckpointError: missing, not a safetensors file, or of another kind or format.
+        CheckpointError: the file is missing, no safetensors file, or of another kind or format.
     """
     tensors, metadata = _load(path, kind)
     return tensors, json.loads(metadata["metadata"])
@@ -201,7 +201,7 @@ def fill_module(module: nn.Module, tensors: dict[str, Tensor], path: Path) -> No
     """Load `tensors` into `module`, for inference.
 
     Raises:
-        CheckpointError: a tensor is missing, too many or of another shape.
+        CheckpointError: a tensor is missing, unknown to the module or of another shape.
     """
     _fill(module, tensors, path, "")
 

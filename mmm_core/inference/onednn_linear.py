@@ -1,9 +1,9 @@
 """Linear layers with their weights packed once for the matrix sizes of decoding.
 
 A row of tokens makes thin matrices (at most 51 rows), for which a plain linear layer spends much of its time bringing
-the weights into the order the processor wants. oneDNN can keep them in that order: measured on an Intel Xeon with
-AVX-512, one thread, width 1024: 1.4 times as fast with 51 rows, 2.4 times with 12 (`mmmd bench official`). The numbers are
-those of the plain layer but for rounding. Where PyTorch has no oneDNN the layers stay as they are.
+the weights into the order the processor wants. oneDNN can keep them in that order. Measured on an Intel Xeon with AVX-512,
+one thread, width 1024, it is 1.4 times as fast with 51 rows and 2.4 times with 12 (`mmmd bench official`). The output is
+that of the plain layer but for rounding. Where PyTorch has no oneDNN the layers stay as they are.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def can_pack_bf16() -> bool:
 
 
 def fastest_precision(width: int = 1024, n_calls: int = 8) -> Packing:
-    """The faster precision on this machine, by timing a layer of `width`: about 20 ms. fp32 unless bf16 gains a quarter."""
+    """The faster precision on this machine, by timing a layer of `width` for about 20 ms; fp32 unless bf16 saves a quarter."""
     if not can_pack_bf16():
         return "fp32"
     x, linear, seconds = torch.zeros(PACKED_FOR_ROWS, width), nn.Linear(width, width), {}

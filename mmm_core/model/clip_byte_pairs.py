@@ -1,7 +1,8 @@
-"""A text as CLIP's byte-pair ids: what is repaired in it before, and how the vocabulary cuts it.
+"""Turns a text into CLIP's byte-pair ids: repairs the text, then cuts it by the vocabulary.
 
-Radford et al. 2021 (arXiv 2103.00020) sec. 2.4: lower-cased byte pairs. CLIP mends a text with ftfy first, which also turns
-curly quotes and apostrophes into straight ones, and reads HTML's signs ("&amp;"). The ids are CLIP's own only with the same.
+Radford et al. 2021 (arXiv 2103.00020) sec. 2.4: lower-cased byte pairs. CLIP first repairs a text with ftfy, which also turns
+curly quotes and apostrophes into straight ones, and decodes HTML's signs ("&amp;"). Only with the same repairs are the ids
+CLIP's own.
 """
 
 from __future__ import annotations
@@ -16,12 +17,12 @@ from tokenizers import Regex, Tokenizer, decoders, models, pre_tokenizers
 from mmm_core.errors import CheckpointError
 
 N_MERGES = 49152 - 256 - 2
-"""Byte pairs the published vocabulary file is read up to."""
+"""Number of byte pairs that are read from the published vocabulary file."""
 _PIECES = r"<\|startoftext\|>|<\|endoftext\|>|(?i:'s|'t|'re|'ve|'m|'ll|'d)|[\p{L}]+|[\p{N}]|[^\s\p{L}\p{N}]+"
 
 
 def clean_text(text: str) -> str:
-    """`text` mended by ftfy, with HTML's signs read twice, single spaces and in lower case."""
+    """`text` repaired by ftfy, with HTML's signs decoded twice, single spaces and lower case, as CLIP does it."""
     import ftfy  # 0.1 s that a model with another text encoder need not wait for
 
     return " ".join(html.unescape(html.unescape(ftfy.fix_text(text))).split()).lower()
@@ -48,7 +49,7 @@ def read_vocabulary(path: Path) -> Tokenizer:
 
 
 def byte_pairs(merges: list[tuple[str, str]]) -> Tokenizer:
-    """Tokenizer over bytes with `merges` for texts that `clean_text` has been over; `</w>` at a word's end."""
+    """Tokenizer over bytes with `merges`, for texts cleaned by `clean_text`; `</w>` ends a word."""
     letters = _byte_letters()
     vocabulary = [*letters, *(letter + "</w>" for letter in letters), *(a + b for a, b in merges)]
     ids = {piece: i for i, piece in enumerate([*vocabulary, "<|startoftext|>", "<|endoftext|>"])}

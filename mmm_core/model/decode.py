@@ -1,4 +1,4 @@
-"""Parallel decoding (hot path): masked tokens -> tokens, all positions at once, the surest first.
+"""Parallel decoding (hot path): fills masked tokens, all positions at once, keeping the surest first.
 
 MMM (arXiv 2312.03596) sec. 3.3. Each step predicts every masked position, keeps the most confident ones and masks the
 rest again; a token once kept is never changed, so known tokens (context of an edit) survive by construction.
@@ -16,13 +16,13 @@ from torch import Tensor
 from mmm_core.model.schedule import Schedule, masked_counts
 
 KEPT = -0.5
-"""Threshold on the uncertainty of a position: below it the id is known already. A chosen id's uncertainty is at least
-0, but for rounding."""
+"""Uncertainty of a position below which its id is known already. A chosen id's uncertainty is at least 0, but for
+rounding."""
 LogitsFn = Callable[[Tensor, Tensor], Tensor]
-"""The model: (B, L, C) ids with [MASK] where to fill, and which (B, L) are asked for -> (N, P, K) logits at those N
+"""The model: (B, L, C) ids with [MASK] where to fill, and a (B, L) bool mask of N positions -> (N, P, K) logits at these
 positions, row by row, of the first P codebooks."""
 NoiseFn = Callable[[int, Tensor, tuple[int, int]], Tensor]
-"""(step, asked (B, L), (P, K)) -> (N, P, K) Gumbel noise."""
+"""(step, (B, L) bool mask of N positions, (P, K)) -> (N, P, K) Gumbel noise."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class DecodeSettings:
         schedule: course of the masked share over the steps.
         temperature: randomness; 0 = arg-max.
         opening: positions at a row's beginning that take their likeliest ids in the first step and are never masked
-            again: they can be played after it.
+            again, so that they can be played after that step.
     """
 
     n_steps: int = 10
@@ -44,7 +44,7 @@ class DecodeSettings:
 
 
 def seeded_noise(seeds: list[int]) -> NoiseFn:
-    """Gumbel noise in which row b depends on seeds[b], the step and what is asked of that row alone.
+    """Gumbel noise whose row b depends on nothing but seeds[b], the step and the number of masked positions in that row.
 
     A batch of one and a batch of many therefore give the same tokens for the same seed.
     """
@@ -71,7 +71,7 @@ def decode(
     counts: list[list[int]] | None = None,
     noise: NoiseFn | None = None,
 ) -> Tensor:
-    """Fill every [MASK] in the predicted codebooks of `tokens`; whatever else stands there stays.
+    """Fill every [MASK] in the predicted codebooks of `tokens`; all other ids stay.
 
     Args:
         tokens: (B, L, C) int64 ids, `mask_id` where to fill: whole positions, or single codebooks of them (one body
@@ -82,7 +82,7 @@ def decode(
         seeds: one per row.
         n_predicted: codebooks to fill, the first P; None fills all C.
         counts: masked positions before each step, for each row; None takes them from `settings`.
-        noise: where the randomness comes from; None draws it from `seeds`.
+        noise: source of randomness; None draws it from `seeds`.
 
     Returns:
         (B, L, C) ids without [MASK] in the first P codebooks; rows may have different numbers of open positions.
@@ -94,7 +94,7 @@ def decode(
     open_positions = open_ids.any(-1)  # (B, L)
     if counts is None:
         counts = [masked_counts(n, settings.n_steps, settings.schedule) for n in open_positions.sum(1).tolist()]
-    uncertainty = torch.where(open_positions, 1.0, -1.0)  # (B, L); what is below `KEPT` is never masked again
+    uncertainty = torch.where(open_positions, 1.0, -1.0)  # (B, L); positions below `KEPT` are never masked again
     for step in range(max((len(c) for c in counts), default=0)):
         wanted = torch.tensor([c[step] if step < len(c) else 0 for c in counts])
         rank = uncertainty.argsort(dim=1, descending=True, stable=True).argsort(dim=1)
@@ -106,7 +106,7 @@ def decode(
         chosen = _choose(logits, settings.temperature, noise, step, masked)  # (N, P)
         opening = masked.nonzero()[:, 1] < settings.opening
         chosen[opening] = logits[opening].argmax(-1)
-        filled = open_ids[masked]  # (N, P): what is really chosen, the rest is known
+        filled = open_ids[masked]  # (N, P): ids that are really chosen; the others are known
         tokens[masked] = torch.where(filled, chosen, tokens[masked])
         likelihood = logits.softmax(-1).gather(-1, chosen[..., None])[..., 0]
         uncertainty.fill_(-1.0)
@@ -118,7 +118,7 @@ def decode(
 def decode_plain(
     tokens: Tensor, logits_fn: LogitsFn, mask_id: int, settings: DecodeSettings, seeds: list[int]
 ) -> Tensor:
-    """The same result as `decode`, one sequence at a time and one position at a time: the test oracle."""
+    """The result of `decode`, computed one sequence and one position at a time; it is the test oracle."""
     results: list[Tensor] = []
     for row, seed in zip(tokens, seeds, strict=True):
         ids = row.clone()

@@ -1,9 +1,9 @@
-"""Length from text: the number of tokens that a command takes.
+"""Predicts the length of a motion from its text, as a number of tokens.
 
 `LengthClassifier` gives a probability to each number of tokens, as the length estimator of T2M does (Guo et al., CVPR 2022),
-and the likeliest number is taken. Where the same words always mean the same motion, every other number is wrong: with one
-token less the last stroke is cut in half. `LogNormalLength` is the predictor of checkpoints that were trained before the
-classifier. The caller's `seconds` always wins over both.
+and the likeliest number is taken. Where a text always means the same motion, every other length is wrong: with one token less
+the last stroke is cut in half. `LogNormalLength` is the predictor of checkpoints that were trained before the classifier. The
+caller's `seconds` always wins over both.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from mmm_core.motion.motion import FPS
 
 
 class LengthClassifier(nn.Module):
-    """Text states -> logits of each number of tokens, by attention pooling over the words, so that counts reach it."""
+    """Text states -> logits of each number of tokens; attention pooling over the words lets numbers in the text count."""
 
     def __init__(self, text_dim: int = 384, width: int = 384, n_heads: int = 8) -> None:
         super().__init__()
@@ -51,7 +51,7 @@ class LogNormalLength(nn.Module):
     def forward(self, text: TextStates) -> Tensor:
         """(B,) mean of log seconds."""
         out = self.out(self.body(torch.cat([_pooled(text, self.score, self.value), text.sentence], -1)))
-        return out[:, 0] + 1.0  # +1: e seconds is a usual length
+        return out[:, 0] + 1.0  # an output of 0 means e seconds, a usual length
 
     @torch.inference_mode()
     def n_tokens(self, text: TextStates) -> list[int]:

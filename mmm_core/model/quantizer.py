@@ -13,15 +13,17 @@ from torch import Tensor, nn
 from mmm_core import distributed
 
 DECAY = 0.99
+"""Share of a moving average that stays in each update."""
 DEAD_BELOW = 0.3
-"""A code whose moving average of uses falls below this is moved to a random latent of the batch."""
+"""Uses per batch, as a moving average, below which a code is dead and is moved to a random latent of the batch."""
 RESET_EVERY = 20
+"""Updates between two resets of dead codes."""
 
 
 class Quantizer(nn.Module):
     """(N, D) latents to the nearest of K codes.
 
-    Buffers: `codebook` (K, D), `uses` (K,) and `sums` (K, D), the moving averages that define it.
+    The buffers `uses` (K,) and `sums` (K, D) are the moving averages that define the buffer `codebook` (K, D).
     """
 
     codebook: Tensor
@@ -40,13 +42,13 @@ class Quantizer(nn.Module):
         """Nearest code of each latent: (..., D) -> (...) int64."""
         flat = latents.reshape(-1, latents.shape[-1]).float()
         with torch.autocast(flat.device.type, enabled=False):
-            distance = self.codebook.square().sum(1) - 2 * flat @ self.codebook.T  # |x|^2 is the same for all
+            distance = self.codebook.square().sum(1) - 2 * flat @ self.codebook.T  # |x|^2 is equal for all codes
         return distance.argmin(1).reshape(latents.shape[:-1])
 
     def forward(self, latents: Tensor) -> tuple[Tensor, Tensor]:
         """Quantised latents with straight-through gradient, and the commitment loss.
 
-        In training mode the codebook is updated from this batch first, of all processes.
+        In training mode the codebook is first updated from this batch, as all processes have it.
         """
         latents = latents.float()
         if self.training:
@@ -57,7 +59,7 @@ class Quantizer(nn.Module):
 
     @torch.no_grad()
     def take_uses(self, latents: Tensor, n_each: int) -> None:
-        """Set the moving averages as batches of `n_each` latents, distributed like `latents` (N, D), would have them."""
+        """Set the moving averages to the values that batches of `n_each` latents, distributed like `latents` (N, D), lead to."""
         uses = torch.bincount(self.encode(latents), minlength=len(self.codebook)).float()
         self.uses.copy_(uses * n_each / len(latents))
         self.sums.copy_(self.uses[:, None] * self.codebook)
@@ -65,7 +67,7 @@ class Quantizer(nn.Module):
 
     @torch.no_grad()
     def _update(self, flat: Tensor) -> None:
-        """One EMA step; the first call takes codes from the batch; dead codes are reset, each time they die."""
+        """Update the codebook by one EMA step; the first call takes codes from the batch; dead codes are reset each time."""
         n_codes = len(self.codebook)
         if int(self.n_updates) == 0:
             self.codebook.copy_(_pick(flat, n_codes))
@@ -138,7 +140,7 @@ def perplexity(ids: Tensor, n_codes: int) -> Tensor:
 
 
 def _fill(flat: Tensor, n: int) -> Tensor:
-    """The first n rows; tiled with a little noise when there are too few."""
+    """The first n rows of `flat`; too few rows are tiled with a little noise."""
     if len(flat) >= n:
         return flat[:n]
     tiled = flat.repeat(-(-n // len(flat)), 1)[:n]
@@ -146,6 +148,6 @@ def _fill(flat: Tensor, n: int) -> Tensor:
 
 
 def _pick(flat: Tensor, n: int) -> Tensor:
-    """N random rows of `flat`, repeated with a little noise when there are too few."""
+    """N random rows of `flat`, drawn with replacement, with a little noise."""
     index = torch.randint(len(flat), (n,)).to(flat.device)
     return flat[index] + 1e-3 * torch.randn(n, flat.shape[1]).to(flat)

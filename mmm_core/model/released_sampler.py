@@ -44,13 +44,13 @@ def sample_plainly(
     """(L, C) ids of `row` with its [MASK]s of the predicted codebooks filled as the released sampler fills them.
 
     Args:
-        transformer: the model; a plain one, or a packed one to see whether packing changes ids.
+        transformer: the model; a packed one shows whether packing changes ids.
         text: states of one text.
         row: (L, C) ids, [MASK] where to fill.
         max_steps: steps for the longest motion: 10, or 20 for the upper-body editor.
         temperature: 0 is arg-max.
         noise: Gumbel noise; needed above temperature 0.
-        early_exit: as a batch of one of the whole-body sampler.
+        early_exit: whether passes end early, as in the released whole-body sampler for a batch of one.
     """
     n_books, mask_id = transformer.config.n_out, transformer.ids.mask
     ids = torch.cat([row, row.new_full((1, row.shape[1]), transformer.ids.end)])

@@ -1,6 +1,6 @@
-"""Rows of ids with holes and a text -> rows without holes, by parallel decoding with the masked model.
+"""Fills the [MASK]s in rows of ids for a text, by parallel decoding with the masked model.
 
-Every use of the model is a mask for `fill`: from text alone all positions are open; in-betweening, endings,
+Every use of the model is a mask for `fill`: generation from text alone masks all positions; in-betweening, endings,
 transitions and edits of a body part keep the known ids (MMM, arXiv 2312.03596, sec. 3.3 and 3.4).
 """
 
@@ -29,7 +29,7 @@ class SamplingSettings:
         temperature: randomness; 0 always takes the likeliest id.
         guidance: weight of the text; 1 is the plain model, above it a second pass without text is subtracted.
         schedule: course of the masked share over the steps.
-        opening: tokens at the beginning that stay as the first step gives them, so that playing may begin
+        opening: tokens at the beginning that keep their ids from the first step, so that playing may begin after it
             (`mmm_core.generate.motion_generation`).
         official: the released sampler's steps (`schedule.official_counts`) with `steps` for the longest motion.
     """
@@ -43,19 +43,19 @@ class SamplingSettings:
 
 
 OFFICIAL_SAMPLING = SamplingSettings(steps=10, temperature=0.0, official=True)
-"""The released generator: ten steps, arg-max. Its evaluation takes temperature 1."""
+"""The released generator: ten steps, arg-max. The paper's evaluation takes temperature 1."""
 OFFICIAL_UPPER_BODY = SamplingSettings(steps=20, temperature=1.0, official=True)
 """The released upper-body editor: twenty steps at temperature 1."""
 
 
 @dataclass
 class FirstStep:
-    """The logits of a row's first decoding step, kept for a second decoding of the same row and text in another number of steps."""
+    """The logits of a row's first decoding step, kept to decode the same row and text again in another number of steps."""
 
     logits: Tensor | None = None
 
     def reused(self, logits_fn: LogitsFn) -> LogitsFn:
-        """`logits_fn` for one decoding, whose first call computes the logits only where they are not kept yet."""
+        """`logits_fn` for one decoding; its first call returns the kept logits, or computes and keeps them."""
         begun = False
 
         def answer(tokens: Tensor, asked: Tensor) -> Tensor:
@@ -84,7 +84,7 @@ def fill(
     noise: NoiseFn | None = None,
     first: FirstStep | None = None,
 ) -> list[Tensor]:
-    """Fill the holes of `rows`, all at once.
+    """Fill the [MASK]s of all `rows` in one batch.
 
     Args:
         transformer: the model.
@@ -92,8 +92,8 @@ def fill(
         rows: B rows (L_i, C) of ids, [MASK] where to fill.
         seeds: one for each row; a row's result does not depend on its neighbours.
         settings: steps, temperature, guidance.
-        noise: where the randomness comes from; None draws it from `seeds`.
-        first: the first step of the same rows, where they are filled twice.
+        noise: source of randomness; None draws it from `seeds`.
+        first: keeps or supplies the first step's logits, for rows that are filled twice.
 
     Returns:
         B rows (L_i, C).
@@ -136,7 +136,7 @@ def fill(
 
 
 def _counts(n_open: int, n_tokens: int, settings: SamplingSettings, *, early_exit: bool) -> list[int]:
-    """Masked positions before each step of a row, whatever its neighbours are."""
+    """Masked positions before each step of a row; they do not depend on the other rows of the batch."""
     if not settings.official:
         return masked_counts(n_open, settings.steps, settings.schedule)
     if not n_open:
@@ -145,7 +145,7 @@ def _counts(n_open: int, n_tokens: int, settings: SamplingSettings, *, early_exi
 
 
 def pseudo_log_likelihood(transformer: MotionTransformer, text: TextStates, rows: Sequence[Tensor]) -> Tensor:
-    """(B,) mean log-probability the model gives to the ids of each row when it sees all of them.
+    """(B,) mean log-probability that the model gives to the ids of each row when it sees all of them.
 
     The model learnt to judge visible ids as well as masked ones (eq. 2 counts every position), so this ranks candidates.
     """
@@ -160,7 +160,7 @@ def pseudo_log_likelihood(transformer: MotionTransformer, text: TextStates, rows
 
 
 def _and_without(states: TextStates, transformer: MotionTransformer) -> TextStates:
-    """2 B rows: the texts, then as many times "no text", padded to their width."""
+    """States of 2 B texts: the B given ones, then B times "no text", padded to the same width."""
     B, width = states.words.shape[:2]
     empty = transformer.no_text(B)
     return TextStates(

@@ -42,17 +42,17 @@ def official_counts(
     """Masked positions before each forward pass of the released sampler.
 
     Differs from `masked_counts`: the number of steps S shrinks with the motion's length, yet `max_steps` passes are
-    made, the surplus re-sampling one position each; with `early_exit`, which the released code takes for a batch of
-    one only, and by a slip of parentheses, it ends after S passes, and after a single one for 8 to 12 tokens. The counts
-    are computed in single precision there, and so they are here: in double precision 201 of the 1,225 pairs of
-    `n_open` and `n_tokens` would differ by one position in a step.
+    made, and each surplus pass samples one position again. With `early_exit`, which the released code applies to a batch
+    of one only, sampling ends after S passes; because of a misplaced parenthesis there, it ends after a single pass for 8
+    to 12 tokens. The released code computes the counts in single precision, and so does this function: in double precision
+    201 of the 1,225 pairs of `n_open` and `n_tokens` would differ by one position in a step.
 
     Args:
         n_open: positions to fill; fewer than `n_tokens` in an edit.
         n_tokens: length of the motion.
         max_steps: passes for the longest motion.
         longest: tokens of the longest motion.
-        early_exit: as a batch of one.
+        early_exit: whether to end early, as the released code does for a batch of one.
     """
     steps = np.float32(round(max_steps * n_tokens / longest) + 1e-8)
     counts: list[int] = []

@@ -1,8 +1,8 @@
-"""Ids that arrive in chunks -> features as soon as they are final, equal to those of one pass over the whole motion.
+"""Decodes ids that arrive in chunks to features as soon as these are final; they equal those of one pass over the motion.
 
-A decoded frame depends on `halo_tokens` on each side. A token's frames are therefore final once `halo_tokens` after it are
-known, and a window needs as many before it; both ends of the whole motion are padded as in one pass. Memory is bounded
-by the halo and the chunk (MMM decodes a long motion in a single call at its end).
+A decoded frame depends on `halo_tokens` tokens on each side. A token's frames are therefore final once the `halo_tokens` tokens
+after it are known, and decoding them needs as many tokens before it; both ends of the whole motion are padded as in one pass.
+Memory is bounded by the halo and the chunk (MMM decodes a long motion in a single call at its end).
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from mmm_core.model.vqvae import VqVae
 
 
 class StreamingDecoder:
-    """Feed ids with `push`, end with `finish`; both return (n, F) features, all in order and each once.
+    """Feed ids with `push`, end with `finish`; both return (n, F) features, every frame once and in order.
 
     Args:
-        tokenizer: decodes.
-        kept: `window` of a decoder that this one continues.
+        tokenizer: decodes ids.
+        kept: `window` of a decoder that this one continues; None begins a motion.
         n_context: `n_context` of that decoder.
     """
 
@@ -29,7 +29,7 @@ class StreamingDecoder:
         self._halo = tokenizer.halo_tokens()
         none = torch.zeros(0, tokenizer.n_codebooks, dtype=torch.int64)
         self._kept = none if kept is None else kept  # ids from the first still needed on
-        self._n_context = n_context  # of those, how many stand before the first token without frames
+        self._n_context = n_context  # number of kept ids whose frames were returned already
 
     @property
     def window(self) -> Tensor:
@@ -38,7 +38,7 @@ class StreamingDecoder:
 
     @property
     def n_context(self) -> int:
-        """Ids of the window whose frames were returned already."""
+        """Number of ids in the window whose frames were returned already."""
         return self._n_context
 
     def push(self, ids: Tensor) -> Tensor:

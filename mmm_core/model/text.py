@@ -1,4 +1,4 @@
-"""Text encoder: a sentence to word states and one sentence vector.
+"""Text encoder: turns a text into word states and one sentence vector.
 
 The compact encoder is a BERT-style transformer (6 layers, width 384) whose weights come from all-MiniLM-L6-v2
 (Apache-2.0, see docs/DATA.md) and travel with the checkpoint: nothing is downloaded at run time. Architecture: BERT
@@ -25,7 +25,7 @@ _JOINERS = "\u200d\ufe0e\ufe0f"
 
 
 def strip_emoji(text: str) -> str:
-    """The text without emoji and other signs that are no words: they change how the encoder reads the words beside them."""
+    """The text without emoji and other signs that are no words, which would change how the encoder reads the words beside them."""
     kept = (c for c in text if c not in _JOINERS and unicodedata.category(c) not in _EMOJI_CATEGORIES)
     return " ".join("".join(kept).split())
 
@@ -35,8 +35,8 @@ class TextStates:
     """Encoder states of B texts, the transformer's input.
 
     Attributes:
-        words: (B, W, D) state of each word piece; before the encoder's last layers where the model has its own copies of them
-            (`TransformerConfig.n_words`).
+        words: (B, W, D) state of each word piece. For a model with its own copies of the encoder's last layers
+            (`TransformerConfig.n_words`) the states come from below these layers.
         word_mask: (B, W) bool, true where there is a word piece.
         sentence: (B, D) unit vectors.
     """
@@ -46,13 +46,13 @@ class TextStates:
     sentence: Tensor
 
     def repeated(self, times: int) -> TextStates:
-        """The whole batch repeated `times` times."""
+        """The states of the whole batch, `times` times."""
         return TextStates(
             self.words.repeat(times, 1, 1), self.word_mask.repeat(times, 1), self.sentence.repeat(times, 1)
         )
 
     def part(self, rows: slice) -> TextStates:
-        """Some of the texts."""
+        """The states of some of the texts."""
         return TextStates(self.words[rows], self.word_mask[rows], self.sentence[rows])
 
     def to(self, device: torch.device) -> TextStates:
@@ -60,7 +60,7 @@ class TextStates:
 
     @staticmethod
     def stacked(several: list[TextStates]) -> TextStates:
-        """The texts of `several` after one another, padded to the longest."""
+        """The states of several batches as one batch, padded to the longest text."""
         width = max(s.words.shape[1] for s in several)
         return TextStates(
             torch.cat([F.pad(s.words, (0, 0, 0, width - s.words.shape[1])) for s in several]),
@@ -69,12 +69,12 @@ class TextStates:
         )
 
     def row(self, i: int) -> TextStates:
-        """Text `i` alone."""
+        """The states of text `i` alone."""
         return TextStates(self.words[i : i + 1], self.word_mask[i : i + 1], self.sentence[i : i + 1])
 
 
 class TextEncoder(Protocol):
-    """Anything that turns texts into states."""
+    """Encoder of texts: the compact one or CLIP's text tower."""
 
     def encode(self, texts: list[str]) -> TextStates: ...
 

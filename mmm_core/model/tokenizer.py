@@ -1,9 +1,9 @@
 """Motion tokenizer: 263 features at 20 fps <-> ids at 5 per second, one id for each body part.
 
-MMM (arXiv 2312.03596) sec. 3.1. A part has its own encoder and codebook and sees its own channels only, so that the
-trunk's motion does not change the ids of an arm; one decoder reads all parts. The paper's tokenizer is the case of one
-part with all channels, its upper-body editing the case of two. Convolutions over time are written as shifted copies
-and a linear layer, which a CPU runs faster than conv1d.
+MMM (arXiv 2312.03596) sec. 3.1. A body part has its own encoder and codebook and sees its own channels only, so that the
+trunk's motion does not change the ids of an arm; one decoder reads all parts. The paper's tokenizer has one part with all
+channels, and two parts for upper-body editing. Convolutions over time are written as shifted copies and a linear layer,
+which a CPU runs faster than conv1d.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _REST = tuple(j for j in range(1, 22) if j not in _LEFT_ARM + _RIGHT_ARM)
 
 @dataclass(frozen=True)
 class PartConfig:
-    """A body part: the feature channels its encoder sees, and the encoder's width."""
+    """A body part: its name, the feature channels that its encoder sees, and the encoder's width."""
 
     name: str
     channels: tuple[int, ...]
@@ -111,7 +111,7 @@ class Decoder(nn.Module):
 
 
 class Tokenizer(nn.Module):
-    """Features <-> ids. The statistics (`mean`, `std`) are part of it: features go in and come out in their own units."""
+    """Features <-> ids. Features are not normalised on either side, since the tokenizer holds their `mean` and `std`."""
 
     mean: Tensor
     std: Tensor
@@ -136,7 +136,7 @@ class Tokenizer(nn.Module):
         return tuple(p.name for p in self.config.parts)
 
     def normalise(self, features: Tensor) -> Tensor:
-        """Features in their own units -> what the encoders see."""
+        """Features -> normalised features, the encoders' input."""
         return (features - self.mean) / self.std
 
     def latents(self, normalised: Tensor) -> list[Tensor]:
@@ -162,7 +162,7 @@ class Tokenizer(nn.Module):
     def forward(self, normalised: Tensor, *, quantise: bool = True) -> tuple[Tensor, Tensor]:
         """Training pass on normalised features: (reconstruction, commitment loss).
 
-        Without `quantise` the latents go to the decoder as they are, and the second figure is their mean square.
+        Without `quantise` the latents go to the decoder unquantised, and the second value is their mean square.
         """
         if not quantise:
             latents = torch.cat(self.latents(normalised), -1)
@@ -176,7 +176,7 @@ class Tokenizer(nn.Module):
         return self.decoder(torch.cat(quantised, -1)), commitment
 
     def halo_tokens(self) -> int:
-        """Tokens on each side that can change a decoded frame: 4 at 5 a second, and 4 at 10, which are 2."""
+        """Tokens on each side that can change a decoded frame: 4 by the blocks at 5 Hz and 2 by those at 10 Hz."""
         reach = sum(TIME_DILATIONS)
         return reach + -(-reach // 2)
 
@@ -190,7 +190,7 @@ def feature_std(features: Tensor) -> Tensor:
     """Standard deviation for normalising, equal within a joint's six rotation channels.
 
     A joint with little motion (head, spine) must count as much as an arm, but noise on a still channel must not be
-    blown up: groups have floors.
+    amplified, so each group of channels has a floor.
     """
     std = features.std(0)
     n_joints = joints_of(len(std))

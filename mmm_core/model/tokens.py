@@ -1,4 +1,4 @@
-"""Token arithmetic: frames to tokens, special ids, several codebooks packed into one id. Its only home."""
+"""Token arithmetic: frames to tokens, special ids, several codebooks packed into one id."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from mmm_core.errors import GenerationError
 
 FRAMES_PER_TOKEN = 4
-"""The tokenizer shortens time four-fold: two halvings (MMM, arXiv 2312.03596, sec. 3.1)."""
+"""Frames that one token stands for: the tokenizer halves the frame rate twice (MMM, arXiv 2312.03596, sec. 3.1)."""
 MAX_TOKENS = 49
-"""196 frames, 9.8 s: the longest HumanML3D motion."""
+"""Tokens of the longest motion: 196 frames, 9.8 s, as in HumanML3D."""
 
 
 @dataclass(frozen=True)
 class SpecialIds:
-    """Ids after the K codes of a codebook: [END] closes a motion, [PAD] fills the batch, [MASK] is to be predicted."""
+    """Ids after the K codes of a codebook: [END] closes a motion, [PAD] fills the batch, [MASK] marks an id to predict."""
 
     n_codes: int
 
@@ -43,7 +43,7 @@ def frames_for_seconds(seconds: float, fps: float) -> int:
     """Number of frames in `seconds`, at least one token's worth.
 
     Raises:
-        GenerationError: not finite, not positive, or longer than the model's longest motion.
+        GenerationError: `seconds` is not finite, not positive, or longer than the model's longest motion.
     """
     longest_s = MAX_TOKENS * FRAMES_PER_TOKEN / fps
     if not 0 < seconds <= longest_s:
@@ -52,7 +52,7 @@ def frames_for_seconds(seconds: float, fps: float) -> int:
 
 
 def pack_ids(ids: NDArray[np.integer], n_codes: int) -> NDArray[np.int64]:
-    """One id per position from one id per codebook: (L, C) -> (L,), the first codebook in the lowest place."""
+    """One id per position from one id per codebook: (L, C) -> (L,), the first codebook in the lowest digit."""
     place = n_codes ** np.arange(ids.shape[1], dtype=np.int64)
     return (ids.astype(np.int64) * place).sum(1)
 

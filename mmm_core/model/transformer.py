@@ -18,15 +18,16 @@ from mmm_core.model.text import MiniLmConfig, TextStates, WordLayer
 from mmm_core.model.tokens import MAX_TOKENS, SpecialIds
 
 MASKED_KEY = -1e9
+"""Attention score added to padding, so that its weight is 0 after the softmax."""
 
 
 @dataclass(frozen=True)
 class TransformerConfig:
     """Sizes; `n_codebooks` ids stand at each position and are embedded by the tokenizer's frozen code vectors.
 
-    The first `n_predicted` of them are predicted (None: all), the others only seen: the paper's upper-body editing
-    predicts the upper half given the lower (MMM eq. 3). The last `n_words` layers of the text encoder belong to the model and
-    are trained with it; word states come from below them (0: the encoder is left as it is).
+    The ids of the first `n_predicted` codebooks are predicted (None: all), the others are only seen: the paper's upper-body
+    editing predicts the upper half given the lower (MMM eq. 3). Copies of the text encoder's last `n_words` layers belong to
+    the model and are trained with it; its word states come from below these layers. With 0 the encoder keeps all its layers.
     """
 
     n_codes: int = 512
@@ -133,7 +134,7 @@ class SelfBlock(nn.Module):
         self.mlp = Mlp(config)
 
     def forward(self, x: Tensor, bias: Tensor, rows: Tensor | None = None) -> Tensor:
-        """(B, L, W) -> (B, L, W), or at `rows` (L,) bool only: (B, n, W). Keys and values come from all rows."""
+        """(B, L, W) -> (B, L, W), or (B, n, W) at the n positions of `rows` (L,) bool; keys and values come from all rows."""
         normed = self.norm_x(x)
         keys_values = self.attention.keys_values(normed)
         if rows is not None:
@@ -171,12 +172,12 @@ class MotionTransformer(nn.Module):
         self.apply(_initialise)
 
     def set_words(self, layers: nn.ModuleList) -> None:
-        """Take the text encoder's last layers to begin with."""
+        """Copy the text encoder's last layers, as a start for training."""
         for mine, theirs in zip(self.word_layers, list(layers)[len(layers) - len(self.word_layers) :], strict=True):
             mine.load_state_dict(theirs.state_dict())
 
     def set_codebooks(self, codebooks: list[Tensor]) -> None:
-        """Take the tokenizer's code vectors, scaled to unit variance."""
+        """Copy the tokenizer's code vectors, scaled to unit variance."""
         stacked = torch.stack(codebooks)
         self.codebooks.copy_(stacked / stacked.std((1, 2), keepdim=True))
 
@@ -202,9 +203,9 @@ class MotionTransformer(nn.Module):
     ) -> Tensor:
         """Logits of `ids` (B, L, C): (B, L, C, K), or (N, C, K) at the N positions of `wanted` (B, L), row by row.
 
-        An [END] closes each motion and [PAD] fills the rest of the row; both are in `ids`. With `wanted`, the head and,
-        for a batch of one, the last block are computed at those positions alone; with `memory` (a batch of one) the
-        blocks that attend to words are computed only where an id changed since the step before.
+        In `ids` an [END] closes each motion and [PAD] fills the rest of the row. With `wanted`, the head is computed at the
+        wanted positions alone, and so is the last block for a batch of one. With `memory` (a batch of one) the blocks that
+        attend to words are computed only where an id changed since the step before.
         """
         B, L, _ = ids.shape
         is_pad = ids[..., 0] == self.ids.pad  # (B, L)
@@ -241,10 +242,10 @@ class MotionTransformer(nn.Module):
 
 
 class StepMemory:
-    """Outputs of the word blocks from the step before, for one sequence and one text.
+    """Outputs of the blocks that attend to words, kept from the step before, for one sequence and one text.
 
-    Those blocks have no self-attention, so a position's output depends on its id alone: most ids stay from step to step,
-    and a position that is masked again has been masked before.
+    These blocks have no self-attention, so a position's output depends on its id alone. Most ids stay from step to step, and
+    a position that is masked again has been masked before, so few outputs must be computed anew.
     """
 
     def __init__(self) -> None:
@@ -253,7 +254,7 @@ class StepMemory:
         self._was_masked = torch.empty(0)  # (L,) bool
 
     def update(self, model: MotionTransformer, ids: Tensor, context: TextContext) -> Tensor:
-        """(1, L, W) for `ids`."""
+        """(1, L, W) outputs for `ids` (1, L, C), computed anew only where an id changed."""
         positions = model.positions[: ids.shape[1]]
         masked = (ids[0] == model.ids.mask).all(-1)
         if self._ids is None:

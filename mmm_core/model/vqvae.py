@@ -2,10 +2,10 @@
 
 MMM (arXiv 2312.03596) sec. 3.1, eq. 1, and sec. 3.4 for the halves. Encoder: stem, two halvings of the time step, each
 with residual blocks of dilation 9, 3, 1, and a projection to the code's width; the decoder mirrors it with nearest
-doubling. All convolutions pad with zeros, so a motion decoded in a longer row is not the one decoded alone: decode each
-by itself, or over a window with `halo_tokens` on both sides (`mmm_core.model.streaming_decoder`).
+doubling. All convolutions pad with zeros, so a motion that is decoded as part of a longer row differs from the one decoded
+alone: decode each motion by itself, or over a window with `halo_tokens` on both sides (`mmm_core.model.streaming_decoder`).
 
-`tokenizer.py` holds the compact sibling with three body parts; both offer the same methods.
+`tokenizer.py` has the compact tokenizer with three body parts; both classes offer the same methods.
 """
 
 from __future__ import annotations
@@ -23,11 +23,13 @@ from mmm_core.motion.motion import N_FEATURES
 Layout = Literal["whole", "halves"]
 
 LOWER_JOINTS = (0, 1, 2, 4, 5, 7, 8, 10, 11)
-"""Pelvis and legs; the other 13 joints are the upper body."""
+"""Joints of pelvis and legs; the other 13 joints are the upper body."""
 UPPER_JOINTS = tuple(j for j in range(22) if j not in LOWER_JOINTS)
 ROOT_HEIGHT = 3
+"""Feature channel of the pelvis's height."""
 HEIGHT_CHANNELS = tuple(4 + 3 * (j - 1) + 1 for j in UPPER_JOINTS)
-"""Height of each upper joint: stored relative to the pelvis by the halves, so that the legs cannot leak into it."""
+"""Feature channels of the upper joints' heights; layout `halves` stores them relative to the pelvis, so that the upper half
+does not depend on the legs."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +108,7 @@ class Decoder(nn.Module):
 
 
 class VqVae(nn.Module):
-    """Features <-> ids. The statistics (`mean`, `std`) are part of it: features go in and come out in their own units.
+    """Features <-> ids. Features are not normalised on either side, since the tokenizer holds their `mean` and `std`.
 
     Layout `halves` has two encoders, codebooks and decoders, upper body first; `height_mean` and `height_std` (13,)
     normalise the upper joints' heights above the pelvis.
@@ -143,7 +145,7 @@ class VqVae(nn.Module):
         return ("whole",) if self.config.layout == "whole" else ("upper", "lower")
 
     def normalise(self, features: Tensor) -> Tensor:
-        """Features in their own units -> what the encoders see."""
+        """Features -> normalised features, the encoders' input."""
         if self.config.layout == "whole":
             return (features - self.mean) / self.std
         heights = features[..., HEIGHT_CHANNELS] - features[..., ROOT_HEIGHT, None]
@@ -188,8 +190,8 @@ class VqVae(nn.Module):
     def halo_tokens(self) -> int:
         """Tokens on each side that can change a decoded frame: 22 at the released sizes.
 
-        Three convolutions reach 3 positions at 20 a second; below, one convolution and the residual blocks reach
-        1 + sum(dilations) at 10 and again at 5 a second.
+        Three convolutions at 20 Hz reach 3 positions; one convolution and the residual blocks reach 1 + sum(dilations)
+        positions at 10 Hz, and as many at 5 Hz.
         """
         reach = 1 + sum(self.config.dilations)
         at_10_hz = -(-3 // 2) + reach

@@ -1,6 +1,6 @@
-"""Reads arrays from .npz and .npy files of unknown origin: bounded before anything is allocated, one kind of error.
+"""Reads arrays from .npz and .npy files of unknown origin, with sizes checked before memory is allocated and one kind of error.
 
-`numpy.load` believes what a header says, and lets the errors of zipfile and zlib through as they are.
+`numpy.load` trusts the header of a file, and lets the errors of zipfile and zlib through as they are.
 """
 
 from __future__ import annotations
@@ -15,19 +15,22 @@ from numpy.typing import NDArray
 MOST_BYTES = 64 << 20
 """Bytes of all arrays of a file together, unpacked: 40 minutes of motion with its features."""
 MOST_ARRAYS = 4096
+"""Arrays in a file at most."""
 _LONGEST_HEADER = 10_000
+"""Bytes of an array's header at most."""
 
 
 class ArraysError(ValueError):
-    """A file that holds no arrays that can be used; the message says what was found."""
+    """A file without usable arrays; the message names the finding."""
 
 
 def read_npz(path: Path, most_bytes: int = MOST_BYTES) -> dict[str, NDArray[Any]]:
     """The arrays of an .npz, by name.
 
     Raises:
-        ArraysError: it is none, is cut off, encrypted, packed in an unknown way, holds objects, or more than `most_bytes`.
-        OSError: it cannot be read.
+        ArraysError: the file is no .npz, is cut off, encrypted or packed in an unknown way, or holds objects or more than
+            `most_bytes`.
+        OSError: the file cannot be read.
     """
     try:
         with path.open("rb") as f, zipfile.ZipFile(f) as archive:
@@ -46,7 +49,9 @@ def read_npz(path: Path, most_bytes: int = MOST_BYTES) -> dict[str, NDArray[Any]
         raise
     except zipfile.BadZipFile as error:
         raise ArraysError("no npz: not even a zip archive" if not zipfile.is_zipfile(path) else f"{error}") from None
-    except Exception as error:  # of zipfile (encrypted, unknown packing), zlib, lzma, numpy's header
+    except (
+        Exception
+    ) as error:  # zipfile (encrypted, unknown packing), zlib, lzma and numpy's header reader raise many kinds
         raise ArraysError(f"not a readable npz ({error})") from None
 
 
@@ -54,8 +59,8 @@ def read_npy(path: Path, most_bytes: int = MOST_BYTES) -> NDArray[Any]:
     """The array of an .npy.
 
     Raises:
-        ArraysError: it is none, holds objects, or more than `most_bytes`.
-        OSError: it cannot be read.
+        ArraysError: the file is no .npy, or holds objects or more than `most_bytes`.
+        OSError: the file cannot be read.
     """
     size = path.stat().st_size
     if size > most_bytes:

@@ -1,4 +1,4 @@
-"""Motions put together by body parts: each part turns as in one of them. Only root and rotation channels are read."""
+"""Puts a motion together from several: each body part turns as in one of them. Only root and rotation channels are read."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def put_together(
 ) -> NDArray[np.float32]:
     """Features (T, 263) whose parts turn, from frame `start` to `end`, as in the motions (T, 263) named for them.
 
-    A part without a motion stays as it is. An edge inside the motion is faded; at its beginning and end nothing is.
+    A part without a motion stays as it is. `start` and `end` are faded, except at the motion's own beginning and end.
     """
     weights = _weights(len(features), start, end)[:, None]
     mixed = np.asarray(features, np.float64).copy()
@@ -44,7 +44,7 @@ def put_together(
 
 
 def of_rotations(features: Array) -> NDArray[np.float32]:
-    """Features (T, 263) of which all but root and rotations are computed from the joints that these give."""
+    """Features (T, 263) with the same root and rotations, whose other channels are computed from these by forward kinematics."""
     yaw, root = root_path(features)
     rotations = from_six_d(features[:, 67:193].reshape(-1, 21, 6))
     joints, _ = forward_kinematics(np.concatenate([rotation_y(yaw)[:, None], rotations], 1), root)
@@ -52,7 +52,7 @@ def of_rotations(features: Array) -> NDArray[np.float32]:
 
 
 def _weights(n_frames: int, start: int, end: int) -> Array:
-    """(T,) 1 between `start` and `end`, 0 elsewhere, with a ramp inside each edge that is not the motion's own."""
+    """(T,) weights: 1 between `start` and `end`, 0 elsewhere, with a ramp inside each edge that is not the motion's own."""
     frames = np.arange(n_frames)
     rising = np.ones(n_frames) if start <= 0 else np.clip((frames - start + 1) / FADE_FRAMES, 0.0, 1.0)
     falling = np.ones(n_frames) if end >= n_frames else np.clip((end - frames) / FADE_FRAMES, 0.0, 1.0)

@@ -1,10 +1,10 @@
 """BVH export: a joint tree and its rotations, as Blender and other programs import it. NumPy only.
 
-Lengths are centimetres, y is up, the person starts facing +z; the format has no place to say so. Bone rotations are
-those of the motion, so that the head's orientation and the forearms' twist survive. There are two trees:
+Lengths are centimetres, y is up, the person starts facing +z; the format has no field for these conventions. Bone rotations
+are those of the motion, so that the head's orientation and the forearms' twist survive. There are two trees:
 
-- `mmmd`: our joints. Each bone that leaves a joint with several bones (pelvis, spine3) has a node of its own there, named
-  `PARENT_CHILD`: they do not move rigidly together. Joints are exact.
+- `mmmd`: this project's joints, which are exact. The bones that leave a joint with several (pelvis, spine3) do not move
+  rigidly together, so each has a node of its own there, named `PARENT_CHILD`.
 - `cmu` and `mixamo` (`bvh_standard.py`): the bones and names that retargeting programs know, in a T pose at rest.
 """
 
@@ -39,8 +39,8 @@ def save_bvh(motion: Motion, path: Path | str, names: BvhNames = "mmmd") -> None
 
     Args:
         motion: at least one frame.
-        path: of the file.
-        names: which bones, and their names.
+        path: the file to write.
+        names: the joint tree, with its names.
 
     Raises:
         ValueError: the motion has no frames.
@@ -58,7 +58,7 @@ def save_bvh(motion: Motion, path: Path | str, names: BvhNames = "mmmd") -> None
 
 
 def bvh_text(motion: Motion, names: BvhNames = "mmmd") -> str:
-    """The file's text. Bone lengths are the motion's own (their median); orientation wins where they disagree."""
+    """The file's text. Bone lengths are medians over the motion; where joints and orientations disagree, orientations win."""
     joints = np.asarray(motion.joints_m, np.float64)
     nodes = _own_nodes(motion) if names == "mmmd" else standard_nodes(motion, names)
     lines, order = ["HIERARCHY"], list[int]()
@@ -71,7 +71,7 @@ def bvh_text(motion: Motion, names: BvhNames = "mmmd") -> str:
 
 
 def _own_nodes(motion: Motion) -> list[Node]:
-    """A node for each bone, at the bone's start: it turns the bone that ends in its joint."""
+    """One node for each bone, placed where the bone starts; the node turns that bone."""
     joints = np.asarray(motion.joints_m, np.float64)
     local = local_rotations(
         joints,
@@ -112,7 +112,7 @@ def _numbers(values: Array) -> str:
 
 
 def _euler_yxz(R: Array) -> Array:
-    """(T, 3) angles y, x, z with R = Ry Rx Rz, without jumps in time; (T, 3, 3) rotations.
+    """(T, 3) angles y, x, z of rotations (T, 3, 3), with R = Ry Rx Rz and without jumps in time.
 
     Every rotation has two such triples; the one nearer to the frame before is taken, then full turns are unwrapped.
     """

@@ -16,11 +16,11 @@ class Node:
     """A node of the joint tree.
 
     Attributes:
-        name: as the file says it.
-        parent: place of the node above in the list of nodes; -1 for the root.
-        offset_cm: (3,) from the node above, in its frame.
-        turn: (T, 3, 3) rotation in the frame of the node above.
-        end_cm: (3,) end of its bone, where no node is below.
+        name: name in the file.
+        parent: index of the parent in the list of nodes; -1 for the root.
+        offset_cm: (3,) centimetres from the parent, in the parent's frame.
+        turn: (T, 3, 3) rotation in the parent's frame.
+        end_cm: (3,) end of the node's bone in centimetres, for a node without children.
     """
 
     name: str

@@ -1,8 +1,9 @@
 """The joint trees that retargeting programs know: Mixamo's, and that of the CMU recordings' BVH conversion.
 
 A node stands in each of our 22 joints and turns all bones that leave it. Pelvis and chest take the rotation that fits their
-three bones best (Kabsch, least squares), since several bones of one node are rigid to each other; joints are off by what the
-motion's bones are not (millimetres). At rest the skeleton stands in a T pose, arms along x.
+three bones best (Kabsch, least squares), since several bones of one node are rigid to each other. The motion's bones are not
+quite rigid there, so its joints and those of the file differ by millimetres. At rest the skeleton stands in a T pose, arms
+along x.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ StandardNames = Literal["cmu", "mixamo"]
 _SIDED = {
     1: "UpLeg", 4: "Leg", 7: "Foot", 10: "ToeBase", 13: "Shoulder", 16: "Arm", 18: "ForeArm", 20: "Hand",
 }  # fmt: skip
-"""Bones of the left side by the joint in which they start; those of the right start in the joint after."""
+"""Names of the left bones by the joint in which they start; a right bone starts in the joint with the next number."""
 _MIDDLE: dict[StandardNames, dict[int, str]] = {
     "cmu": {0: "Hips", 3: "LowerBack", 6: "Spine", 9: "Spine1", 12: "Neck", 15: "Head"},
     "mixamo": {0: "Hips", 3: "Spine", 6: "Spine1", 9: "Spine2", 12: "Neck", 15: "Head"},
@@ -38,7 +39,7 @@ _T_POSE = {4: (0.0, -1, 0), 5: (0.0, -1, 0), 7: (0.0, -1, 0), 8: (0.0, -1, 0), 1
            19: (-1.0, 0, 0), 20: (1.0, 0, 0), 21: (-1.0, 0, 0)}  # fmt: skip
 """Direction of the bone that ends in a joint, where it differs from our own rest pose."""
 _ENDS_CM = {10: (0.0, 0, 6), 11: (0.0, 0, 6), 15: (0.0, 18, 0), 20: (16.0, 0, 0), 21: (-16.0, 0, 0)}
-"""Toes, crown and finger tips, of an adult."""
+"""Centimetres from ankle joint to toes, from head joint to crown and from wrist to finger tips, of an adult."""
 _PELVIS, _CHEST, _NECK, _HEAD = 0, 9, 12, 15
 
 
@@ -69,7 +70,7 @@ def _world_rotations(motion: Motion, joints: Array, rest: Array, offsets_m: Arra
     """(T, 22, 3, 3) world rotation of the node in each joint."""
     head = matrix_from_quat(np.asarray(motion.head_quat_wxyz, np.float64))
     local = local_rotations(joints, facing_yaw_rad(joints), head, motion.forearm_twist_rad.astype(np.float64))
-    bones = np.empty_like(local)  # of the bone that ends in each joint, from the T pose
+    bones = np.empty_like(local)  # rotation of the bone that ends in each joint, from the T pose
     ours = np.empty_like(local)
     ours[:, 0] = local[:, 0]
     for joint, parent in enumerate(PARENTS[1:], 1):

@@ -1,8 +1,8 @@
-"""Gives a motion that repeats a stroke exactly as many strokes as are asked for: whole strokes are repeated or cut.
+"""Gives a motion that repeats a stroke exactly the requested number of strokes: whole strokes are repeated or cut.
 
-The way to the first stroke and the way back from the last one stay. Between them comes one stroke of the motion itself, the
-one that ends nearest to where it begins and goes farthest, as often as it is needed. A seam lies at a peak, where the body
-stands still for a moment, and is crossfaded there over a few frames, as in motion graphs (Kovar et al., SIGGRAPH 2002).
+The frames before the first stroke and after the last one stay. Between them one stroke of the motion is repeated as often as
+needed: the stroke that ends nearest to its beginning and is largest. A seam lies at a peak, where the body stands still for
+a moment, and is crossfaded there over a few frames, as in motion graphs (Kovar et al., SIGGRAPH 2002).
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from mmm_core.motion.skeleton import forward_kinematics, from_six_d, rotation_y
 FADE_FRAMES = 4
 """Frames over which a seam is crossfaded."""
 LONGEST_FRAMES = 400
-"""Longest motion that strokes are repeated to."""
+"""Frames of the longest motion that repeated strokes may make."""
 MOST_TRIED = 3
-"""Strokes of which each is tried, until those that are seen afterwards are as many as they should be."""
+"""Number of strokes that are tried in turn as the repeated one, until the result has the requested count."""
 _SMALLER = 0.5
-"""Weight of how much smaller a stroke is than the largest, against how far its end is from its beginning."""
+"""Weight of a stroke's smallness, against the distance between its beginning and its end, in the choice of a stroke."""
 
 
 def with_counts(
     features: NDArray[np.float32], stretches: Sequence[Stretch], counts: Sequence[int | None], opening_frames: int
 ) -> tuple[NDArray[np.float32], list[Stretch]]:
-    """Features (T, 263) whose stretches have as many strokes as are asked for, and the stretches' frames in them.
+    """Features (T, 263) whose stretches have the requested numbers of strokes, and the stretches with their new frames.
 
     Args:
         features: of our definition (`rest_pose` "mmmd").
         stretches: in order, without gaps, from 0 to T.
         counts: strokes wanted of each stretch; None leaves it as it is.
-        opening_frames: frames at the beginning of each stretch that stay.
+        opening_frames: frames at the beginning of each stretch that do not change.
     """
     parts: list[NDArray[np.float32]] = []
     found: list[Stretch] = []
@@ -52,12 +52,12 @@ def with_counts(
 
 
 def counted(features: NDArray[np.float32], count: int, opening_frames: int = 0) -> NDArray[np.float32]:
-    """Features (T, 263) with `count` strokes; as they are where they have as many, or where these are not seen afterwards.
+    """Features (T, 263) with `count` strokes; unchanged where `count` is right already or no change leads to it.
 
     Args:
         features: of our definition (`rest_pose` "mmmd").
         count: strokes wanted, at least 1.
-        opening_frames: frames at the beginning that stay.
+        opening_frames: frames at the beginning that do not change.
     """
     strokes = strokes_of(motion_of(features))
     if strokes is not None and len(strokes.frames) == count:
@@ -72,7 +72,7 @@ def counted(features: NDArray[np.float32], count: int, opening_frames: int = 0) 
 
 
 def _orders(strokes: Strokes, count: int, opening_frames: int) -> list[list[int]]:
-    """Orders in which the frames may be shown, each with another stroke repeated, the most suitable first."""
+    """Lists of frame numbers, each with another stroke repeated or cut, the most suitable first."""
     frames, T = strokes.frames, len(strokes.path)
     kept = next((i for i, f in enumerate(frames) if f >= opening_frames + FADE_FRAMES), count)
     again = count - kept - 1
@@ -83,6 +83,8 @@ def _orders(strokes: Strokes, count: int, opening_frames: int) -> list[list[int]
 
 
 def _cost(strokes: Strokes, pair: tuple[int, int]) -> float:
+    """Cost of repeating the stroke between a `pair` of peaks: its two ends differ, or it is small."""
+
     def reach(a: int, b: int) -> float:
         return float(np.linalg.norm(np.ptp(strokes.path[a : b + 1], axis=0)))
 

@@ -28,9 +28,9 @@ from mmm_core.motion.skeleton import (
 )
 
 RestPose = Literal["mmmd", "humanml3d"]
-"""Whose definition a model's features follow: this module's, or that of `humanml3d_features`."""
+"""Definition that a model's features follow: "mmmd" is this module's, "humanml3d" that of `humanml3d_features`."""
 CONTACT_SPEED_M = 0.045
-"""A foot joint that moves less than this in a frame, per axis sum of squares 0.002 as in HumanML3D, stands."""
+"""Metres in a frame below which a foot joint stands; HumanML3D compares the square of the step with 0.002."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class FeatureLayout:
         n_joints: J; a row has 12 J - 1 values.
         left_feet: ankle and toe of the left foot.
         right_feet: ankle and toe of the right foot.
-        contact_m2: a foot joint whose step in a frame has a smaller square stands.
+        contact_m2: square of a foot joint's step in a frame, m2, below which the foot stands.
     """
 
     n_joints: int
@@ -111,7 +111,7 @@ def features_from_rotations(
 
 @dataclass(frozen=True)
 class Root:
-    """Yaw and position of a motion's next frame: with them a motion can be recovered chunk by chunk."""
+    """Yaw and position of a motion's next frame, with which a motion can be recovered chunk by chunk."""
 
     yaw_rad: float = 0.0
     x_m: float = 0.0
@@ -180,7 +180,7 @@ def joints_of(n_features: int) -> int:
     """Joints of a feature row: 4 + 9 (J - 1) + 3 J + 4 values, so 22 for 263 and 21 for KIT's 251.
 
     Raises:
-        ValueError: no number of joints has so many features.
+        ValueError: no number of joints has `n_features` features.
     """
     n_joints, rest = divmod(n_features + 1, 12)
     if rest or n_joints < 2:

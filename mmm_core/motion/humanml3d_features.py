@@ -1,13 +1,13 @@
-"""HumanML3D's features of joints, as its notebook makes them: for checkpoints and folders that are not ours. No torch.
+"""HumanML3D's features of joints, as its notebook makes them: for imported checkpoints and data sets. No torch.
 
-`features.features_from_joints` is this repository's definition, which the shipped model takes: the facing of each frame is
-its own, and rotations are relative to rest directions that never jump. The notebook (Guo et al., CVPR 2022,
+`features.features_from_joints` is this repository's definition, which the shipped model takes: the facing of each frame
+comes from that frame alone, and rotations are relative to rest directions that never jump. The notebook (Guo et al., CVPR 2022,
 `motion_representation.ipynb`, `process_file`) differs in conventions that a model trained on its files relies on:
 
 - the forward vector is smoothed over time by a Gaussian of 20 frames, and across the hips it is taken with the wrong sign;
 - the first frame faces +z by definition, whatever the smoothed vector says;
-- half a step of yaw is the arc sine of a quaternion that keeps its w positive: in the step that passes half a turn its
-  sign is the other one;
+- half a step of yaw is the arc sine of a quaternion whose w stays positive, so the sign flips in the step that passes half
+  a turn;
 - rotations are relative to HumanML3D's own rest directions, and the arms' chains begin at the root's facing;
 - a foot stands when the square of its step is below 0.002 m2.
 
@@ -27,7 +27,7 @@ from mmm_core.motion.features import HUMANML3D, features_from_rotations
 from mmm_core.motion.skeleton import Array, normalise, rotation_y, smallest_rotation
 
 SMOOTHING_FRAMES = 20
-"""Standard deviation of the Gaussian over the forward vectors."""
+"""Frames of the standard deviation of the Gaussian over the forward vectors."""
 _LAYOUT = replace(HUMANML3D, contact_m2=0.002)
 _LEFT_HIP, _RIGHT_HIP, _LEFT_SHOULDER, _RIGHT_SHOULDER = 1, 2, 16, 17
 _CHAINS = ((0, 2, 5, 8, 11), (0, 1, 4, 7, 10), (0, 3, 6, 9, 12, 15), (9, 14, 17, 19, 21), (9, 13, 16, 18, 20))
@@ -35,14 +35,14 @@ _X, _Y, _Z = np.eye(3)
 _REST_DIRECTIONS = np.array([
     0 * _X, _X, -_X, _Y, -_Y, -_Y, _Y, -_Y, -_Y, _Y, _Z, _Z, _Y, _X, -_X, _Z, -_Y, -_Y, -_Y, -_Y, -_Y, -_Y,
 ])  # fmt: skip
-"""HumanML3D's direction of the bone that ends in each joint: that of a T-pose, with the arms' bones hanging."""
+"""HumanML3D's rest direction of the bone that ends in each joint: a T-pose, but with hanging arms."""
 
 
 def humanml3d_features_from_joints(joints_m: Array) -> NDArray[np.float32]:
     """(T, 263) features of joints (T, 22, 3), as HumanML3D's notebook makes them of its own skeleton.
 
-    The start is moved to the origin, facing +z, with the lowest joint of the motion on the floor. The notebook has no
-    last row, which has no next frame; here it repeats the step before it, as in `features_from_joints`.
+    The start is moved to the origin, facing +z, with the lowest joint of the motion on the floor. The notebook leaves out
+    the last frame, since no frame follows it; here the last row repeats the step before it, as in `features_from_joints`.
     """
     joints = np.array(joints_m, np.float64)
     joints[..., 1] -= joints[..., 1].min()
@@ -66,7 +66,7 @@ def _smoothed_yaw_rad(joints: Array) -> Array:
 
 
 def _forward(right_to_left: Array) -> Array:
-    """(T, 3) directions across, turned to the front."""
+    """(T, 3) forward vectors of directions across the body, from right to left."""
     return np.cross(normalise(right_to_left), _Y)
 
 

@@ -1,7 +1,7 @@
-"""Small movements of trunk and head that a generated gesture lacks: the chest goes along with the arms, the head leads them.
+"""Adds small movements of trunk and head, which a generated gesture lacks: the chest goes along with the arms, the head leads them.
 
-The model moves the arms of a person whose trunk stands like a post (docs/evaluation.md, "Beside people"). `alive` lays rotations of
-a few degrees over the decoded motion:
+The model moves arms while the trunk stands like a post (docs/evaluation.md, "Beside people"). `alive` adds rotations of a few
+degrees to the decoded motion:
 
 - The chest turns, tilts and leans with the arms, a little before them, as trunk muscles balance the weight of an arm
   (Bouisset and Zattara 1987, J. Biomech. 20).
@@ -10,9 +10,10 @@ a few degrees over the decoded motion:
 - When arms come down, chest and head sink and rise again: the gesture settles.
 - Breath and a slow sway go on meanwhile; the seed gives their phases.
 
-Everything above the first joint of the spine turns with the chest, so that arms keep their directions against it. Where head or
-trunk move by themselves, the additions fade; where no arm moves, little is left. The first and last frame stay: motions meet as
-they did. The first `OPENING_FRAMES` depend on each other alone, so that a preview and its motion, which share them, begin alike.
+All joints above the first joint of the spine turn with the chest, so that arms keep their directions relative to the chest. The
+additions fade where the motion itself moves head or trunk, and are small where no arm moves. The first and last frame do not
+change, so that motions still meet. The first `OPENING_FRAMES` depend on no later frame, so that a preview and its motion, which
+share these frames, begin alike.
 All operations are elementwise, and odd in every quantity that a mirror negates: the mirrored motion becomes the mirror image to
 the last bit.
 """
@@ -32,6 +33,7 @@ Array = NDArray[np.float64]
 _LEAD_FRAMES, _CHEST_LEAD_FRAMES = 4, 1
 """Frames (0.2 and 0.05 s) by which head and chest are ahead of the arms."""
 _SMOOTH = (0.1, 0.2, 0.4, 0.2, 0.1)
+"""Weights of five neighbouring frames in the smoothed path of the arms."""
 OPENING_FRAMES = 8
 """Frames of the two tokens that a preview and its motion share (`mmm_core/generate/motion_generation.py`)."""
 RISE_FRAMES, FALL_FRAMES = 8, 10
@@ -45,9 +47,9 @@ _SETTLED = 0.15
 _ABOVE = [6, 9, *range(12, 22)]
 """Joints above the first joint of the spine."""
 _OWN_DEG = 10.0
-"""Degrees from its first direction at which the head's or the trunk's own movement halves the additions."""
+"""Degrees between the first and the present direction of head or trunk at which their own movement halves the additions."""
 _STILL_SHARE, _MOVED = 0.2, 0.25
-"""Share of the sway where no arm moves, and way of a wrist, in lengths of the arm, at which half of the rest has come."""
+"""Share of the sway where no arm moves, and wrist displacement, in arm lengths, at which half of the remaining sway is added."""
 
 
 @dataclass(frozen=True)
@@ -55,11 +57,13 @@ class Life:
     """Sizes of the additions in degrees.
 
     Attributes:
-        turn, tilt, lean: of the chest, for a wrist one length of the arm ahead, above, and both above.
-        gaze: of the head, for a wrist one length of the arm away.
-        settle: of the chest, for two arms that come down from the shoulders' height.
+        turn: yaw of the chest, for one wrist an arm length ahead.
+        tilt: roll of the chest, for one wrist an arm length up.
+        lean: pitch of the chest, for both wrists an arm length up.
+        gaze: rotation of the head, for a wrist an arm length away.
+        settle: pitch of the chest, for two arms that come down from the shoulders' height.
         chest_sway, head_sway: yaw, roll and pitch of the slow movements.
-        most: neither chest nor head turn farther about any axis.
+        most: bound on the added rotation of chest and of head about each axis.
     """
 
     turn: float = 18.0
@@ -73,7 +77,7 @@ class Life:
 
 
 _HZ = np.array([[[0.23, 0.41], [0.19, 0.37], [0.25, 0.43]], [[0.29, 0.53], [0.31, 0.47], [0.33, 0.61]]])
-"""Frequencies of yaw, roll and pitch, chest and head, without a common period; breath is the chest's pitch."""
+"""Hertz of two waves each for yaw, roll and pitch of chest and head, without a common period; the chest's pitch is breath."""
 
 
 def alive(motion: Motion, *, is_mirrored: bool = False, life: Life | None = None) -> Motion:
@@ -105,7 +109,10 @@ def alive(motion: Motion, *, is_mirrored: bool = False, life: Life | None = None
 def _turns(
     xyz: tuple[Array, Array, Array], head_quat: Array, facing: Array, life: Life, seed: int, is_mirrored: bool
 ) -> tuple[Array, Array]:
-    """Degrees (3, T) of yaw (left), roll (left shoulder up) and pitch (forward) of the chest, and of the head on it."""
+    """Added rotations of the chest, and of the head against the chest.
+
+    Both are (3, T) degrees of yaw (left), roll (left shoulder up) and pitch (forward).
+    """
     n = facing.shape[1]
     frames = np.arange(n)
     l_out, l_up, l_ahead, r_out, r_up, r_ahead = _smooth(
@@ -141,32 +148,32 @@ def _turns(
 
 
 def _facing(x: Array, z: Array) -> Array:
-    """(2, T) x and z of the unit vector to the left of the hips, from those of the joints (22, T)."""
+    """(2, T) x and z of the unit vector from right to left hip, from x and z (22, T) of the joints."""
     across = np.stack([x[1] - x[2], z[1] - z[2]])
     return across / np.maximum(np.sqrt(across[0] * across[0] + across[1] * across[1]), 1e-9)
 
 
 def _seen(x: Array, y: Array, z: Array, facing: Array) -> Array:
-    """(3, T) parts of vectors to the left, upwards and ahead."""
+    """(3, T) components of vectors to the left, upwards and ahead."""
     a, b = facing
     return np.stack([x * a + z * b, y, z * a - x * b])
 
 
 def _arm(xyz: tuple[Array, Array, Array], wrist: int, facing: Array) -> Array:
-    """(3, T) way of a wrist against its shoulder from the first frame, in lengths of the arm."""
+    """(3, T) displacement of a wrist relative to its shoulder since the first frame, in arm lengths: left, up, ahead."""
     x, y, z = (v[wrist] - v[wrist - 4] for v in xyz)
     seen = _seen(x, y, z, facing) / _ARM_M
     return seen - seen[:, :1]
 
 
 def _ahead(n: int, n_frames: int) -> NDArray[np.intp]:
-    """(n,) the frames `n_frames` later. Frames of the opening look no farther than its end, those after it catch up."""
+    """(n,) for each frame the one `n_frames` later, but within the opening no later than its last one."""
     t, last = np.arange(n), OPENING_FRAMES - 1
     return np.minimum(np.minimum(t + n_frames, np.maximum(last + 2 * (t - last), last)), n - 1)
 
 
 def _smooth(x: Array) -> Array:
-    """(..., T) weighted means of five frames; beyond its ends, and for the opening beyond its own, a signal stays."""
+    """(..., T) weighted means of five frames, with edge values repeated beyond the ends; the opening ends at its own last frame."""
     n, half = x.shape[-1], len(_SMOOTH) // 2
     t = np.arange(n)
     last = np.where(t < OPENING_FRAMES, OPENING_FRAMES - 1, n - 1)
@@ -175,7 +182,7 @@ def _smooth(x: Array) -> Array:
 
 
 def _faded(x: Array, kept: float) -> Array:
-    """(..., T) running sums of which each frame keeps the share `kept`. scipy.signal would take half a second to import."""
+    """(..., T) leaky sums: each frame keeps the share `kept` of the sum before. scipy.signal takes half a second to import."""
     rows = [list(accumulate(row, lambda total, new: new + kept * total)) for row in x.reshape(-1, x.shape[-1]).tolist()]
     return np.array(rows).reshape(x.shape)
 
@@ -188,11 +195,12 @@ def _envelope(n: int) -> Array:
 
 
 def _bounded(deg: Array, most: float) -> Array:
+    """Angles pressed smoothly into -`most` to `most` degrees."""
     return deg / np.sqrt(1 + np.square(deg / most))
 
 
 def _angle_deg(v: Array) -> Array:
-    """(T,) degrees between vectors (3, T) and the first of them."""
+    """(T,) degrees between the vector of each frame and that of the first, of vectors (3, T)."""
     a, b, c = v
     u, v, w = v[:, 0].tolist()
     cosine = (a * u + b * v + c * w) / np.maximum(np.sqrt((a * a + b * b + c * c) * (u * u + v * v + w * w)), 1e-9)
@@ -200,7 +208,7 @@ def _angle_deg(v: Array) -> Array:
 
 
 def _face(quat: Array) -> tuple[Array, Array, Array]:
-    """The direction that a head of orientation (4, T) faces."""
+    """x, y and z of the direction that a head of orientation (4, T) faces."""
     w, x, y, z = quat
     return 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
 

@@ -20,7 +20,7 @@ from mmm_core.motion.arrays import ArraysError, read_npz
 FPS = 20.0
 """Frames per second of every motion of the model (HumanML3D's rate)."""
 MOST_FRAMES = 24_000
-"""Frames of a motion file that are read at most: each takes 7 kB on the way to a robot."""
+"""Frames of a motion file at most: each takes 7 kB until it is sent to a robot."""
 N_JOINTS = 22
 N_FEATURES = 263
 
@@ -35,14 +35,14 @@ class Motion:
     Attributes:
         joints_m: (T, 22, 3) float32, joint positions in the world, metres.
         fps: frames per second.
-        head_quat_wxyz: (T, 4) float32, world orientation of the head; identity faces +z upright.
+        head_quat_wxyz: (T, 4) float32, world orientation of the head; identity is upright and faces +z.
         forearm_twist_rad: (T, 2) float32, left and right, right-hand rule about elbow to wrist; 0 is rest.
         features: (T, 263) float32, HumanML3D layout, not normalised.
         tokens: (L,) int64, one id for each four frames (several codebooks are packed into one id).
         text: the command.
-        seed: the seed the motion was sampled with.
+        seed: seed of the generation.
         status: accepted, degraded or rejected, the scope verdict of the text.
-        scope_score: score of the text from about 0, nothing that the model can do, to 1.
+        scope_score: score of the text, from about 0 (the model can do nothing of it) to 1.
     """
 
     joints_m: NDArray[np.float32]
@@ -85,7 +85,7 @@ class Motion:
         return len(self.joints_m) / self.fps
 
     def save_npz(self, path: Path | str) -> None:
-        """Write the fields named in docs (`joints`, `fps`, ...); an older file stays whole if writing fails."""
+        """Write all fields (`joints_m` as `joints`) to an .npz; an older file stays whole if writing fails."""
         path = Path(path)
         partial = path.with_name(path.name + ".part")
         try:
@@ -109,7 +109,7 @@ class Motion:
 
 
 def joined(pieces: Sequence[Motion]) -> Motion:
-    """Consecutive chunks of one motion as one; texts are joined by "; ", the seed is the first chunk's.
+    """One motion of consecutive chunks; texts are joined by "; ", the seed is the first chunk's.
 
     Raises:
         ValueError: no chunks, or chunks of different fps.

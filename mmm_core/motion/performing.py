@@ -1,8 +1,8 @@
-"""Tempo, size and hold of a motion, exactly: its features resampled in time, its rotations led nearer to or farther from rest.
+"""Changes tempo, size and hold of a motion: features are resampled in time, rotations are scaled towards or away from rest.
 
-Only root and rotation channels are read; the others are computed from the joints they give. Arms that repeat a stroke swing
+Only root and rotation channels are read; the others are computed by forward kinematics. Arms that repeat a stroke swing
 larger or smaller about the path that the strokes have in common, so that a small wave is still made with a raised hand;
-everything else is scaled from where it was in the first frame.
+all other rotations are scaled from their value in the first frame.
 """
 
 from __future__ import annotations
@@ -23,22 +23,23 @@ from mmm_core.motion.skeleton import Array, forward_kinematics, from_six_d, rota
 _TRUNK_HEAD = (3, 6, 9, 12, 15)
 _ARMS = (13, 14, 16, 17, 18, 19, 20, 21)
 MOST_ARM_RAD = 2.9
-"""Greatest rotation of an arm joint from the first frame that a larger size leads to; 2.4 of the elbows."""
+"""Radians from the first frame that an enlarged arm joint reaches at most; `_MOST` has other bounds for some joints."""
 _MOST = {18: 2.4, 19: 2.4, 13: 0.6, 14: 0.6}
+"""Radians from the first frame that enlarged elbows and collars reach at most."""
 CYCLE_MISFIT = 0.7
-"""Largest misfit of a cycle whose strokes are scaled about their middle: waves and claps of the model have up to that."""
+"""Largest misfit of a cycle whose strokes are scaled about their middle; the model's waves and claps reach it."""
 ROUNDS = 3
-"""Times that the rotations of arms are scaled anew until the way of the wrist has the size that is asked for."""
+"""Rounds in which arm rotations are scaled anew, until the wrist's path has the requested size."""
 _PATH = 0.35
-"""Power of a small size by which the path of the strokes goes less far from rest: a small stroke is made a little lower."""
+"""Exponent of a size below 1 that scales the common path of the strokes: a small stroke is made a little lower."""
 _MOST_FACTOR, _LEAST_WAY_M = 3.0, 0.04
-"""Greatest factor on rotations of arms, and least way of a wrist that is measured."""
+"""Greatest factor on arm rotations, and metres that a wrist has to move for its size to be corrected."""
 RAMP_FRAMES = 5
 """Frames over which size changes between two commands of a motion."""
 STILL_M_S = 0.2
-"""Speed of a limb that is held, angles taken as in `body_path`."""
+"""Metres a second below which a limb is held, with angles scaled to metres as in `body_path`."""
 _FAR = 0.6
-"""Share of the greatest distance from the first frame at which a pose is held."""
+"""Share of the greatest distance from the first frame beyond which a pose counts as held."""
 _LIMBS = (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12))
 
 
@@ -48,8 +49,8 @@ class Stretch:
 
     Attributes:
         start, end: first frame, and the one after the last.
-        tempo: times as fast.
-        size: times as large.
+        tempo: factor of speed.
+        size: factor of size.
         hold_s: seconds that the pose is held; 0 leaves it as it is.
     """
 
@@ -61,15 +62,17 @@ class Stretch:
 
     @property
     def plain(self) -> bool:
-        """Whether the frames stay as they are."""
+        """Whether the manner changes no frame."""
         return (self.tempo, self.size, self.hold_s) == (1.0, 1.0, 0.0)
 
 
 def performed(features: NDArray[np.float32], stretches: Sequence[Stretch]) -> tuple[NDArray[np.float32], list[int]]:
-    """Features (T, 263) performed in the manners of their stretches, and the frame at which each stretch then ends.
+    """Features performed in the manners of their stretches, and the frame at which each stretch then ends.
+
+    Features come back with as many frames as tempo and hold give them.
 
     Args:
-        features: of our definition (`rest_pose` "mmmd").
+        features: (T, 263), of our definition (`rest_pose` "mmmd").
         stretches: in order, without gaps, from 0 to T.
     """
     yaw, root = root_path(np.asarray(features, np.float64))
@@ -123,8 +126,8 @@ def _features(yaw: Array, root: Array, local: Array, where: Array) -> NDArray[np
 def _sized(local: Array, rest: Array, stretch: Stretch, n_frames: int, strokes: Strokes | None) -> Array:
     """Rotations (T, 22, 3, 3) in the size of a stretch.
 
-    A hand goes less far than the rotations of its arm are scaled, so that these are scaled until its way is as long as asked for,
-    or as near as the arm allows.
+    A hand's path grows less than the rotations of its arm, so the factor on the rotations is corrected over a few rounds; the
+    round whose path comes nearest to the requested size wins.
     """
     period = int(np.median(np.diff(strokes.frames))) if strokes is not None and is_cyclic(strokes) else 0
     weights = _weights(stretch, n_frames)
@@ -143,13 +146,13 @@ def _sized(local: Array, rest: Array, stretch: Stretch, n_frames: int, strokes: 
 
 
 def _led(rotations: Array, rest: Array, factors: Array) -> Array:
-    """Rotations (T, 3, 3) led nearer to or farther from those at rest by (T,) factors."""
+    """Rotations (T, 3, 3) whose angle from `rest` (3, 3) is multiplied by (T,) factors."""
     away = Rotation.from_matrix(rest.T @ rotations).as_rotvec()
     return rest @ Rotation.from_rotvec(away * factors[:, None]).as_matrix()
 
 
 def _way_m(local: Array, period: int) -> float:
-    """Way in metres of the hand that moves more: from its first place, or with a period about the path of its strokes."""
+    """Metres that the farther-moving hand goes: from its first position or, with a period, about the path of its strokes."""
     joints, _ = forward_kinematics(local, np.zeros((len(local), 3)))
     wrists = joints[:, 20:22]
     if period:
@@ -159,7 +162,10 @@ def _way_m(local: Array, period: int) -> float:
 
 
 def _scaled(local: Array, rest: Array, weights: Array, arm_weights: Array, period: int) -> Array:
-    """Rotations (T, 22, 3, 3) led away from their reference by (T,) weights; with a period, arms about the path of the strokes."""
+    """Rotations (T, 22, 3, 3) whose angle from a reference is multiplied by (T,) weights, `arm_weights` for arms.
+
+    The reference is the first frame; for arms with a `period` in frames it is the path of the strokes.
+    """
     out = local.copy()
     for joint in (*_TRUNK_HEAD, *_ARMS):
         reference = np.broadcast_to(rest[joint], local[:, joint].shape)
@@ -175,7 +181,7 @@ def _scaled(local: Array, rest: Array, weights: Array, arm_weights: Array, perio
 
 
 def _weights(stretch: Stretch, n_frames: int) -> Array:
-    """(T,) factors of size, which change gradually where another stretch follows or goes before."""
+    """(T,) factors of size, which change gradually next to another stretch."""
     n = stretch.end - stretch.start
     ramp = np.minimum(np.arange(1, n + 1) / RAMP_FRAMES, 1.0)
     weights = np.ones(n)
@@ -187,7 +193,7 @@ def _weights(stretch: Stretch, n_frames: int) -> Array:
 
 
 def _times(motion: Motion, stretch: Stretch) -> Array:
-    """(n,) places in a stretch, in frames from its start, at which the performed frames are taken."""
+    """(n,) fractional frame numbers, from the stretch's start, at which the performed motion samples it."""
     T = len(motion.joints_m)
     n = max(4, round(T / stretch.tempo))
     places = (np.arange(n) + 0.5) * T / n - 0.5
@@ -200,7 +206,10 @@ def _times(motion: Motion, stretch: Stretch) -> Array:
 
 
 def held_frames(motion: Motion) -> tuple[int, int] | None:
-    """First and last frame of the longest rest of the limb that goes farthest, away from its start; None where nothing moves."""
+    """First and last frame of the longest pause of the limb that moves farthest, far from its start; None where nothing moves.
+
+    A limb that never pauses there is taken as held for the frames beside its farthest point.
+    """
     path = body_path(motion)
     limb = max(_LIMBS, key=lambda columns: float(np.linalg.norm(path[:, columns] - path[0, columns], axis=-1).max()))
     limb_path = path[:, limb]

@@ -1,7 +1,7 @@
 """Counts the strokes of a repetitive motion, of any gesture: peaks along the main direction of its most regular cycle.
 
-The body is a path in one space (wrists, forearms, head, trunk). A cycle is a segment of that path that recurs after one
-period; no family of gestures is known here.
+The body's motion is a path in one space (wrists, forearms, head, trunk). A cycle is a segment of that path that recurs after
+one period; the count needs no knowledge of the gesture.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SHORTEST_FRAMES, LONGEST_FRAMES = 6, 32
 LEAST_M, LEAST_SHARE = 0.05, 0.2
 """Least range of a cycle: metres, and share of the whole motion's range."""
 NEARLY, NEARLY_ADD = 1.3, 0.08
-"""Factor and sum by which a shorter period's misfit may exceed the best one: longer periods of equal misfit are
+"""Factor and sum by which a shorter period's misfit may exceed the best one: longer periods of about equal misfit are
 multiples of the cycle."""
 TURN_SHARE = 0.45
 """Share of the cycle's range by which a stroke rises and falls at least."""
@@ -35,7 +35,7 @@ class Strokes:
     Attributes:
         path: (T, D) body, metres; angles are scaled to lengths of similar weight.
         frames: frames of the strokes' peaks.
-        sure: whether peaks and valleys are equal in number.
+        sure: whether there are as many peaks as valleys.
         range_m: range of one cycle, metres.
         misfit: mean distance between the body and itself one period earlier, as a share of the range; 0 is exact.
     """

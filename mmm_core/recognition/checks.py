@@ -1,7 +1,7 @@
-"""Kinematic checks of what a motion shows (`mmm_core.motion.posture_features`), without looking at the text.
+"""Measures a motion by its posture features (`mmm_core.motion.posture_features`), without its text: limb, strokes, direction.
 
-Each check answers one question about a motion of the corpus's kinds. That they are right on motions that are right, and
-wrong on mirrored, absent and other ones, is tested.
+Each check answers one question about a motion of one of the corpus's families. Tests hold them against right motions, and
+against mirrored, absent and other ones.
 """
 
 from __future__ import annotations
@@ -16,14 +16,16 @@ from mmm_core.motion.repetitions import peaks_beyond
 Array = NDArray[np.floating]
 
 HEAD_MOVED_DEG = 11.0
+"""Degrees beyond which the head counts as moved."""
 TRUNK_MOVED_DEG = 6.0
+"""Degrees beyond which the trunk counts as moved."""
 PALM_M = 0.08
-"""From the wrist joint to the middle of the palm."""
+"""Metres from the wrist joint to the middle of the palm."""
 _STERNUM_M = np.array([0.0, -0.13, 0.13])
 
 
 def limb(s: PostureFeatures) -> str:
-    """What moves most plainly: arm, trunk, head or nothing."""
+    """The limb that moves most clearly: "arm", "trunk", "head", or "" where none moves."""
     if s.arms:
         return "arm"
     trunk, head = reach_deg(s, "trunk"), reach_deg(s, "head")
@@ -33,19 +35,19 @@ def limb(s: PostureFeatures) -> str:
 
 
 def reach_deg(s: PostureFeatures, limb_name: str) -> float:
-    """How far "head" or "trunk" turns from where it was in the first frame, about any axis."""
+    """Degrees that "head" or "trunk" turns away from its first direction at most, about any axis."""
     if limb_name == "trunk":
         return max(_reach(s.trunk_yaw_deg), _reach(s.trunk_pitch_deg), _reach(s.trunk_roll_deg))
     return max(_reach(s.head_yaw_deg), _reach(s.head_pitch_deg), _reach(s.head_roll_deg))
 
 
 def count(s: PostureFeatures, family: str, side: str = "") -> int | None:
-    """How often the stroke of a repeating family is made; None for families whose strokes are not counted.
+    """Number of strokes of a repetitive gesture; None for families whose strokes are not counted.
 
     Args:
-        s: what the motion shows.
-        family: whose strokes.
-        side: "alternating" adds up both arms' strokes; else the arm with more of them counts.
+        s: posture features of the motion.
+        family: the family of the gesture.
+        side: "alternating" adds up both arms' strokes; otherwise the arm with more strokes counts.
     """
     signals = _stroke_signals(s, family)
     if not signals:
@@ -57,14 +59,14 @@ def count(s: PostureFeatures, family: str, side: str = "") -> int | None:
 
 
 def cycle_s(s: PostureFeatures, family: str) -> float | None:
-    """Seconds from stroke to stroke; None with fewer than two."""
+    """Median seconds from stroke to stroke; None with fewer than two strokes."""
     found = [peaks(signal, least) for signal, least in _stroke_signals(s, family)]
     best = max(found, key=len, default=[])
     return float(np.median(np.diff(best))) / FPS if len(best) > 1 else None
 
 
 def held_s(s: PostureFeatures, limb_name: str) -> float:
-    """How long the limb stays where it has gone: the longest time with hardly any movement away from its start."""
+    """Seconds of a limb's longest pause far from its first position."""
     if limb_name == "arm":
         sides = ("left", "right") if s.arms in ("both", "") else (s.arms,)
         return max(_still_s(s.wrists_m[side] * 100, 20.0) for side in sides)
@@ -75,7 +77,7 @@ def held_s(s: PostureFeatures, limb_name: str) -> float:
 
 
 def _still_s(path: Array, most_per_s: float) -> float:
-    """Longest stretch, seconds, that is far from the start and slower than `most_per_s`."""
+    """Seconds of the longest segment of `path` (T, D) that is far from its start and slower than `most_per_s`."""
     far = np.linalg.norm(path - path[0], axis=-1)
     slow = np.linalg.norm(np.gradient(path, axis=0), axis=-1) * FPS < most_per_s
     longest = run = 0
@@ -86,7 +88,7 @@ def _still_s(path: Array, most_per_s: float) -> float:
 
 
 def _stroke_signals(s: PostureFeatures, family: str) -> list[tuple[Array, float]]:
-    """Signals whose peaks are the family's strokes, each with the least range that counts."""
+    """Signals whose peaks are the family's strokes, each with its least range; smaller signals have no strokes."""
     if family == "nod":
         return [(s.head_pitch_deg, 8.0)]
     if family == "shake_head":
@@ -104,7 +106,7 @@ def _stroke_signals(s: PostureFeatures, family: str) -> list[tuple[Array, float]
 
 
 def direction(s: PostureFeatures, family: str) -> str:
-    """Where a gesture with a direction goes, "" when nowhere."""
+    """Direction of a gesture ("left", "up left", "self"); "" where it goes nowhere or its family has no direction."""
     if family == "look":
         yaw, pitch = s.head_yaw_deg, s.head_pitch_deg
         t = int(np.argmax(np.abs(yaw) + np.abs(pitch)))
@@ -154,12 +156,12 @@ _ARM_SIGNALS = {
 
 
 def _raised(s: PostureFeatures) -> NDArray[np.bool_]:
-    """Frames in which both wrists are in front or above."""
+    """Frames in which both wrists are raised above the hanging pose."""
     return (s.wrists_m["left"][:, 1] > -0.35) & (s.wrists_m["right"][:, 1] > -0.35)
 
 
 def _held(s: PostureFeatures, side: str) -> NDArray[np.bool_]:
-    """Frames in which an arm moves least of those in which it is away from rest."""
+    """Frames in which an arm is away from hanging and moves least."""
     away = angle_deg(s.upper[side], np.array([0.0, -1, 0])) + angle_deg(s.fore[side], np.array([0.0, -1, 0]))
     wanted = away > 0.7 * away.max()
     speed = np.linalg.norm(np.gradient(s.fore[side], axis=0), axis=-1)
@@ -167,9 +169,9 @@ def _held(s: PostureFeatures, side: str) -> NDArray[np.bool_]:
 
 
 def strokes(signal: Array, least: float) -> int:
-    """Number of peaks that rise from the valley before, and fall after (or the signal ends), by a share of the range.
+    """Number of peaks of a signal; 0 when its range is below `least`.
 
-    0 when the range is below `least`.
+    A peak rises from the valley before it, and falls afterwards or ends the signal, each time by a share of the range.
     """
     return len(peaks(signal, least))
 
@@ -182,7 +184,7 @@ def peaks(signal: Array, least: float) -> list[int]:
 
 
 def _aim(left: float, up: float, least: float) -> str:
-    """left, right, up, down or two of them; "" when both shares are below `least`."""
+    """Direction "left", "right", "up", "down" or a height with a side; "" when both components are below `least`."""
     height = "up" if up > least else "down" if up < -least else ""
     side = "left" if left > least else "right" if left < -least else ""
     if height and side and min(abs(up), abs(left)) < 0.5 * max(abs(up), abs(left)):

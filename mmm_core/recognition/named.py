@@ -1,8 +1,8 @@
-"""Which gesture families a text may name, by its words: the candidates whose signs a motion is then searched for.
+"""Finds the gesture families that a text may name, by its words; a motion is then searched for the signs of these families.
 
-`family_words.txt` holds the words of each family with a digit: in how many of the family's phrases a word stands, 9 for all of
-them, one less for each halving. It is made from the corpus by `mmm_core.corpus.family_words`. `sentences.txt` says for each
-family what somebody does who performs it.
+`family_words.txt` lists the words of each family, each with a digit for the share of the family's phrases that contain the word:
+9 for all phrases, one less for each halving. `mmm_core.corpus.family_words` makes the file from the corpus. `sentences.txt`
+describes for each family the performance of its gesture.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from importlib.resources import files
 _FOLDER = files("mmm_core.recognition")
 WORDS_FILE = _FOLDER.joinpath("family_words.txt")
 HIGHEST_LEVEL = 9
+"""Digit of a word that stands in all phrases of a family."""
 UNSEEN_SHARE = 0.001
-"""Share of a family's phrases in which a word is taken to stand that none of them has."""
+"""Share of a family's phrases that is assumed to contain a word when none of them does."""
 _STOP_WORDS = frozenset(
     "an the your you of in to with and at it is as hand hands arm arms left right both for me my this that do make should "
     "be by from out on one two three once twice times please can could would".split()
@@ -41,13 +42,13 @@ def content_words(text: str) -> set[str]:
 
 @cache
 def sentences() -> dict[str, str]:
-    """What somebody does who performs a family ("wave") or a family in a direction ("look up")."""
+    """Descriptions of the performance of each family ("wave"), or of a family in a direction ("look up")."""
     return dict(_lines("sentences.txt"))
 
 
 @cache
 def _families_of_words() -> dict[str, tuple[tuple[str, float], ...]]:
-    """For each word the families that it names, and the log of how much more it is said for them than for others."""
+    """For each word the families that it may name, with the log ratio of its share of their phrases to `UNSEEN_SHARE`."""
     found: dict[str, list[tuple[str, float]]] = {}
     for family, words in _lines("family_words.txt"):
         for word in words.split():

@@ -1,4 +1,4 @@
-"""Places of a person's body that hands go to, for the corpus that performs gestures and the signs that recognise them.
+"""Places of a person's body that hands go to; the corpus performs gestures there, and the signs recognise them there.
 
 Each is (outward, up, forward) in metres in the chest frame from the middle between the shoulders, for the acting arm.
 """

@@ -1,7 +1,7 @@
-"""What somebody who watches a motion would say that it shows, and what of that another body's motion does not show.
+"""Describes the gestures that a motion shows, and lists those that another body's motion of them does not show.
 
-A text only suggests where to look: each gesture that is named has been found in the motion by its sign (`signs`). Where no
-sign is found, the sentence says which limb goes where.
+A text only suggests the gestures to search for: a gesture is named only where its sign is found in the motion (`signs`). Where
+no sign is found, the sentence says which limb goes where.
 """
 
 from __future__ import annotations
@@ -21,36 +21,36 @@ from mmm_core.recognition.signs import arm_of, shows
 HEAD_FAMILIES = ("shake_head", "nod", "look_around", "look_back", "tilt_head", "roll_head", "wobble_head", "look")
 TRUNK_FAMILIES = ("bow", "twist_repeat", "trunk_circle", "twist", "sway", "slump", "lean")
 ARM_FAMILIES = ("raise", "clap", "arm_side", "wave")
-"""Families of the arms that are looked for though no word names them."""
+"""Families of the arms that are searched for though no word names them."""
 PLAINER = "wave"
-"""Family that is searched for first among those that are named: others show its sign too."""
+"""Family that is searched for first among the named ones, because gestures of other families show its sign too."""
 STILL_FAMILIES = ("breathe", "shift", "stand")
 """Families in whose performance hardly anything moves."""
 _HAVE_DIRECTION = ("look", "tilt_head", "lean", "twist", "point")
 HARDLY = "hardly moved"
-"""How a missing act ends whose limb stood still."""
+"""End of the description of a missing act whose limb stood still."""
 _MOVED_DEG = {"head": checks.HEAD_MOVED_DEG, "trunk": checks.TRUNK_MOVED_DEG}
 _EXACT_UP_TO = 2
-"""Strokes that nobody miscounts; of more, one may be missed."""
+"""Strokes that must all be found; of a larger number, one may be missed."""
 NOTHING_MOVES = "stands still: nothing moves that one would notice"
 _WORDS = {1: "once", 2: "twice"}
 _TWO = {"hand": "both hands", "arm": "both arms"}
 _TOWARDS = {"forward": "forward", "back": "backward", "up": "up", "down": "down", "self": "to the chest"}
 LEAST_FRAMES = 4
-"""A shorter part of a motion shows nothing."""
+"""Frames of the shortest part of a motion in which gestures are searched for."""
 
 
 @dataclass(frozen=True)
 class Act:
-    """One thing that a motion shows.
+    """One gesture that a motion shows, or the movement of a limb.
 
     Attributes:
         limb: arm, head, trunk; "" where hardly anything moves.
         side: left, right or both; "" where no arm acts.
-        family: the gesture family whose sign was found; "" where none was.
-        direction: where it goes; "" for nowhere in particular.
-        count: how many strokes it has; None where the family's strokes are not counted.
-        place: where the hand goes, where no sign was found.
+        family: the gesture family whose sign was found; "" where none was found.
+        direction: direction of the gesture; "" for none.
+        count: number of strokes; None where the family's strokes are not counted.
+        place: place that the hand goes to, where no sign was found.
     """
 
     limb: str
@@ -62,7 +62,7 @@ class Act:
 
     @property
     def sentence(self) -> str:
-        """What one sees, as the rest of a sentence that begins with "it"."""
+        """A description of the act, as the rest of a sentence that begins with "it"."""
         if not self.limb and self.family in ("", "stand"):
             return NOTHING_MOVES
         if not self.family:
@@ -83,11 +83,11 @@ class Act:
 
 @dataclass(frozen=True)
 class Scene:
-    """A part of a motion and the words it was made for.
+    """A part of a motion and the words that it was generated for.
 
     Attributes:
-        end_s: where it ends, in seconds from the motion's beginning; it begins where the one before ends.
-        words: text that may name what it shows.
+        end_s: end in seconds from the motion's beginning; a scene begins at the end of the one before.
+        words: text that may name the gestures of the scene.
     """
 
     end_s: float
@@ -95,11 +95,11 @@ class Scene:
 
 
 def seen(shown: PostureFeatures, words: str = "") -> tuple[Act, ...]:
-    """What a motion shows: at least one act, the arms' first.
+    """The acts that a motion shows: at least one, the arms' first.
 
     Args:
-        shown: the motion, as `posture_features` reads it.
-        words: a text that suggests which gestures to look for.
+        shown: posture features of the motion.
+        words: a text that suggests the gestures to search for.
     """
     named = families_named(words)
     acts = [*_acts_of_arms(shown, named)] if shown.arms else []
@@ -114,26 +114,26 @@ def seen(shown: PostureFeatures, words: str = "") -> tuple[Act, ...]:
 
 
 def scenes_seen(motion: Motion, scenes: Sequence[Scene]) -> tuple[tuple[Act, ...], ...]:
-    """For each scene what the motion shows there."""
+    """The acts that a motion shows in each scene."""
     shown = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     parts = _parts(len(motion.joints_m), motion.fps, scenes)
     return tuple(seen(part(shown, *ends), scene.words) for scene, ends in zip(scenes, parts, strict=True))
 
 
 def sentence(scenes: Sequence[Sequence[Act]], *, counted: bool = True) -> str:
-    """One sentence for what scenes show, without its subject: "claps 3 times, then bows"; without numbers unless `counted`."""
+    """One sentence for the acts of scenes, without its subject: "claps 3 times, then bows"; without numbers unless `counted`."""
     return ", then ".join(
         " and ".join((act if counted else replace(act, count=None)).sentence for act in acts) for acts in scenes
     )
 
 
 def lost(motion: Motion, scenes: Sequence[Scene], wanted: Sequence[Sequence[Act]]) -> list[tuple[Act, str]]:
-    """Which acts another motion of the same course does not show, each with what is missing of it.
+    """The wanted acts that a motion does not show, each with a description of the missing part.
 
     Args:
-        motion: what another body made of the motion.
+        motion: a motion that copies another one, such as that of a robot's body.
         scenes: parts of that motion; the last one goes on to its end.
-        wanted: for each scene what is to be seen.
+        wanted: for each scene the acts that the motion must show.
     """
     shown = posture_features(motion.joints_m, motion.head_quat_wxyz, motion.forearm_twist_rad)
     parts = _parts(len(motion.joints_m), motion.fps, scenes)
@@ -145,7 +145,7 @@ def lost(motion: Motion, scenes: Sequence[Scene], wanted: Sequence[Sequence[Act]
 
 
 def _parts(n_frames: int, fps: float, scenes: Sequence[Scene]) -> list[tuple[int, int]]:
-    """First frame and end of each scene, of at least `LEAST_FRAMES`; the last ends with the motion."""
+    """First frame and end of each scene, at least `LEAST_FRAMES` apart; the last scene ends with the motion."""
     ends = [min(n_frames, round(scene.end_s * fps)) for scene in scenes[:-1]] + [n_frames]
     starts = [0, *ends[:-1]]
     return [
@@ -154,7 +154,7 @@ def _parts(n_frames: int, fps: float, scenes: Sequence[Scene]) -> list[tuple[int
 
 
 def _missing(act: Act, s: PostureFeatures) -> str:
-    """What of an act a motion does not show; "" for nothing."""
+    """A description of the part of an act that a motion does not show; "" where it shows the whole act."""
     if not act.limb:
         return ""
     if act.limb == "arm":
@@ -175,7 +175,7 @@ def _missing(act: Act, s: PostureFeatures) -> str:
 
 
 def _acts_of_arms(s: PostureFeatures, named: Sequence[str]) -> Iterator[Act]:
-    """An act for the arms that moved, together or each by itself."""
+    """Yields acts of the arms that moved, together or each by itself."""
     left = set(_sides(s.arms))
     first = (PLAINER,) if PLAINER in named else ()
     arms = [f for f in (*first, *named, *ARM_FAMILIES) if f in SIGNS or f == "arms_down"]
@@ -191,7 +191,7 @@ def _acts_of_arms(s: PostureFeatures, named: Sequence[str]) -> Iterator[Act]:
 
 
 def _acting(arms: str, family: str) -> tuple[str, ...]:
-    """Sides with which a family may be shown by the arms that moved; both are needed where its sentence names no hand."""
+    """Sides on which the arms that moved may show a family; a family whose sentence names no hand needs both arms."""
     if "{" in sentences()[family]:
         return ("both", "left", "right") if arms == "both" else (arms,)
     return ("both",) if arms == "both" else ()
@@ -219,7 +219,7 @@ def _act_of_body(s: PostureFeatures, family: str, wanted: str = "") -> Act | Non
 
 
 def _place(s: PostureFeatures, side: str) -> str:
-    """Where a palm is when it is farthest from hanging."""
+    """Place of a palm in words when it is farthest from its first position."""
     palm = arm_of(s, side).palm
     outward, up, forward = palm[int(np.linalg.norm(palm - palm[0], axis=-1).argmax())]
     if up > 0.35:
@@ -240,7 +240,7 @@ def _sides(side: str) -> tuple[str, ...]:
 
 
 def _towards(direction: str) -> str:
-    """A direction as it is said: "to the left", "up and to the left"."""
+    """A direction in words: "to the left", "up and to the left"."""
     height, _, side = direction.rpartition(" ")
     if side in ("left", "right"):
         return f"{height} and to the {side}" if height else f"to the {side}"

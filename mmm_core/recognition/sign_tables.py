@@ -1,4 +1,4 @@
-"""The signs of all families: where palms are and how they move, or what head and trunk do. `signs` reads them.
+"""Tables of the signs of all families: places and movements of palms, or movements of head and trunk; `signs` reads them.
 
 Places are (outward, up, forward) in metres in the chest frame from the middle between the shoulders, outward for the acting
 arm.
@@ -19,35 +19,36 @@ from mmm_core.recognition.checks import strokes
 Array = NDArray[np.floating]
 Vector = tuple[float, float, float]
 Box = tuple[float, float, float, float, float, float]
-"""Least and most outward, up and forward."""
+"""Least and greatest outward, least and greatest up, least and greatest forward coordinate of a place."""
 SHAKE_FRAMES = 8
+"""Frames within which a shaken head comes from one side to the other."""
 _OUT, _UP, _FORWARD = 0, 1, 2
 _ANYWHERE: Box = (-9, 9, -9, 9, -9, 9)
 
 
 def near(place: Vector, within_m: float = 0.12) -> Box:
-    """The cube about a place."""
+    """The cube about a place, from `within_m` before it to `within_m` behind it along each axis."""
     (a, b, c), r = place, within_m
     return (a - r, a + r, b - r, b + r, c - r, c + r)
 
 
 @dataclass(frozen=True)
 class Sign:
-    """What has to be seen of the acting arm, or of both.
+    """Conditions that the acting arm, or both arms, must meet.
 
     Attributes:
         at: places that the palm visits.
         fore: direction of the forearm at the first place, and the least cosine to it.
         swing: axis and least travel of the palm, metres, while the arm is away from hanging.
-        held: the palm rests there for a while.
-        bend_deg: least and most elbow bend at the first place.
+        held: whether the palm rests at its first place for a while.
+        bend_deg: least and greatest elbow bend at the first place.
         turn: the two axes of a circle, and its least turns; its sign is the sense from the first towards the second axis.
         other: place of the other palm.
         opposed: axis along which the two palms move against each other.
-        together: axis along which they move together.
-        apart_m: least and most distance of the palms at the first place.
-        share: of the gesture's frames, how many the palm spends at its places.
-        twist_rad: least turn of the forearm about itself; not looked at where the motion does not say it.
+        together: axis along which the two palms move together.
+        apart_m: least and greatest distance of the palms at the first place.
+        share: least share of the gesture's frames that the palm spends at its places.
+        twist_rad: least range of the forearm's twist; not checked for motions without twist.
     """
 
     at: tuple[Box, ...] = (_ANYWHERE,)
@@ -80,7 +81,7 @@ def _trunk_only(s: PostureFeatures) -> bool:
 
 
 def _lasts(x: Array, above: float, share: float) -> bool:
-    """Whether most of a movement is spent beyond a value: a pose, not a stroke."""
+    """Whether a movement spends more than `share` of its frames beyond a value, as a pose does and a stroke does not."""
     moving = x > 0.25 * above
     return bool(moving.sum() and (x > above).sum() > share * moving.sum())
 
@@ -90,7 +91,7 @@ def _largest_roll(s: PostureFeatures) -> float:
 
 
 def _fast(yaw_deg: Array) -> bool:
-    """Whether it comes from one side to the other within less than half a second."""
+    """Whether the head turns from one side to the other within `SHAKE_FRAMES`."""
     left = np.flatnonzero(yaw_deg > 0.85 * yaw_deg.max())
     right = np.flatnonzero(yaw_deg < 0.85 * yaw_deg.min())
     return bool(np.abs(left[:, None] - right).min() <= SHAKE_FRAMES)

@@ -1,8 +1,8 @@
-"""What makes a gesture that gesture: for each family where the palms are, how they move, and what head and trunk do.
+"""Recognises gestures by their signs: for each family, places and movement of the palms, or movement of head and trunk.
 
-A sign is read from joints and head alone, with room for other ways to make the same gesture. Places are (outward, up,
-forward) in metres in the chest frame from the middle between the shoulders, outward for the acting arm. That each sign sees
-its own family, not standing still and hardly any other family, is tested on synthesised motions.
+A sign is read from joints and head orientation alone, and leaves room for other ways to make the same gesture. Places are
+(outward, up, forward) in metres in the chest frame from the middle between the shoulders, outward for the acting arm. Tests on
+synthesised motions check that each sign finds its own family, but not standing still and hardly any other family.
 """
 
 from __future__ import annotations
@@ -20,20 +20,29 @@ from mmm_core.recognition.sign_tables import DIRECTED, HEAD_TRUNK, ONE_LEADS, SI
 
 Array = NDArray[np.floating]
 LEAST_FRAMES = 3
-"""How long a palm has to be in a place to have been there: 0.15 s."""
+"""Frames (0.15 s) that a palm has to spend in a place for the place to count as visited."""
 TOUCHING_M = 0.16
-"""Distance of palms, metres, up to which they count as together."""
+"""Metres between the palms up to which they count as together."""
 SLOW_M_S = 0.3
+"""Metres a second below which a palm rests."""
 HELD_FRAMES = 6
+"""Frames that a palm has to rest in a pose that is held."""
 TRANSITION_FRAMES = 7
-"""Left out at both ends of a gesture: the way there and back."""
+"""Frames left out at both ends of a gesture, in which the arm rises and comes down."""
 _HANGING_M = np.array([0.3, -0.52, 0.1])
 _OTHER = {"left": "right", "right": "left"}
 
 
 @dataclass(frozen=True)
 class Arm:
-    """An arm in its own frame: palm (T, 3), upper and forearm directions (T, 3), bend (T,) degrees, away (T,) from hanging."""
+    """An arm in the chest frame with its outward axis positive.
+
+    Attributes:
+        palm: (T, 3) middle of the palm, metres.
+        fore: (T, 3) direction of the forearm.
+        bend_deg: (T,) bend of the elbow.
+        away: (T,) whether the arm is away from hanging.
+    """
 
     palm: Array
     fore: Array
@@ -43,7 +52,7 @@ class Arm:
 
 @lru_cache(maxsize=16)
 def arm_of(s: PostureFeatures, side: str) -> Arm:
-    """The arm of a side, outward positive."""
+    """The arm of a side, "left" or "right"."""
     out = np.array([1.0 if side == "left" else -1.0, 1, 1])
     palm = (s.wrists_m[side] + PALM_M * s.fore[side]) * out
     fore, upper = s.fore[side] * out, s.upper[side] * out
@@ -53,7 +62,7 @@ def arm_of(s: PostureFeatures, side: str) -> Arm:
 
 
 def shows(s: PostureFeatures, family: str, side: str = "", direction: str = "") -> bool:
-    """Whether the motion shows a gesture of the family, with the arm of `side` where one is named."""
+    """Whether the motion shows a gesture of the family: with the arm of `side`, with both, or for "" with either."""
     if family == "arms_down":
         sides = (side,) if side in _OTHER else ("left", "right")
         return any(_comes_down(s, one) for one in sides) if not side else all(_comes_down(s, one) for one in sides)
@@ -114,13 +123,13 @@ def _has(s: PostureFeatures, sign: Sign, side: str) -> bool:
 
 
 def _comes_down(s: PostureFeatures, side: str) -> bool:
-    """The arm begins raised and ends hanging."""
+    """Whether the arm begins raised and ends hanging."""
     palm = arm_of(s, side).palm
     return bool(palm[:3, 1].min() > -0.15 and palm[-3:, 1].max() < -0.4)
 
 
 def _core(away: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Frames of the gesture itself, without the way there and back."""
+    """Frames of the gesture itself, without those in which the arm rises and comes down."""
     at = np.flatnonzero(away)
     core = np.zeros_like(away)
     if len(at):
@@ -136,7 +145,7 @@ def _slow(palm: Array) -> NDArray[np.bool_]:
 
 
 def _spread(x: Array) -> Array:
-    """Travel without the outermost frames."""
+    """Range of a signal without its outermost tenth."""
     return np.percentile(x, 95, axis=0) - np.percentile(x, 5, axis=0)
 
 
@@ -146,7 +155,7 @@ def _inside(palm: Array, box: Box) -> NDArray[np.bool_]:
 
 
 def _turns(path: Array) -> float:
-    """How often a path (T, 2) goes round the middle of its extent, by sign."""
+    """Signed number of turns that a path (T, 2) makes about the middle of its extent."""
     if len(path) < 5:
         return 0.0
     middle = (np.percentile(path, 90, axis=0) + np.percentile(path, 10, axis=0)) / 2

@@ -11,8 +11,8 @@ from daemon.bench.all_figures.table import NOT_MEASURED, Column, Measurement, Ro
 _HEAD = """\
 Made by `mmmd bench all` from one JSON file for each run, never by hand; `mmmd bench all --help` says how to make one for
 another machine. Machines that others use too are noisy: where they took a tenth of the processors or more, the line says so,
-and its times and rates are no measure of what the code can do. What stands behind the figures, and what was tried: model.md,
-evaluation.md, retargeting.md, bus.md, safety.md and decisions/."""
+and its times and rates are no measure of what the code can do. What stands behind the figures, and what was tried:
+model_history.md, evaluation.md, retargeting.md, bus.md, safety.md and decisions/."""
 _QUICK = (
     "**Quick: runs marked so took small numbers of texts and trials. Their figures are no measurement of a release.**"
 )

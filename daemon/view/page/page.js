@@ -78,7 +78,7 @@ function heardCmd(event) {
   if (event.id !== lastId) return;
   if (event.type === "cancelled") return answer(`ended by ${event.by}`);
   if (event.type === "accepted") answer(`understood: ${event.understood}${event.reason ? ` (${event.reason})` : ""}${event.lacks ? `; this robot lacks: ${event.lacks}` : ""}`, event.status === "degraded" || event.lacks ? "warn" : "");
-  if (event.type === "done" && event.shown) answer(`done: ${event.shown}: ${event.seen}${event.missing ? `; not seen: ${event.missing}` : ""}`, event.missing ? "warn" : "");
+  if (event.type === "done" && event.shown) answer(`done: ${event.shown}: ${event.missing ? `its motion ${event.seen}; on the robot: ${event.missing}` : event.seen}`, event.missing ? "warn" : "");
 }
 
 const said = JSON.parse(localStorage.getItem("said") || "[]");

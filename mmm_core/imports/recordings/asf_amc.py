@@ -1,4 +1,4 @@
-"""CMU's ASF skeletons and AMC motions (Acclaim format).
+"""Reads CMU's ASF skeletons and AMC motions (Acclaim format).
 
 A bone turns by its degrees of freedom about its own axes, which the ASF gives as an XYZ rotation C: in the parent's frame
 by C M C^-1 (J. Lander, "Working with Motion Capture File Formats", Game Developer 1/1998). An AMC names neither its
@@ -27,7 +27,7 @@ _ENDS = {
         ("hip", "hipjoint"), ("knee", "femur"), ("ankle", "tibia"), ("foot", "foot"), ("shoulder", "clavicle"),
         ("elbow", "humerus"), ("wrist", "radius"))},
 }  # fmt: skip
-"""The bone at whose end each of our joints lies."""
+"""Name of the bone at whose end each of our joints lies."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +38,10 @@ class _Bone:
 
 
 def read_amc(path: Path, fps: float | None = None) -> Motion:
-    """The motion of an AMC file with its ASF.
+    """The motion of an AMC file with its ASF; None for `fps` means CMU's 120.
 
     Raises:
-        MotionFileError: no skeleton for it, or either file is garbled; file, line and bone are named.
+        MotionFileError: there is no skeleton, or either file is garbled; file, line and bone are named.
     """
     asf = skeleton_of(path)
     bones, parents = _read_asf(asf)
@@ -60,7 +60,7 @@ def read_amc(path: Path, fps: float | None = None) -> Motion:
 
 
 def skeleton_of(path: Path) -> Path:
-    """The ASF of an AMC: of the same name, of the subject in `SUBJECT_TRIAL.amc`, or the only one in the folder."""
+    """The ASF file of an AMC file: that of the same name, of the subject in `SUBJECT_TRIAL.amc`, or the folder's only one."""
     named = [path.with_suffix(".asf"), path.with_name(path.stem.split("_")[0] + ".asf")]
     beside = sorted(p for p in path.parent.glob("*") if p.suffix.lower() == ".asf")
     for asf in [*(p for p in named if p.is_file()), *(beside if len(beside) == 1 else [])]:
@@ -137,7 +137,7 @@ def _read_amc(path: Path, bones: dict[str, _Bone]) -> dict[str, Array]:
 def _pose(
     bones: dict[str, _Bone], parents: dict[str, str], frames: dict[str, Array]
 ) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Place (T, 3) of the end, and world rotation (T, 3, 3), of every bone."""
+    """Position (T, 3) of the end and world rotation (T, 3, 3) of every bone, by name."""
     T = len(frames["root"])
     places: dict[str, Array] = {}
     turns: dict[str, Array] = {}

@@ -1,7 +1,7 @@
-"""BVH files: a joint tree, its rotations, and which of its joints are ours.
+"""Reads BVH files: the joint tree and its rotations, as a motion of our joints.
 
-The order of a joint's rotation channels is the order in which they are written, each about the axis turned by those
-before. The format names neither unit nor facing: lengths are scaled to a person's, the rest pose says where forward is.
+A joint's rotations are applied in the order of its channels, each about the axis as turned by the rotations before it. The
+format names neither unit nor facing: lengths are scaled to a person's, and the rest pose shows the forward direction.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def read_bvh(path: Path, fps: float | None = None) -> Motion:
     """The motion of a BVH file; `fps` wins over the file's frame time.
 
     Raises:
-        MotionFileError: not a BVH file, cut short, or a skeleton without arms; line or key is named.
+        MotionFileError: the file is no BVH file or is cut short, or its skeleton has no arms; line or key is named.
     """
     try:
         words = path.read_text("utf-8", errors="replace").split()
@@ -63,7 +63,7 @@ def read_bvh(path: Path, fps: float | None = None) -> Motion:
 
 
 def _hierarchy(path: Path, words: list[str]) -> tuple[_Tree, int]:
-    """The joint tree and where the motion begins."""
+    """The joint tree, and the index of the word with which the motion begins."""
     if not words or words[0].upper() != "HIERARCHY":
         raise MotionFileError(
             path, "HIERARCHY", repr(words[0] if words else ""), "a BVH file, which begins with HIERARCHY"
@@ -77,7 +77,7 @@ def _hierarchy(path: Path, words: list[str]) -> tuple[_Tree, int]:
             tree.parents.append(above[-1])
             above.append(len(tree.names) - 1)
             at = name_end + 1
-        elif word == "END":  # the end of a bone is where the next joint would be: the wrist, the top of the head
+        elif word == "END":  # the end of a bone stands for a joint that the file lacks: the wrist, the top of the head
             tree.names.append(f"{tree.names[above[-1]]} end")
             tree.parents.append(above[-1])
             tree.channels.append([])
@@ -113,7 +113,7 @@ def _frames(path: Path, words: list[str], at: int, n_channels: int) -> tuple[Arr
 
 
 def _pose(tree: _Tree, values: Array) -> tuple[list[Array], list[Array]]:
-    """Place (T, 3) and world rotation (T, 3, 3) of every joint."""
+    """Position (T, 3) and world rotation (T, 3, 3) of every joint."""
     places: list[Array] = []
     turns: list[Array] = []
     column = 0
@@ -139,7 +139,7 @@ def _pose(tree: _Tree, values: Array) -> tuple[list[Array], list[Array]]:
 
 
 def _upright(facing: Array) -> Array:
-    """(3, 3) that turns the file's axes to y up, where its rest pose stands along another axis."""
+    """(3, 3) rotation from the file's axes to y up, by the axis along which its rest pose stands."""
     up = facing[:, 1]
     axis = int(np.abs(up).argmax())
     if axis == 1 and up[1] > 0:

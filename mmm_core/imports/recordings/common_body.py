@@ -1,4 +1,4 @@
-"""A recording of any person on the body that the model knows: bone directions kept, lengths replaced, feet on the floor."""
+"""Puts a recording of any person on the model's body: bone directions stay, lengths are replaced, feet go on the floor."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from mmm_core.motion.motion import Motion
 from mmm_core.motion.skeleton import BONE_LENGTHS_M, JOINT_NAMES, PARENTS, Array
 
 _FLOOR_PERCENTILE = 2.0
-"""Height of the feet that is taken as the floor."""
+"""Percentile of the feet's heights that counts as the floor."""
 _SHORTEST_BONE_M = 1e-3
 
 
 def on_common_body(path: Path, motion: Motion) -> Array:
-    """(T, 22, 3) metres: the joints on the common body; root travel goes with the length of the legs.
+    """(T, 22, 3) joints on the common body, metres; the root's travel is scaled by the length of the legs.
 
     Raises:
         MotionFileError: a bone has no length; file and joint are named.

@@ -1,4 +1,4 @@
-"""Motion files of every kind that is read, and the folders that hold many of them."""
+"""Reads motion files of every supported kind, and finds them in folders."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def read_motion(path: Path, fps: float | None = None) -> Motion:
 
     Args:
         path: the file.
-        fps: frames per second; wins over what the file says, and is needed where that is wrong.
+        fps: frames per second; wins over the file's own rate. None takes the file's, or the usual rate of its kind.
 
     Raises:
-        MotionFileError: missing, of another kind or not usable; path and key are named.
+        MotionFileError: the file is missing, of another kind or not usable; path and key are named.
     """
     kind = path.suffix.lower()
     if not path.is_file():
@@ -44,7 +44,7 @@ def read_motion(path: Path, fps: float | None = None) -> Motion:
 
 
 def find_motions(folder: Path) -> list[Path]:
-    """All motion files below a folder, sorted; of a HumanML3D folder its joints, else its features."""
+    """All motion files below a folder, sorted; in a HumanML3D folder only its joints or, without these, its features."""
     for name in _HUMANML3D:
         if (folder / name).is_dir():
             folder = folder / name

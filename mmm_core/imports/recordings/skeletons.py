@@ -1,4 +1,4 @@
-"""Other programs' skeletons as our 22 joints: names that they use, joints that they leave out, units, rest frames."""
+"""Maps other programs' skeletons to our 22 joints: their names, missing joints, units and rest poses."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from mmm_core.motion.skeleton import (
 Array = NDArray[np.float64]
 _SPINE1, _NECK, _HEAD = 3, 12, 15
 _MOST_LEAN_RAD = 0.5
-"""More is not the shape of a spine but a rest pose that bends."""
+"""Radians that an upright spine leans at most; a rest pose that leans more is not that of a standing person."""
 _ARM_M = float(BONE_LENGTHS_M[18] + BONE_LENGTHS_M[20])
 
-# Names as CMU's BVH conversions, Mixamo, DAZ and SMPL write them, without signs; the earlier in a row the better. A row
-# takes only what no row above it took: "LeftShoulder" is the shoulder of SMPL, but the collar where there is a "LeftArm".
+# Names in CMU's BVH conversions, Mixamo, DAZ and SMPL, without signs; names that come earlier in a row are preferred. A row
+# takes no joint that a row above took: "LeftShoulder" is SMPL's shoulder, but the collar in a skeleton with a "LeftArm".
 _SIDED = {
     "hip": ("upleg", "thigh", "hip", "upperleg", "femur"),
     "knee": ("leg", "shin", "knee", "lowleg", "lowerleg", "calf"),
@@ -46,10 +46,10 @@ _NEEDED = tuple(f"{side}_{part}" for side in ("left", "right") for part in ("hip
 
 
 def find_joints(path: Path, names: Sequence[str], parents: Sequence[int]) -> dict[str, int]:
-    """Which of a file's joints is which of ours; ours that it has not are left out.
+    """The index of a file's joint for each of our joints, by name; joints that the file lacks are left out.
 
     Raises:
-        MotionFileError: the arms or the hips cannot be found.
+        MotionFileError: arms or hips cannot be found.
     """
     plain = [re.sub("[^a-z0-9]", "", name.rsplit(":", 1)[-1].lower().removeprefix("mixamorig")) for name in names]
     found: dict[str, int] = {}
@@ -93,14 +93,15 @@ def motion_of(
     rest: Mapping[str, Array] | None = None,
     unit_known: bool = False,
 ) -> Motion:
-    """A motion of 20 fps from places (T, 3) of our joints by name, y up.
+    """A motion of 20 fps from the positions (T, 3) of our joints by name, y up.
 
-    Joints left out are put where a person's would be. `rest` is (1, 3) places of the same joints in the skeleton's rest pose,
-    upright; without it the skeleton is ours. Without `unit_known`, lengths are scaled to a person's arms. Without
+    Missing joints are put where a person's would be. `rest` has the (1, 3) positions of the same joints in the skeleton's rest
+    pose, upright; without it the skeleton is ours. Without `unit_known`, lengths are scaled to a person's arms. Without
     `head_rotation` (T, 3, 3) the head follows the neck.
 
     Raises:
-        MotionFileError: values that are not finite, arms without length, or no frames; the first frame is named.
+        MotionFileError: values are not finite (the first such frame is named), arms have no length, `fps` is out of range, or
+            there are no frames.
     """
     joints = _all_joints(places)
     if rest is not None:
@@ -133,7 +134,7 @@ def motion_of(
 
 
 def _all_joints(places: Mapping[str, Array]) -> Array:
-    """(T, 22, 3) joints; what is missing lies between its neighbours."""
+    """(T, 22, 3) joints; missing ones are put between or beyond their neighbours."""
     p = dict(places)
     shoulders = (p["left_shoulder"] + p["right_shoulder"]) / 2
     p.setdefault("neck", p["head"] if "head" in p else shoulders)
@@ -149,10 +150,11 @@ def _all_joints(places: Mapping[str, Array]) -> Array:
 
 
 def _leaning_as_ours(joints: Array, rest: Array) -> Array:
-    """Neck and head of (T, 22, 3) joints turned about the first joint of the spine, so that upright is upright.
+    """(T, 22, 3) joints with neck and head turned about the first joint of the spine, so that upright stays upright.
 
-    A chest is read off its spine and neck. Our skeleton's neck stands 3.4 degrees before its spine when the person is upright;
-    theirs stands as (1, 22, 3) `rest` says, unless that is no standing person.
+    The orientation of a chest is taken from spine and neck. In our skeleton the neck of an upright person leans 3.4 degrees
+    before the spine; in the file's skeleton it leans as in the rest pose `rest` (1, 22, 3). A rest pose that is no standing
+    person changes nothing.
     """
     turn_rad = _LEAN_RAD - _lean_rad(rest)
     if abs(turn_rad) > _MOST_LEAN_RAD:
@@ -174,7 +176,7 @@ def _lean_rad(standing: Array) -> float:
 
 
 def _at_our_rate(joints: Array, head: Array | None, fps: float) -> tuple[Array, Array | None]:
-    """The motion at 20 fps: positions between frames by lines, the head's orientation from the nearest frame."""
+    """Joints and head orientation at 20 fps: joints interpolated linearly, the head's orientation from the nearest frame."""
     if fps == FPS or len(joints) == 1:
         return joints, head
     frames = np.arange(0, (len(joints) - 1) / fps + 1e-9, 1 / FPS) * fps
@@ -186,7 +188,7 @@ def _at_our_rate(joints: Array, head: Array | None, fps: float) -> tuple[Array, 
 
 
 def rest_frame(places: Mapping[str, Array]) -> Array:
-    """(3, 3) left, up and forward of a person in a rest pose, (3,) places by name."""
+    """(3, 3) directions left, up and forward of a person in a rest pose, from the joints' (3,) positions by name."""
     left = places["left_shoulder"] - places["right_shoulder"] + places["left_hip"] - places["right_hip"]
     up = (places["left_shoulder"] + places["right_shoulder"]) / 2 - places["pelvis"]
     x = left / np.linalg.norm(left)

@@ -37,9 +37,9 @@ def done(**changed: object) -> Done:
             "done after 2.0 s; seen on the robot: waves with the right hand 3 times",
         ),
         (
-            [accepted(lacks="it has no wrists"), done(seen="lifts the arm", missing="no strokes of the hand")],
+            [accepted(lacks="it has no wrists"), done(seen="claps twice", missing="not seen: claps twice")],
             "this robot cannot show all of it: it has no wrists\n"
-            "done after 2.0 s; seen on the robot: lifts the arm; not seen on the robot: no strokes of the hand",
+            "done after 2.0 s; its motion claps twice; on the robot: not seen: claps twice",
         ),
         (
             [accepted(reason="without the jump", denied=("nod", "bow")), done()],

@@ -225,6 +225,24 @@ def test_a_restarted_generator_is_not_blamed_for_its_predecessor(endpoint):
     assert ask(endpoint, call) == 0
 
 
+@pytest.mark.parametrize("lose", [lambda c: c.mark_down("ended with status -9"), lambda c: c.mark_starting()])
+def test_an_open_request_fails_at_once_when_its_generator_ends(endpoint, lose):
+    """It waited for its whole time-out, some seconds in which the robot stood still and nobody was told why."""
+
+    async def call(client):
+        asking = asyncio.create_task(client.generate("wave", 0, None, 60.0))
+        async with asyncio.timeout(10.0):
+            while not client.busy:
+                await asyncio.sleep(0)
+            lose(client)
+            with pytest.raises(GeneratorError) as caught:
+                await asking
+        assert client.timeouts == 0 and not client.busy
+        return caught.value
+
+    assert ask(endpoint, call).code == "generator_down"
+
+
 def test_a_generator_that_is_down_fails_at_once(endpoint):
     async def call(client):
         client.mark_down("ended with status 1")
