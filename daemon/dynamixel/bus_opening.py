@@ -1,4 +1,4 @@
-"""Opens the ports of a robot's bus and finds out which servo is on which."""
+"""Opens the ports of a robot's bus and finds the port of each servo."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from retarget.robot.robot import RobotModel
 
 
 def open_bus(url: str, robot: RobotModel, clock: Clock, *, slow_every: int = 0, margin_s: float = MARGIN_S) -> ServoBus:
-    """The bus behind a URL, or behind several with commas between them: `dxl:///dev/ttyUSB0,dxl:///dev/ttyUSB1`.
+    """The bus at one URL, or at several separated by commas: `dxl:///dev/ttyUSB0,dxl:///dev/ttyUSB1`.
+
+    With several ports every servo is searched on each of them.
 
     On several ports every servo is looked for on each.
 
@@ -32,10 +34,10 @@ def open_bus(url: str, robot: RobotModel, clock: Clock, *, slow_every: int = 0, 
 
 
 def open_ports(url: str, context: PortContext) -> list[Port]:
-    """The ports of such a URL; all or none.
+    """Open the ports of such a URL; all or none.
 
     Raises:
-        PortError: one cannot be opened.
+        PortError: a port cannot be opened.
     """
     ports: list[Port] = []
     try:
@@ -55,14 +57,14 @@ def _close(ports: Sequence[Port]) -> None:
 def bus_on(
     ports: Sequence[Port], robot: RobotModel, clock: Clock, *, slow_every: int = 0, margin_s: float = MARGIN_S
 ) -> ServoBus:
-    """The bus on these open ports; a servo that answers on none is expected on the first.
+    """The bus on open ports; a servo that answers on none of them is expected on the first.
 
     Args:
-        ports: open ones.
-        robot: whose servos they are.
+        ports: the open ports.
+        robot: the robot.
         clock: of the deadlines.
         slow_every: see `ServoChain`.
-        margin_s: how long an answer may be late before a servo counts as silent.
+        margin_s: seconds by which an answer may be late before the servo counts as silent.
 
     Raises:
         BusMismatchError: a servo answers on two ports.

@@ -1,4 +1,8 @@
-"""Whether a chained read is used: one in which a servo's silence silences those behind it.
+"""Decides whether chained reads are used: reads in which a silent servo silences those behind it.
+
+Fast sync read and the bulk read of protocol 1.0 are chained; they are the quicker reads. A reply that breaks off occasionally costs
+the answers of that cycle. A reply that breaks off repeatedly has a cause (a servo is gone, or its firmware does not keep to the
+order); then every servo answers for itself for a while, so that only the silent one is quarantined.
 
 Fast sync read and the bulk read of protocol 1.0 are such; they are the quicker ones. A reply that breaks off now and then
 costs the answers of that cycle. One that breaks off again and again is no accident (a servo is gone, or the firmware does
@@ -10,11 +14,12 @@ from __future__ import annotations
 from daemon.dynamixel.health import QUARANTINE_AFTER
 
 _BREAK_POINTS, _MOST_POINTS = 4, 12
-"""Points that a cycle costs whose reply broke off, and points at which chained reads are left; a whole reply takes one point away.
-They are left after three broken replies in a row, or one in five for long: well before the servos behind a dead one would be
-taken for dead."""
+"""Points for a cycle whose reply broke off, and points at which chained reads are stopped; a complete reply takes one point off.
+Three broken replies in a row, or one in five over a longer time, reach the limit: well before the servos behind a dead one would
+be quarantined.
+"""
 _PAUSE_CYCLES, _LONGEST_PAUSE_CYCLES = 25, 3200
-"""Cycles in which each servo answers for itself, first and at most; twice as many each time that it helps for a moment only."""
+"""Cycles in which each servo answers for itself, at first and at most; the number doubles when chained reads break again soon."""
 _HELD_CYCLES = 200
 assert _MOST_POINTS <= _BREAK_POINTS * QUARANTINE_AFTER
 
@@ -35,11 +40,11 @@ class ChainedReads:
 
     @property
     def at_ease(self) -> bool:
-        """Whether a cycle in which all is well changes nothing here."""
+        """Whether a cycle without errors changes nothing here."""
         return self.used and not self._points and self._held >= _HELD_CYCLES
 
     def after_cycle(self, broke_at: int | None) -> bool:
-        """Judge a cycle; True when `used` has changed.
+        """Judge a cycle; return whether `used` has changed.
 
         Args:
             broke_at: row of the servo at which a chained reply broke off; None when none did.
@@ -62,5 +67,5 @@ class ChainedReads:
         return True
 
     def resume(self) -> None:
-        """Who broke it off is left out now: try again at once."""
+        """Try chained reads again at once: the servo that broke them is excluded now."""
         self.used, self._points, self._last_row = True, 0, None

@@ -1,4 +1,4 @@
-"""What happened on a bus beside the daily exchange: named, counted, once for each time it begins."""
+"""Events on a bus besides the exchange of goals and measurements: named, counted, reported once each time they begin."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ KEPT = 1000
 
 
 class BusEventKind(Enum):
-    """Names of what can happen."""
+    """Kinds of events."""
 
     QUARANTINED = "quarantined"
     RETURNED = "returned"
@@ -30,7 +30,7 @@ class BusEventKind(Enum):
 
 @dataclass(frozen=True)
 class BusEvent:
-    """One thing that happened; `servo_id` None when it concerns the bus."""
+    """One event; `servo_id` is None when it concerns the whole bus."""
 
     kind: BusEventKind
     t_s: float
@@ -39,7 +39,7 @@ class BusEvent:
 
 
 class EventLog:
-    """Collects events; repeated ones are counted, and told again only after they have been away for a while."""
+    """Collects events; a repeated one is counted, and reported again only after a pause."""
 
     QUIET_S = 5.0
 

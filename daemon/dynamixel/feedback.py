@@ -1,4 +1,7 @@
-"""Steps of a cycle: one request, the answers of its servos, and where their numbers go.
+"""Steps of a cycle: one request, the answers of its servos, and their storage in a reading.
+
+A whole group of Protocol 2.0 servos is one step (sync read, or fast sync read); MX on protocol 1.0 are one step (bulk read); an AX
+knows no group read and is a step of its own.
 
 A whole group of Protocol 2.0 servos is one step (sync read, or fast sync read); MX on protocol 1.0 are one step (bulk
 read); an AX knows no group read and is a step of its own.
@@ -25,11 +28,11 @@ from daemon.dynamixel.registers.registers import FEEDBACK_LENGTH, Item
 
 @dataclass(frozen=True)
 class Layout:
-    """Where position, velocity and effort stand in the bytes that are read.
+    """Addresses and offsets of position, velocity and effort in the bytes that are read.
 
     Attributes:
-        address, length: what is read.
-        position, velocity, effort: offset of each in it.
+        address, length: first address and number of the bytes that are read.
+        position, velocity, effort: offset of each in these bytes.
     """
 
     address: int
@@ -40,28 +43,30 @@ class Layout:
 
 
 def direct(address: int) -> Layout:
-    """Protocol 2.0: effort, velocity, position stand side by side from `address` on."""
+    """The layout of Protocol 2.0: effort, velocity and position in a row from `address` on."""
     return Layout(address, FEEDBACK_LENGTH, 6, 2, 0)
 
 
 DIRECT = direct(126)
-"""Addresses of X and MX: effort 126, velocity 128, position 132."""
+"""Layout of X and MX: effort 126, velocity 128, position 132."""
 PROTOCOL_1_ADDRESS, PROTOCOL_1_LENGTH = 36, 6
-"""Protocol 1.0: position 36, speed 38, load 40."""
+"""Address and number of bytes in Protocol 1.0: position 36, speed 38, load 40."""
 
 
 _ALL = slice(None)
 
 
 def _index(rows: Sequence[int]) -> NDArray[np.intp] | slice:
-    """The rows as a slice where they are neighbours: several times quicker."""
+    """An index for `rows`: a slice when they are consecutive, because NumPy copies a slice several times faster."""
     if list(rows) == list(range(rows[0], rows[0] + len(rows))):
         return slice(rows[0], rows[0] + len(rows))
     return np.array(rows, np.intp)
 
 
 class Step(Protocol):
-    """One request and its answers; `index` picks its rows out of a reading's columns.
+    """One request and its answers; `index` selects its servos' rows in a reading.
+
+    `chained`: whether a silent servo silences those behind it.
 
     `chained`: a servo's silence silences those behind it.
     """
@@ -74,15 +79,15 @@ class Step(Protocol):
     chained: bool
 
     def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
-        """Store the answers in `raw`; (rows,) who gave one. False where `raw` needs the byte parser."""
+        """Store the answers in `raw`; return (rows,) whether each servo answered. Bytes of a False row go to the byte parser."""
         ...
 
     def ends(self, raw: bytearray) -> bool:
-        """Whether the last servo has answered, so that nobody else will."""
+        """Whether the last servo has answered, so that no more bytes will come."""
         ...
 
     def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
-        """Keep one answer found by the byte parser; False when it is no answer to this."""
+        """Store one answer found by the byte parser; return False when it does not belong to this step."""
         ...
 
 
@@ -107,18 +112,18 @@ class SyncStep:
         self.chained = False
 
     def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
-        """All answers at once, or none."""
+        """Store all answers at once when all are complete, else none."""
         if not self._reply.parse(raw):
             return self._none
         self._columns.store(self.index, self._reply.errors, reading)
         return self._all
 
     def ends(self, raw: bytearray) -> bool:
-        """The last servo's frame is there."""
+        """Whether the last servo's frame has arrived."""
         return self._reply.ends(raw)
 
     def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
-        """One servo's status packet."""
+        """Store one servo's status packet."""
         if len(answer.parameters) != self._layout.length:
             return False
         layout, data = self._layout, answer.parameters
@@ -141,7 +146,7 @@ class FastSyncStep:
         self._columns = _Columns(self._reply, layout)
 
     def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
-        """The parts that are whole."""
+        """Store the parts that are complete."""
         whole = self._reply.parse(raw)
         if whole.all():
             self._columns.store(self.index, self._reply.errors, reading)
@@ -150,16 +155,16 @@ class FastSyncStep:
         return whole
 
     def ends(self, raw: bytearray) -> bool:
-        """Behind a silent servo nobody goes on: only a full packet is an end."""
+        """Whether the packet is complete: behind a silent servo no other answers, so only a full packet is an end."""
         return len(raw) >= self.reply_bytes
 
     def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
-        """No single answers here."""
+        """Return False: this step has no single answers."""
         return False
 
 
 class _Columns:
-    """Views of the numbers in a group's buffer, and their way into the reading."""
+    """Views of the numbers in a group's buffer, and their copying into the reading."""
 
     def __init__(self, reply: GroupReply | FastGroupReply, layout: Layout) -> None:
         self._position = reply.column(layout.position, "<i4")
@@ -173,7 +178,7 @@ class _Columns:
         reading: BusReading,
         whole: NDArray[np.bool_] | slice = _ALL,
     ) -> None:
-        """Copy the servos picked by `whole` to the rows of `index`."""
+        """Copy the values of the servos selected by `whole` to the rows of `index`."""
         reading.error[index] = errors[whole]
         reading.position_tick[index] = self._position[whole]
         reading.velocity_raw[index] = self._velocity[whole]
@@ -202,15 +207,15 @@ class Protocol1Step:
         self._none = np.zeros(len(rows), bool)
 
     def take(self, raw: bytearray, reading: BusReading) -> NDArray[np.bool_]:
-        """Everything is left to the byte parser."""
+        """Return all False: the byte parser handles all answers of this step."""
         return self._none
 
     def ends(self, raw: bytearray) -> bool:
-        """All bytes are there."""
+        """Whether all bytes have arrived."""
         return len(raw) >= self.reply_bytes
 
     def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
-        """One servo's status packet."""
+        """Store one servo's status packet."""
         if len(answer.parameters) != PROTOCOL_1_LENGTH:
             return False
         position, speed, load = (_decoded(item, answer.parameters) for item in self._items[row])
@@ -232,7 +237,7 @@ def _number(data: bytes, offset: int, size: int) -> int:
 def steps_for(
     rows: Sequence[int], servo_ids: Sequence[int], models: Sequence[BusModel], fast: Sequence[bool], *, chained: bool
 ) -> list[Step]:
-    """The steps that read these servos: those with `fast` in one fast sync read, the others as their protocol can.
+    """The steps that read these servos: those with `fast` in one fast sync read, the others by the best read of their protocol.
 
     Args:
         rows: of the servos in the reading.
@@ -261,5 +266,5 @@ def steps_for(
 
 
 def is_status(answer: Packet) -> bool:
-    """Whether this is an answer, not a request of somebody else."""
+    """Whether this is an answer, not another client's request."""
     return answer.instruction == Instruction.STATUS

@@ -15,15 +15,16 @@ from daemon.dynamixel.register_access import RegisterAccess
 from daemon.dynamixel.servo_link import ServoLink
 
 TWICE_CYCLES = 3
-"""Cycles in a row in which a servo answers twice before two servos are taken to have its id. A second answer now and then is that
-of an earlier cycle, come late; two servos both answer every time."""
+"""Cycles in a row with two answers after which two servos are assumed to have the id. An occasional second answer is a late one of
+an earlier cycle; two servos both answer every time.
+"""
 
 
 class FeedbackCycle:
     """Sends goals to the servos on a link and receives their measurements.
 
     Attributes:
-        fast: (S,) whether fast sync reads are used of a servo, once `build_steps` was called.
+        fast: (S,) whether a servo is read by fast sync reads, once `build_steps` was called.
         steps: the requests of a cycle.
     """
 
@@ -51,7 +52,7 @@ class FeedbackCycle:
         self._begun = (self._link.send(request), len(request)) if request else None
 
     def finish(self) -> None:
-        """Receive effort, velocity and position of every servo into the link's reading; judge each by itself.
+        """Receive effort, velocity and position of every servo into the link's reading; judge each servo by itself.
 
         A servo that does not answer keeps its old values, marked not valid.
 
@@ -73,11 +74,11 @@ class FeedbackCycle:
 
     @property
     def goal_bytes(self) -> int:
-        """Bytes of the packets that carry the goals of all servos."""
+        """Number of bytes in the packets with the goals of all servos."""
         return sum(write.n_bytes for _, write in self._goal_writes)
 
     def resume(self) -> None:
-        """All servos take part again: build the requests anew, chained reads included."""
+        """Let all servos take part again: build the requests anew, chained reads included."""
         self._chained.resume()
         self.build_steps()
 
@@ -91,7 +92,7 @@ class FeedbackCycle:
         return b"".join(write.frame(goal_ticks[rows]) for rows, write in self._goal_writes)
 
     def _take(self, step: Step, valid: NDArray[np.bool_], sent_s: float) -> None:
-        """Keep what the answers in `_raw` say."""
+        """Store the answers in `_raw`."""
         whole = step.take(self._raw, self._link.reading)
         rows = step.rows
         if whole.all():
@@ -105,12 +106,12 @@ class FeedbackCycle:
             self._link.health.counters.crc[rows[~whole]] += 1
         if step.chained:
             silent = len(rows) - int(valid[rows][::-1].argmax()) if valid[rows].any() else 0
-            if silent < len(rows) - 1:  # the last one silent takes nobody with it
+            if silent < len(rows) - 1:  # the last servo's silence silences no other
                 self._broke_at = int(rows[silent])
         self._link.reading.read_s[rows[valid[rows]]] = sent_s
 
     def _take_bytewise(self, step: Step, valid: NDArray[np.bool_], sent_s: float) -> None:
-        """The byte parser over `_raw`; goes on reading when noise has taken the place of answers."""
+        """Parse `_raw` byte by byte; read on when noise has replaced answers."""
         decoder = self._link.decoders[self._dialect(step).version]
         bad_before = decoder.bad_checksums + decoder.skipped_bytes
         deadline_s = sent_s + self._link.timing.longest_s(len(step.request) + step.reply_bytes, step.answers)
@@ -133,7 +134,7 @@ class FeedbackCycle:
         row = self._link.row_by_id.get(answer.servo_id)
         now_s = self._link.clock.now_s()
         if answer.servo_id == BROADCAST_ID and is_status(answer):
-            return  # a fast answer, come late
+            return  # a late answer to a fast read
         if not is_status(answer):
             text = f"instruction {answer.instruction:#04x} to servo {answer.servo_id} that we did not send"
             self._link.events.add(BusEventKind.FOREIGN_PACKET, now_s, text + ": another controller on the same wire")
@@ -141,14 +142,14 @@ class FeedbackCycle:
             text = f"an answer of servo {answer.servo_id}, which was not asked; another controller, or a servo too many"
             self._link.events.add(BusEventKind.FOREIGN_PACKET, now_s, text)
         elif valid[row]:
-            step.store(row, answer, self._link.reading)  # the first was an earlier cycle's, come late
+            step.store(row, answer, self._link.reading)  # the first one was a late answer of an earlier cycle
             self._link.health.came_late(row)
             self._twice.add(row)
         elif step.store(row, answer, self._link.reading):
             valid[row] = True
 
     def _name_duplicates(self) -> None:
-        """Tell of servos that have answered twice in each of the last cycles."""
+        """Report servos that have answered twice in each of the last cycles."""
         self._cycles_twice = {row: self._cycles_twice.get(row, 0) + 1 for row in sorted(self._twice)}
         self._twice.clear()
         for row in (row for row, n in self._cycles_twice.items() if n == TWICE_CYCLES):
@@ -157,7 +158,7 @@ class FeedbackCycle:
             self._link.events.add(BusEventKind.DUPLICATE_ID, self._link.clock.now_s(), text, servo_id)
 
     def _judge(self, valid: NDArray[np.bool_]) -> None:
-        """Ages, health, quarantine, servos with one id."""
+        """Update ages, health and quarantine, and find servos with the same id."""
         if self._twice or self._cycles_twice:
             self._name_duplicates()
         link, reading = self._link, self._link.reading

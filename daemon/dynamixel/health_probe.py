@@ -1,4 +1,4 @@
-"""Requests to single servos beside the exchange: slow registers in turn, and whether a servo that was left out is back."""
+"""Requests to single servos beside the exchange: slow registers in turn, and whether a quarantined servo is back."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class HealthProbe:
 
     Args:
         link: to the servos.
-        registers: the same servos' items.
+        registers: access to the items of these servos.
         slow_every: read torque, hardware error, voltage and temperature of one servo, in turn, every so many cycles; 0 never.
 
     Attributes:
-        slow: reads the slow registers.
+        slow: reader of the slow registers.
         slow_every: see above.
     """
 
@@ -35,7 +35,10 @@ class HealthProbe:
         self._own = [_own_values(m) for m in link.models]
 
     def look_for_collisions(self, servo_ids: Sequence[int]) -> list[int]:
-        """Those of these ids whose answers come garbled each time they are asked: two servos have them, or there is noise.
+        """The ids whose answers are corrupted in every attempt: two servos have the id, or there is noise.
+
+        Two servos of a kind answer a ping with the same bytes, and the same bytes at the same time are received as one answer;
+        their measured values differ.
 
         Two servos of a kind say the same to a ping, and the same bytes at the same time are heard as one; what they
         measure differs.
@@ -50,7 +53,7 @@ class HealthProbe:
         return [i for i in self._link.ids if self._link.garbled_rows[self._link.row_by_id[i]]]
 
     def ask_beside(self) -> bool:
-        """The single question of this cycle, if any; True when a servo takes part again."""
+        """Send the single request of this cycle, if any; return whether a servo takes part again."""
         self._cycle += 1
         now_s = self._link.clock.now_s()
         row = self._link.health.probe_due(now_s)
@@ -61,7 +64,7 @@ class HealthProbe:
         return False
 
     def _probe(self, row: int) -> bool:
-        """Ask a quarantined servo whether it is back, and whether it is what it was; True when it takes part again."""
+        """Ask a quarantined servo whether it is back with its old identity; return whether it takes part again."""
         servo_id, own = self._link.ids[row], self._own[row]
         name = f"servo {servo_id} ({self._link.servos[row].joint_name})"
         try:
@@ -78,7 +81,7 @@ class HealthProbe:
         return back
 
     def _note_garbled(self, row: int, name: str) -> None:
-        """Bytes, again and again, and no answer, where one servo should speak and the others are understood."""
+        """Report repeated bytes without a valid answer from one servo, when the others are understood."""
         alone = self._link.garbled and (len(self._link.ids) == 1 or bool(self._link.reading.valid.any()))
         self._garbled_probes[row] = self._garbled_probes[row] + 1 if alone else 0
         if self._garbled_probes[row] >= TRIES:
@@ -96,7 +99,7 @@ class HealthProbe:
             self._link.events.add(BusEventKind.BROWN_OUT, now_s, text)
 
     def _read_slow(self) -> None:
-        """Slow registers of the next servo in turn; what they reveal is an event."""
+        """Read the slow registers of the next servo in turn, and report events that they show."""
         row = self.slow.next_row(self._link.health.asked)
         if row is None:
             return
@@ -117,6 +120,6 @@ class HealthProbe:
 
 
 def _own_values(model: BusModel) -> Span:
-    """What no two servos measure alike: position, voltage, temperature."""
+    """The registers whose values differ between two servos: position, voltage, temperature."""
     temperatures = (t.present for t in model.thermometers)
     return Span.of(model.table, "present_position", "present_input_voltage", *temperatures)

@@ -1,4 +1,4 @@
-"""Who a servo is, in words, and what is behind one that does not answer as the robot file says."""
+"""A servo's identity in words, and the likely cause when it does not answer as the robot file says."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from daemon.dynamixel.scan import identify
 from daemon.host.clock import Clock
 
 Identity = tuple[int, int]
-"""Model number and firmware."""
+"""Model number and firmware version."""
 PINGS_ONLY: Identity = (0, 0)
-"""Identity of a servo that answers a ping and nothing that could name it (protocol 1.0, status return level 0)."""
+"""Identity of a servo that answers a ping but no request for its model (protocol 1.0, status return level 0)."""
 MUTE_TEXT = "answers pings only: status return level 0"
 _OTHER_PROTOCOL = "speaks protocol"
 
 
 def identity_text(identity: Identity) -> str:
-    """Model and firmware as the tools print them."""
+    """Model and firmware in words."""
     if identity == PINGS_ONLY:
         return MUTE_TEXT
     name = MODELS[identity[0]].name if identity[0] in MODELS else "unknown"
@@ -26,14 +26,14 @@ def identity_text(identity: Identity) -> str:
 
 
 def silence_text(port: Port, clock: Clock, servo_id: int, protocol: float) -> str:
-    """What there is instead of a servo that does not answer in its protocol: it is asked once in the other."""
+    """Description of a silent servo's id: the servo is asked once in the other protocol."""
     other = 1.0 if protocol == 2.0 else 2.0
     identity = identify(port, clock, servo_id, other)
     return "no answer" if identity is None else f"{_OTHER_PROTOCOL} {other}: {identity_text(identity)}"
 
 
 def mismatch_hint(port: Port, found_texts: Iterable[str], *, any_answers: bool) -> str:
-    """What to do about servos of which this was found; `any_answers`: whether another one is there."""
+    """Advice on servos with these findings; `any_answers`: whether another servo answers."""
     texts = tuple(found_texts)
     if MUTE_TEXT in texts:
         return "a servo that answers pings only: mmmd doctor --fix lets it answer everything (status_return_level 2)"

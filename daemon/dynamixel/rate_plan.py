@@ -1,8 +1,8 @@
-"""The budget of a bus cycle, and the rate it allows: bytes on the wire, return delays, turnarounds.
+"""The time budget of a bus cycle, and the rate that it allows: bytes on the wire, return delays, turnarounds.
 
     cycle = bytes * 10 / baud + answers * return delay + requests * turnaround
 
-A rate is refused when wire and return delays alone do not fit its period; what was measured on top makes it tight.
+A rate is refused when wire and return delays alone do not fit its period; measured turnarounds may make it tight.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ _BAUDS = (57_600, 115_200, 1_000_000, 2_000_000, 3_000_000, 4_000_000)
 
 @dataclass(frozen=True)
 class RatePlan:
-    """What one cycle takes, in the order in which it is spent.
+    """Times and bytes of one cycle, in the order in which they are spent.
 
     Attributes:
         baud: bits per second.
-        servos: on this bus.
-        goal_bytes: written to set all goals.
-        request_bytes: written to ask for feedback.
-        reply_bytes: that come back.
+        servos: number of servos on this bus.
+        goal_bytes: bytes that set all goals.
+        request_bytes: bytes that request feedback.
+        reply_bytes: bytes of the answers.
         extra_bytes: of the single question asked beside it in some cycles (slow registers); both directions.
-        answers: status packets, each of which is sent after the return delay.
-        requests: after each of which the bus turns round.
-        return_delay_s: longest of the servos.
+        answers: number of status packets; each is sent after the return delay.
+        requests: number of requests; the bus turns round after each.
+        return_delay_s: longest return delay of the servos.
         turnaround_s: measured, from the last byte of a request to the first of its answer and from the last of that to
             the next request; adapter latency included.
     """
@@ -50,28 +50,28 @@ class RatePlan:
 
     @property
     def wire_s(self) -> float:
-        """Bytes on the wire."""
+        """Seconds of the bytes on the wire."""
         n_bytes = self.goal_bytes + self.request_bytes + self.reply_bytes + self.extra_bytes
         return n_bytes * BITS_PER_BYTE / self.baud
 
     @property
     def delay_s(self) -> float:
-        """Return delays of all answers."""
+        """Seconds of the return delays of all answers."""
         return self.answers * self.return_delay_s
 
     @property
     def certain_s(self) -> float:
-        """Least time of a cycle, whatever machine and adapter."""
+        """Shortest time of a cycle in seconds, with any machine and adapter."""
         return self.wire_s + self.delay_s
 
     @property
     def cycle_s(self) -> float:
-        """Expected time of a cycle."""
+        """Expected time of a cycle in seconds."""
         return self.certain_s + self.requests * self.turnaround_s
 
     @property
     def highest_hz(self) -> float:
-        """Highest rate that is possible at all."""
+        """Highest rate that the wire and the return delays allow."""
         return 1.0 / self.certain_s
 
     @property
@@ -98,10 +98,10 @@ class RatePlan:
         return out
 
     def require(self, rate_hz: float) -> bool:
-        """Whether the rate has room for what was measured as well.
+        """Whether the rate also leaves room for the measured turnarounds.
 
         Raises:
-            ConfigError: it is impossible; with the arithmetic, the nearest possible rate, and what would help.
+            ConfigError: the rate is impossible; the error has the arithmetic, the nearest possible rate and remedies.
         """
         if self.certain_s > 1.0 / rate_hz:
             budget = "\n".join(f"  {line}" for line in self.lines(rate_hz))
@@ -115,7 +115,7 @@ class RatePlan:
         return self.cycle_s <= 1.0 / rate_hz
 
     def remedies(self, rate_hz: float) -> list[str]:
-        """Single changes, or the two together, with which the rate would be possible."""
+        """Single changes, or two together, that would make the rate possible."""
         out: list[str] = []
         no_delay = replace(self, return_delay_s=0.0)
         if self.return_delay_s and no_delay.certain_s <= 1.0 / rate_hz:
@@ -143,12 +143,12 @@ def plan_of(
 def plan_for(
     models: Sequence[BusModel], baud: int, *, fast: bool = False, return_delay_s: float = 0.0, turnaround_s: float = 0.0
 ) -> RatePlan:
-    """The plan of such servos before there is a bus: what a robot file promises.
+    """The plan for such servos before a bus is opened, from the robot file.
 
     Args:
         models: of the servos.
         baud: bits per second.
-        fast: whether their firmware knows fast sync reads, where the model ever does.
+        fast: whether the servos' firmware has fast sync reads, where the model can have them.
         return_delay_s: of each answer.
         turnaround_s: of each request.
     """

@@ -1,4 +1,4 @@
-"""What the servos said last, with age and validity."""
+"""The servos' last measurements, with age and validity."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from numpy.typing import NDArray
 
 NEVER_CYCLES = 1 << 20
 UNKNOWN = -1
-"""In the slow registers: not read yet."""
+"""Value of a slow register that was not read yet."""
 
 
 @dataclass
 class BusReading:
-    """What the servos said last; rows follow the servos of the bus.
+    """The servos' last measurements; rows follow the servos of the bus.
 
     Attributes:
         position_tick, velocity_raw, current_raw: (S,) int32 in register units; the last known values. `current_raw`
             is the load in 0.1 % where a servo measures no current.
-        valid: (S,) whether those are from this cycle.
-        age_cycles: (S,) cycles since they were.
+        valid: (S,) whether these values are from this cycle.
+        age_cycles: (S,) cycles since the values were measured.
         read_s: (S,) clock time at which they were asked for; -inf before the first.
         error: (S,) error byte of the last answer; bit 7 is the hardware alert, in both protocols.
         torque, hardware_error, voltage_raw, temperature_c: (S,) slow registers, read in turn; UNKNOWN before the first.
@@ -44,7 +44,7 @@ class BusReading:
 
     @classmethod
     def of(cls, n: int) -> BusReading:
-        """Nothing known of `n` servos."""
+        """A reading of `n` servos without any values yet."""
 
         def numbers(value: int) -> NDArray[np.int32]:
             return np.full(n, value, np.int32)
@@ -58,5 +58,5 @@ class BusReading:
         )  # fmt: skip
 
     def age_s(self, now_s: float) -> NDArray[np.float64]:
-        """(S,) seconds since each servo's values were asked for."""
+        """(S,) seconds since each servo's values were requested."""
         return now_s - self.read_s

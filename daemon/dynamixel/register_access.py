@@ -1,4 +1,4 @@
-"""Items of the control tables by name, of one servo or of all on a link, and what goes with torque."""
+"""Items of the control tables by name, of one servo or of all on a link, and the rules for torque."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from daemon.dynamixel.servo_link import ServoLink
 from daemon.errors import CommandError, ServoFaultError
 
 _GAP_BYTES = 12
-"""Items no farther apart are read in one question."""
+"""Bytes by which two items may lie apart and still be read in one request."""
 _EFFORT_LIMITS = {"goal_pwm": "pwm_limit", "torque_limit": "max_torque"}
-"""What sets the effort of a servo in RAM, and the item kept without power that it may not pass."""
+"""Item that limits a servo's effort, kept in RAM, and the item kept without power that it may not exceed."""
 
 
 class RegisterAccess:
@@ -41,7 +41,7 @@ class RegisterAccess:
         return item.decode(answer.parameters)
 
     def read_items(self, servo_id: int, names: Sequence[str]) -> dict[str, int]:
-        """Values of those of the named items that a servo has, neighbours in one question."""
+        """Values of the named items that a servo has; neighbouring items are read in one request."""
         row = self._link.row_of(servo_id)
         table, values = self._link.models[row].table, dict[str, int]()
         items = sorted((table[name] for name in names if name in table), key=lambda item: item.address)
@@ -55,7 +55,7 @@ class RegisterAccess:
         return values
 
     def poll_item(self, servo_id: int, name: str) -> int | None:
-        """Value of one item, asked once and within the cycle; None when the servo did not answer in time."""
+        """Value of one item, requested once and within the cycle; None when the servo does not answer in time."""
         row = self._link.row_of(servo_id)
         item = self._item(row, name)
         request = self._link.dialect(row).read(servo_id, item.address, item.size)
@@ -81,10 +81,10 @@ class RegisterAccess:
         self._link.ask(self._link.dialect(row).write(servo_id, item.address, data), row, 0)
 
     def write_unless_alarmed(self, servo_id: int, name: str, value: int) -> None:
-        """`write_item` of effort or torque: a servo of protocol 1.0 forgets its alarm with it, so it is asked for one before.
+        """`write_item` for effort or torque, after a check for an alarm, which such a write would clear on protocol 1.0.
 
         Raises:
-            ServoFaultError: it has an alarm, or refused.
+            ServoFaultError: the servo has an alarm, or refused.
         """
         row = self._link.row_of(servo_id)
         item, dialect = self._item(row, name), self._link.dialect(row)
@@ -116,16 +116,16 @@ class RegisterAccess:
         return True
 
     def send_all(self, name: str, value: int) -> None:
-        """Set one item of every servo that has it, with packets that nobody answers."""
+        """Set one item of every servo that has it, with packets that no servo answers."""
         self._link.send(self._group_writes(name, np.full(len(self._link.ids), value, np.int32)))
 
     def send_torque_off(self) -> None:
-        """Cut the torque of every servo with packets that nobody has to answer."""
+        """Cut the torque of every servo with packets that need no answer."""
         self._link.expect_torque(on=False)
         self.send_all("torque_enable", 0)
 
     def read_effort_limit(self, servo_id: int) -> None:
-        """Ask a servo how much its own memory lets it exert; `set_effort` gives shares of that."""
+        """Read the effort limit that a servo keeps without power; `set_effort` takes shares of it."""
         row = self._link.row_of(servo_id)
         self.effort_limit[row] = self.read_item(servo_id, _EFFORT_LIMITS[_effort_item(self._link.models[row])])
 
@@ -134,7 +134,7 @@ class RegisterAccess:
 
         Args:
             share: 0 to 1.
-            confirmed: each servo is told by itself and has to answer; else all at once, unanswered.
+            confirmed: whether each servo gets a packet of its own and has to answer; else one packet without answers.
         """
         values = np.rint(self.effort_limit * min(1.0, max(0.0, share))).astype(np.int32)
         items = [_effort_item(m) for m in self._link.models]
@@ -145,7 +145,10 @@ class RegisterAccess:
             self.write_unless_alarmed(servo_id, name, value)
 
     def arm_watchdog(self, units: int) -> tuple[int, ...]:
-        """Arm the bus watchdog (20 ms units) of every servo that has one; the ids of those without, or of no use.
+        """Arm the bus watchdog (20 ms units) of every servo that has one; return the ids of servos without a useful one.
+
+        Firmware of the 330 size that flags the trip but keeps moving is armed as well, and its id returned. Where a trip would move
+        the joint the watchdog stays off.
 
         Firmware of the 330 size that flags the trip but keeps moving is armed as well, and named here. Where a trip would
         move the joint the watchdog stays off.
@@ -179,17 +182,17 @@ class RegisterAccess:
                 self.write_item(servo_id, "bus_watchdog", 0)
 
     def tripped_watchdogs(self) -> list[int]:
-        """Ids of the servos that have stopped by their bus watchdog."""
+        """Ids of the servos that their bus watchdog has stopped."""
         able = [i for i, m in zip(self._link.ids, self._link.models, strict=True) if "bus_watchdog" in m.table]
         return [i for i in able if self.read_item(i, "bus_watchdog") == WATCHDOG_TRIPPED]
 
     def withhold(self, servo_ids: Sequence[int]) -> None:
-        """No goals for these servos until `verify`."""
+        """Send these servos no goals until `verify`."""
         for servo_id in servo_ids:
             self._link.health.withhold_from(self._link.row_of(servo_id))
 
     def hardware_error_text(self, servo_id: int) -> str:
-        """What a servo with the alert bit set complains of."""
+        """Description of the hardware error of a servo with the alert bit set."""
         row = self._link.row_of(servo_id)
         model = self._link.models[row]
         if model.error_item:
@@ -197,7 +200,7 @@ class RegisterAccess:
         return model.error_text(int(self._link.reading.hardware_error[row]))
 
     def reboot(self, servo_id: int) -> None:
-        """Restart a servo: a latched error goes, and with it its torque and settings."""
+        """Restart a servo: this clears a latched error, torque and settings."""
         row = self._link.row_of(servo_id)
         self._link.ask(self._link.dialect(row).reboot(servo_id), row, 0)
         self._link.health.faulted[row] = True
@@ -209,7 +212,7 @@ class RegisterAccess:
     def writers(
         self, name: str, of: NDArray[np.bool_] | None = None
     ) -> list[tuple[NDArray[np.intp], GroupWrite | GroupWrite1]]:
-        """One group write for each place at which the item stands, of the servos that have it; of some (S,) or of all."""
+        """One group write for each address of the item, for the servos that have it; for some (S,) or for all."""
         places: dict[tuple[float, int, int], list[int]] = {}
         for row, model in enumerate(self._link.models):
             item = model.table.get(name)
@@ -233,5 +236,5 @@ class RegisterAccess:
 
 
 def _effort_item(model: BusModel) -> str:
-    """What sets the effort of this model."""
+    """The item that limits the effort of this model."""
     return next(name for name in _EFFORT_LIMITS if name in model.table)

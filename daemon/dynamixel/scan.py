@@ -1,4 +1,4 @@
-"""Who is on a port: every baud, both protocols. Only pings and reads: nothing on the bus changes."""
+"""Finds the servos on a port, at every baud and in both protocols. Only pings and reads: nothing on the bus changes."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from daemon.errors import PortBaudError
 from daemon.host.clock import Clock
 
 BAUDS = (57_600, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 115_200, 9_600, 4_500_000)
-"""In the order in which robots use them: factory, Poppy and OP2, OP3, and the rest."""
+"""Bauds in the order of their use by robots: factory, Poppy and OP2, OP3, and the rest."""
 _SILENCE_S = 0.06
-"""After the last answer to a broadcast ping: two periods of an adapter that was never set up, and some."""
+"""Seconds of silence that end a broadcast ping: slightly more than two periods of an adapter with default settings."""
 _ANSWER_S = 0.02
-"""For the answer to a single ping: one period of such an adapter."""
+"""Seconds to wait for the answer to a single ping: one period of such an adapter."""
 
 
 @dataclass(frozen=True)
@@ -37,20 +37,20 @@ class Found:
 
     @property
     def model_name(self) -> str:
-        """The maker's name, or the number where it is not known here."""
+        """The maker's name of the model, or its number when unknown."""
         model = MODELS.get(self.model_number)
         return model.name if model else f"model {self.model_number}"
 
 
 @dataclass(frozen=True)
 class ScanResult:
-    """What a scan found.
+    """Result of a scan.
 
     Attributes:
         found: the servos.
-        garbled_bauds: bauds at which something answered that could not be read: two servos of one id, or servos of the
+        garbled_bauds: bauds with answers that could not be decoded: two servos with one id, or servos of the
             other protocol.
-        impossible_bauds: bauds that the port does not take.
+        impossible_bauds: bauds that the port does not support.
     """
 
     found: tuple[Found, ...]
@@ -67,7 +67,7 @@ def scan(
     ids: Sequence[int] = range(packet.MAX_ID + 1),
     on_progress: Callable[[int, float, float], None] = lambda _baud, _protocol, _share: None,
 ) -> ScanResult:
-    """Look for servos at each baud, in each protocol.
+    """Search servos at each baud, in each protocol.
 
     Args:
         open_at: opens the port at a baud.
@@ -103,12 +103,12 @@ def scan(
 
 
 def answering(port: Port, clock: Clock) -> list[Found]:
-    """All servos of Protocol 2.0 at the port's baud, by one ping to all."""
+    """All servos of Protocol 2.0 at the port's baud, found by one broadcast ping."""
     return [Found(port.baud, 2.0, *answer) for answer in _broadcast(port, clock)[0]]
 
 
 def _broadcast(port: Port, clock: Clock) -> tuple[list[tuple[int, int, int]], bool]:
-    """(id, model number, firmware) of all that answer one ping to all, and whether nothing else came."""
+    """(id, model number, firmware) of all servos that answer a broadcast ping, and whether no other bytes came."""
     decoder, heard = packet.PacketDecoder(), b""
     _drain(port)
     request = packet.ping(BROADCAST_ID)
@@ -131,14 +131,14 @@ def _broadcast(port: Port, clock: Clock) -> tuple[list[tuple[int, int, int]], bo
 
 
 def identify(port: Port, clock: Clock, servo_id: int, protocol: float) -> tuple[int, int] | None:
-    """Model number and firmware of the servo of this id, asked once in this protocol; None when it does not answer."""
+    """Model number and firmware of the servo with this id, requested once in this protocol; None when it does not answer."""
     request = packet.ping(servo_id) if protocol == 2.0 else packet1.read(servo_id, 0, 3)
     answer = _asked(port, clock, protocol, servo_id, request, 3)
     return None if answer is None else (int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2])
 
 
 def _single(port: Port, clock: Clock, servo_id: int) -> list[tuple[int, int, int]]:
-    """The servo of this id in protocol 1.0: a ping finds it, a read names it."""
+    """The servo with this id in protocol 1.0: a ping finds it, a read gets its model."""
     if _asked(port, clock, 1.0, servo_id, packet1.ping(servo_id), 0) is None:
         return []
     number, firmware = identify(port, clock, servo_id, 1.0) or (0, 0)
@@ -146,7 +146,7 @@ def _single(port: Port, clock: Clock, servo_id: int) -> list[tuple[int, int, int
 
 
 def _asked(port: Port, clock: Clock, protocol: float, servo_id: int, request: bytes, length: int) -> Packet | None:
-    """Send one request; the answer with the expected number of parameters, or None."""
+    """Send one request; return the answer if it has the expected number of parameters, else None."""
     _drain(port)
     dialect = DIALECTS[protocol]
     decoder = dialect.decoder()

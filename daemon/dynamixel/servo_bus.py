@@ -1,4 +1,4 @@
-"""The servos of a robot, on one port or on several whose wires are busy at the same time."""
+"""The servos of a robot, on one port or on several ports that transfer at the same time."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class ServoBus:
 
     Args:
         chains: one for each port.
-        servos: of the robot, in the order of all arrays; each in exactly one of the chains.
+        servos: the robot's servos, in the order of all arrays; each belongs to exactly one chain.
 
     Attributes:
         chains: see above.
@@ -59,22 +59,22 @@ class ServoBus:
 
     @property
     def ports(self) -> tuple[Port, ...]:
-        """One for each chain."""
+        """The port of each chain."""
         return tuple(chain.link.port for chain in self.chains)
 
     @property
     def firmware(self) -> list[int]:
-        """Version of each servo, 0 before `verify`."""
+        """Firmware version of each servo, 0 before `verify`."""
         return [chain.link.firmware[chain.link.row_by_id[i]] for i, chain in self._each()]
 
     @property
     def timeouts(self) -> NDArray[np.int64]:
-        """(S,) cycles in which each servo did not answer."""
+        """(S,) number of cycles in which each servo did not answer."""
         return self._gathered(np.int64, lambda chain: chain.link.health.counters.timeouts)
 
     @property
     def withheld(self) -> NDArray[np.bool_]:
-        """(S,) servos that get no goals until `verify`: silent for long, and a goal would switch their torque on."""
+        """(S,) servos that get no goals until `verify`: they were silent for long, and a goal would switch their torque on."""
         return self._gathered(np.bool_, lambda chain: chain.link.health.withheld)
 
     def show_health(self, table: NDArray[np.void]) -> None:
@@ -84,6 +84,9 @@ class ServoBus:
 
     def exchange(self, goal_ticks: NDArray[np.int32] | None) -> BusReading:
         """Write goals (S,), none when None, and read effort, velocity and position of every servo.
+
+        Each port gets goals and request in one `write()`, and all ports get theirs before any answer is awaited. A servo that does
+        not answer keeps its old values, marked not valid.
 
         A port gets goals and request in one `write()`, and all ports theirs before any answer is waited for. A servo that
         does not answer keeps its old values, marked not valid.
@@ -134,12 +137,12 @@ class ServoBus:
             raise BusMismatchError([row for error in found for row in error.rows], str(found[-1]).splitlines()[-1])
 
     def let_answer(self) -> None:
-        """Set status return level 2 on servos that answer pings only; nothing else can be asked of them before."""
+        """Set status return level 2 on servos that answer pings only; they answer no other request before."""
         for chain in self.chains:
             chain.let_answer()
 
     def strangers(self) -> list[Found]:
-        """Servos of Protocol 2.0 on any port that are none of this robot's; takes about 0.2 s a port."""
+        """Servos of Protocol 2.0 on any port that do not belong to this robot; takes about 0.2 s a port."""
         return [f for chain in self.chains for f in chain.strangers() if f.servo_id not in self.ids]
 
     def plan(self) -> RatePlan:
@@ -151,7 +154,7 @@ class ServoBus:
         return sorted((e for chain in self.chains for e in chain.link.events.take()), key=lambda e: e.t_s)
 
     def look_again(self) -> None:
-        """Somebody says that lost ports are back: the next write looks for them, however lately it did."""
+        """Reopen lost ports at the next write, however recently this was tried: a caller says that they are back."""
         for chain in self.chains:
             chain.link.look_again()
 
@@ -185,10 +188,10 @@ class ServoBus:
         return all(chain.registers.write_all(name, value, unless) for chain in self.chains)
 
     def send_torque_off(self) -> None:
-        """Cut the torque of every servo with packets that nobody answers; a port that is lost keeps no other from it.
+        """Cut the torque of every servo with packets that no servo answers; a lost port does not keep the others from it.
 
         Raises:
-            LinkLostError: a port is lost; the others have been told.
+            LinkLostError: a port is lost; the others got the packets.
         """
         lost: list[DaemonError] = []
         for chain in self.chains:
@@ -200,12 +203,12 @@ class ServoBus:
             raise lost[0]
 
     def set_effort(self, share: float, *, confirmed: bool = False) -> None:
-        """Limit what every servo may exert, as a share of its own limit; see `RegisterAccess.set_effort`."""
+        """Limit the effort of every servo to a share of its own limit; see `RegisterAccess.set_effort`."""
         for chain in self.chains:
             chain.registers.set_effort(share, confirmed=confirmed)
 
     def arm_watchdog(self, units: int) -> tuple[int, ...]:
-        """Arm the bus watchdogs (20 ms units); the ids of servos without, or of no use."""
+        """Arm the bus watchdogs (20 ms units); return the ids of servos without a useful one."""
         return tuple(i for chain in self.chains for i in chain.registers.arm_watchdog(units))
 
     def clear_watchdog(self) -> None:
@@ -214,11 +217,11 @@ class ServoBus:
             chain.registers.clear_watchdog()
 
     def tripped_watchdogs(self) -> list[int]:
-        """Ids of the servos that have stopped by their bus watchdog."""
+        """Ids of the servos that their bus watchdog has stopped."""
         return [i for chain in self.chains for i in chain.registers.tripped_watchdogs()]
 
     def withhold(self, servo_ids: Sequence[int]) -> None:
-        """No goals for these servos until `verify`."""
+        """Send these servos no goals until `verify`."""
         for servo_id in servo_ids:
             self.registers(servo_id).withhold([servo_id])
 

@@ -1,4 +1,4 @@
-"""The servos on one port: who is there and what they can."""
+"""The servos on one port: their identities and abilities."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ from retarget.robot.robot import ServoSpec
 log = logging.getLogger(__name__)
 
 _SILENT_ENOUGH = 4
-"""Number of servos, the first of the chain, whose silence makes further questions needless."""
+"""Number of servos, the first of the chain, whose silence makes further pings useless."""
 _SLOW_BYTES = 14 + 11 + 7
-"""Question and answer of the slow registers of one servo."""
+"""Bytes of request and answer for the slow registers of one servo."""
 
 
 class ServoChain:
-    """The servos in a daisy chain on one port: who is there, what they can, and what is done with them.
+    """The servos in a daisy chain on one port: their identities, their abilities, and access to them.
 
     Args:
-        port: where they are.
-        servos: who should be there.
+        port: the port.
+        servos: the expected servos.
         clock: of the waiting.
-        margin_s: how long an answer may be late.
+        margin_s: seconds by which an answer may be late.
         slow_every: read torque, hardware error, voltage and temperature of one servo, in turn, every so many
             exchanges; 0 never.
 
     Attributes:
         link: requests and answers.
-        registers: items of the control tables.
-        probe: what is asked of single servos within a cycle.
-        cycle: goals and measurements.
+        registers: access to items of the control tables.
+        probe: requests to single servos within a cycle.
+        cycle: exchange of goals and measurements.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class ServoChain:
         for row in range(len(self.link.ids)):
             self._take_identity(row, found)
             if not patient and row == _SILENT_ENOUGH - 1 and not found:
-                return found  # wrong baud or no power: do not wait for the rest
+                return found  # wrong baud or no power: the other servos are not asked
         silent = [row for row, servo_id in enumerate(self.link.ids) if servo_id not in found]
         if found and len(silent) < _SILENT_ENOUGH:
             for row in silent:
@@ -90,13 +90,13 @@ class ServoChain:
         return int.from_bytes(answer.parameters[:2], "little"), answer.parameters[2]
 
     def _answers_ping(self, row: int) -> bool:
-        """Whether a servo that does not answer questions is there."""
+        """Whether a servo that answers no other request answers a ping."""
         return (
             self.link.ask_once(self.link.dialect(row).ping(self.link.ids[row]), row, None, SETUP_MARGIN_S) is not None
         )
 
     def verify(self) -> None:
-        """Compare the bus with the robot file, and find out what this firmware can.
+        """Compare the bus with the robot file, and find out the abilities of the servos' firmware.
 
         Raises:
             BusMismatchError: with a table of what was expected and what was found.
@@ -115,7 +115,7 @@ class ServoChain:
             hint = mismatch_hint(self.link.port, [r.found for r in rows], any_answers=bool(found))
             raise BusMismatchError(rows, hint)
         known, self.link.firmware = self.link.firmware, [found[i][1] for i in self.link.ids]
-        if known != self.link.firmware:  # found out once
+        if known != self.link.firmware:  # determined once
             self._measure_turnaround()
             self._find_fast_sync()
         if self.probe.slow_every:
@@ -124,7 +124,7 @@ class ServoChain:
         self.cycle.resume()
 
     def _mismatch(self, row: int, identity: Identity | None, *, nothing: bool, garbled: bool) -> MismatchRow:
-        """A servo that is not as expected; one that is silent is asked in the other protocol, the first few if all are."""
+        """The row for a servo that is not as expected; silent servos are asked in the other protocol, at most the first few."""
         s = self.link.servos[row]
         if garbled:
             text = "answers collide"
@@ -137,7 +137,7 @@ class ServoChain:
         return MismatchRow(s.servo_id, s.joint_name, s.model.name, text)
 
     def _read_effort_limits(self) -> list[MismatchRow]:
-        """How much each servo may exert; those that answered a ping and do not answer this."""
+        """Read each servo's effort limit; return rows for servos that answered a ping but not this request."""
         mute: list[MismatchRow] = []
         for row, s in enumerate(self.link.servos):
             try:
@@ -149,21 +149,21 @@ class ServoChain:
         return mute
 
     def let_answer(self) -> None:
-        """Set status return level 2 on servos that answer pings only. Nothing else can be asked of them before."""
+        """Set status return level 2 on servos that answer pings only. They answer no other request before."""
         for row, servo_id in enumerate(self.link.ids):
             try:
                 self.registers.read_item(servo_id, "status_return_level")
             except LinkTimeoutError:
                 if self._answers_ping(row):
-                    with contextlib.suppress(LinkTimeoutError):  # `verify` says who still does not answer
+                    with contextlib.suppress(LinkTimeoutError):  # `verify` reports the servos that still do not answer
                         self.registers.write_item(servo_id, "status_return_level", 2)
 
     def strangers(self) -> list[Found]:
-        """Servos of Protocol 2.0 that answer a ping to all, and are none of this bus; takes about 0.2 s."""
+        """Servos of Protocol 2.0 that answer a broadcast ping and do not belong to this bus; takes about 0.2 s."""
         return [f for f in answering(self.link.port, self.link.clock) if f.servo_id not in self.link.ids]
 
     def _measure_turnaround(self) -> None:
-        """Read each servo's return delay; what the quickest question took beyond it and its bytes is the turnaround."""
+        """Read each servo's return delay; the turnaround is the shortest answer time without this delay and the bytes' time."""
         delays: list[int] = []
         took: list[float] = []
         for row, servo_id in enumerate(self.link.ids):
@@ -178,7 +178,7 @@ class ServoChain:
         self.link.timing.turnaround_s = max(0.0, min(took))
 
     def plan(self) -> RatePlan:
-        """The budget of a cycle on this port as it was found."""
+        """The time budget of a cycle on this port, from measurements."""
         link, extra = self.link, _SLOW_BYTES if self.probe.slow_every else 0
         return plan_of(
             self.cycle.steps, self.cycle.goal_bytes, len(link.ids), link.port.baud,
@@ -186,7 +186,7 @@ class ServoChain:
         )  # fmt: skip
 
     def _map_windows(self) -> None:
-        """Indirect addresses for the slow registers of servos that have lost them, where a servo takes them."""
+        """Map indirect addresses to the slow registers on servos that have lost the mapping and support it."""
         for row, (servo_id, firmware) in enumerate(zip(self.link.ids, self.link.firmware, strict=True)):
             dialect = self.link.dialect(row)
 
@@ -205,11 +205,11 @@ class ServoChain:
         log.info("slow registers by indirect address: %d of %d servos", self.probe.slow.n_windows, len(self.link.ids))
 
     def _find_fast_sync(self) -> None:
-        """Try fast sync reads where the manual says that model and firmware know them; for good, both ways."""
+        """Try fast sync reads where model and firmware have them by the manual; the result holds from then on."""
         able = [m.has_fast_sync(f) for m, f in zip(self.link.models, self.link.firmware, strict=True)]
         rows = [i for i, can in enumerate(able) if can]
         others = len(rows) < sum(m.protocol == 2.0 for m in self.link.models)
-        # Seven bytes a servo are won, and a second request is needed when others cannot.
+        # A fast read saves seven bytes a servo, but costs a second request when other servos cannot take part.
         won_s = self.link.timing.wire_s(7 * len(rows) - (30 if others else 8)) - (
             self.link.timing.turnaround_s if others else 0
         )

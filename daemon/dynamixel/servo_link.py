@@ -23,10 +23,11 @@ from retarget.robot.robot import ServoSpec
 TRIES = 3
 _REOPEN_EVERY_S = 0.5
 _SLEEP_FROM_S, _WAKE_BEFORE_S = 0.0006, 0.0002
-"""Seconds that an answer must last for the wait to sleep, and seconds before its computed end at which the sleep ends: one
-wake-up, not one for every chunk."""
+"""Seconds that an answer must take for the wait to sleep, and seconds before its computed end at which the sleep ends: one wake-up
+instead of one for every chunk.
+"""
 _ECHO_BYTES = 8
-"""Bytes of a request that, when they come back, are an echo: no answer begins like a request."""
+"""Number of a request's first bytes whose return marks an echo: no answer begins like a request."""
 
 
 class ServoLink:
@@ -34,17 +35,17 @@ class ServoLink:
 
     Attributes:
         port: the port.
-        servos, ids, models: the servos that it leads to; the rows of every array follow them.
-        firmware: version of each servo, 0 before it was verified.
-        timing: how long an exchange may take.
+        servos, ids, models: the servos on the link; rows of every array follow them.
+        firmware: firmware version of each servo, 0 before it was verified.
+        timing: computes the allowed time of an exchange.
         reading: the servos' last values.
         health: state and counters of each servo.
-        events: what happened on the port beside the exchange.
+        events: events of the port besides the exchange.
         row_by_id: servo id -> row.
         decoders: protocol -> its byte parser.
-        torque_expected: whether the servos were last told to have torque.
-        garbled: whether the last request brought bytes and no packet.
-        garbled_rows: (S,) whether every try of a servo's last request did.
+        torque_expected: whether torque was last switched on.
+        garbled: whether the last request brought bytes but no packet.
+        garbled_rows: (S,) whether every attempt of a servo's last request brought bytes but no packet.
     """
 
     def __init__(self, port: Port, servos: Sequence[ServoSpec], clock: Clock, *, margin_s: float = MARGIN_S) -> None:
@@ -69,13 +70,15 @@ class ServoLink:
         self._reopen_due_s = 0.0
 
     def ask(self, request: bytes, row: int, answer_bytes: int) -> Packet:
-        """Send one instruction and return the servo's answer; asked again when it stays silent.
+        """Send one instruction and return the servo's answer; the instruction is repeated when the servo stays silent.
+
+        Only instructions that may be repeated are sent this way.
 
         Only instructions that may be repeated are sent this way.
 
         Raises:
-            LinkTimeoutError: it stayed silent.
-            LinkGarbledError: bytes came each time, and no answer.
+            LinkTimeoutError: the servo stayed silent.
+            LinkGarbledError: every attempt brought bytes but no answer.
         """
         n_garbled, self.garbled_rows[row] = 0, False
         for i in range(TRIES):
@@ -91,7 +94,7 @@ class ServoLink:
         raise LinkTimeoutError(text)
 
     def ask_once(self, request: bytes, row: int, answer_bytes: int | None, margin_s: float) -> Packet | None:
-        """One question; None when no answer came. `answer_bytes` None takes an answer of any length.
+        """Send one request; return None when no answer came. With `answer_bytes` None an answer may have any length.
 
         `garbled` is set when bytes came that made no packet at all.
         """
@@ -118,7 +121,7 @@ class ServoLink:
                 refused = dialect.refusal(p.error)
                 if refused:
                     raise ServoFaultError(servo_id, f"instruction {request.hex(' ')}", refused)
-                if answer_bytes in (None, len(p.parameters)):  # an answer to something else has another length
+                if answer_bytes in (None, len(p.parameters)):  # an answer to another request has another length
                     return p
         self.garbled = heard and not understood
         return None
@@ -128,10 +131,10 @@ class ServoLink:
         self.port.close()
 
     def send(self, data: bytes) -> float:
-        """Write bytes after late answers were thrown away; the clock time of the write.
+        """Discard late answers, then write bytes; return the clock time of the write.
 
         Raises:
-            LinkLostError: the device is gone, and not back.
+            LinkLostError: the device is gone and could not be reopened.
         """
         try:
             if self._lost_since_s is not None:
@@ -145,7 +148,7 @@ class ServoLink:
         return self.clock.now_s()
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Bytes that have arrived; a loss is noted.
+        """Bytes that have arrived; a loss of the port is recorded.
 
         Raises:
             LinkLostError: the device is gone.
@@ -157,11 +160,11 @@ class ServoLink:
             raise
 
     def collect(self, step: Step, sent_s: float, sent_bytes: int, raw: bytearray) -> None:
-        """Gather the answers of a step in `raw`: until all are there, the last servo has answered, or time is up.
+        """Collect the answers of a step in `raw`, until all are complete, the last servo has answered, or the time is over.
 
         Args:
-            step: whose request was sent last.
-            sent_s: when.
+            step: the step whose request was sent last.
+            sent_s: clock time of the request.
             sent_bytes: bytes that were sent with it, goals included.
             raw: cleared, then filled; an adapter's echo is left out.
 
@@ -177,7 +180,7 @@ class ServoLink:
         if expected_s - now_s > _SLEEP_FROM_S:
             self.clock.sleep_until(expected_s - _WAKE_BEFORE_S)
             now_s = self.clock.now_s()
-        while len(raw) < need:  # after the deadline what has come meanwhile is still taken
+        while len(raw) < need:  # after the deadline bytes that have already arrived are still read
             data = self.read(need - len(raw), max(0.0, deadline_s - now_s))
             raw += data
             now_s = self.clock.now_s()
@@ -191,11 +194,11 @@ class ServoLink:
 
     @property
     def echoes(self) -> bool:
-        """Whether the adapter sends back what is written."""
+        """Whether the adapter echoes the bytes that are written."""
         return bool(self._echo)
 
     def _drop_late_answers(self) -> None:
-        """Throw away what arrived after its deadline, or this cycle would read the last one's answers for ever."""
+        """Discard answers that arrived after their deadline, so that no cycle reads those of an earlier one."""
         while late := self.port.read(4096, 0.0):
             for decoder in self.decoders.values():
                 for p in decoder.feed(late):
@@ -205,7 +208,7 @@ class ServoLink:
             decoder.clear()
 
     def _is_echo(self, data: bytes | bytearray) -> bool:
-        """Whether what came begins with what was sent; noted, and skipped from now on."""
+        """Whether the received bytes begin with the sent ones; an echo is recorded, and skipped from then on."""
         head = self._sent[:_ECHO_BYTES]
         if len(head) < _ECHO_BYTES or not data.startswith(head):
             return False
@@ -215,7 +218,7 @@ class ServoLink:
         return True
 
     def _note_loss(self, error: LinkLostError) -> None:
-        """The port is gone: whatever this cycle was to bring does not come."""
+        """Record the loss of the port: no answers of this cycle will arrive."""
         self.reading.valid[:] = False
         self.reading.age_cycles += 1
         self.health.port_lost()
@@ -225,14 +228,14 @@ class ServoLink:
             self.events.add(BusEventKind.LOST, self._lost_since_s, str(error))
 
     def look_again(self) -> None:
-        """Somebody says that the port is back: the next write looks for it, however lately it was looked for."""
+        """Reopen a lost port at the next write, however recently this was tried: a caller says that it is back."""
         self._reopen_due_s = 0.0
 
     def _reopen(self) -> None:
         """Try to open the port again, by its path or where the same adapter is now; at most twice a second.
 
         Raises:
-            LinkLostError: it is not back.
+            LinkLostError: the port could not be opened.
         """
         now_s = self.clock.now_s()
         if isinstance(self.port, Reopenable) and now_s >= self._reopen_due_s:
@@ -246,7 +249,7 @@ class ServoLink:
         self._lost_since_s = None
 
     def expect_torque(self, *, on: bool) -> None:
-        """From now on torque should be so; what was read before says nothing about it."""
+        """Expect torque to be on or off from now on; earlier readings of it do not count."""
         self.torque_expected = on
         self.reading.torque[:] = UNKNOWN
 

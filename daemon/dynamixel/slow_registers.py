@@ -1,4 +1,7 @@
-"""Registers that change slowly (torque, hardware error, voltage, temperature), read of one servo at a time, in turn.
+"""Registers that change slowly (torque, hardware error, voltage, temperature), read from one servo at a time, in turn.
+
+On Protocol 2.0 they are far apart; a window of indirect addresses allows one read for all. The window is RAM: after a reboot it
+contains zeros that look like values, so a register that is never zero (status_return_level) is read along.
 
 On Protocol 2.0 they stand far apart; a window of indirect addresses brings them in one read. The window is RAM: after a
 reboot it shows zeros that look like values, so a register that is never zero (status_return_level) is read along.
@@ -23,7 +26,7 @@ _WITNESS = "status_return_level"
 
 
 def _slow_items(model: BusModel) -> list[str]:
-    """What changes slowly, as this model calls it."""
+    """Names of the slow items of this model."""
     temperatures = (t.present for t in model.thermometers)
     names = ("torque_enable", _WITNESS, model.error_item, "present_input_voltage", *temperatures)
     return [name for name in names if name in model.table]
@@ -31,7 +34,7 @@ def _slow_items(model: BusModel) -> list[str]:
 
 @dataclass(frozen=True)
 class Span:
-    """Bytes to read, and where each item stands in them."""
+    """A range of bytes to read, and the offset of each item in it."""
 
     address: int
     length: int
@@ -40,14 +43,14 @@ class Span:
 
     @classmethod
     def of(cls, table: Table, *names: str) -> Span:
-        """From the first to the last byte of these items."""
+        """The span from the first to the last byte of these items."""
         items = [table[name] for name in names]
         start, end = min(i.address for i in items), max(i.end for i in items)
         return cls(start, end - start, {i.name: (i.address - start, i.size) for i in items})
 
 
 class SlowReader:
-    """Whose slow registers come next, how they are asked for, and what an answer says.
+    """Chooses the servo whose slow registers are read next, builds the request and decodes the answer.
 
     Args:
         models: of the servos, in the order of the reading.
@@ -62,21 +65,21 @@ class SlowReader:
 
     @property
     def n_windows(self) -> int:
-        """Servos whose window is in use."""
+        """Number of servos whose window is in use."""
         return sum(spans[0].witness for spans in self._spans)
 
     def wants_window(self, row: int) -> bool:
-        """Whether a servo has none yet, and was not found to refuse one."""
+        """Whether a servo has no window yet and has not refused one."""
         return not self._spans[row][0].witness and not self._tried[row]
 
     def no_window(self, row: int) -> None:
-        """The servo refuses its indirect window: its registers are read one by one."""
+        """Note that a servo refuses its indirect window: its registers are read one by one."""
         self._tried[row] = True
 
     def map_window(
         self, row: int, firmware: int, write: Callable[[int, bytes], None], read: Callable[[int, int], bytes]
     ) -> bool:
-        """Point a servo's indirect addresses at the slow registers; False when it has none or they are not kept.
+        """Map a servo's indirect addresses to the slow registers; return False when it has none or does not keep them.
 
         Args:
             row: of the servo.
@@ -97,7 +100,7 @@ class SlowReader:
         data = struct.pack(f"<{len(addresses)}H", *addresses)
         is_there = (
             window.kept and read(window.address, len(data)) == data
-        )  # what is kept is not worn by writing it again
+        )  # values in place are not written again, as writing wears the memory
         if not is_there:
             write(window.address, data)
             if read(window.address, len(data)) != data:
@@ -108,7 +111,7 @@ class SlowReader:
         return True
 
     def next_row(self, asked: NDArray[np.bool_]) -> int | None:
-        """The next servo in turn of those that take part."""
+        """Row of the next servo in turn among those that take part; None for none."""
         for _ in self._models:
             row, self._next = self._next, (self._next + 1) % len(self._models)
             if asked[row]:
@@ -116,12 +119,12 @@ class SlowReader:
         return None
 
     def request(self, row: int, servo_id: int) -> tuple[bytes, int]:
-        """What to ask, and how many bytes come back."""
+        """The request for a servo, and the number of parameter bytes in its answer."""
         span = self._spans[row][self._turn[row]]
         return DIALECTS[self._models[row].protocol].read(servo_id, span.address, span.length), span.length
 
     def store(self, row: int, answer: Packet, reading: BusReading) -> bool:
-        """Keep what an answer says; False when the window has lost its addresses (the servo has rebooted)."""
+        """Store the values of an answer; return False when the window has lost its addresses (the servo has rebooted)."""
         span = self._spans[row][self._turn[row]]
         self._turn[row] = (self._turn[row] + 1) % len(self._spans[row])
         values = {
@@ -145,10 +148,10 @@ class SlowReader:
 
 
 def _direct(model: BusModel) -> list[Span]:
-    """Spans of neighbouring items, asked in turn, where nothing is mapped."""
+    """Spans of neighbouring items, read in turn, for a servo without a window."""
     temperatures = (t.present for t in model.thermometers)
     spans = [Span.of(model.table, "present_input_voltage", *temperatures)]
-    if model.error_item == "error_code":  # of Y it stands by itself
+    if model.error_item == "error_code":  # on a Y it stands apart from the others
         return [Span.of(model.table, "torque_enable"), Span.of(model.table, "error_code"), *spans]
     near = ("torque_enable", "hardware_error_status") if model.error_item else ("torque_enable",)
     return [Span.of(model.table, *near), *spans]
