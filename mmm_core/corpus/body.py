@@ -1,6 +1,6 @@
-"""From a score to a body: arms, head and trunk from its channels, and what goes along by itself.
+"""Performs a score with a body: arms, head and trunk follow its channels, and smaller movements are added.
 
-By itself: the trunk turns and leans a little with the hands, the head stays towards the listener, the forearm lags, the
+Added are: the trunk turns and leans a little with the hands, the head stays towards the listener, the forearm lags, the
 body breathes and sways.
 """
 
@@ -26,13 +26,15 @@ from mmm_core.motion.skeleton import (
 
 _ARMS = (("left", 1.0, 16, 18, 20), ("right", -1.0, 17, 19, 21))
 _YAW_PER_M, _ROLL_PER_M, _PITCH_PER_M = 0.16, 0.05, 0.05
-"""Trunk angle, radians, for a metre of difference between the hands (forward, up) and of their mean reach forward."""
+"""Radians of trunk yaw for a metre between the hands forward, of roll for a metre between them up, and of pitch for a metre of
+their mean reach forward."""
 SHRUG_M = 0.06
+"""Metres that a full shrug lifts the shoulders."""
 
 
 @dataclass(frozen=True)
 class Body:
-    """A motion of the common body before it becomes features."""
+    """A motion of the common body, from which features are computed."""
 
     joints_m: Array
     head_R_world: Array
@@ -51,7 +53,7 @@ def euler(yaw_pitch_roll: Array) -> Array:
 
 
 def smooth(values: Array, sigma_frames: float) -> Array:
-    """Gaussian filter along time with held ends: rounds the corners where keys follow each other without a stop."""
+    """Gaussian filter along time with repeated ends, which rounds corners where key poses follow each other without a stop."""
     radius = int(np.ceil(3 * sigma_frames))
     kernel = np.exp(-0.5 * (np.arange(-radius, radius + 1) / sigma_frames) ** 2)
     kernel /= kernel.sum()
@@ -64,26 +66,26 @@ def smooth(values: Array, sigma_frames: float) -> Array:
 
 
 def perform(score: Score, n_frames: int, stiffness: float = 0.0, posture_rad: tuple[float, float] = (0.0, 0.0)) -> Body:
-    """The score on the common body, standing.
+    """The motion of a score on the common body, standing.
 
     Args:
-        score: what the channels do.
-        n_frames: how many frames of it.
-        stiffness: 0 is a person, 1 a machine: no lag, no sway, nothing goes along.
-        posture_rad: pitch of trunk and head all the while, forward and down positive.
+        score: movements of the channels.
+        n_frames: frames of the motion.
+        stiffness: 0 is a person; 1 is a machine without lag, sway or any added movement.
+        posture_rad: pitch added to trunk and head throughout, forward and down positive.
     """
     rng = score.rng
     loose = 1.0 - stiffness
     times = np.arange(n_frames) / FPS
-    lag = loose * rng.uniform(0.0, 0.06)  # the forearm follows the upper arm
+    lag = loose * rng.uniform(0.0, 0.06)  # seconds by which the forearm follows the upper arm
     sigma = rng.uniform(0.7, 1.2) * (0.4 + 0.6 * loose)
     arms = {name: smooth(score.sample(name, times, lag), sigma) for name, *_ in _ARMS}
     trunk_head = smooth(np.concatenate([score.sample("trunk", times), score.sample("head", times)], 1), 1.0)
     shrug = smooth(score.sample("shrug", times), 1.0)[:, 0]
     along = loose * rng.uniform(0.6, 1.2) * _going_along(arms)
     trunk = trunk_head[:, :3] + along
-    head = trunk_head[:, 3:] - rng.uniform(0.6, 0.9) * along  # gaze stays where it was
-    alive = 0.0 if score.beat_s else loose  # what sways and breathes carries no meaning
+    head = trunk_head[:, 3:] - rng.uniform(0.6, 0.9) * along  # the gaze keeps its direction
+    alive = 0.0 if score.beat_s else loose  # clean gestures neither sway nor breathe
     sway = np.sin(2 * np.pi * (times[:, None] * rng.uniform(0.15, 0.35, 3) + rng.random(3)))
     trunk += alive * np.deg2rad(rng.uniform(0.1, 0.4)) * sway
     breath = alive * 0.004 / SHRUG_M * np.sin(2 * np.pi * (times * rng.uniform(0.2, 0.3) + rng.random()))
@@ -103,7 +105,7 @@ def perform(score: Score, n_frames: int, stiffness: float = 0.0, posture_rad: tu
 
 
 def _going_along(arms: dict[str, Array]) -> Array:
-    """(T, 3) trunk yaw, pitch, roll that the hands take with them: the shoulder of a reaching arm comes forward."""
+    """(T, 3) yaw, pitch and roll of the trunk that follow from the hands: the shoulder of a reaching arm comes forward."""
     hand = {name: BONE_LENGTHS_M[18] * v[:, :3] + BONE_LENGTHS_M[20] * v[:, 3:6] for name, v in arms.items()}
     up = hand["right"][:, 1] - hand["left"][:, 1]
     forward = hand["right"][:, 2] - hand["left"][:, 2]

@@ -1,4 +1,4 @@
-"""Real motion: `clips.jsonl` beside the recordings that it cuts, of sources whose terms allow any use (docs/DATA.md)."""
+"""Reads real motion: recordings whose terms allow any use (docs/DATA.md), cut into clips by `clips.jsonl` beside them."""
 
 from __future__ import annotations
 
@@ -23,11 +23,13 @@ from mmm_core.motion.features import features_from_joints, mirror
 
 log = logging.getLogger(__name__)
 LONGEST_FRAMES = MAX_TOKENS * FRAMES_PER_TOKEN
+"""Frames of the longest clip."""
 SHORTEST_FRAMES = 24
+"""Frames that a clip must exceed."""
 OWN = "own"
 """Terms of a trial that states none: the folder's owner recorded it."""
 FREE_TERMS = ("CMU", "MIT", "CC0", OWN)
-"""Terms of trials that are used; every other is left out."""
+"""Terms of the trials that are used; trials under other terms are left out."""
 MORE = "more"
 """Subfolder with further recordings in the same form."""
 SAME_RECORDINGS = {
@@ -37,21 +39,20 @@ SAME_RECORDINGS = {
     "cmu-directing_traffic_4-train": "14_24",
     "cmu-jumping_4-train": "13_32",
 }
-"""Benchmark names under which a folder holds recordings that its subfolder holds under their trial's number."""
+"""Trial numbers, in the subfolder, of recordings that the folder itself contains under benchmark names."""
 
 
 def read_clips(folder: Path, split: str = "train") -> Iterator[tuple[NDArray[np.float32], list[str]]]:
     """Features and sentences of the usable clips of `split`, each followed by its mirror image.
 
-    Used: recordings under terms of `FREE_TERMS`, sentences that are not KIT-ML's, upright frames outside `bad_frames`. The
-    recordings are those of `motions_common_skeleton.npz`, or where there is none, one file of `KINDS` named TRIAL for each
-    trial (an .amc with its .asf beside it).
-    A subfolder `more` is read too; of a recording that both hold, the subfolder's copy is used. A line of `clips.jsonl` needs
-    `trial` and `captions` alone, and is the whole recording for training then; without `trials.jsonl` all recordings are the
-    reader's own. The log says how many clips are left out, and why.
+    A clip is usable if its recording is under terms of `FREE_TERMS`, its sentences are not KIT-ML's, and its frames are upright
+    and outside `bad_frames`. Recordings come from `motions_common_skeleton.npz` or, without this file, from one file of `KINDS`
+    named TRIAL for each trial (an .amc with its .asf beside it). A subfolder `more` is read, too; if both contain a recording, the
+    subfolder's copy is used. A line of `clips.jsonl` needs only `trial` and `captions`, and then means the whole recording, for
+    training; without `trials.jsonl` all recordings count as the reader's own. The log says how many clips are left out, and why.
 
     Raises:
-        TrainingDataError: a file is missing, a clip has no captions or lies outside its recording.
+        TrainingDataError: a file is missing, or a clip has no captions or lies outside its recording.
         MotionFileError: a recording cannot be read.
     """
     more, replaced = folder / MORE, frozenset[str]()
@@ -105,7 +106,7 @@ def _captions(folder: Path, label: str, clip: dict[str, Any]) -> list[str]:
     """The sentences of a clip, without KIT-ML's.
 
     Raises:
-        TrainingDataError: the line has none.
+        TrainingDataError: the clip's line has no captions.
     """
     captions = clip.get("captions")
     if not isinstance(captions, list) or not captions:
@@ -119,7 +120,7 @@ def _captions(folder: Path, label: str, clip: dict[str, Any]) -> list[str]:
 def _unusable(
     joints_m: NDArray[np.float64], captions: list[str], span: tuple[int, int], bad: list[list[int]]
 ) -> str:  # fmt: skip
-    """Why a clip is not used; empty when it is."""
+    """The reason why a clip is not used; empty for a usable one."""
     if not captions:
         return "their sentences are KIT-ML's"
     if len(joints_m) <= SHORTEST_FRAMES:
@@ -130,7 +131,7 @@ def _unusable(
 
 
 def _recordings(folder: Path, stack: ExitStack) -> Callable[[str], NDArray[Any] | None]:
-    """Gives (T, 22, 3) metres at 20 fps of a trial on the common body, None where there is none; the last is kept."""
+    """A function that maps a trial to (T, 22, 3) joints on the common body at 20 fps, or to None for an unknown trial."""
     path = folder / "motions_common_skeleton.npz"
     if path.is_file():
         motions = stack.enter_context(np.load(path))
@@ -145,7 +146,7 @@ def _recordings(folder: Path, stack: ExitStack) -> Callable[[str], NDArray[Any] 
 
 
 def _upright(joints_m: NDArray[np.float64]) -> bool:
-    """Standing or walking: pelvis high, trunk not far from vertical."""
+    """Whether a person stands or walks: the pelvis is high and the trunk nearly vertical."""
     spine = joints_m[:, 12] - joints_m[:, 0]
     vertical = spine[:, 1] / np.maximum(np.linalg.norm(spine, axis=-1), 1e-6)
     return bool(joints_m[:, 0, 1].min() > 0.6 and vertical.min() > 0.5)

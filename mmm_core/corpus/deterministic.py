@@ -1,8 +1,8 @@
-"""A gesture that its words decide alone: one motion for each gesture, and the words that the engine gives the model for it.
+"""Makes deterministic clips: one motion for each gesture, with captions in the words that the engine passes to the model.
 
-A masked model decodes many tokens at once, each by itself. Where one sentence has many motions (longer and shorter pauses, other
-tempos, three or four strokes), tokens of different ones meet in a row, and strokes come out halved. So nothing of these clips is
-left to chance: pauses are of usual length, a sentence that names no number has the usual one, and words of tempo, size and hold
+A masked model decodes many tokens at once, each by itself. If one sentence has many motions (longer and shorter pauses, other
+tempos, three or four strokes), tokens of different motions meet in a row, and strokes come out halved. So these clips have no
+randomness: pauses have their usual length, a sentence that names no number means the usual one, and words of tempo, size and hold
 are left out, since the engine applies them to the finished motion (`mmm_core.motion.performing`).
 """
 
@@ -20,16 +20,16 @@ from mmm_core.language.count_words import count_asked
 from mmm_core.language.reading import read
 
 STYLED_SHARE = 0.2
-"""Share of gestures without a style that get one where they can: every style of a gesture is a motion to learn, and `draw_gesture`
-gives one to 7 in 100."""
+"""Share of gestures drawn without a style that get one, if their family has styles: every style of a gesture is another motion to
+learn, and `draw_gesture` gives a style to only 7 gestures in 100."""
 
 
 def synthesise_deterministic(rng: np.random.Generator, weights: Mapping[str, float] | None = None) -> SynthClip:
-    """A clip of one gesture drawn at random, whose captions are what the engine gives the model for sentences that ask for it.
+    """A clip of one gesture drawn at random; its captions are sentences in the words that the engine passes to the model.
 
     Args:
-        rng: draws the gesture and the sentences; the motion depends on the gesture alone.
-        weights: how often each family is drawn, as of `synthesis.draw_gesture`.
+        rng: draws the gesture and the sentences; the motion depends on nothing but the gesture.
+        weights: weights of the families, as in `synthesis.draw_gesture`.
     """
     while True:
         drawn = draw_gesture(rng, weights=weights)
@@ -43,10 +43,10 @@ def synthesise_deterministic(rng: np.random.Generator, weights: Mapping[str, flo
 
 
 def words_given(caption: str, gesture: Gesture) -> str | None:
-    """The words that the engine gives the model for a sentence.
+    """The words that the engine passes to the model for a sentence, or None if these do not determine the gesture.
 
-    None where it reads several commands in it, where no number is named and the gesture has not the usual number of strokes, and
-    where it takes the words of a height for those of a size ("halfway"), which leaves the words of the usual height.
+    They do not if the engine reads several commands, if the sentence names no number and the gesture has an unusual one, or if
+    the engine takes words of height for words of size ("halfway"), so that the words left are those of the usual height.
     """
     steps = read(caption).steps
     if len(steps) != 1 or len(steps[0]) != 1:
@@ -63,6 +63,6 @@ def words_given(caption: str, gesture: Gesture) -> str | None:
 
 
 def usual_count(family: str) -> int:
-    """The number of strokes where none is named: the middle one of the numbers that need not be said."""
+    """The number of strokes that a sentence without a number means: the middle one of the family's usual numbers."""
     counts = sorted(FAMILIES[family].counts)
     return counts[(len(counts) - 1) // 2]

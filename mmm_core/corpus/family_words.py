@@ -1,8 +1,8 @@
-"""The words by which phrases name each gesture family, all words of the corpus, the words that tell a limb, and the pairs of words.
+"""Makes word tables from the corpus's phrases and captions.
 
-They are `mmm_core/recognition/family_words.txt`, and `corpus_words.txt`, `limb_words.txt` and `word_pairs.txt` of `mmm_core/language/words`.
-
-Run `python -m mmm_core.corpus.family_words` after phrases have changed; a test says when that is needed.
+The tables are `mmm_core/recognition/family_words.txt` (words of each family) and, in `mmm_core/language/words`, `corpus_words.txt`
+(all words), `limb_words.txt` (words that name a limb), `word_pairs.txt` (pairs of words), `one_gesture.txt` and
+`known_phrases.bin`. Run `python -m mmm_core.corpus.family_words` after phrases have changed; a test fails when that is needed.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from mmm_core.recognition.named import HIGHEST_LEVEL, WORDS_FILE, content_words
 
 
 def family_phrases() -> dict[str, list[str]]:
-    """The phrases of each family with their slots left out, families in the order of their names."""
+    """The phrases of each family without their slots, families in alphabetical order."""
     return {
         name: [
             re.sub(r"\{.\}", " ", phrase)
@@ -50,7 +50,7 @@ def family_phrases() -> dict[str, list[str]]:
 
 
 def family_words() -> str:
-    """The content of `family_words.txt`: a line for each family, its words each with a digit that tells how common it is."""
+    """The content of `family_words.txt`: a line for each family with its words, each with a digit for its frequency."""
     lines: list[str] = []
     for name, phrases in family_phrases().items():
         counts = Counter(word for phrase in phrases for word in content_words(phrase))
@@ -73,7 +73,7 @@ def corpus_words() -> str:
 def limb_words() -> str:
     """The content of `limb_words.txt`: verbs and nouns of gestures that nearly always move the same limb.
 
-    A verb is the first word of a phrase; a noun stands in a phrase that begins with an article or a verb that says nothing.
+    A verb is the first word of a phrase; a noun stands in a phrase that begins with an article or another word of `SAYS_NO_LIMB`.
     """
     counts: dict[str, defaultdict[str, Counter[str]]] = {kind: defaultdict(Counter) for kind in ("verbs", "nouns")}
     for family, phrases in family_phrases().items():
@@ -96,7 +96,7 @@ def limb_words() -> str:
 
 
 def word_pairs() -> str:
-    """The content of `word_pairs.txt`: for each word those that follow it in captions, "^" and "$" at the ends of one."""
+    """The content of `word_pairs.txt`: for each word the words that follow it in captions; "^" and "$" mark a caption's ends."""
     known = set(table_lines("corpus_words")) | {"a", "i", "^", "$"}
     counts: Counter[tuple[str, str]] = Counter()
     rng = np.random.default_rng(CAPTION_SEED)
@@ -111,10 +111,10 @@ def word_pairs() -> str:
 
 
 def one_gesture() -> str:
-    """The content of `one_gesture.txt`: phrases of a gesture that the rules of the reader alone would part or deny.
+    """The content of `one_gesture.txt`: phrases of one gesture that the reader's rules alone would divide or take as a denial.
 
-    Left out are standing still, which "do not move" is a denial of all else for, and a side after the other one ("look left and right",
-    "tilt your head one way, then the other"), which is the same in turn.
+    Phrases of standing still are left out, because "do not move" is a denial of everything else. So are phrases of one side after
+    the other ("look left and right", "tilt your head one way, then the other"), because dividing them changes nothing.
     """
     parted: dict[tuple[str, ...], str] = {}
     joined = re.compile(rf"[,;:]|\b(?:{'|'.join(word for word in JOINING if word.isalpha())})\b")
@@ -138,7 +138,7 @@ def one_gesture() -> str:
 
 
 def known_phrases() -> bytes:
-    """The content of `known_phrases.bin`: a hash of each phrase of the corpus that `OUTSIDE` has not, ascending, in four bytes each."""
+    """The content of `known_phrases.bin`: hashes of the corpus's phrases without those in `OUTSIDE`, ascending, four bytes each."""
     keys: set[int | None] = set()
     for name in sorted(FAMILIES):
         for direction in FAMILIES[name].directions or ("",):
@@ -165,13 +165,13 @@ _ALSO = (
     "follow followed start finish begin end until seconds second minutes hold keep stay please could would can thanks want "
     "slowly slow quickly quick fast faster slower slightly little tiny huge big small large deeply hello goodbye"
 ).split()  # fmt: skip
-"""Words of contrast, order, time and manner that requests have and phrases hardly."""
+"""Words of contrast, order, time and manner that are common in requests but rare in phrases."""
 
 FEWEST_PHRASES, SURE_SHARE = 4, 0.96
-"""Phrases that a word of `limb_words.txt` has at least, and the share of them that move the same limb."""
+"""Least number of phrases with a word of `limb_words.txt`, and least share of them that move the same limb."""
 
 N_CLIPS, CAPTION_SEED, FEWEST_CAPTIONS = 20_000, 5, 5
-"""Clips whose captions are counted for `word_pairs.txt`, and captions that a pair of words stands in at least."""
+"""Number and seed of the clips whose captions are counted for `word_pairs.txt`, and least count of a pair of words."""
 
 if __name__ == "__main__":
     Path(str(WORDS_FILE)).write_text(family_words(), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Sentences for gestures: the families' phrases with counts, manner, contrast, order and simultaneity."""
+"""Makes sentences for gestures from the families' phrases, with counts, manner, contrast, order and simultaneity."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def words_of(g: Gesture) -> Words:
 
 
 def base_phrase(g: Gesture, rng: np.random.Generator) -> str:
-    """One imperative phrase for a gesture, slots filled; further verbs stay marked `^`."""
+    """One imperative phrase for a gesture with its slots filled; further verbs stay marked with `^`."""
     options = list(_patterns(g, words_of(g), rng))
     rng.shuffle(options)
     for pattern, after in options:
@@ -75,12 +75,12 @@ def base_phrase(g: Gesture, rng: np.random.Generator) -> str:
 
 
 def is_terse(phrase: str) -> bool:
-    """Whether a phrase has no verb to be bent: "~left arm up", "~a bow"."""
+    """Whether a phrase has no verb to inflect: "~left arm up", "~a bow"."""
     return phrase.startswith("~")
 
 
 def _patterns(g: Gesture, words: Words, rng: np.random.Generator) -> list[tuple[str, str]]:
-    """Patterns that can say the gesture, each with what is added to it."""
+    """Patterns that can express the gesture, each with the words to add after it."""
     sides = FAMILIES[g.family].sides
     if g.side == "alternating":
         return [(p, "") for p in words.alternating] * 2 + [
@@ -96,7 +96,7 @@ def _patterns(g: Gesture, words: Words, rng: np.random.Generator) -> list[tuple[
 
 
 def unnamed_side(g: Gesture) -> str:
-    """The arm that acts where no side is said: the right; pointing sideways the arm of that side."""
+    """The arm that acts if no side is named: the right, but for pointing to a side the arm of that side."""
     if g.family == "point" and g.direction:
         return {"left": "left"}.get(g.direction.split(" ")[-1], "right")
     return "right"
@@ -105,7 +105,7 @@ def unnamed_side(g: Gesture) -> str:
 def _fits(phrase: str, g: Gesture) -> bool:
     says_count = "{n}" in phrase or "{N}" in phrase
     if FAMILIES[g.family].counts and g.count not in FAMILIES[g.family].counts and not says_count:
-        return False  # an unusual count has to be said
+        return False  # an unusual count has to be named
     return not (g.family == "raise" and g.height == "low" and any(w in phrase.split() for w in LONG_WAY_WORDS))
 
 
@@ -124,7 +124,7 @@ def _pick(options: tuple[str, ...] | list[str], rng: np.random.Generator) -> str
 
 
 def _manner(g: Gesture, terse: bool, rng: np.random.Generator) -> str:
-    """Height, tempo, size, style and hold in words, only where the motion has them, and then not always."""
+    """Words for the height, tempo, size, style or hold of a gesture, if it has one; sometimes left out."""
     options: list[tuple[str, ...]] = []
     if (g.family, g.height) in HEIGHTS and (g.height == "low" or rng.random() < 0.7):
         return " " + _pick(HEIGHTS[g.family, g.height], rng)
@@ -145,13 +145,13 @@ def _manner(g: Gesture, terse: bool, rng: np.random.Generator) -> str:
 
 
 def clause(g: Gesture, rng: np.random.Generator) -> str:
-    """A phrase with its manner; an adverb may come first."""
+    """A phrase with its words of manner."""
     phrase = base_phrase(g, rng)
     return phrase + _manner(g, is_terse(phrase), rng)
 
 
 def _contrast(g: Gesture, phrase: str, rng: np.random.Generator) -> str:
-    """Name the other side, direction or gesture to say that it is not meant."""
+    """The phrase with another side, direction or gesture that it denies."""
     if g.side in OTHER and g.side in phrase:
         o = OTHER[g.side]
         forms = (
@@ -208,7 +208,7 @@ def caption(gestures: list[Gesture], parallel: bool, rng: np.random.Generator) -
 
 
 def _terse(clauses: list[str], parallel: bool, style: float, rng: np.random.Generator) -> str:
-    """Phrases of which one at least has no verb, joined; asked for, now and then."""
+    """A sentence of phrases of which at least one has no verb; sometimes a request for it."""
     if parallel:
         return plain(_joined(clauses, AT_ONCE_TERSE, rng))
     sentence = plain(_joined(clauses, THEN_TERSE, rng))
@@ -230,7 +230,7 @@ def _at_once(a: str, b: str, style: float, pronoun: str, rng: np.random.Generato
 
 
 def _person(verbs: str, pronoun: str, rng: np.random.Generator) -> str:
-    """Somebody, of the sex that the pronoun has, does it."""
+    """A sentence whose subject fits the pronoun, for verbs in the third person."""
     excluded = {"his": ("a woman", "she"), "her": ("a man", "he"), "their": ("he", "she")}[pronoun]
     subjects = [p for p in PERSONS if p.removesuffix(" {v}") not in excluded]
     return _pick(subjects, rng).replace("{v}", verbs)
@@ -245,7 +245,7 @@ def _joined(clauses: list[str], forms: tuple[str, ...], rng: np.random.Generator
 
 
 def _finish(sentence: str, rng: np.random.Generator) -> str:
-    """Spelling, a capital letter, a full stop or a slip of the finger, now and then."""
+    """The sentence, sometimes with another spelling, a capital letter and full stop, or a typing error."""
     sentence = respell(sentence, rng)
     draw = rng.random()
     if draw < 0.15:
@@ -258,5 +258,5 @@ def _finish(sentence: str, rng: np.random.Generator) -> str:
 
 
 def usual_counts(family: str) -> tuple[int, ...]:
-    """Counts that a family has when none is said."""
+    """Counts that a family may have if none is named."""
     return FAMILIES[family].counts or (1,)

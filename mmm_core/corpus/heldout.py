@@ -1,4 +1,4 @@
-"""Probes: commands in words the grammar never says, with what they should show. Never trained on (a test sees to it)."""
+"""Probes: commands in words that the grammar never uses, with the expected motion. A test makes sure that none is trained on."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ HELD_OUT_VERBS = (
     "elevate", "hoist", "thrust", "peek", "peer", "stare", "smack", "wag", "swat", "incline", "hail", "pantomime", "emulate",
     "propel", "caress", "oscillate", "genuflect", "clench", "brandish", "gyrate", "crane", "fend",
 )  # fmt: skip
-"""Words that no caption has: what a model does with them, it took from the text encoder."""
+"""Words that no caption contains, so that a model knows them only through the text encoder."""
 
 
 @dataclass(frozen=True)
 class Probe:
-    """A command and what its motion must show; empty and None where the text leaves it open.
+    """A command and the expectations that its motion must meet; a field is empty or None if the text leaves it open.
 
     Attributes:
         text: the command.
-        family, limb, side, count, direction: as of a gesture.
-        hold_s: seconds that the pose is to be kept; 0 where it is not said.
+        family, limb, side, count, direction: the expected gesture, as in `families.gesture`.
+        hold_s: seconds that the pose must be kept; 0 if the text names no time.
         tempo: slow or fast.
-        then: what follows; only order, limbs, sides and directions of both are judged.
+        then: the gesture that follows; then only order, limbs, sides and directions of both are judged.
     """
 
     text: str
@@ -41,7 +41,7 @@ def read_probes(name: str) -> tuple[Probe, ...]:
     """The probes of `mmm_core/corpus/prompts/<name>.jsonl`, one JSON object a line with the fields of `Probe`.
 
     Raises:
-        msgspec.ValidationError: a field of the wrong type, or one that is missing.
+        msgspec.ValidationError: a field is missing or has the wrong type.
     """
     lines = files("mmm_core.corpus").joinpath("prompts", f"{name}.jsonl").read_bytes()
     return tuple(msgspec.json.decode(line, type=Probe) for line in lines.splitlines())
@@ -50,16 +50,16 @@ def read_probes(name: str) -> tuple[Probe, ...]:
 PROBES = read_probes("probes_development")
 """The development set: models, decoding steps and temperatures have been chosen by it."""
 TEST_PROBES = read_probes("probes_test")
-"""The test set, by two writers who saw neither the development set nor any phrase of the corpus: figures are reported on it, nothing is chosen by it."""
+"""The test set, by two writers who saw neither the development set nor any phrase of the corpus; no choice depends on it."""
 PROBE_SETS = {"development": PROBES, "test": TEST_PROBES}
 
 
 @dataclass(frozen=True)
 class Command:
-    """One gesture that a sentence asks for; empty, None and 0 where the sentence leaves a field open.
+    """One gesture that a sentence asks for; a field is empty, None or 0 if the sentence leaves it open.
 
     Attributes:
-        family, limb, side, count, direction, hold_s, tempo: as of a probe.
+        family, limb, side, count, direction, hold_s, tempo: as in a probe.
         size: small or large.
     """
 
@@ -80,8 +80,8 @@ class Sentence:
     Attributes:
         text: the sentence.
         kind: ellipsis, at_once, slips, denial, manner, in_turn, everyday or long.
-        commands: gestures in turn, each with those done at once.
-        clean: the sentence of kind slips as it would be written without them.
+        commands: groups of gestures done at the same time, in the order of the sentence.
+        clean: a sentence of kind "slips" without its slips.
         denied: families that must not be seen.
         nothing: whether nothing at all may move.
     """
@@ -98,7 +98,7 @@ def read_sentences(name: str) -> tuple[Sentence, ...]:
     """The sentences of `mmm_core/corpus/prompts/<name>.jsonl`, one JSON object a line with the fields of `Sentence`.
 
     Raises:
-        msgspec.ValidationError: a field of the wrong type, or one that is missing.
+        msgspec.ValidationError: a field is missing or has the wrong type.
     """
     lines = files("mmm_core.corpus").joinpath("prompts", f"{name}.jsonl").read_bytes()
     return tuple(msgspec.json.decode(line, type=Sentence) for line in lines.splitlines())

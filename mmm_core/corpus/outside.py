@@ -1,6 +1,6 @@
 """Texts that the model cannot follow: legs, objects, acrobatics, talk, other languages, gibberish.
 
-`OUTSIDE` stands beside the known commands in the scope index: a refused text is said to be like the nearest of these.
+`OUTSIDE` stands beside the known commands in the scope index; the reason of a refusal names the nearest of these texts.
 `outside_texts` builds thousands more from patterns, for the classifier behind the scope score (`mmm_core.language.scope`).
 """
 
@@ -20,12 +20,12 @@ Text = Callable[[np.random.Generator], str]
 
 _TABLES = tomllib.loads(files("mmm_core.corpus").joinpath("prompts", "outside.toml").read_text(encoding="utf-8"))
 OUTSIDE: tuple[str, ...] = tuple(_TABLES["plain"])
-"""Short, plain and of every kind: what a refused text is compared with when it is said why."""
+"""Short, plain texts of every kind, with which a refused text is compared to name a reason."""
 _WORDS: tuple[str, ...] = tuple(_TABLES["words"].split())
 
 
 def outside_texts(n: int, rng: np.random.Generator) -> list[str]:
-    """`n` texts of all kinds, some of them in the forms of speech that known commands have."""
+    """`n` texts of all kinds, some of them in the forms of known commands, such as requests."""
     return [_KINDS[int(rng.choice(len(_KINDS), p=_SHARES))](rng) for _ in range(n)]
 
 
@@ -43,7 +43,7 @@ def _filled(pattern: str, rng: np.random.Generator) -> str:
 
 
 def _spoken(command: str, rng: np.random.Generator) -> str:
-    """The text as a command, a request, of a person, or in a row: the forms that known commands have, too."""
+    """The command in a form that known commands have, too: plain, as a request, about a person, or followed by another one."""
     draw = rng.random()
     if draw < 0.2:
         return _pick(REQUESTS, rng).replace("{v}", command)
@@ -72,7 +72,7 @@ def _plain_outside(rng: np.random.Generator) -> str:
 
 
 def _gibberish(rng: np.random.Generator) -> str:
-    """Letters at random, keys beside each other, syllables, real words in no order, one word again and again."""
+    """Random letters, neighbouring keys, syllables, real words in random order, or one word repeated."""
     kind, length = int(rng.integers(5)), int(rng.integers(1, 7))
     if kind == 0:
         return " ".join(

@@ -1,4 +1,4 @@
-"""Every phrase of the grammar in its plainest form: what the scope index, word tables and benches read."""
+"""Lists every phrase of the grammar in its plainest form, for the scope index, the word tables and the benches."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ from mmm_core.language.inflection import expand, plain
 
 
 def plain_phrases(family: str, direction: str = "") -> list[tuple[str, str]]:
-    """(row, phrase) for every phrase of a family and direction, slots open; bare ones with a hand where there are sides."""
+    """(row, phrase) for every phrase of a family and direction, with open slots; the row says which arms the phrase names.
+
+    Bare phrases of a family with sides also come with words that name a hand.
+    """
     g = Gesture(family, direction=direction)
     words, sides = words_of(g), FAMILIES[family].sides
     rows: list[tuple[str, tuple[str, ...], tuple[str, ...]]] = [
@@ -53,10 +56,10 @@ def plain_phrases(family: str, direction: str = "") -> list[tuple[str, str]]:
 
 @functools.cache
 def known_commands(most_of_a_row: int = 12) -> frozenset[str]:
-    """Plain commands of every family: each side and direction, without counts or with three.
+    """Plain commands of every family, with each side and direction, and without a count or with three.
 
-    Of each row they are the shortest phrase, beside it about `most_of_a_row` others: its first ones, which are what people say
-    most, and as many spread over the rest.
+    From each row of phrases come the shortest one and about `most_of_a_row` others: half of them are the first phrases of the
+    row, which are the most common, the other half are spread over the rest.
     """
     found: set[str] = set()
     for name, family in FAMILIES.items():
@@ -78,6 +81,6 @@ def known_commands(most_of_a_row: int = 12) -> frozenset[str]:
 
 
 def manner_phrases() -> tuple[str, ...]:
-    """Words of manner, of order, of requests and of persons, as sentences have them around the phrases."""
+    """Words of manner, order, requests and pretence that stand around the phrases in sentences."""
     forms = (*SLOW, *FAST, *LARGE, *SMALL, *HOLDS, *THEN, *AT_ONCE_TERSE, *REQUESTS, *PRETEND, *IN_TURNS)
     return tuple(re.sub(r"\{.\}|\^", " ", form) for form in forms)

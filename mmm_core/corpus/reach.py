@@ -1,4 +1,4 @@
-"""Arm poses from where the palm is to be: two-bone inverse kinematics in the chest frame.
+"""Computes arm poses from the place of the palm: two-bone inverse kinematics in the chest frame.
 
 Places are (outward, up, forward) in metres from the middle between the shoulders, for the acting arm: outward is to the
 left for the left arm. The 22 joints end at the wrist; the palm lies `PALM_M` further along the forearm.
@@ -24,7 +24,7 @@ def reach(palm_m: Vector, elbow: Vector = ELBOW_DOWN, twist_rad: float = 0.0) ->
 
     Args:
         palm_m: (outward, up, forward) from the middle between the shoulders.
-        elbow: direction towards which the elbow gives way.
+        elbow: direction in which the elbow lies, as far as the arm allows.
         twist_rad: forearm twist, palm up positive.
     """
     to_palm = np.array(palm_m) - np.array([SHOULDER_OUT_M, 0.0, 0.0])
@@ -45,7 +45,7 @@ def beside(place_m: Vector, out_m: float = 0.0, up_m: float = 0.0, forward_m: fl
 
 
 def palm_m(pose: ArmPose) -> Vector:
-    """Where the palm of a pose is: the inverse of `reach`."""
+    """The place of a pose's palm, metres; the inverse of `reach`."""
     v = pose.vector()
     return _vector(np.array([SHOULDER_OUT_M, 0, 0]) + _UPPER_M * v[:3] + _FORE_M * v[3:6])
 

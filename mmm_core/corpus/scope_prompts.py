@@ -1,8 +1,8 @@
-"""Prompts that measure the scope score: what people might ask of an upper body, and what they might ask besides.
+"""Prompts that measure the scope score: requests that an upper body can carry out, and other texts that people might send.
 
-Two sets, in `prompts/`: the scope's thresholds are chosen on the development set and on the probes (`heldout.py`); figures are
-reported on the test set, from which no threshold and no weight comes. No caption of the corpus and no text of `outside.py` is
-among either (a test sees to it).
+There are two sets in `prompts/`: the scope's thresholds are chosen on the development set and on the probes (`heldout.py`);
+figures are reported on the test set, on which no threshold and no weight depends. A test makes sure that neither set contains a
+caption of the corpus or a text of `outside.py`.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ class ScopePrompts:
     """A set of prompts.
 
     Attributes:
-        in_scope: what the robot can do.
-        out_of_scope: what it cannot do, by kind.
-        mixed: prompts of which half can be done, with the family to be kept; reported beside the others, not among them.
+        in_scope: texts that the robot can carry out.
+        out_of_scope: texts that it cannot carry out, by kind.
+        mixed: prompts of which one half can be carried out, with the family of that half; reported separately.
     """
 
     in_scope: tuple[str, ...]
@@ -27,7 +27,7 @@ class ScopePrompts:
     mixed: dict[str, str]
 
     def all_texts(self) -> tuple[str, ...]:
-        """The texts that are in scope and those that are not, by kind."""
+        """All texts in scope and out of scope, without the mixed ones."""
         return (*self.in_scope, *(text for texts in self.out_of_scope.values() for text in texts))
 
 

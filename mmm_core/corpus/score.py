@@ -1,10 +1,9 @@
-"""A gesture as a score: each channel of the upper body moves between key poses along minimum-jerk paths.
+"""A gesture as a score, in which each channel of the upper body moves between key poses along minimum-jerk paths.
 
 Channels: `left` and `right` arm (upper arm direction, forearm direction, forearm twist), `head` and `trunk` (yaw, pitch,
 roll), `shrug`. Directions are given in the chest frame as (outward, up, forward), so that one pose serves both arms.
-Bones travel on the sphere: along the great circle when the way is short, by a via point in front of the body or beside
-it when it is long, so that an arm raised from hanging swings its shoulder through an arc at the speed of an arm.
-Minimum jerk: Flash and Hogan 1985.
+Directions of bones move on the sphere: along the great circle over short distances, past a via point in front of the body or
+beside it over long ones, so that an arm raised from hanging swings through an arc. Minimum jerk: Flash and Hogan 1985.
 """
 
 from __future__ import annotations
@@ -22,14 +21,15 @@ Vector = tuple[float, float, float]
 FRONT: Vector = (0.45, 0.0, 0.9)
 SIDE: Vector = (1.0, 0.0, 0.15)
 _FORE_VIA = np.array([0.12, 0.05, 1.0])
-"""Where a forearm passes when it turns far: folded forward, clear of the chest."""
+"""Via point of a forearm that turns far: folded forward, clear of the chest."""
 _NEAR_RAD, _FAR_RAD = np.deg2rad(75.0), np.deg2rad(150.0)
-"""Below the first the great circle is used, above the second the via point alone bends the way."""
+"""Radians of a turn up to which it follows the great circle, and from which on it is bent fully towards the via point."""
 TRACE_STEP_S = 0.05
+"""Seconds between key poses on a traced path."""
 TRACE_EASE_BEATS = 2
-"""Beats: how long starting and ending a path take together."""
+"""Beats that starting and ending a path take together."""
 At = tuple[NDArray[np.intp], Array]
-"""Segment (T,) and share of it (T,)."""
+"""Index of the segment (T,), and progress in it from 0 to 1 (T,)."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ REST_ARM = ArmPose((0.2, -0.97, 0.02), (0.1, -0.93, 0.3))
 
 @dataclass(frozen=True)
 class Segment:
-    """A channel's way from one value to the next; `is_steady` ones run at an even pace, others start and stop."""
+    """A channel's movement from one value to the next: at an even pace if `is_steady`, else starting and stopping gently."""
 
     start_s: float
     end_s: float
@@ -67,16 +67,20 @@ class Segment:
 
 @dataclass
 class Score:
-    """Ways in time; `move`, `trace` and `hold` write it from left to right.
+    """Movements of all channels over time; `move`, `trace` and `hold` append to them.
 
     Attributes:
-        rng: chance in poses, strokes and paces; on a beat it is calm (`beat.Calm`).
-        chance: of pauses, on a beat too.
-        otherwise: on a beat, of two ways to make the gesture take the other one.
-        strokes_s: on a beat, when strokes begin.
+        rng: randomness of poses, strokes and paces; a score with a beat has none (`beat.Calm`).
+        rest: value of each channel at rest.
+        time_s: seconds at which the next movement begins.
+        follow_through: share of a movement by which a stopping limb runs past its end before it settles.
+        beat_s: seconds of a beat; 0 for a score without one. With a beat each movement and pause lasts a whole number of half
+            beats, and strokes begin on a beat.
+        otherwise: with a beat, whether the second of two variants of a gesture is performed.
+        ways: movements of each channel.
+        chance: randomness of pauses, with a beat, too.
+        strokes_s: with a beat, seconds at which strokes begin.
         is_traced: whether a path was traced.
-        follow_through: share of a way by which a stopping limb runs past its end before it settles.
-        beat_s: seconds; above 0 each way and pause lasts a whole number of half beats and strokes begin on a beat.
     """
 
     rng: np.random.Generator
@@ -91,7 +95,7 @@ class Score:
     is_traced: bool = False
 
     def __post_init__(self) -> None:
-        """Every channel starts at rest."""
+        """Start every channel at rest."""
         self.chance = self.rng
         if self.beat_s:
             self.rng = Calm(self.rng, self.otherwise)
@@ -99,7 +103,7 @@ class Score:
             self.start_at(name, value)
 
     def start_at(self, channel: str, value: Array) -> None:
-        """Let `channel` begin the clip at `value`, and forget what it did."""
+        """Let `channel` begin the clip at `value`, without the movements that it had."""
         self.ways[channel] = [Segment(-1.0, -1.0, value, value)]
 
     def now(self, channel: str) -> Array:
@@ -109,7 +113,7 @@ class Score:
     def move(
         self, duration_s: float, via: Vector = FRONT, /, **targets: Array | ArmPose | Vector | float | list[float]
     ) -> None:
-        """Move the named channels to their targets; others hold. Long ways of an arm pass `via`. Time advances."""
+        """Move the named channels to their targets while others hold, and advance the time. Long movements of arms pass `via`."""
         if self.beat_s:
             duration_s = max(self.beat_s, self._in_half_beats(duration_s))
         for name, target in targets.items():
@@ -119,10 +123,10 @@ class Score:
         self.time_s += duration_s
 
     def trace(self, duration_s: float, **paths: Callable[[float], ArmPose | Array]) -> None:
-        """Lead the named channels along paths of a phase from 0 to 1, started and ended gently. Time advances.
+        """Move the named channels along paths of a phase from 0 to 1, with gentle start and end, and advance the time.
 
-        A path should start where its channel is. On a beat the way takes `TRACE_EASE_BEATS` longer, so that what lies between
-        start and end runs as evenly as if it had neither.
+        A path should start at the present value of its channel. With a beat the movement takes `TRACE_EASE_BEATS` longer, so that
+        the part between start and end has the pace of `duration_s`.
         """
         ease = min(0.3, 0.35 / duration_s)
         self.is_traced = True
@@ -145,18 +149,18 @@ class Score:
         self.time_s += duration_s
 
     def hold(self, duration_s: float) -> None:
-        """Keep everything where it is."""
+        """Let all channels hold, and advance the time."""
         self.time_s += self._in_half_beats(duration_s) if self.beat_s else duration_s
 
     def pause_s(self, least_s: float, most_s: float) -> float:
-        """How long a pause is that may be short or long; by chance, on a beat too."""
+        """Random seconds of a pause; with a beat a whole number of beats."""
         if not self.beat_s:
             return float(self.rng.uniform(least_s, most_s))
         drawn = self.chance.uniform(least_s, most_s)
         return self.beat_s * max(1, round(drawn / self.beat_s))
 
     def to_beat(self) -> None:
-        """Wait for the next beat, where there is one: what comes next is a stroke."""
+        """With a beat, advance the time to the next one and note that a stroke begins there."""
         if self.beat_s:
             self.time_s = self.beat_s * float(np.ceil(self.time_s / self.beat_s - 1e-6))
             self.strokes_s.append(self.time_s)
@@ -165,12 +169,12 @@ class Score:
         return self.beat_s / 2 * float(np.floor(2 * duration_s / self.beat_s + 0.5))
 
     def relax(self, duration_s: float) -> None:
-        """Bring every channel back to rest."""
+        """Move every channel back to rest."""
         away = {name: self.rest[name] for name in self.ways if np.abs(self.now(name) - self.rest[name]).max() > 1e-3}
         self.move(duration_s, **away)
 
     def sample(self, channel: str, times_s: Array, fore_lag_s: float = 0.0) -> Array:
-        """(T, D) values of `channel`; of an arm's, forearm and twist come `fore_lag_s` later than the upper arm."""
+        """(T, D) values of `channel`; forearm and twist of an arm lag `fore_lag_s` behind the upper arm."""
         ways = self.ways[channel]
         if channel not in ("left", "right"):
             return self._between(ways, times_s)[0]
@@ -182,7 +186,7 @@ class Score:
         return values
 
     def _between(self, ways: list[Segment], times_s: Array) -> tuple[Array, At]:
-        """Values on straight ways, and the segment (T,) and share of it (T,) that each is read at."""
+        """Values interpolated on straight lines, and the segment (T,) and progress in it (T,) of each time."""
         start_s = np.array([w.start_s for w in ways])
         end_s = np.array([w.end_s for w in ways])
         row = np.searchsorted(start_s, times_s, side="right") - 1
@@ -199,12 +203,12 @@ class Score:
 
 
 def minimum_jerk(u: Array) -> Array:
-    """Share of the way at share `u` of the time."""
+    """Share of the distance at share `u` of the time, on a path of minimum jerk."""
     return u**3 * (10 - 15 * u + 6 * u**2)
 
 
 def _trapezoid(u: Array, ease: float) -> Array:
-    """Share of the way when speed rises over `ease` of the time, is even, and falls again."""
+    """Share of the distance at share `u` of the time; speed rises over `ease` of the time, is constant, and falls likewise."""
     speed_up = np.minimum(u, ease) ** 2 / (2 * ease)
     even = np.clip(u - ease, 0, 1 - 2 * ease)
     slow = np.clip(u - (1 - ease), 0, ease)
@@ -212,7 +216,7 @@ def _trapezoid(u: Array, ease: float) -> Array:
 
 
 def _on_sphere(ways: list[Segment], at: At, part: slice, via: Array) -> Array:
-    """(T, 3) unit directions: a quadratic curve on the sphere with one control point a segment."""
+    """(T, 3) unit directions on a quadratic curve on the sphere, with one control point for each segment."""
     row, share = at
     a = np.array([w.start[part] for w in ways])
     b = np.array([w.end[part] for w in ways])
@@ -225,6 +229,6 @@ def _on_sphere(ways: list[Segment], at: At, part: slice, via: Array) -> Array:
 
 
 def _slerp(a: Array, b: Array, s: Array) -> Array:
-    """Great circle between unit vectors (T, 3)."""
+    """(T, 3) directions at share `s` of the great circles between unit vectors (T, 3)."""
     angle = np.maximum(np.arccos(np.clip((a * b).sum(-1, keepdims=True), -1, 1)), 1e-4)
     return (np.sin((1 - s) * angle) * a + np.sin(s * angle) * b) / np.sin(angle)

@@ -1,4 +1,4 @@
-"""The training corpus: synthesised gestures, and real motion where a data folder is given."""
+"""Makes the training corpus: synthesised gestures, and real motion from a data folder."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mmm_core.corpus.cmu import read_clips
 from mmm_core.corpus.synthesis import ClipSpec, synthesise
 
 _WORTH_A_PROCESS = 500
-"""Fewer clips are made before a process has started."""
+"""Clips for each process from which on several processes are started; fewer are made before a process has started."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +28,13 @@ class CorpusClip:
 
 
 def make_corpus(n_synthesised: int, data_dir: Path | None, seed: int, processes: int = 1) -> list[CorpusClip]:
-    """`n_synthesised` gesture clips and the real clips of `data_dir`; clip i depends on `seed` and i alone.
+    """`n_synthesised` gesture clips and the real clips of `data_dir`; clip i depends on nothing but `seed` and i.
 
     Args:
-        n_synthesised: how many gesture clips.
+        n_synthesised: number of gesture clips.
         data_dir: folder of real motion; None for gestures alone.
-        seed: of the gestures.
-        processes: how many of them make gestures; the clips are the same for any number.
+        seed: seed of the gestures.
+        processes: number of processes that make gestures; it does not change the clips.
     """
     jobs = ((seed, i) for i in range(n_synthesised))
     shown = {"description": "gestures", "total": n_synthesised}

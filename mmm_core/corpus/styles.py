@@ -1,4 +1,4 @@
-"""Manners in which a gesture can be made: happily, tiredly, like a machine; with what they change and how they are said."""
+"""Styles in which a gesture can be made (happily, tiredly, like a machine), with their effects and their words."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Style:
-    """A manner.
+    """A style of gestures.
 
     Attributes:
-        words: how it is said, after the gesture.
-        tempo, size: factors on the gesture's own.
+        words: words for the style, which follow the gesture's.
+        tempo, size: factors on the gesture's tempo and size.
         trunk_pitch_rad, head_pitch_rad: posture, forward and down positive.
-        stiffness: 1 for movements without lag, sway or anything going along.
+        stiffness: 1 for movements without lag, sway or any added movement.
     """
 
     words: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Draws a clip at random: which gestures, how, in what order, with what words; and performs it."""
+"""Draws a clip at random (gestures, their manner, order and words) and performs it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mmm_core.motion.skeleton import Array
 
 N_CAPTIONS = 6
 SINGLE_SHARE = 0.62
-"""Share of clips that show one gesture, where nothing else is asked for."""
+"""Share of clips that show one gesture, by default."""
 LONGEST_S = MAX_TOKENS * FRAMES_PER_TOKEN / FPS
 _COUNT_WEIGHTS = np.array([0.16, 0.21, 0.21, 0.16, 0.12, 0.07, 0.04, 0.03])
 """Probability of one to eight repetitions."""
@@ -53,7 +53,7 @@ _TRUNK_ONLY = ("lean", "twist")
 
 @dataclass(frozen=True)
 class ClipSpec:
-    """What a clip shows: gestures in order, or two at once."""
+    """The gestures of a clip: one or several in order, or two at once if `parallel`."""
 
     gestures: tuple[Gesture, ...]
     parallel: bool = False
@@ -61,13 +61,13 @@ class ClipSpec:
 
 @dataclass(frozen=True)
 class SynthClip:
-    """A made clip.
+    """A synthesised clip.
 
     Attributes:
         features: (T, 263) float32, T a multiple of four.
-        captions: sentences for it.
-        spec: what it shows.
-        body: joints, head and forearms before they became features.
+        captions: sentences for the clip.
+        spec: the gestures of the clip.
+        body: joints, head and forearms from which the features were computed.
     """
 
     features: NDArray[np.float32]
@@ -79,7 +79,14 @@ class SynthClip:
 def draw_gesture(
     rng: np.random.Generator, names: tuple[str, ...] = (), side: str = "", weights: Mapping[str, float] | None = None
 ) -> Gesture:
-    """One gesture, of the families in `names` and with `side` where given; `weights` say how often each family is drawn."""
+    """One gesture drawn at random.
+
+    Args:
+        rng: source of randomness.
+        names: families to choose from; all when empty.
+        side: side of the gesture; drawn when empty.
+        weights: weights by which families are drawn if `names` is empty; None takes the usual ones.
+    """
     if names:
         name = names[int(rng.integers(len(names)))]
     else:
@@ -104,7 +111,7 @@ def draw_gesture(
 
 
 def _in_a_manner(g: Gesture, rng: np.random.Generator) -> Gesture:
-    """The gesture with a tempo, size, hold or style of its own, now and then."""
+    """The gesture, sometimes with another tempo, size, hold or style."""
     family, kind = FAMILIES[g.family], rng.random()
     if kind < (0.3 if family.counts else 0.15):
         return replace(g, tempo=float(rng.choice([0.65, 1.4])))
@@ -118,12 +125,12 @@ def _in_a_manner(g: Gesture, rng: np.random.Generator) -> Gesture:
 
 
 def has_styles(family: Family) -> bool:
-    """Whether gestures of a family are performed in styles: those of arms that begin at rest."""
+    """Whether gestures of a family can have a style: they are gestures of the arms and begin at rest."""
     return family.limb == "arm" and not family.starts_away
 
 
 def in_a_style(g: Gesture, rng: np.random.Generator) -> Gesture:
-    """The gesture in a style drawn at random, with the tempo and size that the style has."""
+    """The gesture in a style drawn at random, with the style's tempo and size."""
     name = str(rng.choice(list(STYLES)))
     size = STYLES[name].size if FAMILIES[g.family].counts else 1.0
     return replace(g, style=name, tempo=STYLES[name].tempo, size=size)
@@ -132,7 +139,7 @@ def in_a_style(g: Gesture, rng: np.random.Generator) -> Gesture:
 def draw_spec(
     rng: np.random.Generator, weights: Mapping[str, float] | None = None, single_share: float = SINGLE_SHARE
 ) -> ClipSpec:
-    """One gesture, two or three in a row, or two at once where the limbs are free; `weights` as of `draw_gesture`."""
+    """One gesture, two or three in a row, or two at once on different limbs; `weights` as in `draw_gesture`."""
     kind = float(np.interp(rng.random(), (0.0, single_share, 1.0), (0.0, SINGLE_SHARE, 1.0)))
     if kind < SINGLE_SHARE:
         return ClipSpec((draw_gesture(rng, weights=weights),))
@@ -172,9 +179,9 @@ def synthesise(
     """A clip drawn at random, at most 9.8 s long.
 
     Args:
-        rng: source of all chance.
-        beat_s: seconds of a beat, as of `synthesise_spec`.
-        weights: how often each family is drawn, as of `draw_gesture`.
+        rng: source of all randomness.
+        beat_s: seconds of a beat, as in `synthesise_spec`.
+        weights: weights of the families, as in `draw_gesture`.
         single_share: share of clips that show one gesture.
     """
     while True:
@@ -186,9 +193,9 @@ def synthesise(
 def synthesise_spec(
     spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.0, *, deterministic: bool = False
 ) -> SynthClip | None:
-    """A clip that shows `spec`; None when it would be longer than 9.8 s. With a beat it is clean: see `beat.py`.
+    """A clip that shows `spec`, or None if it would be longer than 9.8 s. With a beat its strokes are clean (`beat.py`).
 
-    A `deterministic` clip has no chance in its pauses either: the same gesture is always the same motion.
+    A `deterministic` clip has no randomness in its pauses either, so that a gesture always has the same motion.
     """
     score = score_of(spec, rng, beat_s, deterministic=deterministic)
     n_tokens = int(np.ceil(score.time_s * FPS / FRAMES_PER_TOKEN - 1e-6))
@@ -201,7 +208,7 @@ def synthesise_spec(
 
 
 def score_of(spec: ClipSpec, rng: np.random.Generator, beat_s: float = 0.0, *, deterministic: bool = False) -> Score:
-    """What the body does to show `spec`: as a person does it, or on a beat."""
+    """The score of `spec`: performed freely, as by a person, or with a beat."""
     return _on_beat(spec, rng, beat_s, deterministic) if beat_s else _freely(spec, rng)
 
 
@@ -216,7 +223,7 @@ def _freely(spec: ClipSpec, rng: np.random.Generator) -> Score:
         score.hold(rng.choice([rng.uniform(0.05, 0.35), rng.uniform(0.3, 1.5)]))
     _write(score, spec)
     last = FAMILIES[spec.gestures[-1].family]
-    says_how_long = spec.gestures[-1].hold_s > 0  # then the pose ends when the words say so
+    says_how_long = spec.gestures[-1].hold_s > 0  # a pose with a named duration always ends
     if says_how_long or rng.random() < (0.55 if last.holds else 0.93):
         score.relax(rng.uniform(0.65, 0.95))
     score.hold(rng.choice([0.1, rng.uniform(0.1, 0.6), rng.uniform(0.3, 2.0)]))
@@ -224,7 +231,7 @@ def _freely(spec: ClipSpec, rng: np.random.Generator) -> Score:
 
 
 def _on_beat(spec: ClipSpec, rng: np.random.Generator, beat_s: float, deterministic: bool) -> Score:
-    """Begins at once, and only pauses are longer or shorter by chance, or nothing where it is `deterministic`."""
+    """A score with a beat that begins at once and has randomness in its pauses alone, or none if `deterministic`."""
     score = Score(rng, rest_pose(Calm(rng)), follow_through=0.02, beat_s=beat_s)
     if deterministic:
         score.chance = score.rng
@@ -251,7 +258,7 @@ def _write(score: Score, spec: ClipSpec) -> None:
 
 
 def rest_pose(rng: np.random.Generator) -> dict[str, Array]:
-    """A relaxed stance: arms hang, a little different for everybody."""
+    """Channel values of a relaxed stance with hanging arms, varied a little at random."""
 
     def arm() -> Array:
         upper, fore = np.array(REST_ARM.upper), np.array(REST_ARM.fore)

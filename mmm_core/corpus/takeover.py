@@ -1,8 +1,8 @@
-"""A gesture that begins in the middle of another one, as a new text takes over a robot that moves.
+"""Makes gestures that begin in the middle of another one, as when a new text takes over a moving robot.
 
-The first seconds show the gesture that was running; then every channel leads over to the captioned gesture within `LEAD_S`, while that
-one already runs on its own beat. Its words decide it alone (`mmm_core.corpus.deterministic`). A model that is trained to predict
-the rest, given the first tokens, learns to go on from any pose.
+The first tokens show the gesture that was running; then every channel passes over to the captioned gesture within `LEAD_S`, while
+that gesture already runs on its own beat. The captioned gesture is deterministic (`mmm_core.corpus.deterministic`). A model that
+is trained to predict the rest, given the first tokens, learns to continue from any pose.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from mmm_core.motion.motion import FPS
 from mmm_core.motion.skeleton import Array
 
 SEEN_TOKENS = (2, 8)
-"""Tokens of the running gesture before the new one begins, 0.4 to 1.6 s: those that `prefix_s` may give."""
+"""Least and greatest number of tokens of the running gesture (0.4 to 1.6 s), which are lengths that `prefix_s` may have."""
 LEAD_S = 0.6
 """Seconds until every channel has left the running gesture."""
 
 
 class Takeover(Score):
-    """`before` until `cut_s`, `after` from there on, and between them a way from one to the other."""
+    """A score that plays `before` until `cut_s`, then passes over to `after`, which begins at `cut_s`."""
 
     def __init__(self, before: Score, after: Score, cut_s: float) -> None:
         super().__init__(after.rng, after.rest, beat_s=after.beat_s)
@@ -44,11 +44,11 @@ class Takeover(Score):
 
 
 def synthesise_takeover(rng: np.random.Generator, weights: Mapping[str, float] | None = None) -> tuple[SynthClip, int]:
-    """A clip that begins in the middle of another gesture, with the captions of what follows, and how many of its tokens that gesture has.
+    """A clip that begins in the middle of another gesture, with captions of the new one, and the number of tokens of the other.
 
     Args:
-        rng: source of all chance.
-        weights: how often each family is drawn.
+        rng: source of all randomness.
+        weights: weights by which families are drawn.
     """
     token_s = FRAMES_PER_TOKEN / FPS
     while True:

@@ -1,6 +1,6 @@
-"""Phrases that no caption may say, because what is measured with them has to be new to the model.
+"""Phrases that no caption may contain, because held-out texts must be new to the model.
 
-New wordings are written without looking at the held-out texts; one that happens to be among them is left out here.
+New phrases are written without sight of the held-out texts; a phrase that happens to equal one is left out here.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _EMPTY_WORDS = frozenset((
     "a", "an", "the", "your", "you", "me", "i", "for", "with", "using", "please", "now", "just", "and", "next", "ok", "hey", "um",
     "thanks", "robot", "do", "give", "show", "make", "perform", "want",
 ))  # fmt: skip
-"""Words that may be added to a command or left out of it, and its meaning stays."""
+"""Words that can be added to a command or left out of it without a change of meaning."""
 
 
 _DIGITS = dict(zip("12345678", NUMBERS[1:], strict=True))
@@ -33,5 +33,5 @@ _WITHHELD = frozenset(
 
 
 def is_withheld(phrase: str) -> bool:
-    """Whether a phrase is a probe or a prompt of the scope, but for articles, politeness and the like: no caption may say it."""
+    """Whether a phrase equals a probe or a scope prompt up to articles, politeness and the like."""
     return _key(phrase) in _WITHHELD

@@ -1,4 +1,4 @@
-"""The gesture families, by what they are about; docs/corpus.md shows how to add one."""
+"""The gesture families, in files by subject; docs/corpus.md shows how to add one."""
 
 from dataclasses import replace
 
@@ -31,6 +31,6 @@ FAMILIES: dict[str, Family] = {
 """The families in the order of their names, so that the draws of a seed do not depend on the file of a family."""
 
 MIMED = frozenset((*SPORT, *WORK, *PLAY))
-"""Families that act something out: one may also ask to pretend them."""
+"""Families that act something out, for which a sentence may also ask to pretend."""
 
 __all__ = ["FAMILIES", "MIMED", "Family", "Gesture", "Words"]

@@ -27,13 +27,13 @@ _POINT_AT: dict[str, Vector] = {
     "down left": (0.72, -0.6, 0.35),
     "down right": (-0.72, -0.6, 0.35),
 }
-"""Left, up, forward; turned to outward for the acting arm."""
+"""Directions (left, up, forward), which are turned to (outward, up, forward) for the acting arm."""
 _POINT_SELF = ArmPose((0.35, -0.75, 0.45), (-0.75, 0.35, -0.1))
 _POINT_BACK = ArmPose((0.65, -0.1, 0.55), (0.15, 0.7, -0.75))
 
 
 def _pointing(direction: str, sign: float) -> ArmPose:
-    """The arm along a direction; across the body the elbow stays nearer."""
+    """The pose of an arm along a direction, with the elbow bent if the arm reaches across the body."""
     if direction in ("self", "back"):
         return _POINT_SELF if direction == "self" else _POINT_BACK
     left, up, forward = _POINT_AT[direction]

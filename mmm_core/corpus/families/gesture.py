@@ -1,4 +1,4 @@
-"""What a gesture, a family of gestures and its words are."""
+"""Records of a gesture, of a family of gestures, and of the family's phrases."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class Gesture:
 
     Attributes:
         family: a key of `FAMILIES`.
-        side: left, right, both, alternating, or "" where the family has none.
-        count: repetitions; 1 where the family does not repeat.
-        direction: left, right, up, down, forward, ...; "" where the family has none.
-        tempo: 1 is usual, above it faster.
-        size: 1 is usual, above it larger.
-        height: low or high, "" where nothing is said.
-        hold_s: how long a pose is kept; 0 where nothing is said.
+        side: left, right, both, alternating, or "" for a family without sides.
+        count: number of strokes; 1 for a family without strokes.
+        direction: left, right, up, down, forward, ...; "" for a family without directions.
+        tempo: factor of speed, 1 as usual.
+        size: factor of size, 1 as usual.
+        height: low or high; "" for the usual height.
+        hold_s: seconds that a pose is kept; 0 for the usual time.
         style: a key of `mmm_core.corpus.styles.STYLES`, "" for none.
     """
 
@@ -47,13 +47,13 @@ class Gesture:
 
     @property
     def lead(self) -> str:
-        """The arm that leads: the acting one, or the right."""
+        """The leading arm: the acting one, or the right of two."""
         return "left" if self.side == "left" else "right"
 
 
 @dataclass(frozen=True)
 class Words:
-    """What people say for a family: patterns of imperatives, each beginning with its verb, and of phrases without one.
+    """Phrases of a family: patterns of imperatives, each beginning with its verb, and of phrases that are not imperatives.
 
     `(a|b|)` stands for each of its alternatives. Slots: {S} the side, {D} the direction, {n} a count ("twice", "3 times",
     or nothing), {N} a number before a plural. `^` marks a further verb: "raise your {S} hand and ^wave". `~` begins a phrase that is
@@ -61,11 +61,11 @@ class Words:
     words ("~{S} arm up").
 
     Attributes:
-        bare: no side named; "with your {S} hand" or "with both hands" is added where the family has sides.
-        one: with a side.
-        any: no side named, nothing to be added.
-        both: for both arms.
-        alternating: for one arm after the other.
+        bare: phrases without a side; "with your {S} hand" or "with both hands" is added if the family has sides.
+        one: phrases with a side.
+        any: phrases without a side, to which nothing is added.
+        both: phrases for both arms.
+        alternating: phrases for one arm after the other.
     """
 
     bare: tuple[str, ...] = ()
@@ -80,19 +80,19 @@ Perform = Callable[[Score, Gesture], None]
 
 @dataclass(frozen=True)
 class Family:
-    """What a family of gestures is made of.
+    """A family of gestures: its performance, its phrases and its variants.
 
     Attributes:
-        perform: writes the gesture into a score.
-        words: what is said for it.
-        limb: what is seen to move: arm, head, trunk, or "" for nothing.
-        sides: sides it can have; empty when it has none.
-        counts: repetitions that need not be said; empty when it is not repeated.
-        directions: directions it can have.
-        directed: words for single directions.
-        holds: whether it ends in a pose that may be kept.
-        heights: whether it can be done low or high.
-        starts_away: whether it starts somewhere else than at rest.
+        perform: writes a gesture of the family into a score.
+        words: phrases of the family.
+        limb: the limb that visibly moves: arm, head, trunk, or "" for none.
+        sides: sides that a gesture can have; empty for a family without sides.
+        counts: usual numbers of strokes, which a sentence need not name; empty for a family without strokes.
+        directions: directions that a gesture can have.
+        directed: phrases for single directions.
+        holds: whether the gesture ends in a pose that may be kept.
+        heights: whether the gesture can be low or high.
+        starts_away: whether the gesture does not begin at rest.
     """
 
     perform: Perform

@@ -1,7 +1,7 @@
 """Reads the phrases of a gesture family from `mmm_core/corpus/phrases/<family>.txt`.
 
-A file holds one phrase a line, in the notation of `Words`. A line in square brackets begins a section: the field of
-`Words` that the phrases below belong to, preceded by a direction where the family is said in other words for each one:
+A file holds one phrase a line, in the notation of `Words`. A line in square brackets begins a section and names the field of
+`Words` that the phrases below belong to, after a direction if the family has phrases of its own for the direction:
 
     [bare]
     clap {n}
@@ -37,10 +37,10 @@ def parse_phrases(text: str, name: str) -> tuple[Words, dict[str, Words]]:
 
     Args:
         text: content of a phrase file.
-        name: what to call the file in an error.
+        name: name of the file in errors.
 
     Raises:
-        ValueError: a section that is no field of `Words`, or a phrase above the first section.
+        ValueError: a section is no field of `Words`, or a phrase stands above the first section.
     """
     found: dict[str, dict[str, list[str]]] = {}
     section: list[str] | None = None

@@ -36,7 +36,7 @@ _OTHER = {"left": "right", "right": "left"}
 def _lead_strokes(
     ready: ArmPose, out: ArmPose, other: ArmPose, usual_s: float, head: Vector = (0.0, 0.0, 0.0)
 ) -> Perform:
-    """The leading hand repeats a stroke, the other holds its place: strings and the like."""
+    """The leading hand repeats a stroke while the other holds its place, as with string instruments."""
 
     def perform(score: Score, g: Gesture) -> None:
         if head != (0.0, 0.0, 0.0):
@@ -50,7 +50,7 @@ def _lead_strokes(
 
 
 def _arm_circle(score: Score, g: Gesture) -> None:
-    """Long arms draw circles in the side plane, forward over the top or the other way."""
+    """Stretched arms draw circles in the side plane, forward over the top or in the opposite sense."""
     turn = -1.0 if g.direction == "back" else 1.0
     wide = 0.6 * g.size
 
@@ -100,7 +100,7 @@ def _disco(score: Score, g: Gesture) -> None:
 
 
 def _sway_arms(score: Score, g: Gesture) -> None:
-    """Both long arms overhead swing together to one side and the other, the trunk with them."""
+    """Both arms, stretched overhead, swing together to one side and the other, and the trunk with them."""
     first = 1.0 if score.rng.random() < 0.5 else -1.0
     half = cycle_s(score, g, 1.25) / 2
     for i in range(2 * g.count + 1):

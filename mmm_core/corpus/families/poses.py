@@ -28,7 +28,7 @@ def _hands_up(score: Score, g: Gesture) -> None:
 
 
 def _arms_down(score: Score, g: Gesture) -> None:
-    """Starts away from rest: the acting arms come down to the sides."""
+    """The acting arms start raised and come down to the sides."""
     start = vary(score, _UP if score.rng.random() < 0.4 else ArmPose((0.5, 0.1, 0.75), (0.35, 0.3, 0.85))).vector()
     for arm in g.arms:
         score.start_at(arm, start)
@@ -39,7 +39,7 @@ def _arms_down(score: Score, g: Gesture) -> None:
 
 
 def _stretch(score: Score, g: Gesture) -> None:
-    """Both arms long overhead; to a side the trunk bends with them."""
+    """Both arms stretch overhead; in a direction to a side the trunk bends with them."""
     side = {"left": 1.0, "right": -1.0}.get(g.direction, 0.0)
     pose = vary(score, ArmPose((0.12, 0.97, 0.12), (-0.18, 0.97, 0.08), 0.8), 0.03)
     duration = 1.2 * reach_s(score, g, pose)

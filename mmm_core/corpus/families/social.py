@@ -1,4 +1,4 @@
-"""Between people: greeting, applause, joy."""
+"""Gestures between people: greeting, applause, joy."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def _cheer(score: Score, g: Gesture) -> None:
 
 
 def _celebrate(score: Score, g: Gesture) -> None:
-    """Both arms thrown up and out, shaken, chest open."""
+    """Both arms are thrown up and out and shaken, with an open chest."""
     high = vary(score, ArmPose((0.55, 0.8, 0.15), (0.45, 0.88, 0.1)), 0.04)
     score.move(0.8 * reach_s(score, g, high), left=high, right=high, trunk=(0.0, -0.08, 0.0), head=(0.0, -0.18, 0.0))
     low = ArmPose((0.6, 0.5, 0.35), (0.35, 0.9, 0.2))

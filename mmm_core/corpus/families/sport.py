@@ -33,7 +33,7 @@ _WIND_UP = {
 
 def _strike(kind: str) -> Perform:
     def perform(score: Score, g: Gesture) -> None:
-        """From the guard: wind up, strike, and back; two arms take turns."""
+        """The acting arm winds up from the guard, strikes, and goes back; two arms take turns."""
         ready, strike = _WIND_UP[kind], _STRIKES[kind]
         both = g.side in ("both", "alternating")
         arms_to(score, g, _GUARD if both else ready, amount=0.03)
@@ -54,7 +54,7 @@ def _strike(kind: str) -> Perform:
 
 def _throw(wind_up: ArmPose, release: ArmPose, after: ArmPose) -> Perform:
     def perform(score: Score, g: Gesture) -> None:
-        """Wind up with the shoulder back, release, follow through."""
+        """The arm winds up with the shoulder back, releases, and follows through."""
         side = 0.0 if g.side == "both" else 1.0 if g.lead == "right" else -1.0
         for _ in range(g.count):
             score.to_beat()
@@ -93,7 +93,7 @@ def _archery(score: Score, g: Gesture) -> None:
 
 
 def _golf(score: Score, g: Gesture) -> None:
-    """Both hands on one club: up beside the right shoulder, down through the middle, up on the left."""
+    """Both hands swing one club: up beside the right shoulder, down through the middle, up on the left."""
 
     def grip(left: float, up: float, forward: float) -> dict[str, ArmPose]:
         return {"left": reach((left, up, forward)), "right": reach((-left + 0.04, up - 0.04, forward))}
@@ -127,13 +127,13 @@ def _swing_arms(high: ArmPose, low: ArmPose, usual_s: float) -> Perform:
 
 
 def _crawl(phase: float) -> Vector:
-    """Over the head forward, down in front, back along the hip."""
+    """Path of a crawl stroke: over the head forward, down in front, back along the hip."""
     a = 2 * np.pi * phase
     return (0.24, 0.06 + 0.42 * float(np.cos(a)), 0.12 + 0.38 * float(np.sin(a)))
 
 
 def _breast(phase: float) -> Vector:
-    """Forward together, outward in an arc, back to the chest."""
+    """Path of a breaststroke: forward together, outward in an arc, back to the chest."""
     a = 2 * np.pi * phase
     out = 0.22 + 0.2 * float(np.sin(a)) if np.sin(a) > 0 else 0.22 + 0.17 * float(np.sin(a))
     return (out, -0.14, 0.3 + 0.2 * float(np.cos(a)))

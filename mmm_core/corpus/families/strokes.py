@@ -1,4 +1,4 @@
-"""Ways to perform that many families share: take a pose, repeat a stroke, go round a path."""
+"""Performances that many families share: taking a pose, repeating a stroke, going round a path."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from mmm_core.corpus.score import FRONT, ArmPose, Score, Vector
 from mmm_core.motion.skeleton import Array
 
 SHORTEST_CYCLE_S = 0.5
-"""Faster cycles are lost between tokens of four frames, and no servo follows them."""
+"""Seconds of the shortest cycle; faster ones are lost between tokens of four frames, and no servo follows them."""
 SIGN = {"left": 1.0, "right": -1.0}
+"""Sign of the sideways axis for each arm."""
 
 
 def vary(score: Score, pose: ArmPose, amount: float = 0.05) -> ArmPose:
-    """The pose, slightly different each time."""
+    """The pose, varied a little at random."""
     x = score.rng.normal(0, 1, 7)
     u, f = pose.upper, pose.fore
     return ArmPose(
@@ -28,13 +29,13 @@ def vary(score: Score, pose: ArmPose, amount: float = 0.05) -> ArmPose:
 
 
 def between(a: ArmPose, b: ArmPose, share: float) -> ArmPose:
-    """A pose on the way from `a` to `b`; a share above 1 goes beyond `b`."""
+    """The pose at `share` of the distance from `a` to `b`; a share above 1 goes beyond `b`."""
     v = a.vector() + share * (b.vector() - a.vector())
     return ArmPose((v[0], v[1], v[2]), (v[3], v[4], v[5]), float(v[6]))
 
 
 def reach_s(score: Score, g: Gesture, *poses: ArmPose | Array) -> float:
-    """How long the acting arms take to `poses`: longer for longer ways (Fitts 1954), by tempo, a little by chance."""
+    """Seconds that the acting arms take to `poses`: more for longer distances (Fitts 1954), by tempo, a little at random."""
     far = 0.0
     for pose in poses:
         to = pose.vector() if isinstance(pose, ArmPose) else pose
@@ -46,12 +47,12 @@ def reach_s(score: Score, g: Gesture, *poses: ArmPose | Array) -> float:
 
 
 def turn_s(score: Score, g: Gesture, usual_s: float = 0.6) -> float:
-    """How long head or trunk take to turn."""
+    """Seconds that head or trunk take to turn."""
     return in_beats(score, usual_s * score.rng.uniform(0.85, 1.2) / g.tempo)
 
 
 def in_beats(score: Score, duration_s: float) -> float:
-    """The next longer whole number of beats, at least two, where the score has a beat."""
+    """Seconds of a movement: with a beat the next longer whole number of beats, at least two; else `duration_s`."""
     if not score.beat_s:
         return duration_s
     return score.beat_s * max(2, int(np.ceil(duration_s / score.beat_s - 0.25)))
@@ -60,32 +61,32 @@ def in_beats(score: Score, duration_s: float) -> float:
 def arms_to(
     score: Score, g: Gesture, pose: ArmPose, duration_s: float = 0.0, amount: float = 0.05, via: Vector = FRONT
 ) -> None:
-    """Bring the acting arms to a pose."""
+    """Move the acting arms to a pose."""
     posed = vary(score, pose, amount)
     score.move(duration_s or reach_s(score, g, posed), via, **dict.fromkeys(g.arms, posed))
 
 
 def pair_to(score: Score, g: Gesture, lead: ArmPose, other: ArmPose, duration_s: float = 0.0) -> None:
-    """Bring the leading arm and the other one to poses of their own."""
+    """Move the leading arm and the other one to poses of their own."""
     a, b = vary(score, lead, 0.03), vary(score, other, 0.03)
     both = {g.lead: a, ("left" if g.lead == "right" else "right"): b}
     score.move(duration_s or reach_s(score, Gesture(g.family, "both", tempo=g.tempo), a, b), **both)
 
 
 def keep(score: Score, g: Gesture, usual_s: tuple[float, float] = (0.7, 2.0)) -> None:
-    """Hold as long as is asked, or a while."""
+    """Hold for the gesture's time, or for a usual one."""
     score.hold(g.hold_s or score.pause_s(*usual_s))
 
 
 def cycle_s(score: Score, g: Gesture, usual_s: float, least_s: float = SHORTEST_CYCLE_S) -> float:
-    """Length of one cycle at the gesture's tempo, at least `least_s`; on a beat a whole number of beats, at least three."""
+    """Seconds of one cycle at the gesture's tempo, at least `least_s`; with a beat a whole number of beats, at least three."""
     if score.beat_s:
         return score.beat_s * max(3, int(np.ceil(max(least_s, usual_s / g.tempo) / score.beat_s - 0.05)))
     return max(least_s, usual_s / g.tempo * score.rng.uniform(0.93, 1.08))
 
 
 def still(pose: ArmPose, usual_s: tuple[float, float] = (0.7, 2.0), via: Vector = FRONT, **also: Vector) -> Perform:
-    """A family that takes a pose and keeps it a while; `also` moves head or trunk, turned towards the acting side."""
+    """The performance of a family that takes a pose and keeps it; `also` moves head or trunk, turned towards the acting side."""
 
     def perform(score: Score, g: Gesture) -> None:
         posed = vary(score, pose, 0.035)
@@ -100,7 +101,7 @@ def still(pose: ArmPose, usual_s: tuple[float, float] = (0.7, 2.0), via: Vector 
 def repeat(
     score: Score, g: Gesture, out: ArmPose, back: ArmPose, usual_s: float = 0.66, out_share: float = 0.5
 ) -> None:
-    """`count` strokes from `back` to `out` and back again; no two are equal. Alternating arms take turns."""
+    """Make `count` strokes from `back` to `out` and back, varied at random unless there is a beat. Alternating arms take turns."""
     rng = score.rng
     cycle = cycle_s(score, g, usual_s)
     first = int(rng.integers(2))
@@ -115,7 +116,7 @@ def repeat(
 
 
 def strokes(ready: ArmPose, out: ArmPose, usual_s: float = 0.66, out_share: float = 0.5) -> Perform:
-    """A family that takes a pose and repeats a stroke from it."""
+    """The performance of a family that takes a pose and repeats a stroke from it."""
 
     def perform(score: Score, g: Gesture) -> None:
         arms_to(score, g, ready, amount=0.03)
@@ -125,13 +126,13 @@ def strokes(ready: ArmPose, out: ArmPose, usual_s: float = 0.66, out_share: floa
 
 
 Path = Callable[[float], Vector]
-"""Place of the palm in metres for a phase in turns: 1.25 is one and a quarter times round."""
+"""Place of the palm in metres, as a function of the phase in turns: 1.25 is one and a quarter turn."""
 
 
 def loops(
     path: Path, usual_s: float, elbow: Vector = ELBOW_DOWN, twist_rad: float = 0.0, offset: float = 0.0
 ) -> Perform:
-    """A family whose palm goes round a path; two arms do so together or, with `offset` 0.5, in turns."""
+    """The performance of a family whose palm goes round a path; a second arm is `offset` turns ahead (0.5 if arms alternate)."""
 
     def perform(score: Score, g: Gesture) -> None:
         middle = np.mean([path(i / 8) for i in range(8)], 0)
@@ -154,7 +155,7 @@ def loops(
 
 
 def circle(middle: Vector, radius_m: float, plane: str, tall: float = 1.0) -> Path:
-    """A circle about `middle`: in the "front" plane from the top outward, "side" from the top forward, "flat" outward."""
+    """A circle about `middle`: in the "front" plane from the top outward, in "side" from the top forward, in "flat" outward."""
     a, b, c = middle
 
     def path(phase: float) -> Vector:

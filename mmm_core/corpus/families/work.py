@@ -29,7 +29,7 @@ _KEY_UP, _KEY_DOWN = (
 
 
 def taps(up: ArmPose, down: ArmPose, beat_s: float, spread: float = 0.0) -> Perform:
-    """Hands held low in front, tapping in turns; `spread` moves them sideways now and then."""
+    """The hands, held low in front, tap in turns; `spread` moves them sideways sometimes."""
 
     def perform(score: Score, g: Gesture) -> None:
         start = {a: vary(score, up, 0.02) for a in g.arms}
@@ -50,7 +50,7 @@ def taps(up: ArmPose, down: ArmPose, beat_s: float, spread: float = 0.0) -> Perf
 
 
 def _lift(score: Score, g: Gesture) -> None:
-    """Both hands fetch something from low and bring it up."""
+    """Both hands fetch something from below and bring it up."""
     low, high = (
         ArmPose((0.2, -0.85, 0.45), (-0.08, -0.7, 0.7), 0.4),
         ArmPose((0.15, 0.3, 0.95), (-0.05, 0.55, 0.85), 0.4),
@@ -69,7 +69,7 @@ def _lift(score: Score, g: Gesture) -> None:
 
 
 def _pick(score: Score, g: Gesture) -> None:
-    """Reach up, close the hand, bring it down to a basket."""
+    """A hand reaches up, closes, and comes down to a basket."""
     for _ in range(g.count):
         score.to_beat()
         arms_to(score, g, ArmPose((0.25, 0.72, 0.6), (0.1, 0.9, 0.4)), amount=0.06)
@@ -79,7 +79,7 @@ def _pick(score: Score, g: Gesture) -> None:
 
 
 def _climb(score: Score, g: Gesture) -> None:
-    """One hand over the other on a rope or ladder."""
+    """One hand goes over the other on a rope or ladder."""
     high, low = ArmPose((0.2, 0.6, 0.75), (0.0, 0.92, 0.35)), ArmPose((0.3, -0.55, 0.75), (-0.05, 0.6, 0.8))
     half = max(0.42, 0.62 / g.tempo)
     first = int(score.rng.integers(2))
@@ -91,7 +91,7 @@ def _climb(score: Score, g: Gesture) -> None:
 
 
 def _twist_forearm(pose: ArmPose, from_rad: float, to_rad: float, usual_s: float) -> Perform:
-    """The forearm turns about its own length: only the 6-D channels show it."""
+    """The forearm turns about its own axis, which only the 6-D channels show."""
     there, back = ArmPose(pose.upper, pose.fore, to_rad), ArmPose(pose.upper, pose.fore, from_rad)
 
     def perform(score: Score, g: Gesture) -> None:
@@ -106,7 +106,7 @@ def _twist_forearm(pose: ArmPose, from_rad: float, to_rad: float, usual_s: float
 
 
 def _steer(score: Score, g: Gesture) -> None:
-    """Both hands on a wheel, turned one way and the other."""
+    """Both hands turn a wheel to one side and the other."""
 
     def hold(turn: float) -> dict[str, ArmPose]:
         return {"left": reach((0.17, -0.2 - turn, 0.42)), "right": reach((0.17, -0.2 + turn, 0.42))}
