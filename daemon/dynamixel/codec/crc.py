@@ -36,7 +36,7 @@ _PAIRS = _pair_table()
 
 
 def crc16(data: bytes | bytearray | memoryview, start: int = 0) -> int:
-    """Checksum of `data`, going on from `start`."""
+    """Checksum of `data`, continued from `start`."""
     crc, odd, table = start, len(data) % 2, _PAIRS
     if odd:
         crc = ((crc << 8) ^ _TABLE[((crc >> 8) ^ data[0]) & 0xFF]) & 0xFFFF
@@ -60,7 +60,7 @@ class FixedCrc:
     """Checksums of rows of `n` bytes, without allocation.
 
     Args:
-        rows: how many rows at once.
+        rows: number of rows.
         n: bytes of each row.
     """
 

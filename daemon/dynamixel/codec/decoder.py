@@ -9,7 +9,7 @@ P = TypeVar("P")
 
 
 class StreamDecoder(ABC, Generic[P]):
-    """Bytes in, packets out. Garbage is skipped and counted; a length is believed only once the checksum agrees.
+    """Decodes bytes to packets. Garbage is skipped and counted; a length counts as valid only once the checksum agrees.
 
     Attributes:
         skipped_bytes, bad_checksums: counts since the beginning.
@@ -33,7 +33,7 @@ class StreamDecoder(ABC, Generic[P]):
         """The packet of bytes whose checksum agrees."""
 
     def feed(self, data: bytes) -> list[P]:
-        """Packets completed by `data`."""
+        """The packets completed by `data`."""
         self._buffer += data
         self.damaged_id = None
         packets: list[P] = []
@@ -42,7 +42,7 @@ class StreamDecoder(ABC, Generic[P]):
         return packets
 
     def clear(self) -> None:
-        """Forget what was not decoded."""
+        """Discard the bytes that are not decoded yet."""
         self.skipped_bytes += len(self._buffer)
         self._buffer.clear()
 
@@ -51,7 +51,7 @@ class StreamDecoder(ABC, Generic[P]):
         buffer, start, keep_from = self._buffer, 0, None
         while (start := buffer.find(self.header, start)) >= 0:
             end = self._end(start)
-            if end is None:  # may still grow; a later packet that is whole wins over it
+            if end is None:  # may still grow; a later complete packet takes precedence
                 keep_from = start if keep_from is None else keep_from
             elif end > 0:
                 raw = bytes(buffer[start:end])

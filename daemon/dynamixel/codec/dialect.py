@@ -1,4 +1,4 @@
-"""The two protocols behind one set of calls, so that the servo bus asks an AX as it asks an XM."""
+"""The two protocols behind one set of calls, so that the servo bus treats an AX like an XM."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from daemon.dynamixel.codec.packet import ALERT_BIT, Packet
 
 
 class Dialect(Protocol):
-    """What differs between the protocols for a controller."""
+    """The calls in which the protocols differ for a controller."""
 
     version: float
     status_bytes: int
@@ -23,31 +23,31 @@ class Dialect(Protocol):
         ...
 
     def ping(self, servo_id: int) -> bytes:
-        """Ask whether a servo is there."""
+        """The request for a sign of life from a servo."""
         ...
 
     def read(self, servo_id: int, address: int, length: int) -> bytes:
-        """Ask for bytes."""
+        """The request for `length` bytes at `address`."""
         ...
 
     def write(self, servo_id: int, address: int, data: bytes) -> bytes:
-        """Write bytes."""
+        """The request to write bytes."""
         ...
 
     def reboot(self, servo_id: int) -> bytes:
-        """Restart a servo."""
+        """The request to restart a servo."""
         ...
 
     def sync_write(self, address: int, length: int, rows: Sequence[tuple[int, bytes]]) -> bytes:
-        """Write to several servos at once."""
+        """The request to write to several servos at once."""
         ...
 
     def refusal(self, error: int) -> str:
-        """What an error byte says against the request, in words; empty when it was carried out."""
+        """Why an error byte refuses the request, in words; empty when the request was carried out."""
         ...
 
     def alert(self, error: int) -> int:
-        """ALERT_BIT when the error byte says that the servo itself is in trouble, else 0."""
+        """ALERT_BIT when the error byte reports an error of the servo itself, else 0."""
         ...
 
 
@@ -67,12 +67,12 @@ class Protocol2:
         return packet.PacketDecoder()
 
     def refusal(self, error: int) -> str:
-        """Low seven bits."""
+        """The refusal in the low seven bits of the error byte."""
         code = error & ~ALERT_BIT
         return packet.error_text(code) if code else ""
 
     def alert(self, error: int) -> int:
-        """Bit 7."""
+        """The alert in bit 7 of the error byte."""
         return error & ALERT_BIT
 
 
@@ -92,12 +92,12 @@ class Protocol1:
         return packet1.PacketDecoder(answers=True)
 
     def refusal(self, error: int) -> str:
-        """The bits that speak of the request."""
+        """The refusal in the error bits that concern the request."""
         code = error & ~packet1.ALERT_BITS
         return packet1.error_text(code) if code else ""
 
     def alert(self, error: int) -> int:
-        """The bits that speak of the servo."""
+        """The alert in the error bits that concern the servo."""
         return ALERT_BIT if error & packet1.ALERT_BITS else 0
 
 

@@ -1,6 +1,6 @@
 """Fast frames of a fixed group of servos: goals out, feedback in, all servos at once, no allocation in the loop.
 
-Only frames of exactly the expected layout are taken here; anything else (a loss, stuffing, another order) is left to
+Only frames of exactly the expected layout are decoded here; all others (a loss, stuffing, another order) are left to
 `packet.PacketDecoder`, which gives the same result byte by byte.
 """
 
@@ -26,7 +26,7 @@ class GroupWrite:
     Args:
         servo_ids: in the order of the values.
         address: of the item.
-        size: its bytes, 1, 2 or 4.
+        size: bytes of the item, 1, 2 or 4.
     """
 
     def __init__(self, servo_ids: Sequence[int], address: int, size: int) -> None:
@@ -83,7 +83,7 @@ class GroupReply:
         return np.ndarray((len(self.errors),), dtype, self._buffer.data, 9 + offset, (self.frame_bytes,))
 
     def parse(self, raw: bytes | bytearray) -> bool:
-        """Whether `raw` is exactly the expected frames; then they stand in `errors`, `data` and the columns.
+        """Whether `raw` is exactly the expected frames; `errors`, `data` and the columns then contain their values.
 
         A stuffed frame has another length, so nothing taken here needs unstuffing.
         """
@@ -93,7 +93,7 @@ class GroupReply:
         return bool((self._head == self._heads).all() and (self._crc_of.of(self._body) == self._crc).all())
 
     def ends(self, raw: bytes | bytearray) -> bool:
-        """Whether `raw` ends in the whole frame of the last servo: nobody else will answer."""
+        """Whether `raw` ends in the complete frame of the last servo, after which no other answers."""
         frame = bytes(raw[-self.frame_bytes :])
         if len(frame) < self.frame_bytes or not frame.startswith(self._last_head):
             return False
@@ -141,7 +141,7 @@ class FastGroupReply:
         return np.ndarray((len(self.errors),), dtype, self._buffer.data, at, (self._part_bytes,))
 
     def parse(self, raw: bytes | bytearray) -> NDArray[np.bool_]:
-        """(N,) which servos' parts are whole; they stand in `errors`, `data` and the columns."""
+        """(N,) whether each servo's part is complete; `errors`, `data` and the columns contain the values of complete parts."""
         n = len(raw)
         if not raw.startswith(self._head) or n > self.n_bytes:
             return np.zeros(len(self._ids), bool)
@@ -154,7 +154,7 @@ class FastGroupReply:
         return whole if whole.all() else self._salvaged(raw, whole)
 
     def _salvaged(self, raw: bytes | bytearray, whole: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Also the parts whose checksum follows from all bytes before it, as they came.
+        """Add the parts whose checksum follows from all bytes received before them.
 
         A servo behind two that have one id goes on from what it has heard, which is not what either of them meant. Where
         no part between is right and the last one is, the servos leave those checksums empty, as the manual lets them; of two
@@ -175,7 +175,7 @@ class FastGroupReply:
 
 
 class GroupWrite1:
-    """A group write on protocol 1.0: few servos, no checksum worth a table."""
+    """A group write on protocol 1.0: for few servos, with a checksum that needs no table."""
 
     def __init__(self, servo_ids: Sequence[int], address: int, size: int) -> None:
         self._ids, self._address, self._size = tuple(servo_ids), address, size

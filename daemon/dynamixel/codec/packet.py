@@ -22,15 +22,15 @@ HEADER = b"\xff\xff\xfd\x00"
 STUFFED = b"\xff\xff\xfd"
 BROADCAST_ID, MAX_ID = 0xFE, 252
 MAX_LENGTH = 4096
-"""Longest length field taken for real: 252 servos' goals are 1,300 bytes, a fast reply of 252 with 10 each 3,600."""
+"""Length field in bytes, at most: 252 servos' goals are 1,300 bytes, a fast reply of 252 with 10 each 3,600."""
 ALERT_BIT = 0x80
-"""In the error byte of a status packet: the servo's hardware error register is not zero."""
+"""Bit of a status packet's error byte: the servo's hardware error register is not zero."""
 CLEAR_MULTI_TURN = b"\x01DXL\x22"
 BACKUP_STORE, BACKUP_RESTORE = b"\x01CTRL", b"\x02CTRL"
 
 
 class Instruction(IntEnum):
-    """What a packet asks for (e-manual, "Instruction")."""
+    """Instructions of a packet (e-manual, "Instruction")."""
 
     PING = 0x01
     READ = 0x02
@@ -51,7 +51,7 @@ class Instruction(IntEnum):
 
 
 class FactoryReset(IntEnum):
-    """What a factory reset keeps."""
+    """Items that a factory reset keeps."""
 
     ALL = 0xFF
     EXCEPT_ID = 0x01
@@ -174,11 +174,11 @@ def bulk_write(rows: Sequence[tuple[int, int, bytes]]) -> bytes:
     return encode(Packet(BROADCAST_ID, Instruction.BULK_WRITE, data))
 
 
-# What requests say, and the answers: the servo's role.
+# Contents of requests, and answers: the servo's role.
 
 
 class Access(NamedTuple):
-    """One servo's part of a request: `length` bytes at `address`, and the bytes when they are to be written."""
+    """One servo's part of a request: `length` bytes at `address`, and the bytes to write, if any."""
 
     servo_id: int
     address: int
@@ -187,7 +187,7 @@ class Access(NamedTuple):
 
 
 def accesses(request: Packet) -> list[Access]:
-    """What a read or write of any kind asks of each servo, in the order of their answers.
+    """The accesses that a read or write of any kind requests of each servo, in the order of their answers.
 
     Raises:
         PacketError: its parameters are cut short.
@@ -253,7 +253,7 @@ def fast_status(parts: Sequence[Part]) -> bytes:
 
 
 def fast_parts(reply: Packet, lengths: Sequence[int]) -> list[Part]:
-    """The parts of a whole fast reply; `lengths` are the bytes asked of each servo.
+    """The parts of a complete fast reply; `lengths` are the bytes requested of each servo.
 
     Raises:
         PacketError: the packet has another length.

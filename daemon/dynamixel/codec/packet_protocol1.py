@@ -19,7 +19,8 @@ MAX_PARAMETERS = 253
 HARDWARE_ERROR_BITS = {0: "input voltage", 1: "angle limit", 2: "overheating", 5: "overload"}
 REQUEST_ERROR_BITS = {3: "range", 4: "checksum", 6: "instruction"}
 ALERT_BITS = 0b100101
-"""Voltage, overheating, overload: the servo is in trouble, whatever was asked. The rest is said of the request."""
+"""Bits of the error byte for voltage, overheating and overload: the servo is in trouble, whatever was requested. The other bits
+concern the request."""
 
 
 def error_text(error: int) -> str:
@@ -97,7 +98,7 @@ def bulk_read(rows: Sequence[tuple[int, int, int]]) -> bytes:
 
 
 def accesses(request: Packet) -> list[Access]:
-    """What a read or write of any kind asks of each servo, in the order of their answers.
+    """The accesses that a read or write of any kind requests of each servo, in the order of their answers.
 
     Raises:
         PacketError: its parameters are cut short.

@@ -1,4 +1,4 @@
-"""What Linux knows of a serial adapter: which one it is, its latency timer, and where it is now after a replug."""
+"""Data of Linux about a serial adapter: its identity, its latency timer, and its path after a replug."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ DEFAULT_LATENCY_MS = 16
 
 @dataclass(frozen=True)
 class Adapter:
-    """A USB serial adapter, whatever its path is today."""
+    """Identity of a USB serial adapter, independent of its path."""
 
     vendor: str
     product: str
@@ -21,7 +21,7 @@ class Adapter:
 
 
 def adapter_at(device: str, sysfs: Path = SYSFS) -> Adapter | None:
-    """The adapter behind a device path; None where it is no USB device."""
+    """The adapter at a device path; None where the device is no USB device."""
     folder = sysfs / "class" / "tty" / Path(os.path.realpath(device)).name / "device"
     if not folder.exists():
         return None
@@ -32,7 +32,7 @@ def adapter_at(device: str, sysfs: Path = SYSFS) -> Adapter | None:
 
 
 def device_of(adapter: Adapter, sysfs: Path = SYSFS, dev: Path = Path("/dev")) -> str | None:
-    """Where an adapter is now; None when it is not plugged in, or cannot be told from its like (no serial number)."""
+    """Present path of an adapter; None when it is not plugged in, or cannot be told from others of its kind (no serial number)."""
     if not adapter.serial:
         return None
     for tty in sorted((sysfs / "class" / "tty").glob("*")):
@@ -43,13 +43,13 @@ def device_of(adapter: Adapter, sysfs: Path = SYSFS, dev: Path = Path("/dev")) -
 
 
 def latency_timer_ms(device: str, sysfs: Path = SYSFS) -> int | None:
-    """How long an FTDI adapter keeps an unfilled packet back; None where there is no such timer."""
+    """Milliseconds for which an FTDI adapter holds back an unfilled packet; None where there is no such timer."""
     text = _text(sysfs / "class" / "tty" / Path(os.path.realpath(device)).name / "device" / "latency_timer")
     return int(text) if text.isdigit() else None
 
 
 def latency_remedy(device: str) -> str:
-    """The commands that set the timer: now, and for good."""
+    """The commands that set the latency timer: now, and permanently."""
     name = Path(os.path.realpath(device)).name
     now = f"echo {GOOD_LATENCY_MS} | sudo tee /sys/class/tty/{name}/device/latency_timer"
     rule = f'ACTION=="add", SUBSYSTEM=="usb-serial", ATTR{{latency_timer}}="{GOOD_LATENCY_MS}"'
@@ -57,7 +57,7 @@ def latency_remedy(device: str) -> str:
 
 
 def latency_advice(device: str, sysfs: Path = SYSFS) -> str:
-    """How long an adapter keeps answers back and what to do about it; empty when that is short, or there is no timer."""
+    """The delay of answers by an adapter and its remedy, in words; empty when the delay is short, or there is no timer."""
     timer_ms = latency_timer_ms(device, sysfs)
     if timer_ms is None or timer_ms <= GOOD_LATENCY_MS:
         return ""

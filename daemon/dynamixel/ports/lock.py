@@ -1,4 +1,7 @@
-"""One owner of a port: an advisory lock that also holds against root, and who has it.
+"""Single ownership of a port: an advisory lock that also holds against root, and the owner's name.
+
+The lock file is in a folder to which every user may write, so that another user may have put a file there under its name: only a
+plain file with a single name is locked, and only a file of this user is written to.
 
 The lock file lies in a folder to which everybody may write, so what is found under its name may have been put there: nothing
 but a plain file of that one name is locked, and only one's own is written to.
@@ -15,7 +18,7 @@ from pathlib import Path
 
 
 class LockFileError(OSError):
-    """Something else is where the lock file of a port should be."""
+    """A file that is no lock file is in the place of a port's lock file."""
 
     def __init__(self, path: Path, found: str) -> None:
         self.path = path
@@ -26,8 +29,8 @@ class PortLock:
     """Holds a lock file for a device; the file names the owner.
 
     Raises:
-        BlockingIOError: somebody else holds it; the text says who.
-        LockFileError: what is there under its name is no lock file.
+        BlockingIOError: another process holds the lock; the text names it.
+        LockFileError: the file under this name is no lock file.
     """
 
     def __init__(self, device: str) -> None:
@@ -45,7 +48,7 @@ class PortLock:
             os.write(self._fd, f"process {os.getpid()} ({' '.join(sys.argv)[:300]})".encode())
 
     def _open(self) -> tuple[int, bool]:
-        """The lock file, and whether the owner's name can be written: not into a file that another user made."""
+        """The open lock file, and whether the owner's name can be written: not into a file that another user made."""
         how = os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
         try:
             try:
@@ -61,14 +64,14 @@ class PortLock:
         return fd, found.st_uid == os.geteuid()
 
     def release(self) -> None:
-        """Give the lock up; may be called twice."""
+        """Release the lock; may be called twice."""
         if self._fd >= 0:
             os.close(self._fd)
             self._fd = -1
 
 
 def process_holding(device: str) -> str:
-    """Who has the device open, as far as this user may see; "another process" when nobody is seen."""
+    """Name of the process that has the device open, as far as this user may see; "another process" when unknown."""
     target = os.path.realpath(device)
     for fd_dir in Path("/proc").glob("[0-9]*/fd"):
         pid = fd_dir.parent.name

@@ -15,7 +15,7 @@ from retarget.robot.robot import RobotModel
 
 @dataclass(frozen=True)
 class PortContext:
-    """What a port may need to know: the robot (its baud, its servos) and the clock."""
+    """Data for opening a port: the robot (its baud, its servos) and the clock."""
 
     robot: RobotModel
     clock: Clock
@@ -25,11 +25,11 @@ PortFactory = Callable[[SplitResult, PortContext], Port]
 
 
 def open_port(url: str, context: PortContext) -> Port:
-    """The port behind `url`, e.g. `dxl:///dev/ttyUSB0?baud=1000000` or `sim://`.
+    """Open the port at `url`, e.g. `dxl:///dev/ttyUSB0?baud=1000000` or `sim://`.
 
     Raises:
         CommandError: an unknown scheme or option.
-        PortError: missing, busy or forbidden.
+        PortError: the device is missing, busy or forbidden.
     """
     try:
         parts = urlsplit(url)

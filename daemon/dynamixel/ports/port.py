@@ -1,4 +1,4 @@
-"""What the bus needs of a port: bytes out, bytes in, never blocking for ever."""
+"""The contract of a port: bytes out, bytes in, and no call that blocks for ever."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Port(Protocol):
 
     @property
     def name(self) -> str:
-        """The URL it was opened with, for messages."""
+        """The URL with which the port was opened, for messages."""
         ...
 
     @property
@@ -39,9 +39,9 @@ class Reopenable(Port, Protocol):
     """A port that can come back after its device was lost."""
 
     def reopen(self) -> None:
-        """Open the device again, by the path it was opened with or where the same adapter is now.
+        """Open the device again, at its old path or at the adapter's new one.
 
         Raises:
-            LinkLostError: it is not back.
+            LinkLostError: the device is not back.
         """
         ...

@@ -34,7 +34,7 @@ class SerialPort:
     Args:
         device: path of the device, or of a link to it.
         baud: bits per second.
-        url: what to call it in messages; the device's path when None.
+        url: name of the port in messages; the device's path when None.
     """
 
     def __init__(self, device: str, baud: int, url: str | None = None) -> None:
@@ -66,10 +66,10 @@ class SerialPort:
         self._poll.register(self._fd, select.POLLIN)
 
     def reopen(self) -> None:
-        """Open the device again: where it was, or where the same adapter is now (another number after a replug).
+        """Open the device again: at its old path, or at the adapter's new one (another number after a replug).
 
         Raises:
-            LinkLostError: it is not back, or somebody else took it.
+            LinkLostError: the device is not back, or another process has opened it.
         """
         if self._closed:
             raise LinkLostError(f"{self.name}: closed")
@@ -120,17 +120,17 @@ class SerialPort:
                 fcntl.ioctl(self._fd, termios.TIOCNXCL)
             self._serial.close()
         except OSError:
-            pass  # a device that is gone cannot be told to go
+            pass  # a lost device cannot be released
         self._lock.release()
 
 
 def keep_others_out(fd: int) -> None:
-    """From now on the system opens the tty for nobody else but root, also for programs that ask no lock (TIOCEXCL).
+    """Make the system refuse to open the tty for anybody but root, also by programs that use no lock (TIOCEXCL).
 
     Not of a pseudo terminal: the simulator at its other end keeps it open, so this would outlive a killed owner.
     """
     if not is_pseudo(fd):
-        with contextlib.suppress(OSError):  # a device that does not know it: the locks are left
+        with contextlib.suppress(OSError):  # a device without this call is protected by the locks alone
             fcntl.ioctl(fd, termios.TIOCEXCL)
 
 
@@ -141,7 +141,7 @@ def is_pseudo(fd: int) -> bool:
 
 _PSEUDO_MAJORS = range(136, 144)
 _MOST_OFF_SHARE = 0.03
-"""Share by which a port's speed may differ from the one asked for: servos and adapters still understand each other."""
+"""Share by which a port's speed may differ from the requested one with servos and adapters still understanding each other."""
 _USUAL = "57600, 115200, 1000000, 2000000, 3000000 or 4000000"
 
 
@@ -166,7 +166,7 @@ def _open(device: str, baud: int, url: str) -> serial.Serial:
 
 
 def open_dxl(url: SplitResult, context: PortContext) -> SerialPort:
-    """`dxl:///dev/ttyUSB0?baud=1000000` or `dxl://./servos`; the robot file's baud when none is given."""
+    """Open `dxl:///dev/ttyUSB0?baud=1000000` or `dxl://./servos`; without a baud the robot file's is used."""
     device = url.netloc + url.path
     name = f"dxl://{device}" + (f"?{url.query}" if url.query else "")  # `geturl` would take two slashes out
     query = parse_qs(url.query, strict_parsing=bool(url.query))

@@ -1,4 +1,4 @@
-"""The speed that a tty really has, also one that termios has no name for (4,500,000 baud)."""
+"""The actual speed of a tty, also a speed that termios has no name for (4,500,000 baud)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the bus must know of each servo model: its control table, indirect windows, bauds, and which firmware can what.
+"""Data of each servo model for the bus: control table, indirect windows, bauds, and the features of its firmware.
 
 Model numbers as answered to a ping. Initial values were transcribed from the pages of XM430-W350, XH430-W350,
 XL430-W250, XL330-M288, XC330-T288, MX-64(2.0), MX-64, AX-12A, YM070-210-R099-RH, YM080-230-R099-RH and PH42-020-S300-R;
@@ -246,7 +246,7 @@ def _p1(name: str, number: int, table: Table, voltage_v: tuple[float, float]) ->
 
 
 def _y(name: str, number: int, velocity: int, acceleration: int) -> BusModel:
-    """`velocity`, `acceleration`: highest that its limits and its profile take.
+    """A model of series Y; `velocity` and `acceleration` are the highest values of its limits and its profile.
 
     The manual names no firmware without a bus watchdog, and says that it stops the servo; of fast sync reads it says nothing.
     """
@@ -262,7 +262,7 @@ def _y(name: str, number: int, velocity: int, acceleration: int) -> BusModel:
 
 
 def _p(name: str, number: int) -> BusModel:
-    """A model of series P, whose registers lie as those of Y."""
+    """A model of series P, whose registers are arranged like those of Y."""
     modes = (0, 1, 3, 4, 16)
     return BusModel(name, number, "p", 2.0, P, 607500, 0, modes, 10500000, (15.0, 35.0), None, 0, True)
 

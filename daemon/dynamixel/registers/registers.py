@@ -1,4 +1,4 @@
-"""Control tables: where each item stands, how long it is, what may be written to it, and in which unit.
+"""Control tables: address, size, access, range and unit of each item.
 
 ROBOTIS e-manual, "Control Table" of XM430-W350, XH430-W350, XL430-W250, XL330-M288, XC330-T288, MX-64(2.0), MX-64 and
 AX-12A; addresses of the other models checked against ROBOTIS' table files (`servos/README.md` of the shared facts).
@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 EEPROM_END = 64
-"""First RAM address of X and MX (2.0) servos; `Item.eeprom` says it for every table."""
+"""Address of the first RAM byte of X and MX (2.0) servos; `Item.eeprom` says the same for every table."""
 VELOCITY_UNIT_RAD_S = 0.02398082392  # 0.229 rev/min
 WATCHDOG_UNIT_S = 0.02
 WATCHDOG_TRIPPED = -1
@@ -59,9 +59,9 @@ class Item:
         name: as in ROBOTIS' tables, lower case with underscores.
         address, size: first byte and number of bytes.
         signed: two's complement.
-        writable: else read only.
-        eeprom: kept without power; written only while torque is off.
-        low, high: values taken; None where the manual gives none (or another item bounds it).
+        writable: whether the item can be written; else it is read only.
+        eeprom: whether the item is kept without power, and written only while torque is off.
+        low, high: allowed range; None where the manual gives none (or another item bounds the value).
         initial: value from the factory; None where it depends.
         scale, unit: value * scale is in `unit`.
         sign_bit: protocol 1.0 speeds and loads carry their sign in this bit instead.
@@ -96,7 +96,7 @@ class Item:
         return value
 
     def encode(self, value: int) -> bytes:
-        """Little-endian bytes; negative values and their unsigned twins are both taken.
+        """Little-endian bytes; negative values and their unsigned equivalents are both accepted.
 
         Raises:
             OverflowError: the value does not fit.
@@ -108,11 +108,11 @@ class Item:
         return value.to_bytes(self.size, "little", signed=value < 0)
 
     def holds(self, data: bytes) -> bool:
-        """Whether these bytes are a value at all: above a sign bit there is nothing."""
+        """Whether these bytes are a valid value: the bits above a sign bit are zero."""
         return self.sign_bit is None or not int.from_bytes(data, "little") >> self.sign_bit + 1
 
     def takes(self, value: int) -> bool:
-        """Whether the manual's range allows it."""
+        """Whether the manual's range allows the value."""
         return (self.low is None or value >= self.low) and (self.high is None or value <= self.high)
 
 
@@ -275,7 +275,7 @@ MX1_CURRENT = MX1 | table_of(
 
 
 def with_values(table: Table, **values: tuple[int | None, int | None, int | None]) -> dict[str, Item]:
-    """A table with other (low, high, initial) of the named items."""
+    """A table with other (low, high, initial) values of the named items."""
     return dict(table) | {
         name: replace(table[name], low=low, high=high, initial=initial) for name, (low, high, initial) in values.items()
     }
@@ -288,7 +288,7 @@ HARDWARE_ERRORS = {
 
 
 def hardware_error_text(status: int) -> str:
-    """The set bits in words."""
+    """The set bits of hardware_error_status in words."""
     return ", ".join(text for bit, text in HARDWARE_ERRORS.items() if status >> bit & 1) or "none"
 
 

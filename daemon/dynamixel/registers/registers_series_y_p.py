@@ -173,9 +173,9 @@ ERROR_CODES = {
 }  # fmt: skip
 """Values of error_code (Y): one at a time, not bits (manual, "Error Code")."""
 HOLDING_ERRORS = (9, 17, 18, 19, 20)
-"""Errors that leave torque on; all but the battery's make the servo stop and refuse goals until they are cleared."""
+"""Error codes that leave torque on; all but the battery's make the servo stop and refuse goals until they are cleared."""
 
 
 def error_code_text(code: int) -> str:
-    """The error in words."""
+    """An error code in words."""
     return ERROR_CODES.get(code, f"code {code}") if code else "none"

@@ -1,4 +1,4 @@
-"""What the registers of one servo should hold for a robot: each rule with the reason, the severity and the remedy."""
+"""Required register values of one servo for a robot: each rule with the reason, the severity and the remedy."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ ITEMS = (
     "error_code", "electronic_gearratio_numerator", "electronic_gearratio_denominator", "motor_temperature_limit",
     "inverter_temperature_limit", "present_motor_temperature", "present_inverter_temperature",
 )  # fmt: skip
-"""What the rules look at, in every servo that has it."""
+"""Names of the items that the rules read, in every servo that has them."""
 NEEDED, ADVISED = "needed", "advised"
-"""Severity: without it the robot does not do what it is told, or only less well."""
+"""Severities: a finding that keeps the robot from doing as commanded, or one that only makes it worse at it."""
 _MODES = {False: (POSITION_MODE, "position"), True: (EXTENDED_POSITION_MODE, "extended position")}
 _REVERSED, _TIME_BASED, _TORQUE_BY_GOAL = 0b0001, 0b0100, 0b1000
 """Bits of drive_mode. Torque by goal: after a reboot the next goal would switch torque on, wherever the joint hangs by then."""
@@ -28,15 +28,15 @@ _HOT_MARGIN_C = 10
 
 @dataclass(frozen=True)
 class Finding:
-    """One setting that is not as it should be.
+    """One setting that differs from the required one.
 
     Attributes:
         servo_id: of the servo.
-        joint_name: it drives.
+        joint_name: joint that the servo drives.
         item: of the control table.
         found, expected: in words.
         severity: NEEDED or ADVISED.
-        remedy: what to do by hand.
+        remedy: correction by hand.
         fix: value that `fix` writes; None where a person has to act.
     """
 
@@ -51,12 +51,12 @@ class Finding:
 
 
 def items_of(model: BusModel) -> tuple[str, ...]:
-    """What the rules look at in a servo of this model."""
+    """Names of the items that the rules read in a servo of this model."""
     return (*ITEMS, "profile_velocity") if _may_have_profile(model) else ITEMS
 
 
 def _may_have_profile(model: BusModel) -> bool:
-    """Whether it may have a profile of its own that nobody has set.
+    """Whether the servo may have a motion profile that no user has set.
 
     Of Y it is there from the factory, and slower than a path may be; of P the manual leaves open what it is after power-on.
     X and MX begin without one.
@@ -67,14 +67,14 @@ def _may_have_profile(model: BusModel) -> bool:
 def findings_of(
     servo: ServoSpec, ends_tick: tuple[int, int], model: BusModel, firmware: int, values: dict[str, int]
 ) -> list[Finding]:
-    """What is not as it should be in one servo.
+    """Settings of one servo that differ from the required ones.
 
     Args:
         servo: as in the robot file.
         ends_tick: lowest and highest goal that its joint may get.
-        model: of it.
-        firmware: that it answered with.
-        values: of those of `items_of` that it has.
+        model: model of the servo.
+        firmware: firmware version that the servo reported.
+        values: values of the items in `items_of` that the servo has.
     """
     rules = _Rules(servo, model, firmware, values)
     rules.answers()
@@ -95,7 +95,7 @@ class _Rules:
     findings: list[Finding] = field(default_factory=list[Finding])
 
     def answers(self) -> None:
-        """How it answers."""
+        """Check the settings of answers."""
         delay, level = self.values["return_delay_time"], self.values["status_return_level"]
         if delay:
             self._set("return_delay_time", f"{2 * delay} us", 0, "0 us", ADVISED)
@@ -103,7 +103,7 @@ class _Rules:
             self._set("status_return_level", str(level), 2, "2 (answers all)", NEEDED)
 
     def motion(self, ends_tick: tuple[int, int]) -> None:
-        """What a goal means to it."""
+        """Check the settings that change the meaning of a goal."""
         v, extended = self.values, self.servo.extended
         mode, meaning = _MODES[extended]
         if v.get("operating_mode", mode) != mode:
@@ -129,14 +129,14 @@ class _Rules:
             self._limit("max_position_limit", high, refuses=v["max_position_limit"] < high)
 
     def _profile(self) -> None:
-        """A profile of its own, on top of the path; of P, which forgets it, only advised: nothing could be lasting."""
+        """Check for a profile on top of the path; only advised for P, which forgets its profile, so that no fix would last."""
         if _may_have_profile(self.model) and self.values["profile_velocity"]:
             item, found = self.model.table["profile_velocity"], str(self.values["profile_velocity"])
             expected = "0 (no profile: it would not follow its path)"
             self._set(item.name, found, 0, expected, NEEDED if item.hybrid else ADVISED)
 
     def torque(self) -> None:
-        """When it switches torque on and off by itself, and how much it may exert."""
+        """Check the settings by which torque goes on or off without a request, and the effort limits."""
         startup = self.values.get("startup_configuration", 0)
         shutdown = self.values.get("shutdown", _SHUTDOWN_ON)  # Y has none: every such error cuts the torque
         if startup & _TORQUE_AT_POWER_ON:
@@ -152,7 +152,7 @@ class _Rules:
                 self._note(item, "0", "above 0 (it exerts nothing)", NEEDED, remedy)
 
     def condition(self) -> None:
-        """Errors, supply, temperature, firmware."""
+        """Check errors, supply, temperature and firmware."""
         v = self.values
         item = self.model.error_item
         if v.get(item):
@@ -173,13 +173,13 @@ class _Rules:
             self._note("firmware_version", str(self.firmware), expected, ADVISED, remedy)
 
     def _limit(self, item: str, needed: int, *, refuses: bool) -> None:
-        """A position limit that is not the joint's; `refuses`: goals within the joint's."""
+        """Check that a position limit equals the joint's; `refuses`: whether a wrong limit refuses goals in the joint's range."""
         found = self.values[item]
         if found != needed:
             self._set(item, str(found), needed, f"{needed} (the joint's limit)", NEEDED if refuses else ADVISED)
 
     def _set(self, item: str, found: str, right: int, expected: str, severity: str) -> None:
-        """A finding that `fix` can correct."""
+        """Add a finding that `fix` can correct."""
         self._note(item, found, expected, severity, self._command(item, right), right)
 
     def _command(self, item: str, value: int) -> str:

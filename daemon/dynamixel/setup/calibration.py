@@ -20,20 +20,20 @@ from retarget.robot.robot import RobotModel, ServoSpec
 
 _TRIES = 30
 MOVED_TICKS = 100
-"""A joint moved by less than this (9 degrees) was not moved on purpose: its range in the file stays."""
+"""Ticks (9 degrees) below which a movement was not on purpose: the joint's range in the file stays."""
 SUSPECT_DEG = 15.0
 """Degrees by which a zero may differ from the robot file's before a person is asked: a horn set one tooth off is 15 at most."""
 MOST_OFFSET_TICK = 1024
 """Homing offset, either way, beyond which a servo in position mode ignores it (e-manual, "Homing Offset")."""
 MARGIN_S = 0.03
-"""Seconds that an answer may be late while a person calibrates: nothing waits for it, and a busy machine is no brown-out."""
+"""Seconds by which an answer may be late during calibration: nothing waits for it, and a busy machine is no brown-out."""
 
 
 class Ranges:
-    """Positions unwrapped over the servos' turn, and the ends each has reached.
+    """Positions unwrapped over the servos' turn, and the ends that each has reached.
 
     A servo in position mode reads within one turn: from 4095 the next tick is 0. The steps between two readings are
-    short, so the shorter way round is the one that was gone.
+    short, so the joint has moved the shorter way round.
 
     Args:
         start_tick: (S,) first reading.
@@ -48,7 +48,7 @@ class Ranges:
         self.low, self.high = self.tick.copy(), self.tick.copy()
 
     def update(self, tick: NDArray[np.int32], valid: NDArray[np.bool_]) -> None:
-        """Take a reading; servos that did not answer keep their place."""
+        """Add a reading; servos that did not answer keep their position."""
         step = np.where(valid, tick - self._last, 0)
         step = (step + self._turn // 2) % self._turn - self._turn // 2
         self._last[valid] = tick[valid]
@@ -59,15 +59,15 @@ class Ranges:
 
 @dataclass(frozen=True)
 class Calibrated:
-    """What was found for one servo.
+    """Result of the calibration for one servo.
 
     Attributes:
         servo_id: of the servo.
         joint_name: its joint, or its joints joined by "+".
         zero_tick: its position in the zero pose.
         low_deg, high_deg: range in joint angles; None when the joint was not moved, or is moved by several servos.
-        problem: why what was found cannot be used as it is; empty when it can.
-        off_deg: how far the zero lies from the robot file's, in degrees of the joint.
+        problem: why the result cannot be used unchanged; empty when it can.
+        off_deg: difference of the zero from the robot file's, in degrees of the joint.
         moved: whether the servo turned while every joint was to be moved to its ends.
     """
 
@@ -82,7 +82,7 @@ class Calibrated:
 
     @property
     def doubt(self) -> str:
-        """Why a person should look at it again before it is written; empty when there is no reason."""
+        """Why a person should check the result before it is written; empty without a reason."""
         if abs(self.off_deg) > SUSPECT_DEG:
             was = f"its zero is {abs(self.off_deg):.0f} deg from the robot file's"
             return f"{was}, and it was not moved to its ends" if not self.moved else was
@@ -100,11 +100,11 @@ def calibrate(
     """Cut the torque of all servos, then follow the joints while a person moves them.
 
     Args:
-        bus: verified.
-        robot: whose servos they are.
+        bus: the verified bus.
+        robot: the robot.
         wait_zero: returns when the robot is held in its zero pose; calls its argument for each live reading.
         wait_range: returns when every joint has been moved to both of its ends; likewise.
-        margin_deg: the ranges end so far before the ends that were reached.
+        margin_deg: degrees by which the ranges end before the ends that were reached.
 
     Raises:
         CommandError: a servo does not answer, or kept its torque.
@@ -127,7 +127,7 @@ def calibrate(
 
 
 def _whole(bus: ServoBus) -> BusReading:
-    """A reading with every servo in it; asked for again, because on a busy machine an answer may come too late for one.
+    """A reading with values of every servo; repeated, because on a busy machine an answer may come too late for one reading.
 
     Raises:
         CommandError: a servo does not answer.
@@ -142,7 +142,7 @@ def _whole(bus: ServoBus) -> BusReading:
 
 
 def _wrap_ticks(servo: ServoSpec) -> int:
-    """Ticks after which a reading starts again; never in extended position mode, and on an AX, which ends at 300 degrees."""
+    """Ticks after which a reading wraps; beyond any reading in extended position mode, and on an AX, which ends at 300 degrees."""
     turn = round(servo.model.ticks_per_turn)
     return turn if not servo.extended and servo.model.max_tick - servo.model.min_tick + 1 >= turn else 1 << 30
 
@@ -175,18 +175,18 @@ def _of_servo(robot: RobotModel, i: int, zero: int, ranges: Ranges, margin_deg: 
 
 
 def _shortest(ticks: int, turn: int) -> int:
-    """A difference of ticks, the shorter way round."""
+    """A difference of ticks by the shorter way round."""
     return (ticks + turn // 2) % turn - turn // 2
 
 
 def _alone(robot: RobotModel, servo: ServoSpec) -> bool:
-    """Whether this servo moves one joint, and nobody else moves that."""
+    """Whether this servo moves exactly one joint, and no other servo moves that joint."""
     joints = {j for j, _ in servo.couplings}
     return len(joints) == 1 and sum(bool(joints & {j for j, _ in s.couplings}) for s in robot.servos) == 1
 
 
 def copy_of(file: Path) -> Path | None:
-    """Where a file that is about to be written over is kept: beside it, with the first number that is free; None without one."""
+    """Path for the copy of a file before it is overwritten: beside the file, with the first free number; None without a file."""
     if not file.exists():
         return None
     number = 1
@@ -196,7 +196,7 @@ def copy_of(file: Path) -> Path | None:
 
 
 def write_robot_file(robot: RobotModel, found: list[Calibrated], out: Path) -> Path | None:
-    """The robot's file with the zero ticks and ranges that were found; comments and order stay.
+    """Write the robot's file with the calibrated zero ticks and ranges; comments and order stay.
 
     Returns:
         The copy of the file that was there; None when there was none.
@@ -249,5 +249,5 @@ def _with_range(block: str, c: Calibrated) -> str:
 
 
 def _inward(deg: float, towards: Callable[[float], int]) -> float:
-    """A tenth of a degree, rounded away from the joint's end."""
+    """`deg` in steps of 0.1 degrees, rounded by `towards` away from the joint's end."""
     return towards(deg * 10) / 10

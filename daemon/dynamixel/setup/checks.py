@@ -1,4 +1,4 @@
-"""Settings of the servos against what the robot file needs: found out at the start, corrected only when told to."""
+"""Compares the servos' settings with those that the robot file needs: read at the start, corrected only on request."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from retarget.robot.ticks import JointServoMap
 
 
 def check_servos(bus: ServoBus, robot: RobotModel) -> list[Finding]:
-    """What is not as it should be, servo by servo; reads only."""
+    """Settings that differ from the required ones, servo by servo; reads only."""
     findings: list[Finding] = []
     ticks = JointServoMap(robot)
     ends = {
@@ -27,7 +27,7 @@ def check_servos(bus: ServoBus, robot: RobotModel) -> list[Finding]:
 
 
 def check_strangers(bus: ServoBus) -> list[Finding]:
-    """Servos that answer and are not in the robot file: nobody minds them, and they may hold torque. Takes about 0.2 s."""
+    """Servos that answer and are not in the robot file: no process controls them, and they may hold torque. Takes about 0.2 s."""
     expected, remedy = "no servo of an id that the robot file does not name", "take it off the bus, or name it there"
     return [
         Finding(f.servo_id, "no joint", "id", identity_text((f.model_number, f.firmware)), expected, ADVISED, remedy)
@@ -36,10 +36,10 @@ def check_strangers(bus: ServoBus) -> list[Finding]:
 
 
 def require_needed(findings: Sequence[Finding]) -> None:
-    """Refuse servos whose settings would make the robot do something else than it is told.
+    """Refuse servos with settings that would make the robot move other than commanded.
 
     Raises:
-        BusMismatchError: with a table of them.
+        BusMismatchError: a servo has such a setting; the error has a table.
     """
     needed = [f for f in findings if f.severity == NEEDED]
     if needed:
@@ -50,12 +50,12 @@ def require_needed(findings: Sequence[Finding]) -> None:
 
 
 def fix(bus: ServoBus, findings: Sequence[Finding]) -> list[Finding]:
-    """Correct what can be, each confirmed by reading it back; what is left.
+    """Correct the findings that can be corrected, each confirmed by reading it back; return the others.
 
     Status return levels come first: below 2 a servo confirms no other write.
 
     Raises:
-        CommandError: a servo holds torque: its settings cannot be written, and it must not be let go unasked.
+        CommandError: a servo has torque: its settings cannot be written, and its torque is not cut without a request.
     """
     to_fix = [f for f in findings if f.fix is not None]
     holding = sorted({f.servo_id for f in to_fix if bus.read_item(f.servo_id, "torque_enable")})

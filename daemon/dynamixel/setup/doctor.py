@@ -1,4 +1,4 @@
-"""What stands between a robot and a good run: rights, adapter, servos, settings, rate; each with the exact remedy."""
+"""Checks all conditions of a good run: rights, adapter, servos, settings, rate; each finding has the exact remedy."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ _LIMITS = "/etc/security/limits.d/99-mmmd.conf"
 
 @dataclass(frozen=True)
 class Check:
-    """One thing that was looked at.
+    """The result of one check.
 
     Attributes:
-        what: it was.
-        found: in words.
+        what: subject of the check.
+        found: the finding in words.
         verdict: GOOD, ADVICE (works, but less well) or BAD (does not work).
-        remedy: what to do; empty when good.
+        remedy: correction; empty when good.
     """
 
     what: str
@@ -50,14 +50,14 @@ class Diagnosis:
 
     @property
     def bad(self) -> bool:
-        """Whether something does not work."""
+        """Whether some check found that the robot cannot run."""
         return any(c.verdict == BAD for c in self.checks)
 
 
 def diagnose(
     robot: RobotModel, open_ports: Callable[[], Sequence[Port]], clock: Clock, *, correct: bool = False
 ) -> Diagnosis:
-    """Look at everything, and with `correct` set right the servos' settings that can be."""
+    """Make all checks, and with `correct` correct the servos' settings where possible."""
     checks = [*_rights()]
     try:
         ports = open_ports()
@@ -90,7 +90,7 @@ def diagnose(
 
 
 def _rights() -> list[Check]:
-    """Whether the bus process may run ahead of everything else."""
+    """Check whether the bus process may have real-time priority."""
     user = getpass.getuser()
     checks: list[Check] = []
     for what, limit, key in (
@@ -129,7 +129,7 @@ def _adapter(port: Port) -> list[Check]:
 
 
 def _verify(bus: ServoBus, *, correct: bool) -> None:
-    """Verify; with `correct` servos that answer pings only are first told to answer everything."""
+    """Verify the bus; with `correct` servos that answer pings only are first set to answer every request."""
     try:
         bus.verify()
     except BusMismatchError as error:
@@ -158,7 +158,7 @@ def _settings(bus: ServoBus, robot: RobotModel, *, correct: bool) -> list[Check]
 
 
 def _of_item(findings: list[Finding], *, correct: bool) -> list[Check]:
-    """One setting: a row for each servo, or one for all where they are many."""
+    """The checks of one setting: one for each servo, or one for all where there are many."""
     first = findings[0]
     verdict = BAD if first.severity == NEEDED else ADVICE
     by_fix = "--fix, or " if first.fix is not None and not correct else ""

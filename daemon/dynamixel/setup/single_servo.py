@@ -1,4 +1,4 @@
-"""One servo by itself, without a robot file: found, read, written with guards. For set-up tools."""
+"""One servo alone, without a robot file: search, reads, and guarded writes. For set-up tools."""
 
 from __future__ import annotations
 
@@ -19,16 +19,17 @@ MOVES = (
     "goal_position", "goal_velocity", "goal_pwm", "goal_current", "moving_speed", "goal_torque", "torque_enable",
     "bus_watchdog", "pwm_offset", "current_offset", "velocity_offset",
 )  # fmt: skip
-"""Items that can set a joint in motion: the daemon's alone, behind its gate. A bus watchdog that trips or is cleared can."""
+"""Items that can set a joint in motion and that only the daemon writes, behind its gate. A bus watchdog that trips or is cleared
+can move a joint as well."""
 _HOLDS = ("torque_enable", "torque_limit")
 """Items whose lower value lets a joint fall."""
 _BOOT_S, _ASK_EVERY_S = 2.0, 0.1
-"""Seconds that a servo has to come back after a reboot, and seconds between two questions whether it is back."""
+"""Seconds that a servo has to come back after a reboot, and seconds between two attempts to reach it."""
 
 
 @dataclass(frozen=True)
 class SingleServo:
-    """A servo that answered, and a chain with nobody else in it."""
+    """A servo that answered, and a chain that contains only this servo."""
 
     chain: ServoChain
     model: BusModel
@@ -40,10 +41,10 @@ class SingleServo:
         return self.chain.registers.read_item(self.servo_id, name)
 
     def item(self, name: str) -> Item:
-        """An item of its table.
+        """An item of the servo's table.
 
         Raises:
-            CommandError: there is none.
+            CommandError: the table has no such item.
         """
         if name not in self.model.table:
             raise CommandError(f"{self.model.name} has no item '{name}'; it has: {', '.join(self.model.table)}")
@@ -53,7 +54,7 @@ class SingleServo:
         """Write an item and read it back.
 
         Raises:
-            CommandError: it would move the joint, is out of range, or needs torque off; or it would let go of a joint that
+            CommandError: the write would move the joint, is out of range, or needs torque off; or it would release a joint that
                 is held, and `drop` was not said.
         """
         item = self.item(name)
@@ -76,7 +77,7 @@ class SingleServo:
             raise CommandError(f"'{name}': wrote {value}, the servo has {found}")
 
     def set_id(self, new_id: int) -> None:
-        """Give it another id; nobody else may have it.
+        """Set another id, which no other servo may have.
 
         Raises:
             CommandError: the id is taken, out of range, or torque is on.
@@ -90,30 +91,32 @@ class SingleServo:
             pass
         else:
             raise CommandError(f"id {new_id} is taken by another servo on this bus")
-        with contextlib.suppress(LinkTimeoutError):  # some answer as their new self: who has the new id tells
+        with contextlib.suppress(
+            LinkTimeoutError
+        ):  # some servos answer with their new id: a ping of it shows the result
             self.chain.registers.write_item(self.servo_id, "id", new_id)
         find(self.chain.link.port, self.chain.link.clock, new_id, self.model.protocol)
 
     def set_baud(self, baud: int) -> None:
-        """Give it another baud; from then on it is heard only there: look for it with `find` on a port of that baud.
+        """Set another baud; the servo then answers at this baud only: use `find` on a port of that baud.
 
         Raises:
-            CommandError: it cannot, or torque is on.
+            CommandError: the servo has no such baud, or torque is on.
         """
         code = self.model.baud_code(baud)
         if code is None:
             known = "57600, 115200, 1000000, 2000000, 3000000, 4000000" if self.model.protocol == 2.0 else "2000000 / n"
             raise CommandError(f"{self.model.name} has no {baud} baud; allowed: {known}, at most {self.model.max_baud}")
         self._require_free(self.item("baud_rate"))
-        with contextlib.suppress(LinkTimeoutError):  # some answer at the new baud: who is heard there tells
+        with contextlib.suppress(LinkTimeoutError):  # some servos answer at the new baud: a ping at it shows the result
             self.chain.registers.write_item(self.servo_id, "baud_rate", code)
 
     def reboot(self, *, drop: bool) -> None:
-        """Restart it, and wait until it is back.
+        """Restart the servo, and wait until it is back.
 
         Raises:
-            CommandError: it holds torque, which would drop, and `drop` was not said; or its protocol knows no reboot.
-            LinkTimeoutError: it has not come back.
+            CommandError: the servo has torque, which would drop, and `drop` is false; or its protocol has no reboot.
+            LinkTimeoutError: the servo has not come back.
         """
         if self.model.protocol == 1.0:
             raise CommandError(
@@ -135,10 +138,10 @@ class SingleServo:
 
 
 def find(port: Port, clock: Clock, servo_id: int, protocol: float | None = None) -> SingleServo:
-    """The servo of this id, in either protocol.
+    """The servo with this id, in either protocol.
 
     Raises:
-        LinkTimeoutError: nobody answers.
+        LinkTimeoutError: no servo answers.
     """
     for version in (2.0, 1.0) if protocol is None else (protocol,):
         guess = next(m for m in MODELS.values() if m.protocol == version)
