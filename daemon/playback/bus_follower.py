@@ -1,4 +1,4 @@
-"""Follows the bus process: its reports move the robot's state. What is not in the table asks for an e-stop."""
+"""Follows the bus process: its reports move the robot's state. A report that the state table does not allow leads to an e-stop."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ log = logging.getLogger(__name__)
 BUS_SILENT_S = 1.0
 """Seconds without a published cycle after which the bus process counts as frozen."""
 SETTLING_CYCLES = 3
-"""Bus cycles after a stop by which the bus process has surely taken it."""
+"""Number of bus cycles after a stop by which the bus process has surely taken it."""
 _PLACES = {state: place for place, state in enumerate(RobotState)}
 REPORTS = {state: Trigger[f"BUS_{state.name}"] for state in BusState}
 
 
 class BusFollower:
-    """The robot's state, brought up to date once a tick.
+    """Keeps the robot's state, updated once a tick.
 
     Attributes:
         bus_alive: whether the bus process runs.
-        fault_reason: why the robot is in fault, or in an e-stop that nobody gave; else empty.
+        fault_reason: reason of the robot's fault, or of an e-stop that nobody requested; else empty.
         stopped: whether a person stopped the robot since it was armed and the last motion began.
-        idling: whether what is played are idle movements.
+        idling: whether idle movements are played.
     """
 
     def __init__(self, link: BusLink, view: BusView, planner: SetpointBuffer, machine: StateMachine) -> None:
@@ -41,7 +41,7 @@ class BusFollower:
         self._settled_at = 0
 
     def update(self) -> list[RobotState]:
-        """Heartbeat, setpoints, records, state; the states that the robot went through since the last call."""
+        """Send the heartbeat, push setpoints, read records and update the state; returns the states entered since the last call."""
         self._link.heartbeat()
         self._planner.pump()
         if self._planner.epoch != self._epoch:
@@ -49,7 +49,7 @@ class BusFollower:
         was_latched = self._to_latch is not None and self._link.carried_out(self._to_latch)
         self._planner.read_cycles()
         if self.machine.state is RobotState.FAULT and self.bus_alive and self._view.message:
-            self.fault_reason = self._view.message  # the bus process is back and knows better
+            self.fault_reason = self._view.message  # the bus process is back and reports the reason itself
         entered = [self._follow(self._report(state)) for state in self._view.passed or [self._view.state]]
         if was_latched and self._to_latch is not None:  # a reset, or a new bus process, came before the fault was seen
             self._to_latch = None
@@ -75,7 +75,7 @@ class BusFollower:
     def _report(self, state: BusState) -> Trigger:
         if not self.bus_alive or self._view.silent_s > BUS_SILENT_S:
             if self.bus_alive and self._to_latch is None:
-                # A frozen bus process must not take up its motion when it goes on.
+                # A frozen bus process must not continue its motion when it runs again.
                 self._to_latch = self._link.request(BusRequest.FAULT)
             return Trigger.BUS_LOST
         if self._to_latch is not None and state not in (BusState.FAULT, BusState.ESTOP):
@@ -103,7 +103,7 @@ class BusFollower:
         log.info("state %s -> %s", before.value, state.value)
         self.fault_reason, own_estop, self._own_estop = "", self._own_estop, ""
         if state is RobotState.ESTOP:
-            self.fault_reason = own_estop or self._view.message  # the bus process gives one as well
+            self.fault_reason = own_estop or self._view.message  # the bus process may have a reason of its own
         elif state is RobotState.FAULT:
             self.fault_reason = self._reason(report)
             log.error("fault: %s", self.fault_reason)

@@ -1,4 +1,4 @@
-"""Poses of a person to joint paths of the robot, chunk by chunk: layers, fade from the poses before, retargeting."""
+"""Turns poses of a person into joint paths of the robot, chunk by chunk: layers, fade from the poses before, retargeting."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from retarget.robot.robot import RobotModel
 from retarget.robot_to_human import joints_of_path
 
 FADE_FRAMES = 8
-"""Frames of posture (0.4 s) over which a motion grows out of the poses before it."""
+"""Number of pose frames (0.4 s) over which a motion is blended out of the poses before it."""
 _LEAST_BLOCK, _MOST_BLOCK = 12, 36
 """Frames of a block: with fewer, limits would be kept with less of the motion in view, with more the first takes longer."""
 _WHOLE = 1e-9
@@ -37,11 +37,11 @@ def block_frames(fps: float, rate_hz: float) -> int | None:
 
 
 class ChunkMaker:
-    """Makes the chunks of one robot, one at a time; `next` of them runs in a worker thread.
+    """Makes the chunks of one robot, one at a time; `next` on them runs in a worker thread.
 
     Args:
         robot: the robot.
-        layers: gaze.
+        layers: gaze to apply.
     """
 
     def __init__(self, robot: RobotModel, layers: Layers) -> None:
@@ -57,15 +57,15 @@ class ChunkMaker:
         easy: bool = False,
         first_at_once: bool = False,
     ) -> Iterator[Chunk]:
-        """The path of poses, chunk by chunk as each is made.
+        """Yield the joint path of poses, chunk by chunk.
 
         Args:
             raw: poses without layers.
-            start: of the joints.
+            start: position and velocity of the joints at the beginning.
             before: poses from which the first ones are blended in; None where `raw` continues the path by itself.
-            complete: whether the trajectory ends with them, at rest.
-            easy: grow out of `before` slowly.
-            first_at_once: somebody waits for the first chunk; as of `Retargeter.pieces`.
+            complete: whether the trajectory ends, at rest, with these poses.
+            easy: whether to blend out of `before` slowly.
+            first_at_once: whether the first chunk is needed at once; see `Retargeter.pieces`.
 
         Raises:
             MotionError: the motion cannot be retargeted.
@@ -90,7 +90,7 @@ class ChunkMaker:
             first += n
 
     def gaze_rad(self) -> dict[int, float]:
-        """Angles of the head's joints, by index, that show the gaze that is set; none where none is."""
+        """Angles of the head's joints, radians by index, that show the gaze that is set; empty without one."""
         if self._layers.gaze_deg is None:
             return {}
         q_rad = self._retargeter.solve(read_human(self._layers.over(standing())))[0]
@@ -98,6 +98,6 @@ class ChunkMaker:
         return {j: float(q_rad[j]) for j, joint in joints if joint.role.startswith("head")}
 
     def person(self, q_rad: NDArray[np.float64]) -> PoseSequence:
-        """(1 frame) a person who is held as the robot in a pose (J,)."""
+        """One frame of a person in the pose (J,) of the robot."""
         joints, head = joints_of_path(self._retargeter.kinematics, q_rad[None])
         return poses_of_joints(joints, head, np.zeros((1, 2)), FPS)

@@ -1,19 +1,19 @@
-"""How far ahead of the bus a path is handed over: as long as it lately took to make the first piece of one, and some more."""
+"""Estimates how far ahead of the bus new frames must begin: mean plus 0.7 deviations of the time that recent ones took."""
 
 from __future__ import annotations
 
 _NEWEST = 0.3
-"""Weight of the newest path."""
+"""Weight of the newest measurement in the running mean and deviation."""
 _SPREADS = 0.7
-"""Mean deviations beyond the mean: a hand-over that is missed costs a whole attempt more."""
+"""Number of mean deviations added to the mean: a splice that is missed costs a whole further attempt."""
 
 
 class LatencyEstimate:
-    """Seconds, learnt from each path.
+    """A duration in seconds, learnt from measurements.
 
     Attributes:
-        mean_s: it takes lately.
-        spread_s: its mean deviation.
+        mean_s: running mean, seconds.
+        spread_s: running mean of the absolute deviation, seconds.
     """
 
     def __init__(self, first_s: float) -> None:
@@ -21,7 +21,7 @@ class LatencyEstimate:
 
     @property
     def seconds(self) -> float:
-        """Seconds to allow for the next one."""
+        """Seconds to allow for the next time."""
         return self.mean_s + _SPREADS * self.spread_s
 
     def took(self, seconds: float) -> None:

@@ -1,4 +1,4 @@
-"""Plays a source of poses: makes its chunks before they are due, and again where the gaze or a revised motion changes them."""
+"""Plays a source of poses: makes its chunks before they are due, and makes the rest anew for a new gaze or a revised motion."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from daemon.poses.motion_source import MotionSource
 from daemon.wire.events import Progress
 
 MOST_REVISIONS = 5
-"""Attempts at putting a revised motion in place; after as many late ones the preview is played to its end."""
+"""Number of attempts to splice in a revised motion; after as many late ones the preview is played to its end."""
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class PlanStart:
 
     Attributes:
         plan_id: its number.
-        command_id: its command, empty for idle movements.
-        epoch: the link's, when the command arrived.
-        t_received_ns: monotonic time at which the request arrived.
+        command_id: id of its command; empty for idle movements.
+        epoch: epoch of the link when the command arrived.
+        t_received_ns: monotonic time at which the request arrived, nanoseconds.
     """
 
     plan_id: int
@@ -38,12 +38,13 @@ class PlanStart:
 
 
 class MotionPlayer:
-    """One source from its splice to its end. For the event loop, under the lock of `Playback`.
+    """Plays one source from its splice to its end. For the event loop, under the lock of `Playback`.
 
     Args:
-        source: the poses.
-        buffer: the running trajectory.
-        splicer, maker: of the robot.
+        source: source of the poses.
+        buffer: buffer with the running trajectory.
+        splicer: splicer of the robot's trajectories.
+        maker: maker of the robot's chunks.
         report: publishes an event of the command.
     """
 
@@ -62,7 +63,7 @@ class MotionPlayer:
     async def begin(
         self, start: PlanStart, wanted: Callable[[], bool], wait_for_rest: Callable[[], Awaitable[None]]
     ) -> bool:
-        """Splice the source's first chunk into the running trajectory; false when it was not wanted any more.
+        """Splice the source's first chunk into the running trajectory; returns false when it was no longer wanted.
 
         Raises:
             RetargetError: the motion does not fit the robot.
@@ -97,14 +98,14 @@ class MotionPlayer:
 
     @property
     def revised(self) -> bool:
-        """Whether a better motion waits to take the place of the rest of the one being played."""
+        """Whether a better motion waits to replace the rest of the one being played."""
         return self.source.revised
 
     async def feed(self, wanted: Callable[[], bool]) -> None:
-        """Make the next chunk, of the next segment where need be, and append it if it is still wanted then.
+        """Make the next chunk, of the next segment if this one is done, and append it if it is still wanted.
 
         Raises:
-            NotPlayableError: there is no next segment; its event ends the command.
+            NotPlayableError: the source has failed; the error's event ends the command.
             RetargetError: the segment does not fit the robot.
         """
         plan = self._plan
@@ -121,10 +122,10 @@ class MotionPlayer:
             self._buffer.pump()
 
     async def revise(self, wanted: Callable[[], bool]) -> None:
-        """Let the source's revised motion take the place of what is left of the one being played.
+        """Replace the rest of the motion being played by the source's revised motion.
 
         Raises:
-            RetargetError: it does not fit the robot; the motion being played goes on.
+            RetargetError: the revised motion does not fit the robot; the motion being played goes on.
         """
         try:
             await self._make_rest_again(wanted, MOST_REVISIONS, revised=True)
@@ -132,7 +133,7 @@ class MotionPlayer:
             self.source.settle()
 
     async def follow_gaze(self) -> None:
-        """Make what is left of the trajectory again, with the gaze that is now set."""
+        """Make the rest of the trajectory anew, with the gaze that is now set."""
         await self._make_rest_again(lambda: True, 1)
 
     async def _make_rest_again(self, wanted: Callable[[], bool], tries: int, *, revised: bool = False) -> None:
@@ -161,7 +162,7 @@ class MotionPlayer:
         return plan is self._buffer.current and plan.epoch == self._buffer.epoch
 
     def _keep(self, chunks: Iterator[Chunk], made: Chunk, *, is_last: bool) -> None:
-        """Keep the chunks that are left of a segment, and whether it is the trajectory's last."""
+        """Keep the remaining chunks of a segment, and whether it is the trajectory's last."""
         self._chunks, self._is_last = None if made.is_last else chunks, is_last
 
     def accept(self, q_rad: NDArray[np.float64]) -> bool:
@@ -170,17 +171,17 @@ class MotionPlayer:
         return False
 
     def begun(self) -> None:
-        """The robot sets out; `Playback` reports when it moves."""
+        """Do nothing: `Playback` reports when the robot moves."""
 
     def watch(self) -> None:
-        """Report the news of the source; once a tick."""
+        """Report the source's events. Call once a tick."""
         if self._plan is not None:
             for event in self.source.reports(self._plan.plan_id):
                 self._report(event)
 
     def finish(self) -> None:
-        """Lead to the end instead of going round again."""
+        """Lead to the end instead of repeating."""
         self.source.finish()
 
     def close(self) -> None:
-        """Nothing to add to the trajectory's figures."""
+        """Do nothing: a motion adds nothing to the trajectory's figures."""

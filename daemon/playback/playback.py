@@ -1,6 +1,6 @@
-"""Plays one source at a time: takes over, makes the next chunk before it is due, watches what the bus process made of it.
+"""Plays one source at a time: takes over, makes the next chunk before it is due, and follows the bus process to the end.
 
-Retargeting runs in a worker thread, one chunk at a time; whoever changes the trajectory holds the lock.
+Retargeting runs in a worker thread, one chunk at a time; a lock guards every change of the trajectory.
 """
 
 from __future__ import annotations
@@ -40,19 +40,19 @@ from retarget.errors import RetargetError
 log = logging.getLogger(__name__)
 
 FEED_AHEAD_S = 0.8
-"""Seconds that are left to push when the next chunk is made."""
+"""Seconds of frames still to push at which the next chunk is made."""
 STALL_S = 0.5
-"""Seconds for which the bus process holds without having played all frames that were pushed, after which it has dropped them."""
+"""Seconds for which the bus process holds before unplayed frames that were pushed count as dropped."""
 IDLE_AFTER_S = 0.8
 """Seconds of stillness before idle movements begin."""
 GAZE_S, BRAKING_TIMEOUT_S = 0.8, 2.0
 
 
 class Playback:
-    """The command that is played, from its splice to its last event.
+    """Plays a command from its splice to its last event.
 
     Attributes:
-        entry: the command that is played; None for none, and for idle movements.
+        entry: the command that is played; None without one, and for idle movements.
     """
 
     def __init__(
@@ -75,10 +75,10 @@ class Playback:
         self, entry: Entry | None, source: MotionSource | StreamSource, plan_id: int, epoch: int,
         alive: Callable[[], bool], told: Callable[[], Awaitable[None]] | None = None,
     ) -> bool:  # fmt: skip
-        """Play a source from the state of the joints on; false when it was ended meanwhile. `told` is awaited once it begins.
+        """Play a source from the joints' state on; returns false when it was ended meanwhile. `told` is awaited once it begins.
 
         Raises:
-            RetargetError: its motion does not fit the robot; the motion being played goes on.
+            RetargetError: the source's motion does not fit the robot; the motion being played goes on.
         """
         async with self._lock:
             player = self._player_of(entry, source)
@@ -121,24 +121,24 @@ class Playback:
 
     @property
     def stream(self) -> StreamSource | None:
-        """The lease that is played, None when there is none."""
+        """The stream of the lease that is played; None without one."""
         return None if self._player is None else self._player.stream
 
     def target(self, q_rad: NDArray[np.float64]) -> bool:
-        """A checked target (J,) of the lease that is played; false when it accepts none any more."""
+        """Take a checked target (J,) of the lease that is played, radians; returns whether the lease takes it."""
         return self._player is not None and self._player.accept(q_rad)
 
     @property
     def raw_now(self) -> PoseSequence:
-        """(1 frame) the person whose pose the robot shows, without layers."""
+        """One frame of the person whose pose the robot shows, without layers."""
         return self._buffer.raw_now
 
     def committed(self, n: int, ahead_s: float) -> PoseSequence:
-        """`n` frames up to where a motion would take over that takes `ahead_s` to make."""
+        """`n` frames up to the splice of a motion that takes `ahead_s` seconds to generate."""
         return self._splicer.committed(n, ahead_s)
 
     def current_command(self) -> CurrentCommand | None:
-        """The command that is played."""
+        """The command that is played, for `status`; None without one."""
         entry, plan = self.entry, self._buffer.current
         if entry is None or plan is None:
             return None
@@ -148,14 +148,14 @@ class Playback:
         """Report the first motion, make the next chunk in time, end a command that is over.
 
         Args:
-            finish_loop: a motion that goes round is to end with its round.
-            is_to_last: no command is about to take over, so that a preview's motion is worth being put in its place.
+            finish_loop: whether a motion that repeats is to end with its present repetition.
+            is_to_last: whether no command is about to take over, so that it is worth replacing a preview by its motion.
         """
         player, plan, entry = self._player, self._buffer.current, self.entry
         if player is None or self._telling:
             return
         if plan is None:
-            if not self._lock.locked():  # the command that was to take over from one that ran dry has been called off
+            if not self._lock.locked():  # the command that was to follow a trajectory that ran dry was cancelled
                 self._fail(entry, "the bus ran out of frames", 0)
             return
         self._report_moving(plan)
@@ -198,7 +198,7 @@ class Playback:
             self._fail(entry, f"{statistics.last_frame + 1} of {plan.n_frames} frames were played", plan.plan_id)
 
     def idle(self, *, free: bool) -> None:
-        """Begin idle movements after a while of stillness, end them when they are switched off."""
+        """Begin idle movements after `IDLE_AFTER_S` of stillness, and end them when they are switched off."""
         wanted = self._layers.idle_style and not self._follower.stopped and not self._held
         if self._follower.idling and self._player is not None and not self._layers.idle_style:
             self._player.finish()
@@ -225,7 +225,7 @@ class Playback:
             await self._take_idle(HeldPose(held.at(np.zeros(round(GAZE_S * held.fps), np.intp))))
 
     def start(self, work: Coroutine[Any, Any, None]) -> None:
-        """Run work that nobody waits for."""
+        """Run a coroutine in the background."""
         self._background.start(work, "a chunk could not be made")
 
     def _begin(self, entry: Entry | None, player: MotionPlayer | StreamPlayer, plan_id: int) -> None:
@@ -236,7 +236,7 @@ class Playback:
         self._follower.idling = entry is None
 
     def _forget(self) -> None:
-        self.entry, self._player = None, None  # idling stays so until the bus process has played it out
+        self.entry, self._player = None, None  # `idling` stays true until the bus process has played the rest
         self._still_since_s = self._clock.now_s()
 
     def _fail(self, entry: Entry | None, found: str, plan_id: int) -> None:
@@ -247,7 +247,7 @@ class Playback:
             )
 
     async def _take_idle(self, source: MotionSource) -> None:
-        """Play idle movements, or the pose that is held with the gaze."""
+        """Play idle movements, or the held pose with a new gaze."""
         epoch, entry, halted = self._buffer.epoch, self.entry, self._follower.stopped
 
         def alive() -> bool:
@@ -260,7 +260,7 @@ class Playback:
             log.error("idle movements could not be made: %s", error)
 
     async def _revise(self, player: MotionPlayer | StreamPlayer) -> None:
-        """Let a preview's motion take the place of the preview."""
+        """Replace the rest of a preview by its motion."""
         try:
             async with self._lock:
                 await player.revise(lambda: player is self._player)
@@ -270,7 +270,7 @@ class Playback:
             self._feeding = False
 
     async def _feed(self, player: MotionPlayer | StreamPlayer) -> None:
-        """Make the next chunk and append it; one that cannot be made ends the command."""
+        """Make the next chunk and append it; a chunk that cannot be made ends the command."""
         try:
             async with self._lock:
                 if player is self._player:

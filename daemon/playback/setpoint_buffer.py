@@ -1,4 +1,4 @@
-"""Keeps setpoints of the running trajectory in the bus process: how much is pushed, what is played, what is left to come."""
+"""Keeps setpoints of the running trajectory in the bus process, and counts the frames pushed, played and still to come."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from retarget.robot.robot import RobotModel
 
 
 class SetpointBuffer:
-    """Trajectories on their way to the bus process, the newest last. For one thread.
+    """Holds the trajectories that are being pushed to the bus process, the newest last. For one thread.
 
     Args:
         robot: the robot.
         link: memory shared with the bus process.
-        view: the bus process's newest cycle.
+        view: view of the bus process's newest cycle.
         queue_s: seconds of setpoints kept in the bus process.
-        stream_queue_s: the same for frames that are made when they are due.
-        clock: the one that the bus process reads.
+        stream_queue_s: seconds of setpoints kept in the bus process for frames that are made on demand.
+        clock: clock that the bus process reads too.
     """
 
     def __init__(
@@ -46,12 +46,12 @@ class SetpointBuffer:
 
     @property
     def epoch(self) -> int:
-        """Grows with each stop, e-stop and park; a trajectory of an older epoch is never played."""
+        """Epoch of the link; it grows with each stop, e-stop and park, and a trajectory of an older epoch is never played."""
         return self._link.epoch
 
     @property
     def current(self) -> Trajectory | None:
-        """The newest trajectory."""
+        """The newest trajectory; None without one."""
         return self._trajectories[-1] if self._trajectories else None
 
     @property
@@ -61,12 +61,12 @@ class SetpointBuffer:
 
     @property
     def dry(self) -> bool:
-        """Whether the bus process brakes because it has no frame left of a trajectory that is not at its end."""
+        """Whether the bus process brakes because it has no frame left of a trajectory that has not ended."""
         return self.current is not None and self.current.ran_dry(self._link.setpoints.queued_frames)
 
     @property
     def ahead_s(self) -> float:
-        """Seconds of the current trajectory that are made and not pushed."""
+        """Seconds of the current trajectory that are made and not yet pushed."""
         return 0.0 if self.current is None else (self.current.n_frames - self.current.pushed) / self.rate_hz
 
     @property
@@ -76,12 +76,12 @@ class SetpointBuffer:
 
     @property
     def posture_now(self) -> PoseSequence:
-        """(1 frame) the person whose pose the robot shows."""
+        """One frame of the person whose pose the robot shows."""
         return self._now(self._posture, raw=False)
 
     @property
     def raw_now(self) -> PoseSequence:
-        """(1 frame) the same person without layers."""
+        """One frame of the person whose pose the robot shows, without layers."""
         return self._now(self._raw, raw=True)
 
     def _now(self, kept: PoseSequence, *, raw: bool) -> PoseSequence:
@@ -102,8 +102,8 @@ class SetpointBuffer:
         return plan.pushed - min(self._link.setpoints.queued_frames, plan.pushed)
 
     def frame_within(self, plan: Trajectory, ahead_s: float) -> int:
-        """The last frame of the newest trajectory that the bus process takes until `ahead_s` from now; -1: none yet."""
-        since_s = (self._clock.now_s() - self._view.goals_s) % (1.0 / self.rate_hz)  # since it took the last one
+        """The last frame of the newest trajectory that the bus process takes within `ahead_s` seconds from now; -1 for none."""
+        since_s = (self._clock.now_s() - self._view.goals_s) % (1.0 / self.rate_hz)  # since the last one was taken
         cycles = math.floor((since_s + ahead_s) * self.rate_hz)
         before = self._waiting + max(0, self._link.setpoints.queued_frames - plan.pushed)
         return self.next_frame(plan) - 1 + max(0, cycles - before)
@@ -114,7 +114,11 @@ class SetpointBuffer:
         return sum(p.limit - p.pushed for p in self._trajectories[:-1])
 
     def end_after(self, frame: int | None) -> int:
-        """Take back the frames of the running trajectory after `frame`, None for none; how many of them are played already."""
+        """Take back the frames of the running trajectory after `frame` (None takes back none).
+
+        Returns:
+            Number of the taken frames that the bus process has already reached.
+        """
         plan = self.current
         if plan is None or frame is None or plan.epoch != self.epoch:
             return 0
@@ -124,23 +128,23 @@ class SetpointBuffer:
         return beyond
 
     def follow_with(self, plan: Trajectory) -> None:
-        """Let a trajectory follow those that still have frames to push."""
+        """Append a trajectory to those that still have frames to push."""
         self._trajectories = [p for p in self._trajectories if p.pushed < p.limit]
         self._trajectories.append(plan)
 
     def drop(self) -> None:
-        """Forget all trajectories: the bus process has been told to stop, or has nothing left to play."""
+        """Forget all trajectories, after a stop or when the bus process has nothing left to play."""
         if self.current is not None:
             self._posture, self._raw = self.posture_now, self.raw_now
         self._trajectories = []
 
     def stand(self) -> None:
-        """The robot has been led to its rest pose: a person who stands."""
+        """Forget all trajectories and take the pose of a standing person, for a robot that is limp or being armed."""
         self.drop()
         self._posture = self._raw = standing()
 
     def pump(self) -> None:
-        """Push setpoints until enough are in hand."""
+        """Push setpoints until the bus process has enough."""
         for plan in self._trajectories:
             queued = self._link.setpoints.queued_frames
             room = min(self._queue_frames - queued, plan.limit - plan.pushed, N_SETPOINTS - queued)
@@ -150,7 +154,7 @@ class SetpointBuffer:
                 return
 
     def stream_on(self) -> None:
-        """Make and push the frames that are due of a trajectory whose frames are made on demand; call it after `read_cycles`."""
+        """Make and push the due frames of a trajectory whose frames are made on demand. Call this after `read_cycles`."""
         plan = self.current
         if plan is None or plan.end is not None or plan.epoch != self.epoch:
             return

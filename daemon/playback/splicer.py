@@ -1,8 +1,8 @@
-"""The one owner of splices: lets new setpoints follow a frame of the running trajectory without a jump.
+"""The only owner of splices: lets new setpoints follow a frame of the running trajectory without a jump.
 
-New frames start from the position and velocity of a frame that is not yet played, so far ahead that they are made in time;
-the trajectory runs on beyond it meanwhile, and frames that come too late are made again from a later one. Without a running
-trajectory they start at rest from the goals that the servos hold.
+New frames start from the position and velocity of a frame that is not yet played, so far ahead that they are made in time.
+The trajectory runs on beyond that frame meanwhile, and frames that come too late are made again from a later one. Without
+a running trajectory, new frames start at rest from the goals that the servos hold.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from retarget.path.paths import JointState
 FIRST_RETARGET_S = 0.03
 """Seconds assumed until the first chunk of the first trajectory is made; later ones are measured."""
 Purpose = Literal["command", "idle", "revision"]
-"""Purposes of new frames. Each has its own estimate: nobody waits for a revision, which takes longer than the first frames of a
-command, and idle movements take less time than either."""
+"""Purposes of new frames. Each has its own estimate: a revision is not urgent and takes longer than the first frames of a command,
+and idle movements take less time than either."""
 RETRY_MARGIN = 1.2
-"""A second attempt is spliced in after this many times the duration of the first, which came too late."""
+"""Factor on the duration of a late first attempt that gives the distance of the second attempt's splice."""
 
 
 @dataclass
@@ -38,12 +38,12 @@ class Splice:
     """The place of new frames in the running trajectory, valid inside its `with` block.
 
     Attributes:
-        state: position and velocity of the joints there.
-        before: the poses that would have followed.
-        frame: frame of the running trajectory that is the last to be played; None at rest.
-        began_s: time at which the attempt began.
-        latency: how long frames of this purpose take.
-        made: whether new frames stand there. A splice that is left without them lets the trajectory run to its end.
+        state: position and velocity of the joints at the splice.
+        before: poses that would have followed.
+        frame: last frame of the running trajectory to be played; None at rest.
+        began_s: time at which the attempt began, seconds.
+        latency: estimate of the time that frames of this purpose take.
+        made: whether new frames were placed. A splice without new frames lets the trajectory run to its end.
     """
 
     state: JointState
@@ -58,11 +58,11 @@ class Splicer:
     """Makes splices, one at a time, and learns how long the first chunk of a trajectory takes.
 
     Attributes:
-        latencies: of each purpose.
+        latencies: estimate for each purpose.
 
     Args:
-        buffer: the running trajectory.
-        clock: time.
+        buffer: buffer with the running trajectory.
+        clock: clock of the measurements.
     """
 
     def __init__(self, buffer: SetpointBuffer, clock: Clock = REAL_CLOCK) -> None:
@@ -73,11 +73,11 @@ class Splicer:
 
     @contextmanager
     def splice(self, purpose: Purpose = "command", *, late_s: float = 0.0) -> Generator[Splice]:
-        """A splice so far ahead that a first chunk will be made in time.
+        """Open a splice so far ahead that a first chunk will be made in time.
 
         Args:
-            purpose: of the new frames.
-            late_s: seconds that an attempt took which came too late; 0 for a first attempt.
+            purpose: purpose of the new frames.
+            late_s: seconds that a late attempt took; 0 for a first attempt.
         """
         began_s, latency = self._clock.now_s(), self.latencies[purpose]
         if late_s:
@@ -95,7 +95,7 @@ class Splicer:
 
     @contextmanager
     def splice_at_once(self) -> Generator[Splice]:
-        """A splice after the last frame pushed, whose velocity is the difference quotient that the limiter continues from."""
+        """Open a splice after the last frame pushed, with the difference quotient as velocity, from which the limiter continues."""
         began_s, plan, latency = self._clock.now_s(), self._buffer.current, self.latencies["command"]
         if plan is None or not self._buffer.running or self._buffer.dry:
             splice = self._at_rest(plan, began_s, latency)
@@ -124,7 +124,7 @@ class Splicer:
         return Splice(self._buffer.at_rest, self._buffer.posture_now, None, began_s, latency)
 
     def missed(self, splice: Splice) -> bool:
-        """Whether the bus process has played beyond the splice, or ran dry, before its frames were made."""
+        """Whether the bus process has played beyond the splice, or ran dry, before its new frames were made."""
         plan = self._buffer.current
         if plan is None or splice.frame is None or plan.epoch != self._buffer.epoch:
             return False
@@ -134,10 +134,10 @@ class Splicer:
         return self._buffer.next_frame(plan) > splice.frame + 1 and not at_end
 
     def follow_with(self, splice: Splice, plan: Trajectory) -> None:
-        """Let a trajectory replace all that comes after the splice.
+        """Let a trajectory replace all frames after the splice.
 
-        Frames after the splice that the bus process has played meanwhile begin as those of the new trajectory do, which
-        therefore leaves out as many.
+        The new trajectory leaves out as many of its first frames as the bus process has played beyond the splice meanwhile: they
+        begin alike.
         """
         beyond = self._buffer.end_after(splice.frame)
         self._buffer.follow_with(plan)
@@ -148,7 +148,7 @@ class Splicer:
         splice.made = True
 
     def replace_tail(self, splice: Splice, plan: PathTrajectory, chunk: Chunk) -> None:
-        """Let a chunk replace all that comes after the splice in the running trajectory `plan`."""
+        """Let a chunk replace all frames after the splice in the running trajectory `plan`."""
         assert plan is self._buffer.current and splice.frame is not None, "a splice of the running trajectory"
         beyond = self._buffer.end_after(splice.frame)
         plan.cut(splice.frame)
@@ -169,14 +169,14 @@ class Splicer:
         """Make the first chunk in a worker thread and place it, again and again until it comes in time.
 
         Args:
-            chunks_at: gives the chunks that start at a splice; None where none can.
-            place: makes the splice; false where the chunk is not wanted any more.
-            wanted: whether to try; called before each attempt.
-            wait_for_rest: waits until the joints rest, where the bus process ran dry; None gives up there.
-            purpose: of the chunk.
+            chunks_at: returns the chunks that start at a splice; None when none can.
+            place: places the chunk at the splice; returns false when the chunk is no longer wanted.
+            wanted: returns whether to try; called before each attempt.
+            wait_for_rest: waits until the joints rest after the bus process ran dry; None gives up then.
+            purpose: purpose of the chunk.
 
         Returns:
-            The chunks, the first of which is placed, and that chunk; None where none was placed.
+            The chunks, the first already placed, and that first chunk; None when none was placed.
 
         Raises:
             RetargetError: the chunk does not fit the robot; the running trajectory goes on.
@@ -199,7 +199,7 @@ class Splicer:
             late_s = self._clock.now_s() - splice.began_s
 
     def committed(self, n: int, ahead_s: float) -> PoseSequence:
-        """`n` frames at 20 fps as they are played, up to about the splice of a motion that takes `ahead_s` to generate."""
+        """`n` frames at 20 fps as they are played, up to about the splice of a motion that takes `ahead_s` seconds to generate."""
         plan = self._buffer.current
         if plan is None or not self._buffer.running:
             return replace(self._buffer.posture_now.at(np.zeros(n, np.intp)), fps=FPS)

@@ -1,4 +1,4 @@
-"""Plays a lease: makes its frames in time, reports to its holder what holds the robot, adds its figures to the last event."""
+"""Plays a lease: makes its frames in time, reports to its holder what holds the robot, and adds its figures to the last event."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from daemon.playback.stream_trajectory import StreamTrajectory
 from daemon.wire.events import Progress
 
 REPORTED_EVERY_S = 0.5
-"""Seconds at least between two reports of what holds the robot; `status` always knows."""
+"""Seconds at least between two reports of what holds the robot; `status` is always current."""
 
 
 class StreamPlayer:
-    """One lease from its splice to its end. For the event loop.
+    """Plays one lease from its splice to its end. For the event loop.
 
     Args:
-        stream: the lease's frames.
-        buffer, splicer, maker: as of `MotionPlayer`.
+        stream: source of the lease's frames.
+        buffer, splicer, maker: as for `MotionPlayer`.
         report: sends an event to the holder.
-        clock: time.
+        clock: clock of the lease.
     """
 
     ready = revised = False
@@ -45,7 +45,7 @@ class StreamPlayer:
     async def begin(
         self, start: PlanStart, _wanted: Callable[[], bool], _wait_for_rest: Callable[[], Awaitable[None]]
     ) -> bool:
-        """Let the lease begin in the next frame, without waiting for anything: true."""
+        """Begin the lease in the next frame, without waiting; returns true."""
         self.stream.look(self._maker.gaze_rad())
         with self._splicer.splice_at_once() as splice:
             self.stream.begin(splice.state, self._clock.now_s())
@@ -57,7 +57,7 @@ class StreamPlayer:
         return True
 
     def accept(self, q_rad: NDArray[np.float64]) -> bool:
-        """A checked target (J,), whose movement begins at once. False when the lease accepts none any more."""
+        """Take a checked target (J,), whose movement begins at once; returns whether the lease takes it."""
         plan = self._plan
         if plan is None or plan is not self._buffer.current or not self.stream.take(q_rad, self._clock.now_s()):
             return False
@@ -68,7 +68,7 @@ class StreamPlayer:
         return True
 
     def watch(self) -> None:
-        """Make the frames that are due and report what holds the robot; once a tick."""
+        """Make the due frames and report what holds the robot. Call once a tick."""
         now_s, stream, plan = self._clock.now_s(), self.stream, self._plan
         if plan is None:
             return
@@ -88,25 +88,25 @@ class StreamPlayer:
             self._report(Progress(plan_id=plan.plan_id, stage="streaming"))
 
     def begun(self) -> None:
-        """Targets move the robot from now on."""
+        """Report that targets move the robot from now on."""
         if self._plan is not None:
             self._report(Progress(plan_id=self._plan.plan_id, stage="leased"))
         self._buffer.stream_on()
 
     def finish(self) -> None:
-        """A lease ends when its holder releases it."""
+        """Do nothing: a lease ends when its holder releases it."""
 
     async def follow_gaze(self) -> None:
-        """Hold the head where the gaze that is now set wants it."""
+        """Hold the head in the direction of the gaze that is now set."""
         self.stream.look(self._maker.gaze_rad())
 
     async def feed(self, _wanted: Callable[[], bool]) -> None:
-        """`watch` makes the frames of a lease, tick by tick."""
+        """Do nothing: `watch` makes the frames of a lease, tick by tick."""
 
     async def revise(self, _wanted: Callable[[], bool]) -> None:
-        """Targets have no revision."""
+        """Do nothing: targets have no revision."""
 
     def close(self) -> None:
-        """Add how often targets were clipped and held to the figures of its last event."""
+        """Add to the figures of the last event how often frames were clipped and held."""
         if self._plan is not None:
             self._plan.statistics.take_changes(self.stream.clipped, self.stream.holds)

@@ -1,4 +1,4 @@
-"""A plan whose frames are made when they are due: as few as possible ahead, so that a target moves the robot at once."""
+"""A trajectory whose frames are made when they are due: as few as possible ahead, so that a target moves the robot at once."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ Array = NDArray[np.float64]
 
 
 class StreamTrajectory(Trajectory):
-    """Frames of a lease. For one thread.
+    """The frames of a lease. For one thread.
 
     Args:
         source: makes the frames.
-        person: the poses of a person who is held as the robot in a pose (J,).
+        person: returns a person in the pose (J,) of the robot.
 
     Attributes:
         source: makes the frames.
-        resting: whether the last frame stands where it is until something changes; the bus process then holds.
-        lost: whether the bus process ran out of frames: it brakes, and the frames continue from where it stands.
+        resting: whether the last frame stands still until something changes; the bus process then holds.
+        lost: whether the bus process ran out of frames: it brakes, and the frames continue from where the joints stand.
     """
 
     resumes = True
@@ -45,7 +45,7 @@ class StreamTrajectory(Trajectory):
         self._good_from: int = 0
 
     def extend(self, n: int) -> None:
-        """Make frames up to the `n`-th, as far as there is motion."""
+        """Make frames up to the `n`-th, unless the joints rest."""
         while self.n_frames < n and not self.complete:
             q_rad, rests, ends = self.source.frame(), self.source.at_rest, self.source.released
             if rests and self.resting and not ends:
@@ -67,7 +67,7 @@ class StreamTrajectory(Trajectory):
         return True
 
     def ran_dry(self, queued: int) -> bool:
-        """Whether the frames are lost; frames that are only not made yet are made in a moment."""
+        """Whether the bus process ran out of frames; frames that are merely not made yet follow in a moment."""
         return self.lost if self.end is None and not self.resting else super().ran_dry(queued)
 
     @property
@@ -88,11 +88,11 @@ class StreamTrajectory(Trajectory):
         return np.array([self._made[k - self.oldest_frame][0] for k in range(first, min(end, self.n_frames))])
 
     def state_at(self, frame: int) -> JointState:
-        """Position and difference quotient at a frame; where it began when that is not known."""
+        """Position and difference quotient at a frame; the start of the lease for an unknown frame."""
         at = frame - self.oldest_frame
         return JointState(*self._made[at]) if 0 <= at < len(self._made) else self._start
 
     def posture_from(self, frame: int, n: int, *, raw: bool = False) -> PoseSequence:
-        """The person who is held as the robot at a frame, `n` times: the poses that targets lead to are not known."""
+        """The person in the robot's pose at a frame, `n` times: the poses to which targets lead are not known."""
         del raw
         return self._person(self.state_at(frame).position_rad).at(np.zeros(n, np.intp))

@@ -1,6 +1,6 @@
-"""The frames of one command on their way to the bus process, and the trajectory whose frames come from retargeted poses.
+"""The frames of one command for the bus process, and the trajectory whose frames come from retargeted poses.
 
-Frames that were played are forgotten, so that a loop or a story may last for ever.
+Played frames are forgotten, so that a loop or a story may last for ever.
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ from retarget.path.paths import JointPath, JointState
 Array = NDArray[np.float64]
 
 KEPT_FRAMES = 512
-"""Frames kept after they were pushed: the bus process has at most 256 of them still in hand."""
+"""Number of frames kept after they were pushed: the bus process has at most 256 of them still to play."""
 
 
 class Trajectory(ABC):
-    """Frames of one command. For one thread.
+    """The frames of one command. For one thread.
 
     Attributes:
-        plan_id: number in the log.
-        command_id: the command that it carries out, empty for idle movements.
+        plan_id: number of the trajectory, as in the log.
+        command_id: id of the command that it carries out; empty for idle movements.
         epoch: the link's epoch when its command arrived; setpoints of an older epoch are thrown away.
-        statistics: cycle records of its frames.
-        n_frames: frames made so far.
-        complete: whether no more will come.
-        end: frames that may be pushed; None for all, fewer once another trajectory takes over.
-        pushed: frames pushed so far.
+        statistics: statistics of its frames at the bus.
+        n_frames: number of frames made so far.
+        complete: whether no more frames will come.
+        end: number of frames that may be pushed; None for all, fewer once another trajectory takes over.
+        pushed: number of frames pushed so far.
         first_target_s: monotonic time of a stream's first target; None for other trajectories and before.
     """
 
     resumes = False
-    """Whether its command continues after the bus process ran out of frames."""
+    """Whether the trajectory's command continues after the bus process ran out of frames."""
 
     def __init__(
         self, plan_id: int, command_id: str, epoch: int, rate_hz: float, statistics: TrajectoryStatistics
@@ -53,7 +53,7 @@ class Trajectory(ABC):
 
     @abstractmethod
     def frames(self, first: int, end: int) -> Array:
-        """(n, J) setpoints from `first` to before `end`, at bus rate."""
+        """(n, J) setpoints from frame `first` to before `end`, at bus rate, radians."""
 
     @abstractmethod
     def state_at(self, frame: int) -> JointState:
@@ -66,10 +66,10 @@ class Trajectory(ABC):
     @property
     @abstractmethod
     def oldest_frame(self) -> int:
-        """The first frame that is not forgotten."""
+        """Index of the oldest frame that is not forgotten."""
 
     def extend(self, n: int) -> None:  # noqa: B027 - frames of a motion are appended
-        """Make frames up to the `n`-th where frames are made on demand."""
+        """Make frames up to the `n`-th, for a trajectory whose frames are made on demand."""
 
     def resume(self, goal_rad: Array, *, stands: bool) -> bool:
         """Whether frames are made on demand now, continuing from the goals (J,) after the bus process ran out of frames."""
@@ -77,17 +77,17 @@ class Trajectory(ABC):
         return False
 
     def ran_dry(self, queued: int) -> bool:
-        """Whether the bus process, which has `queued` frames in hand, has none of these though more were to come."""
+        """Whether the bus process, with `queued` frames to play, has none of these left though more were to come."""
         return 0 < self.pushed and not self.all_pushed and self.pushed >= self.limit and queued == 0
 
     @property
     def expected_frames(self) -> int:
-        """Frames of the whole trajectory, as far as that is known."""
+        """Number of frames of the whole trajectory, as far as it is known."""
         return self.n_frames
 
     @property
     def limit(self) -> int:
-        """Frames that may be pushed."""
+        """Number of frames that may be pushed."""
         return self.n_frames if self.end is None else min(self.end, self.n_frames)
 
     @property
@@ -118,11 +118,11 @@ class Chunk:
     """A block of a path.
 
     Attributes:
-        path: of the joints.
-        posture: the poses from its first frame to the end of the segment that is being made, later chunks included.
-        raw: the same without layers.
-        is_last: whether the segment ends with it.
-        complete: whether the trajectory ends with it.
+        path: path of the joints.
+        posture: poses from its first frame to the end of its segment, later chunks included.
+        raw: these poses without layers.
+        is_last: whether the segment ends with this chunk.
+        complete: whether the trajectory ends with this chunk.
     """
 
     path: JointPath
@@ -182,7 +182,7 @@ class PathTrajectory(Trajectory):
 
     @property
     def expected_frames(self) -> int:
-        """Frames so far and those that the segment being made will have, but for the last ones in which it settles."""
+        """Number of frames made and still expected of the present segment, without the last ones in which the joints settle."""
         if not self._placed or self._placed[-1].chunk.is_last:
             return self.n_frames
         last = self._placed[-1]
@@ -205,18 +205,18 @@ class PathTrajectory(Trajectory):
         return JointState(self.frames(frame, frame + 1)[0].copy(), path.velocity_at(np.array([t_s]))[0])
 
     def posture_from(self, frame: int, n: int, *, raw: bool = False) -> PoseSequence:
-        """`n` frames of poses that follow bus frame `frame`; after the last one made, that one stays."""
+        """`n` frames of poses that follow bus frame `frame`; the last pose made is repeated as needed."""
         placed = self._at(max(0, min(frame, self.n_frames - 1)))
         posture = placed.chunk.raw if raw else placed.chunk.posture
         return posture.at(self._posture_frame(placed, frame) + np.arange(n))
 
     def rest_raw(self, frame: int) -> PoseSequence:
-        """The poses without layers that are to follow bus frame `frame`, made already or not; at least one frame."""
+        """The poses without layers that follow bus frame `frame`, whether their frames are made or not; at least one."""
         placed = self._at(frame)
         first = self._posture_frame(placed, frame)
         parts = [placed.chunk.raw[min(first, len(placed.chunk.raw) - 1) :]]
         for before, following in pairwise(self._placed[self._placed.index(placed) :]):
-            if before.chunk.is_last:  # else the poses of the chunk before hold it already
+            if before.chunk.is_last:  # else the poses of the chunk before include them already
                 parts.append(following.chunk.raw)
         return joined(parts)
 

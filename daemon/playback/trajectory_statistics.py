@@ -1,4 +1,4 @@
-"""What a plan did at the bus, from the bus process's cycle records."""
+"""Statistics of a trajectory at the bus, from the bus process's cycle records."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ LONGEST_SAMPLED_S = 20.0
 
 
 class TrajectoryStatistics:
-    """Gathers the cycle records of one plan.
+    """Gathers the cycle records of one trajectory.
 
     Args:
-        robot: whose limits the speeds are compared with.
-        plan_id: which records belong to the plan.
-        t_received_ns: when the text arrived, monotonic.
-        goal_tick: (S,) goals of the servos before the plan, None when unknown.
+        robot: robot whose limits the speeds are compared with.
+        plan_id: number that the trajectory's records carry.
+        t_received_ns: monotonic time at which the request arrived, nanoseconds.
+        goal_tick: (S,) goals of the servos before the trajectory, ticks; None when unknown.
     """
 
     def __init__(
@@ -51,21 +51,21 @@ class TrajectoryStatistics:
 
     @property
     def first_motion_ms(self) -> float | None:
-        """From the arrival of the text to the first cycle in which a servo's goal changed."""
+        """Milliseconds from the request's arrival to the first cycle in which a servo's goal changed; None before."""
         return None if self.first_motion_ns is None else (self.first_motion_ns - self._t_received_ns) / 1e6
 
     def count_from(self, t_received_ns: int) -> None:
-        """What moves the robot has only now arrived, monotonic."""
+        """Count latency from this monotonic time, at which a stream's first target arrived, nanoseconds."""
         self._t_received_ns = t_received_ns
 
     def take_changes(self, clipped_frames: int, interventions: int) -> None:
-        """How many frames of a stream were clipped, and how often it was held, so far."""
+        """Set how many frames of a stream were clipped, and how often it was held, so far."""
         self._clipped, self._interventions = clipped_frames, interventions
 
     def take_path(self, path: JointPath, frames: int) -> None:
-        """Add what retargeting changed in a path of `frames` bus frames.
+        """Add the report of retargeting for a path of `frames` bus frames.
 
-        The comparison with the poses takes 0.7 ms, which would delay the first frame: it is made once the bus process plays.
+        The comparison with the poses takes 0.7 ms, which would delay the first frame; it is made once the bus process plays.
         """
         self._not_compared.append((path, frames))
 
@@ -79,11 +79,11 @@ class TrajectoryStatistics:
 
     @property
     def goals_rad(self) -> NDArray[np.float64]:
-        """(T, J) goals of the joints so far, `SAMPLED_HZ` of them a second, of the first `LONGEST_SAMPLED_S` seconds."""
+        """(T, J) goals of the joints so far, radians, at `SAMPLED_HZ`, from the first `LONGEST_SAMPLED_S` seconds."""
         return np.array(self._goals_rad).reshape(-1, self._robot.n_joints)
 
     def feed(self, records: NDArray[Any], dropped: int = 0) -> None:
-        """Take new records, of this plan and of others, in order."""
+        """Take new records, of this trajectory and of others, in order."""
         self.dropped += dropped
         if len(records) == 0:
             return
@@ -125,7 +125,7 @@ class TrajectoryStatistics:
             self._goals_rad.append(records["goal_rad"][i].astype(np.float64))
 
     def done(self, frames: int, shown: str = "", seen: str = "", missing: str = "") -> Done:
-        """The event that ends the plan, with whether the robot showed its motion, what that shows, and what was not seen."""
+        """The event that ends the command, with the judgement whether the robot showed its motion."""
         while self._not_compared:
             self._compare_oldest()
         j = int(self._peak_share.argmax())

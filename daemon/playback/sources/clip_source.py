@@ -1,4 +1,4 @@
-"""A clip as a source of poses: once, several times, or for ever."""
+"""A clip as a source of poses: played once, several times, or for ever."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from daemon.poses.pose_sequence import PoseSequence, at_tempo, faded_in, joined,
 from daemon.wire.requests import Play
 
 AGAIN_FADE_FRAMES = 8
-"""Frames over which a motion that cannot go round grows out of its own end when it is done again."""
+"""Number of frames over which a motion without a loop is blended out of its own end when it is repeated."""
 LOOP_STRETCH_S = 1.5
-"""Rounds are joined to stretches of at least this length."""
+"""Seconds of a segment at least: repetitions are joined to reach this length."""
 
 
 class ClipSource(MotionSource):
-    """A clip as the options of `Play` want it.
+    """Gives the poses of a clip as the options of `Play` require.
 
     Attributes:
         marks: loop and hold of the clip.
@@ -34,7 +34,7 @@ class ClipSource(MotionSource):
         return varied(stretch, self._play), last
 
     def finish(self) -> None:
-        """Go round no more: the next segment leads to the end."""
+        """Stop repeating: the next segment leads to the end."""
         self._rounds_left = 0
 
     def _next(self) -> tuple[PoseSequence, bool]:
@@ -45,7 +45,7 @@ class ClipSource(MotionSource):
             if not begun or loop is None:
                 return (p[:end] if not begun else self._again(end)), True
             return self._last_rounds()
-        if loop is None:  # the whole, again and again, out of its own end
+        if loop is None:  # the whole clip is repeated, blended out of its own end
             stretch = self._again(len(p)) if begun else p
             self._rounds_left -= 1
             return stretch, False
@@ -67,7 +67,7 @@ class ClipSource(MotionSource):
         loop = self.marks.loop
         assert loop is not None, "asked only of a clip that goes round"
         tail = after_loop(self._posture, loop)
-        if self._play.hold:  # held in the loop or on the way out: one more round up to the frame that says most
+        if self._play.hold:  # held in the loop or after it: one more repetition up to the frame to hold
             a, b = loop
             hold = self.marks.hold
             tail = closed(self._posture, loop)[: hold - a + 1] if a <= hold < b else tail[: max(1, hold - b + 1)]
@@ -81,7 +81,7 @@ class ClipSource(MotionSource):
 
 
 def in_full(posture: PoseSequence, play: Play, marks: Marks, longest_s: float) -> PoseSequence | None:
-    """All that a clip plays with its repetitions, as `play` wants it; None where that is endless or longer than `longest_s`."""
+    """All poses of a clip with its repetitions, as `play` requires; None for an endless one or more than `longest_s` seconds."""
     if play.loop or play.repeat * len(posture) > 4 * longest_s * posture.fps:
         return None
     source = ClipSource(posture, play, marks)
@@ -95,7 +95,7 @@ def in_full(posture: PoseSequence, play: Play, marks: Marks, longest_s: float) -
 
 
 def varied(p: PoseSequence, play: Play) -> PoseSequence:
-    """Mirror, size and tempo of `play`."""
+    """`p` with mirror, size and tempo of `play`."""
     if play.mirror:
         p = mirrored(p)
     if play.amplitude != 1.0:

@@ -1,4 +1,4 @@
-"""What a robot lacks to show a motion, told from its joints before it moves: a waist, a neck that tilts, arms of four joints."""
+"""Finds the joints that a robot lacks to show a motion, before it moves: a waist, a neck that tilts, arms of four joints."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ _SAID = {"pitch": "bends forward", "yaw": "turns", "roll": "tilts sideways"}
 _WHOLE_ARM = ("shoulder_pitch", "shoulder_roll", "shoulder_yaw", "elbow")
 """An arm that has these joints points both its bones anywhere, as far as its limits go."""
 _OFF_DEG = 25.0
-"""Degrees by which the bones of an arm miss their direction before that is told."""
+"""Degrees by which the bones of an arm may miss their direction before this is reported."""
 _KEY_FRAMES = 5
 
 
 def lacking(retargeter: Retargeter, motion: Motion, acts: Iterable[Sequence[Act]]) -> str:
-    """What the robot lacks to show a motion, in words; "" for nothing.
+    """Text of what the robot lacks to show a motion; empty for nothing.
 
     Args:
-        retargeter: of the robot.
+        retargeter: retargeter of the robot.
         motion: as a person performs it.
-        acts: what it shows, scene by scene.
+        acts: acts that the motion shows, scene by scene.
     """
     roles = {joint.role for joint in retargeter.robot.joints}
     found: dict[str, None] = {}
@@ -64,7 +64,7 @@ def _of_body(act: Act, roles: set[str]) -> list[str]:
 
 
 def instead(act: Act, robots: Motion) -> str:
-    """What stands for an act that a robot without a waist cannot show, if the robot has done that; else ""."""
+    """Text of the replacement for an act that a robot without a waist cannot show, if the robot has made it; else empty."""
     if not _bends(act):
         return ""
     shown = posture_features(robots.joints_m, robots.head_quat_wxyz)
@@ -72,7 +72,7 @@ def instead(act: Act, robots: Motion) -> str:
 
 
 def _bends(act: Act) -> bool:
-    """Whether the upper body bends forward, which a head can stand for."""
+    """Whether the act bends the upper body forward, which bending the head can replace."""
     return act.family in ("bow", "slump") or (act.family, act.direction) == ("lean", "forward")
 
 

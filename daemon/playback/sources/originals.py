@@ -1,4 +1,4 @@
-"""What an edit or a pose starts from: a named clip, the motion of a command or plan, a file in the folder of motions."""
+"""Finds the motions that an edit, a replay or a pose starts from: a clip, the motion of a command or plan, or a file."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ LARGEST_FILE_BYTES = 64 * 2**20
 
 
 class Originals:
-    """Finds motions by the ways in which a request may name them.
+    """Finds motions by the names that a request may use.
 
     Args:
         library: named clips.
         kept: motions of commands.
-        folder: where files of motions are looked for.
+        folder: folder of the files of motions.
     """
 
     def __init__(self, library: GestureLibrary, kept: KeptMotions, folder: Path) -> None:
@@ -38,7 +38,7 @@ class Originals:
         """A named clip.
 
         Raises:
-            NotPlayableError: there is none, or it cannot be read.
+            NotPlayableError: the clip is unknown, or cannot be read.
         """
         try:
             return self._library.get(name)
@@ -54,10 +54,10 @@ class Originals:
             raise NotPlayableError(event) from error
 
     def motion(self, request: Edit | Replay) -> Motion:
-        """What is to be edited or played again; may read a file.
+        """The motion to edit or to play again; may read a file.
 
         Raises:
-            NotPlayableError: it is not there, or no motion.
+            NotPlayableError: the motion is unknown, or the file holds none.
         """
         if isinstance(request, Edit) and request.gesture is not None:
             return self.clip(request.gesture).posture.motion(text=request.gesture)
@@ -69,10 +69,10 @@ class Originals:
         return self._found(self._kept.of_command(request.command), f"command {request.command!r}").motion
 
     def pose(self, asked: KeyPoseOf) -> KeyPose:
-        """A pose that is to be met.
+        """The pose that a request names.
 
         Raises:
-            NotPlayableError: the clip or command is not there.
+            NotPlayableError: the clip or command is unknown, or the time is outside its motion.
         """
         if asked.standing:
             return KeyPose(asked.at_s, standing())

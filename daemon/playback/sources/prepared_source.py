@@ -1,4 +1,4 @@
-"""A source that is ready to be played, and the facts about it that are told when its command is accepted."""
+"""A source that is ready to be played, with the facts that its `accepted` event reports."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ OUT_OF_SCOPE_DO = "ask for gestures of head, arms and torso, in English, e.g. 'w
 
 @dataclass(frozen=True)
 class PreparedSource:
-    """A motion ready to be played, and what is told about it when it is accepted.
+    """A source ready to be played, and the facts for its `accepted` event.
 
     Attributes:
-        shows: reads what the motion shows, which takes some milliseconds, in any thread; None where `understood` says it all.
+        shows: finds what the motion shows, in some milliseconds and in any thread; None when `understood` says it all.
     """
 
     score: MotionSource | StreamSource
@@ -46,7 +46,7 @@ class PreparedSource:
     shows: Callable[[], Shows] | None = None
 
     async def accepted(self, entry: Entry, plan_id: int) -> Accepted:
-        """The event; it tells nothing of a motion that cannot be read."""
+        """The `accepted` event; without a description when the motion cannot be read."""
         shows = Shows(self.understood, "")
         if self.shows is not None:
             try:
@@ -74,7 +74,7 @@ class PreparedSource:
 def prepared_source(
     generated: Generated, score: MotionSource, duration_s: float, shows: Callable[[], Shows]
 ) -> PreparedSource:
-    """With what the generator tells of a motion, and what the motion shows."""
+    """A source with the generator's facts about its motion, and `shows` for its description."""
     motion, made_ms = generated.motion, sum(generated.timings_ms.values())
     return PreparedSource(
         score,
@@ -91,17 +91,17 @@ def prepared_source(
 
 
 def scenes_or_whole(scenes: Sequence[Scene], motion: Motion, words: str) -> Sequence[Scene]:
-    """The scenes of a motion; one where none are told."""
+    """The scenes of a motion; one scene for a motion without any."""
     return scenes or [Scene(motion.duration_s, words)]
 
 
 def words_of(generated: Generated) -> str:
-    """The words that may name what a generated motion shows: its text, and the known command that is nearest."""
+    """Words that may name what a generated motion shows: its text, and the nearest known command."""
     return f"{generated.motion.text}\n{generated.understood}"
 
 
 def check_in_scope(entry: Entry, generated: Generated) -> None:
-    """Raises NotPlayableError for what was refused."""
+    """Raise NotPlayableError for a text that was rejected."""
     if generated.motion.status == "rejected":
         raise out_of_scope(entry, generated.reason, generated.understood, generated.motion.scope_score)
 
@@ -120,5 +120,5 @@ def out_of_scope(entry: Entry, reason: str, understood: str, score: float) -> No
 
 
 def performance_s(posture: PoseSequence, request: Command) -> float:
-    """Length of one performance at the asked tempo."""
+    """Seconds of one performance at the requested tempo."""
     return len(posture) / posture.fps / (request.tempo if isinstance(request, Play) else 1.0)

@@ -1,7 +1,7 @@
-"""A preview as a source of poses until its motion has come: the robot sets out on the preview and continues with the motion.
+"""A preview as a source of poses: the robot starts with the preview and continues with the motion once that has come.
 
-Usually the motion has come before the first frame is played. Where it comes later, or never (the generator was killed), the
-preview is played, and the rest of the motion after it.
+Usually the motion has come before the first frame is played. If it comes later, or never (the generator was killed), the preview
+is played, and then the rest of the motion, if any.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from daemon.poses.motion_source import MotionSource
 from daemon.poses.pose_sequence import PoseSequence
 
 HEAD_FRAMES = 40
-"""Frames of a preview that are given out first (2 s): a block, the frames that it has in view, and some more. Solving the poses of
-a whole preview takes 1 ms longer on `reference` and 6 ms on OP2, and leads the same way."""
+"""Number of preview frames given out first (2 s): a block, the frames that it has in view, and some more. Solving the poses of
+a whole preview takes 1 ms longer on `reference` and 6 ms on OP2, and gives the same path."""
 _SHORTEST_REST_FRAMES = 8
-"""A rest of fewer frames is given out with the head."""
+"""Number of frames below which the rest of a preview is given out with its head."""
 
 
 class PreviewSource(MotionSource):
-    """The first frames of a preview, the others where they are needed, then the rest of its motion.
+    """Gives the first frames of a preview, then its other frames if needed, then the rest of its motion.
 
     Args:
         preview: poses of the preview.
-        whole: the generation of the motion.
-        posture: gives the poses of a generated motion as they are played.
+        whole: task that generates the motion.
+        posture: returns the poses of a generated motion as they are played.
     """
 
     def __init__(
@@ -40,7 +40,7 @@ class PreviewSource(MotionSource):
 
     @property
     def ready(self) -> bool:
-        """Whether a part of the preview has not been given out, or its motion has come or failed."""
+        """Whether a part of the preview is still to be given out, or its motion has come or failed."""
         return self._given < len(self._preview) or self._whole.done()
 
     @property
@@ -49,7 +49,7 @@ class PreviewSource(MotionSource):
         return not self._whole.done()
 
     def next(self) -> tuple[PoseSequence, bool]:
-        """The preview in two segments, or the motion as soon as that has come."""
+        """The next segment of the preview, or the motion as soon as it has come; and whether it is the last."""
         first, n = self._given, len(self._preview)
         if first == 0 and self._has_come:
             self._given, self._settled = n, True
@@ -73,7 +73,7 @@ class PreviewSource(MotionSource):
         return self._whole.done() and not self._whole.cancelled() and self._whole.exception() is None
 
     def rest(self, n_left: int) -> PoseSequence:
-        """The poses after all but `n_left` of the frames given out: of the motion, or of the preview if there is none."""
+        """The poses that follow all but the last `n_left` frames given out: of the motion, or of the preview without one."""
         of = self._posture(self._whole.result()) if self._has_come else self._preview
         place = self._given - n_left
         return of[place:] if place < len(of) else of.at(np.full(2, len(of) - 1))

@@ -1,4 +1,4 @@
-"""What a command's motion shows, what the robot lacks for it, and afterwards whether the robot has shown it."""
+"""Describes what a command's motion shows and what the robot lacks for it, and judges whether the robot has shown it."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ from retarget.robot_to_human import as_motion
 Array = NDArray[np.float64]
 SHOWN, IN_PART, NOT_SHOWN = "shown", "in part", "not shown"
 _TOUCHING_M, _LOOKED_AT = 0.03, 200
-"""Metres between a robot's hands up to which they touch, and how many poses are looked at."""
+"""Metres between a robot's hands up to which they touch, and number of poses examined."""
 LONGEST_S = 15.0
-"""Seconds of a motion that are judged; what comes later is not looked at."""
+"""Seconds of a motion that are judged; a longer motion is not judged."""
 
 
 ShownCheck = Callable[[Entry, Array, float], "Verdict"]
-"""Whether goals (T, J) of so many a second have shown the motion of a command."""
+"""Judges whether goals (T, J), at a rate in hertz, have shown the motion of a command."""
 
 
 @dataclass(frozen=True)
 class Shows:
-    """What is told of a motion before it is played.
+    """Description of a motion before it is played.
 
     Attributes:
-        sentence: what it shows.
-        lacks: what the robot lacks to show it; "" for nothing.
+        sentence: text of what the motion shows.
+        lacks: text of what the robot lacks to show it; empty for nothing.
     """
 
     sentence: str
@@ -50,12 +50,12 @@ class Shows:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a robot has shown what a motion shows.
+    """Judgement whether a robot has shown a motion.
 
     Attributes:
-        shown: "shown", "in part" or "not shown"; "" where it is not judged.
-        seen: what the motion shows.
-        missing: what was not seen on the robot; "" for nothing.
+        shown: "shown", "in part" or "not shown"; empty when it is not judged.
+        seen: text of what the motion shows.
+        missing: text of what was not seen on the robot; empty for nothing.
     """
 
     shown: str = ""
@@ -64,20 +64,20 @@ class Verdict:
 
 
 class Showing:
-    """Reads motions for one robot. Its methods may run in any thread."""
+    """Describes and judges motions for one robot. Its methods may run in any thread."""
 
     def __init__(self, robot: RobotModel) -> None:
         self._retargeter, self._lock = Retargeter(robot), threading.Lock()
         self._hands = Hands(self._retargeter.kinematics, self._retargeter.contact, self._retargeter.limits)
-        families_named("wave")  # its tables are read now and not with the first text
+        families_named("wave")  # reads the tables now, not with the first text
 
     def of(self, posture: PoseSequence, scenes: Sequence[Scene], *, draft: bool = False) -> Shows:
-        """What a motion shows, and what the robot lacks for it.
+        """The description of a motion, and of what the robot lacks for it.
 
         Args:
             posture: the motion, or its first part.
-            scenes: its scenes; those that begin after the posture's end are told by their words.
-            draft: whether it is a draft, whose strokes are not counted: the motion may have another number of them.
+            scenes: its scenes; scenes that begin after the end of `posture` are described by their words.
+            draft: whether it is a draft, whose strokes are not counted, because the motion may have another number of them.
         """
         motion, length_s = posture.motion(), len(posture) / posture.fps
         n_here = 1 + sum(scene.end_s < length_s for scene in scenes[:-1])
@@ -88,13 +88,13 @@ class Showing:
         return Shows(", then ".join([sentence(acts, counted=not draft), *to_come]), lacks)
 
     def verdict(self, posture: PoseSequence, scenes: Sequence[Scene], q_rad: Array, fps: float) -> Verdict:
-        """Whether the robot has shown a motion.
+        """Judge whether the robot has shown a motion.
 
         Args:
             posture: the motion, as it was to be played.
             scenes: its scenes.
-            q_rad: (T, J) goals that the robot was given for it.
-            fps: how many of them a second.
+            q_rad: (T, J) goals that the robot was given for it, radians.
+            fps: number of goals a second.
         """
         if len(q_rad) < 2 or len(posture) > LONGEST_S * posture.fps:
             return Verdict()
@@ -115,9 +115,9 @@ class Showing:
         return Verdict(IN_PART if seen_at_all else NOT_SHOWN, said, words)
 
     def _apart(self, q_rad: Array, robots: Motion) -> str:
-        """How far the hands of poses (T, J) stay apart; "" where they come together, by the robot's shapes or its forearms.
+        """Text of how far apart the hands stay in poses (T, J); empty when they meet, by the robot's shapes or its forearms.
 
-        `robots` are the same poses on a person: a robot whose hands have no shapes is judged by where its forearms lead.
+        `robots` holds these poses on a person: a robot whose hands have no shapes is judged by where its forearms lead.
         """
         with self._lock:
             apart_m = self._hands.apart_m(q_rad[:: max(1, len(q_rad) // _LOOKED_AT)])
@@ -129,5 +129,5 @@ class Showing:
 
 
 def at_tempo(scenes: Sequence[Scene], tempo: float) -> list[Scene]:
-    """The scenes of a motion that is played `tempo` times as fast."""
+    """The scenes of a motion played `tempo` times as fast."""
     return [replace(scene, end_s=scene.end_s / tempo) for scene in scenes]

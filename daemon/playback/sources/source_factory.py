@@ -1,6 +1,6 @@
-"""Where motions come from: the generator for texts, stories, edits and poses, the library for gestures.
+"""Makes the source of each command: from the generator for texts, stories, edits and poses, from the library for gestures.
 
-A new kind of command begins here.
+A new kind of command is added here first.
 """
 
 from __future__ import annotations
@@ -54,29 +54,29 @@ from retarget.path.safety_filter import SafetyFilter
 from retarget.robot.robot import RobotModel
 
 PREFIX_FRAMES = 32
-"""Frames of the running motion that the generator is shown, however few of them are the prefix: ids depend on the frames before."""
+"""Number of frames of the running motion sent to the generator, however short the prefix: ids depend on the frames before."""
 FIRST_MAKE_S = 0.1
-"""Assumed time until a motion with a prefix is made; later ones are measured."""
+"""Seconds assumed until a motion with a prefix is generated; later ones are measured."""
 _THEIRS = ("bad_edit", "bad_keyframes", "not_reached")
-"""Failures of the generator that tell of the request and not of the generator."""
+"""Codes of errors caused by the request, not by the generator."""
 T = TypeVar("T")
 
 
 class Played(Protocol):
-    """What is known of the motion that is played."""
+    """The motion that is played, as far as a source needs it."""
 
     @property
     def raw_now(self) -> PoseSequence:
-        """One frame, how the robot is held, without layers."""
+        """One frame of the pose that the robot shows, without layers."""
         ...
 
     def committed(self, n: int, ahead_s: float) -> PoseSequence:
-        """`n` frames up to where a motion would take over that takes `ahead_s` to make."""
+        """`n` frames up to the splice of a motion that takes `ahead_s` seconds to generate."""
         ...
 
 
 class SourceFactory:
-    """Turns requests into scores."""
+    """Turns requests into sources."""
 
     def __init__(
         self, config: DaemonConfig, robot: RobotModel, generator: GeneratorClient, library: GestureLibrary
@@ -90,10 +90,10 @@ class SourceFactory:
         self._originals = Originals(library, self.kept, config.motions or Path())
 
     async def prepare(self, entry: Entry, played: Played) -> PreparedSource:
-        """The motion of a command.
+        """The source of a command's motion.
 
         Raises:
-            NotPlayableError: there is none; its event ends the command.
+            NotPlayableError: the command has no motion; the error's event ends it.
         """
         request = entry.request
         if isinstance(request, Say):
@@ -120,11 +120,11 @@ class SourceFactory:
         raise TypeError(f"no source for {type(request).__name__}")
 
     def keep(self, name: str, command_id: str, *, replace: bool = False) -> str:
-        """Keep the motion of a command (the newest when the id is empty) as a gesture; what it shows.
+        """Keep the motion of a command (the newest when the id is empty) as a gesture; returns the text of the motion.
 
         Raises:
-            GestureExistsError: there is one of that name, and `replace` is not given.
-            ClipError: there is no such motion, or it cannot be kept.
+            GestureExistsError: the name is taken, and `replace` is not given.
+            ClipError: the motion is unknown, or cannot be kept.
         """
         key = command_id or self.kept.newest()
         kept = self.kept.of_command(key) if key else None
@@ -137,7 +137,7 @@ class SourceFactory:
     async def _generated(
         self, entry: Entry, ask: Callable[[float], Awaitable[Generated]], keys: list[KeyPose] | None = None
     ) -> PreparedSource:
-        """What the generator makes of one request, led through `keys`."""
+        """The source of the generator's motion for one request, led through `keys`."""
         generated = await self._asked(entry, ask)
         check_in_scope(entry, generated)
         motion, play = generated.motion, entry.request
@@ -151,18 +151,18 @@ class SourceFactory:
         return prepared_source(generated, score, performance_s(posture, entry.request), shows)
 
     def verdict(self, entry: Entry, q_rad: NDArray[np.float64], fps: float) -> Verdict:
-        """Whether the robot has shown what a command's motion shows.
+        """Judge whether the robot has shown what a command's motion shows.
 
         Args:
             entry: the command.
-            q_rad: (T, J) goals that the robot was given for it.
-            fps: how many of them a second.
+            q_rad: (T, J) goals that the robot was given for it, radians.
+            fps: number of goals a second.
         """
         kept = self.kept.of_command(entry.id)
         return Verdict() if kept is None else self._showing.verdict(*kept.judged, q_rad, fps)
 
     async def _drafted(self, entry: Entry, request: Say) -> PreparedSource:
-        """What can be played at once of a text, while the generator goes on with it."""
+        """The source of a preview that can be played at once, while the generator goes on with the motion."""
         ask = self._generator.draft
         first, whole = await self._asked(entry, lambda t: ask(request.text, request.seed, request.seconds, t))
         check_in_scope(entry, first)
@@ -228,7 +228,7 @@ class SourceFactory:
     async def _inbetween(self, entry: Entry, request: Inbetween, now: PoseSequence) -> PreparedSource:
         keys = [self._originals.pose(asked) for asked in request.poses]
         if keys[0].at_s >= 1 / now.fps:
-            near = keys[0].at_s < 0.2  # in the token in which the motion begins: the first pose stands for both
+            near = keys[0].at_s < 0.2  # within the motion's first token: the first pose serves as the start too
             keys = keys if near else [KeyPose(0.0, now), *keys]
         poses = joined([key.pose for key in keys]).motion()
         at_s = [key.at_s for key in keys]
@@ -242,10 +242,10 @@ class SourceFactory:
         return await self._generated(entry, lambda t: ask(motion, request.text, request.seed, *what, t))
 
     async def _asked(self, entry: Entry, ask: Callable[[float], Awaitable[T]]) -> T:
-        """The generator's answer within the time there is.
+        """The generator's answer, within its time-out and the command's deadline.
 
         Raises:
-            NotPlayableError: it failed, refused, or was not in time.
+            NotPlayableError: the generator failed, refused, or did not answer in time.
         """
         timeout_s, limited = self._config.generate_timeout_s, False
         if entry.request.deadline_s is not None:
@@ -270,15 +270,15 @@ class SourceFactory:
         self, entry: Entry, posture: PoseSequence, motion: Motion, scenes: Sequence[Scene] = (), *, words: str,
         marks: Marks | None = None, draft: bool = False,
     ) -> tuple[MotionSource, Callable[[], Shows]]:  # fmt: skip
-        """The score of a motion, and what reads what it shows; the motion is kept under the command's id.
+        """The source of a motion, and a function that describes the motion; the motion is kept under the command's id.
 
         Args:
             entry: the command.
             posture: the motion before mirror, size and tempo.
-            motion: as it was made.
-            scenes: its parts; none where it is one, which `words` tell of.
-            words: what it is said to be; the command's own words where that is empty.
-            marks: loop and hold of a clip that has them.
+            motion: the motion as generated.
+            scenes: its parts; empty for a motion of one part, which `words` describe.
+            words: text of the motion; the command's own words when empty.
+            marks: loop and hold of a clip; None finds them.
             draft: whether the motion is a draft of one to come.
         """
         play = entry.request
@@ -291,7 +291,7 @@ class SourceFactory:
         if not (play.loop or play.hold or play.repeat > 1):
             self.kept.add(entry.id, kept)
             return ClipSource(posture, play, marks), partial(self._showing.of, as_played, parts, draft=draft)
-        score = await asyncio.to_thread(ClipSource, posture, play, marks)  # looking for the loop takes a while
+        score = await asyncio.to_thread(ClipSource, posture, play, marks)  # finding the loop takes a while
         if play.repeat > 1 and len(parts) == 1:
             whole = await asyncio.to_thread(in_full, posture, play, score.marks, LONGEST_S)
             kept = replace(kept, in_full=whole)

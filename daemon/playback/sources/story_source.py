@@ -1,8 +1,8 @@
-"""A story as a score: scenes are asked of the generator while the ones before are played, a few seconds ahead.
+"""A story as a source of poses: scenes are requested from the generator a few seconds ahead of the ones being played.
 
-What the generator needs of the past comes back with each piece and is sent with the next request, so the daemon keeps two
-pieces and a few hundred bytes however long the story is. A generator that is lost is a stall: the robot brakes and holds,
-and goes on with the story when there is one again.
+The generator's state comes back with each scene and is sent with the next request, so that the daemon keeps two segments and a
+few hundred bytes however long the story is. When the generator is lost, the robot brakes and holds, and the story continues once
+there is a generator again.
 """
 
 from __future__ import annotations
@@ -28,28 +28,29 @@ from mmm_core.recognition.seen import Scene, scenes_seen, sentence
 log = logging.getLogger(__name__)
 
 PIECES_AHEAD = 2
-"""Pieces kept ready; a `say` that barges in waits for one request of a scene at most."""
+"""Number of segments kept ready; a `say` that barges in waits for one scene's request at most."""
 SHORTEST_FRAMES = 16
-"""Scenes that give less are joined to the next one."""
+"""Number of frames of a segment at least: shorter scenes are joined to the next one."""
 PATIENCE_S = 60.0
-"""How long a story waits for a generator that is lost."""
+"""Seconds that a story waits for a lost generator."""
 RETRY_S = 0.2
 AFTER_TIMEOUT_S = 2.0
-"""One that left a scene unanswered is started again within a second or so: asked sooner it would leave that one, too."""
+"""Seconds before the next request after a time-out: the generator is started again within about a second, and an earlier request
+would get no answer either."""
 _LOST = ("generator_down", "generator_timeout")
 
 
 @dataclass(frozen=True)
 class SceneNews:
-    """How a scene was taken.
+    """The generator's judgement of a scene.
 
     Attributes:
-        number: of the scene in the story, from 1 in each round.
-        text: of it.
-        status: accepted, degraded, or rejected when it was left out.
-        reason: why it is not accepted.
-        understood: what the scene's motion shows.
-        scope_score: how near that is.
+        number: number of the scene in the story, from 1 in each repetition.
+        text: text of the scene.
+        status: "accepted", "degraded", or "rejected" for a scene that is left out.
+        reason: why it is not accepted; else empty.
+        understood: text of what the scene's motion shows.
+        scope_score: score of the text against the known commands.
     """
 
     number: int
@@ -68,7 +69,7 @@ class _Piece:
 
 
 class StorySource(MotionSource):
-    """A story as the options of `Play` want it."""
+    """Gives the poses of a story as the options of `Play` require."""
 
     def __init__(
         self, request: Story, generator: GeneratorClient, timeout_s: float, aliveness: Aliveness | None = None
@@ -90,23 +91,23 @@ class StorySource(MotionSource):
         self.generate_ms = 0.0
 
     async def begin(self) -> list[SceneNews]:
-        """Make the first piece; how the scenes up to it were taken.
+        """Make the first segment; returns the judgements of the scenes up to it.
 
         Raises:
             NotPlayableError: the generator failed.
-            GeneratorError: it is down, or did not answer in time.
+            GeneratorError: the generator is down, or did not answer in time.
         """
         await self._make()
         return list(self._pieces[0].news)
 
     @property
     def empty(self) -> bool:
-        """Whether the story came to its end without a frame: every scene was left out."""
+        """Whether the story ended without a frame, because every scene was left out."""
         return self._complete and not any(len(piece.posture) for piece in self._pieces)
 
     @property
     def ready(self) -> bool:
-        """Whether a piece is there, or the error that ends the story; asks for what is to come."""
+        """Whether a segment is ready, or the error that ends the story; requests the next scenes as a side effect."""
         if self._task is not None and self._task.done():
             self._task = None
         if self._task is None and self._failure is None and not self._complete and len(self._pieces) < PIECES_AHEAD:
@@ -114,10 +115,10 @@ class StorySource(MotionSource):
         return bool(self._pieces) or self._failure is not None
 
     def next(self) -> tuple[PoseSequence, bool]:
-        """The next stretch, and whether it is the last.
+        """The next segment, and whether it is the last.
 
         Raises:
-            NotPlayableError: the generator failed; its event ends the command.
+            NotPlayableError: the generator failed; the error's event ends the command.
         """
         if not self._pieces:
             assert self._failure is not None, "asked only when it is ready"
@@ -127,7 +128,7 @@ class StorySource(MotionSource):
         return piece.posture, piece.last
 
     def reports(self, plan_id: int) -> list[Progress]:
-        """How the scenes were taken whose poses have been given out since the last call."""
+        """Events with the judgements of the scenes whose poses were given out since the last call."""
         events: list[Progress] = []
         while self._unreported:
             n = self._unreported.popleft()
@@ -138,13 +139,13 @@ class StorySource(MotionSource):
         return events
 
     def finish(self) -> None:
-        """Go round no more: the story ends with the round that is under way."""
+        """Stop repeating: the story ends with the present repetition."""
         if self._n_all is None:
             n = len(self._request.scenes)
             self._n_all = -(-self._n_asked // n) * n
 
     async def _make_patiently(self) -> None:
-        """Make a piece; wait for a generator that is lost."""
+        """Make a segment; wait when the generator is lost."""
         began_s, said = time.monotonic(), ""
         while True:
             try:
@@ -158,21 +159,21 @@ class StorySource(MotionSource):
                     said = error.found
                     log.warning("the story waits for the generator: %s", said)
                 await asyncio.sleep(AFTER_TIMEOUT_S if error.code == "generator_timeout" else RETRY_S)
-            except Exception as error:  # of the motion that came: it ends the story, not the daemon
+            except Exception as error:  # an error of the motion ends the story, not the daemon
                 log.exception("a piece of a story could not be made")
                 bad = GeneratorError("internal", "a piece of a story", str(error), "a motion", "see the daemon's log")
                 self._failure = NotPlayableError(generator_failed(bad, self._generator.state))
                 return
 
     async def _make(self) -> None:
-        """Ask for scenes until there is enough to play, or the story is at its end."""
+        """Request scenes until a segment is long enough, or the story ends."""
         while not self._complete and sum(map(len, self._parts)) < SHORTEST_FRAMES:
             generated = await self._ask()
             if len(generated.motion.joints_m):
                 self._parts.append(self._varied(self._aliveness.posture_of(generated.motion, self._n_asked)))
             self._n_barren = 0 if generated.motion.status != "rejected" else self._n_barren + 1
             if self._n_barren >= len(self._request.scenes):
-                self._complete = True  # a whole round of what cannot be done
+                self._complete = True  # every scene of the story was rejected
         posture = joined(self._parts) if self._parts else standing()[:0]
         self._pieces.append(_Piece(posture, self._complete, tuple(self._news)))
         self._parts, self._news = [], []
@@ -180,7 +181,7 @@ class StorySource(MotionSource):
     async def _ask(self) -> Generated:
         scenes, n_all = self._request.scenes, self._n_all
         place = self._n_asked % len(scenes)
-        over = n_all is not None and self._n_asked >= n_all  # `finish` came when the last scene was asked for already
+        over = n_all is not None and self._n_asked >= n_all  # `finish` came after the last scene was requested
         scene = None if over else scenes[place]
         last = over or (n_all is not None and self._n_asked == n_all - 1)
         text, seconds = (None, None) if scene is None else (scene.text, scene.seconds)
@@ -197,7 +198,7 @@ class StorySource(MotionSource):
         return generated
 
     def _varied(self, p: PoseSequence) -> PoseSequence:
-        """Mirror, size and tempo, piece by piece as on the whole."""
+        """`p` with mirror, size and tempo, segment by segment as if applied to the whole."""
         if self._request.mirror:
             p = mirrored(p)
         if self._request.amplitude != 1.0:
@@ -206,14 +207,14 @@ class StorySource(MotionSource):
 
 
 class _Tempo:
-    """Another tempo for a motion that comes in pieces: steps go on over their borders."""
+    """Changes the tempo of a motion that comes in segments, without a step at their borders."""
 
     def __init__(self, tempo: float) -> None:
         self._tempo, self._at = tempo, 0.0
         self._before: PoseSequence | None = None
 
     def of(self, p: PoseSequence) -> PoseSequence:
-        """The frames that fall into a piece; the last frame of the one before is kept for those between the two."""
+        """The frames that fall into a segment; its last frame is kept for those between it and the next segment."""
         if self._tempo == 1.0:
             return p
         whole = p if self._before is None else joined([self._before, p])

@@ -1,6 +1,6 @@
-"""What a lease plays: targets as they come, made into frames that are safe to send. No clock of its own, no I/O.
+"""Turns the targets of a lease into frames that are safe to send. No clock of its own, no I/O.
 
-It is a score whose frames are joints, not posture: what comes is meant for this robot, and is not retargeted.
+The frames are joint angles, not poses: targets are meant for this robot, and are not retargeted.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 LONGEST_GLIDE_S = 0.1
-"""Targets that come more seldom are gone to at once, as fast as the limits allow."""
+"""Seconds between targets beyond which each target is approached at once, as fast as the limits allow."""
 _SHARE_OF_NEWEST = 0.3
 SELF_COLLISION, SILENCE = "self-collision", "silence"
 
 
 class Glide:
-    """Between targets that come more seldom than frames, the line from one to the next, as long as they are apart."""
+    """Interpolates linearly between targets that come less often than frames, over the mean time between them."""
 
     def __init__(self, rate_hz: float) -> None:
         self._rate_hz = rate_hz
@@ -34,11 +34,11 @@ class Glide:
         self.target_rad: Array = np.zeros(0)
 
     def begin(self, position_rad: Array) -> None:
-        """Stand here."""
+        """Start at a position (J,), radians, without a target."""
         self._at_rad, self.target_rad, self._left = position_rad.copy(), position_rad.copy(), 0
 
     def take(self, target_rad: Array, now_s: float) -> None:
-        """A new target (J,), which came at `now_s`."""
+        """Take a new target (J,), radians, which came at `now_s`."""
         apart_s, self._last_s = now_s - self._last_s, now_s
         if apart_s > LONGEST_GLIDE_S:
             self._apart_s = None
@@ -50,7 +50,7 @@ class Glide:
         self._left = 1 if self._apart_s is None else max(1, math.ceil(self._apart_s * self._rate_hz))
 
     def frame(self) -> Array:
-        """(J,) where to be in the next frame."""
+        """(J,) position of the next frame, radians."""
         if self._left > 1:
             self._at_rad = self._at_rad + (self.target_rad - self._at_rad) / self._left
             self._left -= 1
@@ -60,17 +60,17 @@ class Glide:
 
 
 class StreamSource:
-    """Frames of one lease.
+    """Gives the frames of one lease.
 
     Args:
         robot: the robot.
-        guard: makes the steps.
-        clock: the lease's.
+        guard: safety filter that makes each step.
+        clock: clock of the lease.
 
     Attributes:
-        holder: who holds it.
-        targets, bad: messages taken and refused.
-        clipped: targets beyond a position limit, which were met as far as it goes.
+        holder: holder of the lease, in words.
+        targets, bad: number of targets taken and refused.
+        clipped: number of frames with a target beyond a position limit, which they approach as far as the limit allows.
     """
 
     def __init__(self, robot: RobotModel, guard: SafetyFilter, clock: LeaseClock, holder: str) -> None:
@@ -81,19 +81,19 @@ class StreamSource:
         self.begun = False
 
     def begin(self, start: JointState, now_s: float) -> None:
-        """The joints are led by it from here on."""
+        """Begin to lead the joints, from `start` on."""
         self.go_on(start)
         self.clock.begin(now_s)
         self.begun = True
 
     def go_on(self, start: JointState) -> None:
-        """The joints are elsewhere than the frames led to: go on from there, to the same target."""
+        """Continue to the same target from `start`, because the joints are not where the frames led."""
         self._guard.reset(start.position_rad, start.velocity_rad_s)
         if not self.begun or not self.targets:
             self._glide.begin(start.position_rad)
 
     def take(self, q_rad: Array, now_s: float) -> bool:
-        """A checked target (J,), NaN where a joint keeps the one it has; false when the lease takes none any more."""
+        """Take a checked target (J,), NaN for a joint that keeps its target; returns whether the lease takes it."""
         if not self.begun or not self.clock.target(now_s):
             return False
         self.targets += 1
@@ -101,11 +101,11 @@ class StreamSource:
         return True
 
     def look(self, gaze_rad: dict[int, float]) -> None:
-        """Angles of joints that a gaze holds, by index; none lets them go."""
+        """Set the angles of joints that a gaze holds, radians by index; an empty map frees them."""
         self._gaze_rad = dict(gaze_rad)
 
     def frame(self) -> Array:
-        """(J,) the next frame."""
+        """(J,) the next frame, radians."""
         if self.clock.state in (LeaseState.SILENT, LeaseState.OVER):
             return self._guard.brake()
         wanted = self._glide.frame().copy()
@@ -117,32 +117,32 @@ class StreamSource:
 
     @property
     def state(self) -> JointState:
-        """Where the frames have led to."""
+        """Position and velocity after the last frame."""
         return JointState(self._guard.position_rad, self._guard.velocity_rad_s)
 
     @property
     def at_rest(self) -> bool:
-        """Whether the last frame moved nothing."""
+        """Whether the last frame moved no joint."""
         return self._guard.at_rest
 
     @property
     def released(self) -> bool:
-        """Whether it ends as soon as it has come to rest."""
+        """Whether the lease ends as soon as the joints are at rest."""
         return self.clock.state is LeaseState.RELEASED
 
     @property
     def held_by(self) -> str:
-        """What keeps the robot from its target: self-collision, silence, or nothing."""
+        """What keeps the robot from its target: "self-collision", "silence", or "" for nothing."""
         if self.clock.state in (LeaseState.SILENT, LeaseState.OVER):
             return SILENCE
         return SELF_COLLISION if self._guard.held else ""
 
     @property
     def holds(self) -> int:
-        """Times it braked for a contact."""
+        """Number of times the filter braked for a contact."""
         return self._guard.holds
 
     def touching(self) -> str:
-        """Bodies that would touch at the target, in words; empty when it is the way there."""
+        """Bodies that would touch at the target, in words; empty when they would touch only on the way there."""
         pairs = self._guard.touching(self._glide.target_rad)
         return ", ".join(f"{a} and {b}" for a, b in pairs[:3])
