@@ -71,7 +71,7 @@ class ServoFaultError(DaemonError):
 
 @dataclass(frozen=True)
 class MismatchRow:
-    """One servo: what the robot file says and what answered."""
+    """A servo whose answer differs from the robot file: the expected one and the one found."""
 
     servo_id: int
     joint_name: str
@@ -80,7 +80,7 @@ class MismatchRow:
 
 
 class BusMismatchError(DaemonError):
-    """The bus holds other servos than the robot file says."""
+    """The servos on the bus differ from the robot file."""
 
     def __init__(self, rows: Sequence[MismatchRow], hint: str) -> None:
         self.rows = tuple(rows)
@@ -90,7 +90,7 @@ class BusMismatchError(DaemonError):
 
 
 class LinkError(DaemonError):
-    """Bytes lost or bad on the bus."""
+    """Bytes on the bus were lost or bad."""
 
 
 class LinkTimeoutError(LinkError, TimeoutError):
@@ -98,7 +98,7 @@ class LinkTimeoutError(LinkError, TimeoutError):
 
 
 class LinkGarbledError(LinkTimeoutError):
-    """Bytes came each time one servo was asked, and never an answer: two servos have its id, or there is noise."""
+    """A servo's answers were garbled each time: two servos have its id, or there is noise."""
 
     def __init__(self, servo_id: int, port: str, tries: int) -> None:
         self.servo_id = servo_id
@@ -110,7 +110,7 @@ class LinkLostError(LinkError):
 
 
 class PacketError(LinkError, ValueError):
-    """A packet whose content is not what its instruction says."""
+    """The content of a packet does not fit its instruction."""
 
 
 class LogError(DaemonError, ValueError):
@@ -147,7 +147,7 @@ class UnknownGestureError(ClipError):
 
 
 class GestureExistsError(ClipError):
-    """There is a gesture of that name already."""
+    """A gesture has that name already."""
 
     def __init__(self, name: str, *, own: bool) -> None:
         self.name, self.own = name, own
@@ -156,5 +156,5 @@ class GestureExistsError(ClipError):
 
 
 def two_of(servo_id: int) -> str:
-    """What garbled answers of one servo mean, and what to do."""
+    """Text for people about the garbled answers of a servo: their cause, and what to do."""
     return f"two servos with id {servo_id}, or noise; unplug one of them and give the other a new id (mmmd servo id)"

@@ -20,7 +20,7 @@ _MOST_STEPS = 40
 _GAP, _RESIDUAL = 1e-7, 1e-7
 """Mean complementarity, and residuals, below which a solution counts as found."""
 _START = 1e-2
-"""Smallest initial value of slacks and multipliers."""
+"""Initial value of slacks and multipliers at least."""
 _TO_BORDER = 0.995
 """Share of the distance to the nearest bound that a step covers."""
 

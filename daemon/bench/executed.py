@@ -143,7 +143,7 @@ class Executed:
 
 
 def tracking(cycles: NDArray[np.void], measured_rad: Array, period_s: float, longer_s: float = 0.0) -> Tracking:
-    """How positions (N, J), measured in N bus cycles, follow the goals of those cycles."""
+    """Figures of how positions (N, J), measured in N bus cycles, follow the goals of those cycles."""
     goal_rad: Array = cycles["goal_rad"]
     error, setpoint = goal_rad - measured_rad, cycles["setpoint_rad"]
     J, most = goal_rad.shape[1], round(_LONGEST_LAG_S / period_s)

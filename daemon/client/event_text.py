@@ -73,5 +73,5 @@ def repeatable(events: Iterable[object]) -> str:
 
 
 def _verdict(event: Done) -> str:
-    """What the motion shows and, where the robot does not show all of it, what is missing there."""
+    """Text of what the motion shows, and of what is missing on the robot, if anything."""
     return f"its motion {event.seen}; on the robot: {event.missing}" if event.missing else event.seen

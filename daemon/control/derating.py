@@ -26,7 +26,7 @@ from retarget.robot.robot import RobotModel
 Array = NDArray[np.float64]
 
 LEAST_SHARE = 0.3
-"""Smallest share of full speed. A slower motion helps little: gravity heats a raised arm that stands still as well."""
+"""Share of full speed at least. A slower motion helps little: gravity heats a raised arm that stands still as well."""
 HOT_C, HOTTEST_C = 10.0, 3.0
 """Degrees below the servo's temperature limit at which slowing begins, and at which it is greatest."""
 LOW_V, LOWEST_V = 0.5, 0.1

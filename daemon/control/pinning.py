@@ -107,7 +107,7 @@ def _pin(bus: ServoBus, servo_id: int, tick: int) -> None:
     """Set the goal of a limp servo to its measured position.
 
     Raises:
-        ServoFaultError: it stands outside its own position limits, and refuses.
+        ServoFaultError: the servo stands outside its own position limits, and refuses the goal.
     """
     try:
         bus.write_item(servo_id, "goal_position", tick)

@@ -39,7 +39,7 @@ FILM_PX, FILM_FPS = (480, 360), 10.0
 
 @dataclass
 class Shown:
-    """What happened to one text."""
+    """The events of one text."""
 
     text: str
     seed: int
@@ -47,17 +47,17 @@ class Shown:
 
     @property
     def accepted(self) -> Accepted | None:
-        """The event that took it, None when it was refused."""
+        """The event that accepted the text; None when it was refused."""
         return next((e for e in self.events if isinstance(e, Accepted)), None)
 
     @property
     def end(self) -> AnyEvent | None:
-        """The event that ended it."""
+        """The event that ended the text's command; None before."""
         return self.events[-1] if self.events else None
 
 
 def free_endpoints() -> Endpoints:
-    """Three loopback ports that nobody uses."""
+    """Endpoints on three free loopback ports."""
     ports: list[int] = []
     held: list[socket.socket] = []
     for _ in range(3):
@@ -73,11 +73,11 @@ def free_endpoints() -> Endpoints:
 
 @contextmanager
 def child(arguments: list[str], log: Path) -> Generator[subprocess.Popen[bytes]]:
-    """A subcommand of mmmd in its own process; ended at the latest when the block ends."""
+    """Run a subcommand of mmmd in its own process, which ends with the block at the latest."""
     command, process = [sys.executable, "-m", "daemon.cli", *arguments], None
     with log.open("wb") as f:
         try:
-            with _sigterm_waits():  # else a child that has just been started would be nobody's
+            with _sigterm_waits():  # else a child that was just started would be left behind
                 process = subprocess.Popen(command, stdout=f, stderr=subprocess.STDOUT, start_new_session=True)
             yield process
         finally:
@@ -87,7 +87,7 @@ def child(arguments: list[str], log: Path) -> Generator[subprocess.Popen[bytes]]
 
 @contextmanager
 def _sigterm_waits() -> Generator[None]:
-    """A SIGTERM that comes in the block counts at its end. Blocking the signal instead would be passed on to children."""
+    """Delay a SIGTERM to the end of the block. Blocking the signal instead would be inherited by children."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -102,7 +102,7 @@ def _sigterm_waits() -> Generator[None]:
 
 
 def end(process: subprocess.Popen[bytes]) -> int:
-    """Ask a child to end (it parks), wait, and kill it only when it does not; its exit status."""
+    """Ask a child to end (it parks), wait, and kill it only when it does not; returns its exit status."""
     if process.poll() is None:
         process.send_signal(signal.SIGTERM)
         try:
@@ -117,7 +117,7 @@ def wait_until_ready(client: Client, process: subprocess.Popen[bytes], log: Path
     """Wait for the daemon and its generator.
 
     Raises:
-        DaemonError: it ended, or is not ready in time.
+        DaemonError: the daemon ended, or is not ready in time.
     """
     deadline = time.monotonic() + START_TIMEOUT_S
     while time.monotonic() < deadline:
@@ -201,7 +201,7 @@ def describe(one: Shown, audited: dict[int, tuple[int, int]]) -> list[str]:
 
 
 def draw(shown: list[Shown], log: Log, robot: RobotModel, out: Path) -> tuple[list[Path], str]:
-    """A plot of the joints, a film and a contact sheet of a run; and why the last two are missing, empty when they are not.
+    """Draw a plot of the joints, a film and a contact sheet of a run; the text says why the last two are missing, else empty.
 
     The persons beside the robot are generated again from text and seed.
     """
@@ -227,7 +227,7 @@ def draw(shown: list[Shown], log: Log, robot: RobotModel, out: Path) -> tuple[li
 
 
 def _performances(shown: list[Shown], log: Log, robot: RobotModel) -> list[Performance]:
-    """The part of each text's motion that was played, the person beside the robot's goals."""
+    """The played part of each text's motion: the person beside the robot's goals."""
     from daemon.pictures.performance import of_motion
     from mmm_core.generate.engine import Engine
 
@@ -244,7 +244,7 @@ def _performances(shown: list[Shown], log: Log, robot: RobotModel) -> list[Perfo
 
 
 def replayed(log_file: Path) -> dict[str, Any]:
-    """What `mmmd replay` says about a log."""
+    """The report of `mmmd replay` about a log."""
     command = [sys.executable, "-m", "daemon.cli", "replay", str(log_file), "--bus", "sim://", "--json"]
     done = subprocess.run(command, capture_output=True, timeout=120, check=False)
     if done.returncode not in (0, 1) or not done.stdout.strip():

@@ -184,7 +184,7 @@ def decode_request(frame: bytes) -> ToGenerator:
 
     Raises:
         msgspec.MsgspecError: no such message.
-        RecursionError: it is nested too deeply.
+        RecursionError: the frame is nested too deeply.
     """
     return _TO_DECODER.decode(frame)
 
@@ -194,6 +194,6 @@ def decode_reply(frame: bytes) -> FromGenerator:
 
     Raises:
         msgspec.MsgspecError: no such message.
-        RecursionError: it is nested too deeply.
+        RecursionError: the frame is nested too deeply.
     """
     return _FROM_DECODER.decode(frame)

@@ -39,7 +39,7 @@ class Clip:
 
     Attributes:
         name: lower case letters, digits and _.
-        text: what it shows.
+        text: text of the motion.
         posture: its frames.
         marks: frames of its loop and of its hold.
         mirror: name of the clip that shows its mirror image, empty when there is none.

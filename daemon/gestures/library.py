@@ -72,7 +72,7 @@ class GestureLibrary:
 
         Args:
             name: of the clip.
-            text: what it shows.
+            text: text of the motion.
             posture: its frames.
             source: origin of the motion.
             side: arms with which the clip was taught.

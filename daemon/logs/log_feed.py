@@ -16,16 +16,16 @@ import msgspec
 from daemon.wire.status import LogEvent
 
 SOCKET_VARIABLE = "MMMD_LOG_SOCKET"
-"""Where the daemon's children send their lines to."""
+"""Environment variable with the path of the socket to which the daemon's children send their lines."""
 EVENT_LOGGER = "daemon.front.events"
-"""Lines that only repeat what `v1/event` says."""
+"""Name of the logger whose lines only repeat `v1/event`."""
 MOST_BYTES = 8192
 LINES_AT_ONCE = 100
-"""The event loop has other work as well."""
+"""Number of lines received before the event loop continues with other tasks."""
 
 
 class LogSender(logging.Handler):
-    """Sends each line of a process to the front; what finds no room, or nobody there, is lost to `v1/log` alone."""
+    """Sends each log line of a process to the front; a line for which there is no room or no receiver is lost to `v1/log` alone."""
 
     def __init__(self, process: str, path: str) -> None:
         super().__init__()
@@ -36,10 +36,10 @@ class LogSender(logging.Handler):
         self.addFilter(lambda record: record.name != EVENT_LOGGER)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Send one line; one that cannot be written is told on stderr, as logging does, and ends nobody's work."""
+        """Send one line; a line that cannot be written is reported on stderr, as by logging, and stops no work."""
         try:
             line = msgspec.json.encode(self._event(record))
-        except Exception:  # whatever an argument's own text raises
+        except Exception:  # the text of an argument may raise any error
             self.handleError(record)
             return
         with contextlib.suppress(OSError):
@@ -65,7 +65,7 @@ class LogFeed:
     """Receives the lines of this process and its children, and hands them on in the event loop.
 
     Args:
-        path: of the socket, in a folder that only this user can write to.
+        path: path of the socket, in a folder that only this user can write to.
         publish: called with each line.
     """
 
@@ -77,12 +77,12 @@ class LogFeed:
         self._sender = LogSender("front", str(path))
 
     def start(self) -> None:
-        """Begin, in the running event loop."""
+        """Begin to receive, in the running event loop."""
         asyncio.get_running_loop().add_reader(self._socket, self._read)
         logging.getLogger().addHandler(self._sender)
 
     def close(self) -> None:
-        """End it; lines are still written to stderr."""
+        """Stop receiving; lines are still written to stderr."""
         logging.getLogger().removeHandler(self._sender)
         with contextlib.suppress(RuntimeError):  # the loop has ended already
             asyncio.get_running_loop().remove_reader(self._socket)
@@ -95,7 +95,7 @@ class LogFeed:
                 line = self._socket.recv(MOST_BYTES)
             except BlockingIOError:
                 return
-            with contextlib.suppress(Exception):  # of another program of this user: a decoder may raise anything
+            with contextlib.suppress(Exception):  # another program of this user may have sent any bytes
                 self._publish(msgspec.json.decode(line, type=LogEvent))
 
 

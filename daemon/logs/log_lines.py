@@ -8,11 +8,11 @@ import os
 import time
 
 JSON_VARIABLE = "MMMD_LOG_JSON"
-"""Set for the daemon's children, so that all their lines are of one kind."""
+"""Environment variable set for the daemon's children, so that all lines have the same form."""
 
 
 class JsonLines(logging.Formatter):
-    """One JSON object a line: time, level, process, module, message."""
+    """Formats each line as a JSON object: time, level, process, module, message."""
 
     def __init__(self, process: str) -> None:
         super().__init__()
@@ -31,7 +31,7 @@ class JsonLines(logging.Formatter):
 
 
 def start_logging(process: str, *, level: int = logging.INFO, as_json: bool | None = None, stamp: bool = False) -> None:
-    """Log to stderr; as JSON when asked, or when the process that started this one was."""
+    """Log to stderr; as JSON when requested, or when the process that started this one logs so."""
     as_json = os.environ.get(JSON_VARIABLE) == "1" if as_json is None else as_json
     if as_json:
         os.environ[JSON_VARIABLE] = "1"

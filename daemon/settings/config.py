@@ -17,7 +17,7 @@ HTTP_ADDRESS = "127.0.0.1:5880"
 
 
 class EndpointInUseError(ConfigError):
-    """An endpoint that somebody else has: nothing is wrong with what was asked, so a service tries it again."""
+    """Another process has the endpoint; the setting itself is right, so that a service may try again."""
 
     exit_status = 1
 
@@ -28,7 +28,7 @@ def config_error(key: str, found: str, allowed: str, do: str) -> ConfigError:
 
 
 def check_endpoint(key: str, endpoint: str, *, keys: bool = False) -> None:
-    """Refuse what is no endpoint, and without `keys` one that other machines could reach.
+    """Refuse a malformed endpoint, and without `keys` an endpoint that other machines could reach.
 
     Raises:
         ConfigError: the endpoint is neither ipc:// nor tcp://, or not local and there are no keys.
@@ -51,10 +51,10 @@ def check_endpoint(key: str, endpoint: str, *, keys: bool = False) -> None:
 
 
 def metrics_address(address: str) -> tuple[str, int]:
-    """Host and port of the metrics, which anybody who reaches them may read: they are plain HTTP, without a key.
+    """Host and port of the metrics; anybody who reaches them may read them, because they are plain HTTP without a key.
 
     Raises:
-        ConfigError: it is no HOST:PORT, or other machines could reach it.
+        ConfigError: the address is no HOST:PORT, or other machines could reach it.
     """
     allowed = "HOST:PORT on a loopback address, for example 127.0.0.1:9109"
     host, _, port = address.rpartition(":")
@@ -69,9 +69,9 @@ def metrics_address(address: str) -> tuple[str, int]:
 
 
 def stream_beside(cmd: str, taken: Set[str] = frozenset()) -> str:
-    """Where `stream` is when nobody says: four ports after `cmd` (5875), or the first free of `taken` after that.
+    """The default endpoint of `stream`: four ports after `cmd` (5875), or the first port after that not in `taken`.
 
-    With ipc:// it is the path of `cmd` with `.stream` at its end. Daemon and clients come to the same from `cmd` alone.
+    With ipc:// it is the path of `cmd` with `.stream` appended. Daemon and clients derive the same endpoint from `cmd` alone.
     """
     host, _, port = cmd.rpartition(":")
     if not cmd.startswith("tcp://") or not port.isdigit():
@@ -95,10 +95,10 @@ class Setting:
     """Help, bounds and options of a setting, beside its name, type and default, for config file, environment and command line.
 
     Attributes:
-        help: what people read; `{default:g}` stands for the default.
-        low: the least value of a number.
-        high: the greatest value of a number.
-        choices: the words that are allowed; empty where any is.
+        help: help text for people; `{default:g}` stands for the default.
+        low: smallest allowed value of a number.
+        high: largest allowed value of a number.
+        choices: allowed words; empty when any word is allowed.
         is_flag: whether `mmmd run` has an option for it.
         in_environment: whether `MMMD_NAME` sets it for `mmmd run`.
     """
@@ -140,10 +140,10 @@ class Endpoints:
     )
 
     def __post_init__(self) -> None:
-        """Refuse what other machines could reach, and two sockets at one place.
+        """Refuse endpoints that other machines could reach, and two sockets at one address.
 
         Raises:
-            ConfigError: see `check_endpoint`.
+            ConfigError: an endpoint is refused by `check_endpoint`, or two are equal.
         """
         for key in ("cmd", "ctl", "pub"):
             check_endpoint(key, getattr(self, key), keys=self.keys is not None)

@@ -17,12 +17,12 @@ from daemon.settings.config import DaemonConfig, Endpoints, Setting, settings_of
 
 _ENDPOINT_KEYS = ("cmd", "ctl", "pub", "stream", "keys")
 _LOG_JSON = "log_json"
-"""Read by `mmmd run` itself."""
+"""Name of the setting that `mmmd run` itself reads."""
 
 
 @dataclass(frozen=True)
 class KnownSetting:
-    """A setting of `mmmd run`: its default, its own type, and what is said of it."""
+    """A setting of `mmmd run`: its default, its type, and its help."""
 
     default: Any
     kind: type
@@ -30,7 +30,7 @@ class KnownSetting:
 
 
 def _known() -> dict[str, KnownSetting]:
-    """All settings, the endpoints in their place among the others."""
+    """All settings by name, the endpoints in their place among the others."""
     found: dict[str, KnownSetting] = {}
     for f in fields(DaemonConfig):
         if f.name == "endpoints":
@@ -52,7 +52,7 @@ DEFAULTS: dict[str, Any] = {key: known.default for key, known in SETTINGS.items(
 
 @dataclass(frozen=True)
 class SourcedValue:
-    """A value and where it came from."""
+    """A value and its source."""
 
     value: Any
     source: str
@@ -70,10 +70,10 @@ def default_file(environment: Mapping[str, str]) -> Path | None:
 def resolve(
     flags: Mapping[str, Any], file: Path | None = None, environment: Mapping[str, str] | None = None
 ) -> dict[str, SourcedValue]:
-    """Every setting; flags that are None were not given.
+    """Every setting with its source; a flag that is None was not given.
 
     Raises:
-        ConfigError: the file is missing or no TOML, a key is unknown, a value has another type than its default.
+        ConfigError: the file is missing or no TOML, a key is unknown, or a value has another type than its default.
     """
     environment = os.environ if environment is None else environment
     file = file or default_file(environment)
@@ -107,7 +107,7 @@ def config_of(settings: Mapping[str, SourcedValue]) -> DaemonConfig:
 
 
 def settings_of(config: DaemonConfig) -> dict[str, Any]:
-    """Every setting that `mmmd config show` tells, as the daemon runs with it; `log_json` is not the daemon's."""
+    """Every setting that `mmmd config show` lists, with the daemon's value; `log_json` is not the daemon's."""
     ends = {key: getattr(config.endpoints, key) for key in _ENDPOINT_KEYS}
     return {key: ends[key] if key in ends else getattr(config, key) for key in DEFAULTS if key != _LOG_JSON}
 
@@ -124,7 +124,7 @@ def _read(file: Path) -> dict[str, Any]:
 
 
 def _converted(key: str, value: Any, source: str) -> Any:
-    """A value of the setting's own type."""
+    """The value, converted to the setting's type."""
     wanted = str if SETTINGS[key].kind is Path else SETTINGS[key].kind
     if wanted is bool and isinstance(value, str):
         known = {"1": True, "true": True, "yes": True, "0": False, "false": False, "no": False}

@@ -68,7 +68,7 @@ async def serve(
 
     Args:
         address: HOST:PORT; beyond loopback it takes the token of $MMMD_TOKEN, or one that is made and printed.
-        ends: where the daemon is.
+        ends: endpoints of the daemon.
         robot: name or robot.toml of the daemon's robot, or of the run; None for one that ships.
         run: .mcap to scrub through; None for the daemon alone.
         page: whether the page is served beside the messages.

@@ -35,7 +35,7 @@ class Relay:
     """Connections to one daemon.
 
     Args:
-        endpoints: where the daemon is.
+        endpoints: endpoints of the daemon.
     """
 
     def __init__(self, endpoints: Endpoints) -> None:

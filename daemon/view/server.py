@@ -40,7 +40,7 @@ class WebServer:
 
     Args:
         access: address, port and token.
-        endpoints: where the daemon is.
+        endpoints: endpoints of the daemon.
         shapes: shapes of a robot by its name, as `robot_shapes` returns them.
         page: whether the page is served, or the messages alone.
         run: a recorded run as `recorded_run` returns it, shown instead of a daemon; None for none.

@@ -33,7 +33,7 @@ class WebState:
 
     Args:
         access: address, port and token.
-        endpoints: where the daemon is.
+        endpoints: endpoints of the daemon.
         shapes: shapes of a robot by its name.
         run: a recorded run that is shown instead of a daemon; None for none.
     """
