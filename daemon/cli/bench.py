@@ -29,10 +29,10 @@ _WITH_N: dict[str, int | None] = {
     "story": 59, "official": None, "retarget": None, "first-motion": 50, "barge-in": 1000, "seams": 60, "estop": 30, "audit": 200,
     "stream": 50,
 }  # fmt: skip
-"""Figures that take a number of texts, clips or trials, and how many it is when none is given (None: all)."""
+"""Figures that take a number of texts, clips or trials, and their default number (None: all)."""
 
 _WITH_ROBOT = ("audit",)
-"""Figures that can be had of robots of one's own."""
+"""Figures that can be measured on robot files of one's own."""
 
 _MUST_BE_NONE = ("violations", "self_contacts", "lost")
 """Figures that fail the bench unless they are zero."""
@@ -107,7 +107,7 @@ def bench(
 
 
 def _lines(figures: Mapping[str, Any], indent: str = "") -> Iterator[str]:
-    """A line for each figure; figures of parts (a robot, a disturbance) stand indented below the part's name."""
+    """Yield a line for each figure; figures of parts (a robot, a disturbance) are indented below the part's name."""
     for key, value in figures.items():
         head = f"{indent}[bold]{key}[/bold]:"
         if not isinstance(value, Mapping):

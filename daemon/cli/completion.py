@@ -39,7 +39,7 @@ complete -o default -F _mmmd mmmd
 
 @dataclass(frozen=True)
 class _Words:
-    """What may follow a command: verbs, options, and the values that options have."""
+    """Words that may follow a command: verbs, options, and the values of options."""
 
     verbs: tuple[str, ...]
     options: tuple[str, ...]
@@ -65,7 +65,7 @@ def completion(shell: Annotated[Literal["bash", "zsh", "fish"], tyro.conf.Positi
 
 
 def _words(name: str) -> _Words:
-    """The words of a command, as its help has them."""
+    """The words in a command's help."""
     from daemon.cli.program import main
     from retarget.robot.loading import list_robots
 

@@ -1,4 +1,4 @@
-"""Options and printing that the commands which talk to a daemon share."""
+"""Options and output shared by the commands that talk to a daemon."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DEFAULT = Endpoints()
 
 @dataclass(frozen=True)
 class Connection:
-    """Where the daemon is.
+    """Endpoints of the daemon.
 
     Attributes:
         cmd: endpoint of requests.
@@ -35,7 +35,7 @@ class Connection:
     timeout_s: float = 5.0
 
     def client(self) -> Client:
-        """A client for it.
+        """A client for the daemon.
 
         Raises:
             ConfigError: an endpoint is not a local one and there are no keys.
@@ -59,6 +59,6 @@ class Connection:
         """Checked endpoints.
 
         Raises:
-            ConfigError: one is not local and there are no keys.
+            ConfigError: an endpoint is not local and there are no keys.
         """
         return Endpoints(self.cmd, self.ctl, self.pub, self.keys, self.stream)

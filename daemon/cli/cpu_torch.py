@@ -1,4 +1,4 @@
-"""Installs a PyTorch that runs on the CPU, and never gigabytes of GPU libraries unless they are asked for.
+"""Installs a PyTorch that runs on the CPU, and GPU libraries of several gigabytes only on request.
 
 The plain `torch` of the public package index requires CUDA on x86_64 and on arm64 Linux. This module tries, in this order, the
 index that pip is configured for, then PyTorch's own CPU index, and takes the first build without GPU libraries. When neither has
@@ -33,12 +33,12 @@ GPU_NAMES = re.compile(r"(nvidia|cuda|rocm|triton|pytorch-triton|intel-sycl)\b")
 """Beginnings of the names of packages that hold GPU libraries."""
 GPU_SIZES = "about 3 GB to download and 6 GB on disk, where the CPU build takes 0.2 and 0.8 GB"
 METADATA_WITHOUT_WHEEL = (23, 2)
-"""The first pip that reads a package's requirements without downloading its wheel (PEP 658 and PEP 714)."""
+"""Version of the first pip that reads a package's requirements without downloading its wheel (PEP 658 and PEP 714)."""
 WHAT_TO_DO = (
     "install PyTorch's CPU build with `mmmd install-torch` (64-bit systems, a Raspberry Pi with 64-bit Raspberry Pi OS too),"
     " or name a generator on another machine: `mmmd run --generator tcp://HOST:5874`"
 )
-"""What a person does whose machine has no torch."""
+"""Advice for a machine without torch."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Build:
     """A build of torch that an index offers.
 
     Attributes:
-        version: as pip names it, "2.13.0+cpu".
+        version: version in pip's form, "2.13.0+cpu".
         gpu_libraries: names of the GPU packages that it requires on this machine.
     """
 
@@ -55,17 +55,17 @@ class Build:
 
 
 def install(requirement: str, *, constraint: Path | None, gpu: bool, cpu_index: str, pip_flags: Sequence[str]) -> str:
-    """Install torch and what it requires.
+    """Install torch and its requirements.
 
     Args:
         requirement: "torch" with or without a range of versions.
         constraint: pip's constraints file; None for none.
-        gpu: take what the configured index has, whatever it brings along.
+        gpu: whether to accept the configured index's build with any requirements.
         cpu_index: the index to try after the configured one.
         pip_flags: further options of `pip install`.
 
     Returns:
-        What was installed, in one sentence.
+        The installed version, in one sentence.
 
     Raises:
         NoCpuBuildError: no index has a build without GPU libraries, or none at all for this machine.
@@ -91,13 +91,13 @@ def install(requirement: str, *, constraint: Path | None, gpu: bool, cpu_index: 
             return "torch is installed already and is kept"
         if found is not None and not found.gpu_libraries:
             pip.install(f"torch=={found.version}", "--no-deps", environment=only)
-            pip.install(requirement)  # what it requires, from the configured index
+            pip.install(requirement)  # its requirements, from the configured index
             return f"torch {found.version} installed from {cpu_index}"
     raise NoCpuBuildError(_refusal(offered, problem, cpu_index, cpu_problem))
 
 
 def _refusal(offered: Build | None, problem: str, cpu_index: str, cpu_problem: str) -> str:
-    """Why nothing was installed, and how to go on."""
+    """The reason why nothing was installed, and what to do."""
     if offered is not None:
         names = ", ".join(offered.gpu_libraries[:4])
         more = f" and {len(offered.gpu_libraries) - 4} more" if len(offered.gpu_libraries) > 4 else ""
@@ -142,7 +142,7 @@ class _Pip:
         )
 
     def offered(self, requirement: str, environment: Mapping[str, str] | None = None) -> tuple[Build | None, str]:
-        """The build that pip would install, with an empty version when one is installed; None and the reason for none."""
+        """The build that pip would install, with an empty version when one is installed; or None and the reason."""
         arguments = ["install", "--dry-run", "--no-deps", "--report", "-", *self._options, requirement]
         done = self._run(arguments, environment or {})
         if done.returncode:
@@ -182,7 +182,7 @@ def _gpu_libraries(requires: Sequence[str]) -> tuple[str, ...]:
 
 
 def main() -> int:
-    """Install torch as the command line says; 0, or 1 with a message."""
+    """Install torch by the command line; return 0, or 1 with a message."""
     parser = argparse.ArgumentParser(prog="python -m daemon.cli.cpu_torch", description=__doc__)
     parser.add_argument("--constraint", type=Path)
     parser.add_argument("--build", choices=("cpu", "gpu"), default="cpu")

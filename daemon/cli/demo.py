@@ -1,4 +1,4 @@
-"""`mmmd demo`: see it work, without hardware."""
+"""`mmmd demo`: a demonstration without hardware."""
 
 from __future__ import annotations
 
@@ -117,14 +117,14 @@ def demo(
 
 
 def _files_in(out: Path) -> tuple[Path, Path, Path]:
-    """The servos' tty, the log and the audit in the folder, which is made; the log of an earlier demo goes."""
+    """Paths of the servos' tty, the log and the audit in the folder, which is made; an earlier demo's log is deleted."""
     out.mkdir(parents=True, exist_ok=True)
     (out / "run.mcap").unlink(missing_ok=True)
     return out / "servos", out / "run.mcap", out / "audit.json"
 
 
 def _open_page(log: Path) -> str:
-    """Open the page that the daemon's log names; its address."""
+    """Open the page that the daemon's log names; return its address."""
     import re
     import time
     import webbrowser

@@ -1,4 +1,4 @@
-"""What a newcomer has: ports, a daemon that runs, the motion model, robots; and what to type next."""
+"""First information for a new user: ports, a running daemon, the motion model, robots; and the next command to type."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ class Port:
 
 @dataclass(frozen=True)
 class FirstLook:
-    """What was found on this machine. Nothing is written to any port for it.
+    """Findings on this machine, made without writing to any port.
 
     Attributes:
         ports: serial ports of USB adapters.
         robots: names of the robots that ship.
-        has_model: whether PyTorch is there, which the motion model needs.
-        daemon: whether somebody listens where a daemon does by default.
+        has_model: whether PyTorch, which the motion model needs, is installed.
+        daemon: whether a program listens at a daemon's default endpoint.
     """
 
     ports: tuple[Port, ...]
@@ -32,7 +32,7 @@ class FirstLook:
     daemon: bool
 
     def lines(self) -> list[str]:
-        """What was found, and what to type next."""
+        """The findings, and the next command to type."""
         found = [f"port {p.device} ({p.description})" for p in self.ports] or ["no USB serial adapter"]
         model = (
             "the motion model can run"
@@ -55,7 +55,7 @@ class FirstLook:
 
 
 def first_look() -> FirstLook:
-    """Look at this machine."""
+    """Examine this machine."""
     from daemon.network.probe import listening
     from daemon.settings.config import Endpoints
     from retarget.robot.loading import list_robots
@@ -65,7 +65,7 @@ def first_look() -> FirstLook:
 
 
 def robots_that_fit(found: Iterable[tuple[int, int]]) -> list[str]:
-    """Names of the robots that ship all of whose servos are among the found (servo id, model number)."""
+    """Names of shipped robots all of whose servos are among those found (servo id, model number)."""
     from retarget.robot.loading import list_robots, load_robot
 
     there = set(found)
@@ -75,7 +75,7 @@ def robots_that_fit(found: Iterable[tuple[int, int]]) -> list[str]:
 
 
 def fit_line(names: Sequence[str], device: str, baud: int) -> str:
-    """What to type next for the robots that fit."""
+    """The next command to type for the robots that fit."""
     if not names:
         return "no robot that ships has these servos: `mmmd robot new my.urdf` makes yours (docs/robots.md)"
     return f"fits: {', '.join(names)}; next: mmmd doctor --robot {names[0]} --bus dxl://{device}?baud={baud}"

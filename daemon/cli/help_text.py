@@ -1,4 +1,4 @@
-"""Help of a command without the words of Python's type system: no `{None}|FLOAT`, no `(default: None)`."""
+"""Removes the notation of Python's types from a command's help: no `{None}|FLOAT`, no `(default: None)`."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ _NO_DEFAULT = re.compile(r" ?\(default:\s+None\)")
 
 @contextlib.contextmanager
 def plain_help() -> Generator[None]:
-    """What is printed meanwhile is printed at the end, cleaned: widths and borders stay."""
+    """Collect the output inside the block and print it cleaned at the end, with its widths and borders."""
     out = sys.stdout
-    kept = io.TextIOWrapper(io.BytesIO(), encoding=out.encoding or "utf-8", errors="replace")  # borders go by encoding
+    kept = io.TextIOWrapper(
+        io.BytesIO(), encoding=out.encoding or "utf-8", errors="replace"
+    )  # the encoding decides on the borders
     sys.stdout = kept
     try:
         yield
@@ -28,7 +30,7 @@ def plain_help() -> Generator[None]:
 
 
 def cleaned(text: str) -> str:
-    """Help text with what stands for "not given" left out."""
+    """Help text without the notations for "not given"."""
     text = _NO_DEFAULT_WRAPPED.sub(lambda m: " " * len("(default:") + m[1], text)
     return "".join(_cleaned_line(line) for line in text.splitlines(keepends=True) if _says_more(line))
 
@@ -43,5 +45,5 @@ def _cleaned_line(line: str) -> str:
 
 
 def _says_more(line: str) -> bool:
-    """Whether something is left of a line that had no more than a default of None."""
+    """Whether a line has more text than a default of None."""
     return not re.fullmatch(r"[│|]?\s*\(default: None\)\s*[│|]?\n?", line)

@@ -1,4 +1,4 @@
-"""`mmmd keys`: who may talk to whom over the network."""
+"""`mmmd keys`: keys that decide which machines may connect over the network."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def keys(
 
 
 def _to_paste(public: str) -> str:
-    """The commands that the other machine needs, for each part that this one may play."""
+    """The commands for the other machine, for each role that this machine may have."""
     here = re.sub(r"[^A-Za-z0-9_.-]", "-", socket.gethostname())[:64] or "here"
     return (
         "on the other machine paste one of these lines:\n"

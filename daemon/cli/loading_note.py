@@ -1,4 +1,4 @@
-"""The line that a command writes while the daemon still loads the motion model and the first answer is outstanding."""
+"""The line that a command prints while the daemon still loads the motion model and the first event is outstanding."""
 
 from __future__ import annotations
 
@@ -12,22 +12,24 @@ if TYPE_CHECKING:
     from daemon.cli.connection import Connection
 
 NOTE_AFTER_S = 0.5
-"""Seconds without an answer before the daemon is asked why: a loaded model answers within 0.1 s."""
+"""Seconds without an event before the daemon's status is requested: a loaded model answers within 0.1 s."""
 
 
 class LoadingNote:
-    """Writes one line to stderr when a text has no answer yet and the daemon says that its generator is starting.
+    """Writes one line to stderr when a text has no event yet and the daemon's generator is starting.
+
+    The status is requested by a client of its own in a thread of its own, as clients are not for several threads.
 
     The daemon is asked by a client of its own in a thread of its own: clients are not for several threads.
 
     Args:
-        at: where the daemon is.
+        at: endpoints of the daemon.
     """
 
     def __init__(self, at: Connection) -> None:
         self._at = at
         self._timer = threading.Timer(NOTE_AFTER_S, self._ask)
-        self._timer.daemon = True  # Ctrl-C is not to wait for it
+        self._timer.daemon = True  # Ctrl-C does not wait for the timer
         self._answered = False
 
     def __enter__(self) -> Self:
@@ -38,7 +40,7 @@ class LoadingNote:
         self.answered()
 
     def answered(self) -> None:
-        """The command has its first answer: nothing is written any more."""
+        """Write nothing from now on: the command has its first event."""
         self._answered = True
         self._timer.cancel()
 
@@ -48,7 +50,7 @@ class LoadingNote:
         try:
             with self._at.client() as robot:
                 generator = robot.status().generator
-        except DaemonError:  # the command itself says what is wrong with the daemon
+        except DaemonError:  # the command itself reports errors of the daemon
             return
         if generator == "starting" and not self._answered:
             sys.stderr.write(

@@ -1,4 +1,4 @@
-"""What a person does about a part of mmmd that is not installed: an extra, PyTorch, or what stays in the repository."""
+"""Advice on a part of mmmd that is not installed: an extra, PyTorch, or files that stay in the repository."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ _RUN = (
     "ruckig",
     "matplotlib",
 )
-"""Packages of the extra `run`, by the names that they are imported by."""
+"""Import names of the packages of the extra `run`."""
 _OURS = ("mmm_core", "retarget", "daemon", "sim")
 _ROOT = Path(__file__).parents[2]
 
 
 def about_missing(error: Exception) -> str:
-    """What is missing and what to do, when an error says that a part of mmmd is not installed; else empty."""
+    """The missing part and its remedy, when an error says that a part of mmmd is not installed; else empty."""
     if isinstance(error, ModuleNotFoundError):
         package = (error.name or "").partition(".")[0]
         if package in _WITH_TORCH:

@@ -1,4 +1,4 @@
-"""What `mmmd say`, `story`, `inbetween`, `edit` and `gesture play` share: options, sending, and printing what happens."""
+"""Options, sending and printing of events, shared by `mmmd say`, `story`, `inbetween`, `edit` and `gesture play`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PlayFlags:
-    """How a motion is to be played: the options of `daemon.wire.requests.Play`, and the command's id.
+    """Options of playing a motion, as in `daemon.wire.requests.Play`, and the command's id.
 
     Attributes:
         mirror: exchange left and right.
@@ -63,7 +63,7 @@ def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
     """A request with the flags of the command line.
 
     Raises:
-        CommandError: the flags contradict each other, or the seed is none.
+        CommandError: the flags contradict each other, or the seed is invalid.
     """
     from daemon.wire.requests import MAX_SEED
 
@@ -77,7 +77,7 @@ def built(kind: type[P], how: PlayFlags, **fields: Any) -> P:
 
 
 def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
-    """Send a request and print its events; the exit status. Ctrl-C cancels the command."""
+    """Send a request and print its events; return the exit status. Ctrl-C cancels the command."""
     from daemon.wire.codec import WireError, check_request
 
     try:
@@ -92,7 +92,7 @@ def play(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
 
 
 def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
-    """Send a request and print its events; the exit status."""
+    """Send a request and print its events; return the exit status."""
     from daemon.cli.loading_note import LoadingNote
     from daemon.client.compositions import FIRST_REPLY_TIMEOUT_S, patience_s
     from daemon.client.errors import exit_status
@@ -121,7 +121,7 @@ def _watched(request: Play, at: Connection, *, wait: bool, json: bool) -> int:
 
 
 def _interrupted(request: Play, at: Connection) -> int:
-    """Cancel a command after Ctrl-C and say what came of it; a second Ctrl-C leaves at once and says what goes on."""
+    """Cancel a command after Ctrl-C and print the result; a second Ctrl-C ends at once and says what goes on."""
     from daemon.client.errors import NoAnswerError, RefusedError
 
     what = f"{request.words[:60]!r}"

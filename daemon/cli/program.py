@@ -1,4 +1,4 @@
-"""`mmmd`: the commands, each loaded only when it is asked for.
+"""`mmmd`: the commands, each loaded only when it is called.
 
 Exit status: 0 good, 1 failed, 2 bad use, 3 robot fault. An error is one message on stderr; MMMD_DEBUG=1 adds the
 traceback.
@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class CommandEntry:
-    """A command: `module:function`, what it does in a line, and how to show it in the list."""
+    """A command: `module:function`, its summary in a line, and its form in the list."""
 
     target: str
     summary: str
@@ -92,19 +92,19 @@ GOOD, FAILED, BAD_USE, ROBOT_FAULT = 0, 1, 2, 3
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command; returns its exit status, 1 where nobody reads what it prints."""
+    """Run one command; return its exit status, or 1 when its output is not read."""
     _spell_out_what_cannot_be_shown()
     try:
         status = _answer(*(sys.argv[1:] if argv is None else argv))
         sys.stdout.flush()
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # no complaint at exit either
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # no error message at exit either
         return FAILED
     return status
 
 
 def _answer(name: str = "", *arguments: str) -> int:
-    """Run a command, or tell which there are; the exit status."""
+    """Run a command, or list the commands; return the exit status."""
     if name in COMMANDS:
         return _guarded(name, arguments)
     if name in ("", "-h", "--help", "help"):
@@ -121,14 +121,14 @@ def _answer(name: str = "", *arguments: str) -> int:
 
 
 def _spell_out_what_cannot_be_shown() -> None:
-    """Characters that the terminal's encoding lacks are printed as escapes, where printing them would end the command."""
+    """Print characters that the terminal's encoding lacks as escapes, where printing them would end the command."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
 
 def _guarded(name: str, arguments: Sequence[str]) -> int:
-    """Run a command; whatever it raises becomes one message and an exit status."""
+    """Run a command; any exception becomes one message and an exit status."""
     try:
         with _ended_by_sigterm():
             return _run(name, _load(name), arguments)
@@ -138,13 +138,13 @@ def _guarded(name: str, arguments: Sequence[str]) -> int:
         return _failed("interrupted", FAILED)
     except BrokenPipeError:
         raise
-    except Exception as error:  # the border to people
+    except Exception as error:  # no traceback reaches a person
         return _explain(error)
 
 
 @contextlib.contextmanager
 def _ended_by_sigterm() -> Generator[None]:
-    """SIGTERM unwinds a command, so that what it started ends with it; commands with an end of their own take it over."""
+    """Let SIGTERM unwind a command, so that its child processes end with it; commands with a handler of their own replace it."""
 
     def unwind(number: int, _frame: object) -> None:
         raise SystemExit(128 + number)
@@ -177,7 +177,7 @@ def _run(name: str, command: Callable[..., int | None], arguments: Sequence[str]
 
 
 def _explain(error: Exception) -> int:
-    """Say what went wrong in one message; the exit status."""
+    """Print one message for an error; return the exit status."""
     if os.environ.get("MMMD_DEBUG"):
         traceback.print_exception(error)
     from daemon.cli.missing_parts import about_missing
@@ -198,7 +198,7 @@ def _explain(error: Exception) -> int:
 
 
 def _names_no_file(error: BaseException) -> bool:
-    """Whether a file that the command line names is not there, or is a folder; a device that is not there is not meant."""
+    """Whether a file named on the command line is missing or is a folder; a missing device does not count."""
     from daemon.errors import PortError
 
     cause: BaseException | None = error
@@ -226,7 +226,7 @@ def _overview() -> str:
 
 
 def _found() -> str:
-    """What was found on this machine and what to type next; nothing where only the client is installed."""
+    """Findings on this machine and the next command to type; empty where only the client is installed."""
     try:
         from daemon.cli.first_look import first_look
 

@@ -104,7 +104,7 @@ OWED = "not carried out yet; it is, as soon as the bus process runs"
 
 
 def _tell(robot: Client, ack: Ack, json: bool) -> int:
-    """Print what the verb led to; 3 when the robot is in fault or a stop is not carried out yet, 1 when arming was broken off."""
+    """Print the result of the verb; return 3 when the robot is in fault or a stop is not carried out yet, 1 when arming failed."""
     after = robot.status()
     owed = ack.carried_out is False and after.state != "estop"
     broken_off = ack.verb == "arm" and after.state == "limp"

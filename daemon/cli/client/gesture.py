@@ -15,7 +15,7 @@ from daemon.cli.play_flags import PlayFlags, built, play
 from daemon.errors import CommandError
 
 WIDE = 100
-"""Columns of a terminal in which the whole table has room."""
+"""Columns of a terminal that is wide enough for the whole table."""
 
 
 def gesture(
@@ -90,7 +90,7 @@ def _list(folder: Path | None, json: bool) -> int:
 
     console = Console()
     columns = ("name", "shows", "s", "goes round", "held at", "other side", "own")
-    shown = columns if console.width >= WIDE else columns[:3]  # a name that is cut cannot be typed
+    shown = columns if console.width >= WIDE else columns[:3]  # a name that is cut off cannot be typed
     table = table_of(shown, ("name", "other side"), f"{len(infos)} gestures")
     for i in infos:
         loop, own = "in part" if i.loop else "as a whole", ", ".join(filter(None, ("yes" if i.own else "", i.side)))

@@ -18,7 +18,7 @@ def look(
     pitch: float | None = None,
     at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
 ) -> int:
-    """Turn the head, whatever the body does; without angles it is let go again.
+    """Turn the head during any motion; without angles the head follows the motion again.
 
     Example: mmmd look --yaw 30 --pitch -10
 
@@ -41,7 +41,7 @@ def idle(
     style: Annotated[Literal["off", "calm", "lively"], tyro.conf.Positional],
     at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
 ) -> int:
-    """Small movements of breath and gaze while there is nothing to play.
+    """Play small movements of breath and gaze while no command is played.
 
     Example: mmmd idle calm
 

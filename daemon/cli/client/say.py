@@ -1,4 +1,4 @@
-"""`mmmd say`: tell the robot what to do."""
+"""`mmmd say`: command the robot by a text."""
 
 from __future__ import annotations
 

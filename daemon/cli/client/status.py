@@ -1,4 +1,4 @@
-"""`mmmd status`: what the robot and the daemon are doing."""
+"""`mmmd status`: the state of the robot and the daemon."""
 
 from __future__ import annotations
 
@@ -60,27 +60,27 @@ def status(at: OmitArgPrefixes[Connection] = Connection(), json: bool = False) -
 
 
 def gaze_words(yaw_deg: float, pitch_deg: float) -> str:
-    """Where the head looks, in words: "30 degrees left, 10 down"."""
+    """Direction of the head in words: "30 degrees left, 10 down"."""
     sides = ((yaw_deg, "left", "right"), (pitch_deg, "down", "up"))
     named = [f"{abs(angle):g} degrees {one if angle > 0 else other}" for angle, one, other in sides if angle]
     return ", ".join(named) or "straight ahead"
 
 
 def _needs(now: StateEvent) -> str:
-    """What leads out of a state, in the order in which it is to be done."""
+    """The commands that lead out of a state, in their order."""
     if now.state in ("fault", "estop"):
         return " (needs `mmmd reset`, then `mmmd arm`)"
     return " (needs `mmmd arm`)" if now.must_arm else ""
 
 
 def _servo(servo: ServoHealth) -> str:
-    """A servo that is not ok, and what was counted."""
+    """A servo that is not ok, with its counters."""
     counted = ", ".join(f"{n} {text}" for name, text in _COUNTED.items() if (n := getattr(servo, name)))
     return f"{servo.id} ({servo.joint}) {servo.state}{f': {counted}' if counted else ''}"
 
 
 def _stream(now: StateEvent) -> str:
-    """The socket for joint targets, and who holds its lease."""
+    """The socket for joint targets, and the holder of its lease."""
     if now.stream is None:
         return "-"
     bad = f"; refused: {', '.join(f'{n} {code}' for code, n in now.stream.bad.items())}" if now.stream.bad else ""

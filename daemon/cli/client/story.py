@@ -1,4 +1,4 @@
-"""`mmmd story` and `mmmd inbetween`: several things in one motion, poses at given times."""
+"""`mmmd story` and `mmmd inbetween`: several texts in one motion, poses at given times."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def story(
     json: bool = False,
     at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
 ) -> int:
-    """Do one thing after the other in one motion; what is between them is generated.
+    """Play several texts one after another in one motion, with generated transitions.
 
     Example: mmmd story "wave with your right hand" "clap your hands" "bow"
 
@@ -59,7 +59,7 @@ def inbetween(
     json: bool = False,
     at: OmitArgPrefixes[Connection] = Connection(),  # noqa: B008
 ) -> int:
-    """Go through poses at given times; what is between them is generated.
+    """Pass through poses at given times; the motion between them is generated.
 
     Example: mmmd inbetween raise_left@1 bow@2.5 standing@4
 
@@ -84,7 +84,7 @@ def _pose(asked: str) -> KeyPoseOf:
     """A pose with its time.
 
     Raises:
-        CommandError: it is none.
+        CommandError: the text is no pose with a time.
     """
     from daemon.wire.requests import KeyPoseOf
 
@@ -107,7 +107,7 @@ def _scenes(path: Path) -> list[SceneOf]:
     """The scenes of a file, one JSON object a line.
 
     Raises:
-        CommandError: it cannot be read; the line is named.
+        CommandError: the file cannot be read; the error names the line.
     """
     import msgspec
 

@@ -35,7 +35,7 @@ def stream(
     Example: mmmd stream --rate 50 < path.jsonl
 
     Args:
-        holder: who asks; a second asker is told.
+        holder: name of this program, which a second program that requests the lease is told.
         rate: lines a second, for a file; 0 sends each as it comes.
         silence_s: without a line for so long the robot brakes and holds; the daemon's `lease_s` when it is not given.
         json: print the lease's events as JSON.
@@ -64,7 +64,7 @@ def _target(line: str, number: int) -> Angles:
     """The angles in a line.
 
     Raises:
-        CommandError: there are none.
+        CommandError: the line has no angles.
     """
     try:
         found: Any = json_module.loads(line)

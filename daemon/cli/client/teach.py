@@ -1,4 +1,7 @@
-"""`mmmd gesture teach`: a person leads the limp arms, and what was measured meanwhile becomes a gesture.
+"""`mmmd gesture teach`: a person leads the limp arms, and the measured positions become a gesture.
+
+Nothing here commands a joint: the daemon parks the robot and cuts its torque. Afterwards the robot stays limp until it is armed,
+which leads it slowly from its present pose.
 
 Nothing here commands a joint: the daemon parks the robot and cuts its torque, and afterwards it stays limp until it is armed, which
 leads it slowly from where it stands.
@@ -26,16 +29,16 @@ if TYPE_CHECKING:
     from retarget.pipeline import Retargeter
 
 SLOW_TEMPO = 0.5
-"""Tempo at which a taught gesture is played back: half of its own."""
+"""Share of its own tempo at which a taught gesture is played back."""
 MOST_SECONDS = 60.0
-"""Longest recording: the longest gesture that is kept."""
+"""Seconds of the longest recording, which is the longest gesture that is kept."""
 _SILENCE_S = 2.0
 """Seconds without a measurement after which the recording ends: the daemon is gone."""
 
 
 @dataclass(frozen=True)
 class TeachFlags:
-    """How a gesture is taught.
+    """Options of teaching a gesture.
 
     Attributes:
         text: what it shows, in words; its name when not given.
@@ -66,8 +69,8 @@ class _Recording:
         t_s: (N,) times on the daemon's clock.
         q_rad: N rows of J joint angles.
         silent: names of servos that did not answer.
-        kept: whether they have become a gesture.
-        robot_is: what becomes of the robot if it ends here.
+        kept: whether the recording has become a gesture.
+        robot_is: state of the robot if the command ends here, in words.
     """
 
     t_s: list[float] = field(default_factory=list[float])
@@ -109,7 +112,7 @@ def teach(name: str, how: TeachFlags, at: Connection, folder: Path | None, *, re
 
 @contextlib.contextmanager
 def _lost_is_said(recording: _Recording) -> Generator[None]:
-    """However it ends, a recording that became no gesture is told."""
+    """Report a recording that became no gesture, however the block ends."""
     try:
         yield
     finally:
@@ -118,10 +121,10 @@ def _lost_is_said(recording: _Recording) -> Generator[None]:
 
 
 def _may_take(library: GestureLibrary, name: str, how: TeachFlags, *, replace: bool) -> bool:
-    """Whether the gesture may take the place of another of its name.
+    """Whether the gesture may replace another one of its name.
 
     Raises:
-        GestureExistsError: there is one, and nobody says that it may go.
+        GestureExistsError: there is one, and neither `replace` nor a person allows replacing it.
         ClipError: the name is not allowed.
     """
     from daemon.errors import GestureExistsError
@@ -136,10 +139,10 @@ def _may_take(library: GestureLibrary, name: str, how: TeachFlags, *, replace: b
 
 
 def _retargeter(status: StateEvent, how: TeachFlags) -> Retargeter:
-    """For the daemon's robot.
+    """The retargeter of the daemon's robot.
 
     Raises:
-        CommandError: its file is not known here.
+        CommandError: the robot's file is not on this machine.
     """
     from retarget.errors import UnknownRobotError
     from retarget.pipeline import Retargeter
@@ -160,10 +163,10 @@ def _retargeter(status: StateEvent, how: TeachFlags) -> Retargeter:
 
 
 def _make_limp(robot: Client, retargeter: Retargeter, recording: _Recording, how: TeachFlags) -> float:
-    """Say what goes limp, ask, park, cut torque; a time on the daemon's clock since when the robot is limp.
+    """Name the joints that go limp, ask, park, cut torque; return a time on the daemon's clock from which the robot is limp.
 
     Raises:
-        CommandError: the trunk would fall, nobody agreed, or the robot did not get limp.
+        CommandError: the trunk would fall, the person did not agree, or the robot did not become limp.
     """
     from daemon.gestures.limpness import limpness_of
 
@@ -183,7 +186,7 @@ def _make_limp(robot: Client, retargeter: Retargeter, recording: _Recording, how
     if not was_limp:
         recording.robot_is = "the robot goes on to park, where it goes limp; `mmmd stop` brakes it"
         robot.park()
-    robot.torque_off()  # from here on no text arms it, only a person
+    robot.torque_off()  # from here on only a person arms the robot, no text
     recording.robot_is = "the robot is limp; only `mmmd arm` leads on, slowly from where it stands"
     now = robot.status()
     if now.state != "limp":
@@ -192,11 +195,11 @@ def _make_limp(robot: Client, retargeter: Retargeter, recording: _Recording, how
 
 
 def _record(robot: Client, recording: _Recording, since_s: float, how: TeachFlags) -> None:
-    """Collect what is measured until Enter, or for the time that was asked for.
+    """Collect measured positions until Enter, or for the requested time.
 
     Raises:
-        CommandError: the robot is limp no more, or the input has ended.
-        NoAnswerError: the daemon is gone.
+        CommandError: the robot is not limp any more, or the input has ended.
+        NoAnswerError: the daemon does not answer.
     """
     from daemon.wire.status import StateEvent
 
@@ -205,7 +208,7 @@ def _record(robot: Client, recording: _Recording, since_s: float, how: TeachFlag
     end_s = time.monotonic() + (how.seconds or MOST_SECONDS)
     for _, state in robot.watch("v1/state", timeout_s=_SILENCE_S):
         if not isinstance(state, StateEvent) or state.t_mono <= since_s:
-            continue  # the last value from before is sent to everybody who begins to watch
+            continue  # the last value from before is sent to every new subscriber
         if state.state != "limp":
             why = state.reason or "somebody else commands it"
             raise CommandError(f"teach: the robot is {state.state} ({why}), so the recording ended")
@@ -220,7 +223,7 @@ def _record(robot: Client, recording: _Recording, since_s: float, how: TeachFlag
 def _keep(
     library: GestureLibrary, name: str, recording: _Recording, retargeter: Retargeter, how: TeachFlags, *, replace: bool
 ) -> None:
-    """Make the gesture, say what was changed, write it.
+    """Make the gesture, print the changes, write it.
 
     Raises:
         ClipError: nothing moved, the robot cannot show it, or the file cannot be written.
@@ -242,7 +245,7 @@ def _keep(
 
 
 def _play(name: str, recording: _Recording, how: TeachFlags, at: Connection) -> int:
-    """Play it back at half speed where that was asked for; else say how."""
+    """Play the gesture at half speed if requested; else print how to do so."""
     from daemon.wire.requests import Gesture
 
     slowly = f"mmmd gesture play {name} --tempo {SLOW_TEMPO:g}"
@@ -265,10 +268,10 @@ def _play(name: str, recording: _Recording, how: TeachFlags, at: Connection) -> 
 
 
 def _agreed(question: str, how: TeachFlags) -> bool:
-    """Whether a person answers yes, or has said so on the command line.
+    """Whether a person answers yes, or has done so on the command line.
 
     Raises:
-        CommandError: nobody is there to answer.
+        CommandError: standard input is no terminal, so no one can answer.
     """
     if how.yes:
         return True

@@ -104,10 +104,10 @@ def calibrate(
 
 
 def _confirmed(console: Console, doubts: Sequence[Calibrated]) -> bool:
-    """Whether a person wants what is doubtful to be written.
+    """Whether a person wants doubtful results to be written.
 
     Raises:
-        CommandError: nobody is there to say so.
+        CommandError: standard input is no terminal, so no one can be asked.
     """
     from daemon.errors import CommandError
 

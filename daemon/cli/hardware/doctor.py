@@ -1,4 +1,4 @@
-"""`mmmd doctor`: what stands between a robot and a good run."""
+"""`mmmd doctor`: checks of all conditions of a good run."""
 
 from __future__ import annotations
 

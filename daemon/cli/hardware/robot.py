@@ -1,4 +1,4 @@
-"""`mmmd robot`: which robots there are, what one is made of, and a new one from its description."""
+"""`mmmd robot`: lists robots, checks and draws one, and makes a new one from its description."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def _print_found(console: Any, proposal: Proposal) -> None:
 
 
 def _print_rows(console: Any, rows: Sequence[tuple[str, ...]]) -> None:
-    """Aligned columns, whole at any width of the terminal."""
+    """Print aligned columns, complete at any width of the terminal."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     for row in rows:
         console.print("  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip(), markup=False)
@@ -132,7 +132,7 @@ def _check(console: Any, model: RobotModel) -> int:
 
 
 def _bus_time(model: RobotModel) -> tuple[str, list[str], list[str]]:
-    """What a cycle takes on the wire; what to look at; what makes the rate impossible."""
+    """The time of a cycle on the wire; findings to check; findings that make the rate impossible."""
     from daemon.dynamixel.rate_plan import plan_for
     from daemon.dynamixel.registers.models import MODEL_NUMBERS, MODELS
     from daemon.errors import ConfigError
@@ -157,7 +157,7 @@ def _turns(ratio: float, linkage: bool) -> str:
 
 
 def _show(console: Any, model: RobotModel, out: Path, text: str, seed: int) -> int:
-    """Draw the robot, telling on stderr what takes its time: some seconds, most of it for loading the motion model."""
+    """Draw the robot, with progress on stderr: it takes some seconds, mostly to load the motion model."""
     from rich.console import Console
 
     with Console(stderr=True).status("loading the motion model for the gesture") as progress:
@@ -166,7 +166,7 @@ def _show(console: Any, model: RobotModel, out: Path, text: str, seed: int) -> i
         from retarget.pipeline import Retargeter
         from retarget.setup.standing_pose import standing_pose
 
-        # int8 would first be calibrated by more motions than the one that is drawn
+        # int8 would need a calibration by more motions than the drawn one
         motion = Engine.load(threads=None, precision="fp32").generate(text, seed=seed).motion
         progress.update(f"fitting {text!r} to {model.name}")
         retargeter = Retargeter(model)

@@ -1,4 +1,4 @@
-"""`mmmd scan`: which servos are on a port."""
+"""`mmmd scan`: the servos on a port."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ def servo(
         said = {"servo_id": servo_id, "model": one.model.name, "firmware": one.firmware}
         if verb == "get":
             names = arguments or tuple(one.model.table)
-            items = [one.item(name) for name in names]  # named before anything is asked
+            items = [one.item(name) for name in names]  # checked before any request
             values = one.chain.registers.read_items(servo_id, names)
             if json:
                 console.out(json_module.dumps(said | {"items": values}))
@@ -96,7 +96,7 @@ def servo(
 
 
 def _table(title: str, items: Sequence[Item], values: Mapping[str, int]) -> Table:
-    """Items of a servo with their values and what those mean."""
+    """A table of a servo's items with values and meanings."""
     from daemon.cli.tables import table_of
 
     table = table_of(("address", "item", "value", "meaning", "access"), ("item", "value"), title)

@@ -1,4 +1,4 @@
-"""`mmmd sim`: a robot's servos, simulated, behind a real tty; or a log played to them."""
+"""`mmmd sim`: a robot's simulated servos behind a real tty; or the replay of a log on them."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def sim(
             f"{len(server.bus.on_wire)} servos of '{model.name}' at {server.baud} baud on {where}", highlight=False
         )
     others = [threading.Thread(target=server.serve) for server in servers[1:]]
-    if not take_fifo(BUS_PRIORITY):  # real servos have processors of their own; the other threads inherit it
+    if not take_fifo(BUS_PRIORITY):  # real servos have processors of their own; the other threads inherit the priority
         console.print("no real-time priority: on a busy machine the servos answer late (`mmmd doctor` has the remedy)")
     try:
         for thread in others:
@@ -110,7 +110,7 @@ def _servers(
     wire: tuple[str, str, float],
     baud: int | None,
 ) -> list[Any]:
-    """One tty for all servos, or one for each part of them."""
+    """One tty for all servos, or one for each group of them."""
     from sim.bus import SimBus
     from sim.errors import SimSettingError
     from sim.options import servo_ids_of, wire_settings
@@ -133,7 +133,7 @@ def _servers(
 
 
 def _compare(path: Path, robot: str | None, body: str, *, as_json: bool) -> int:
-    """Play a log to simulated servos; print how far they come from what it says."""
+    """Replay a log on simulated servos; print the differences from the logged positions."""
     import dataclasses
     import sys
 

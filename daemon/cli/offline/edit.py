@@ -1,4 +1,4 @@
-"""`mmmd edit`: a stretch, an end or a body part of a motion made again, into a file or on the robot."""
+"""`mmmd edit`: generates a stretch, an end or a body part of a motion anew, into a file or on the robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`mmmd eval`: how well the model does what it is told, and how near it comes to real motion."""
+"""`mmmd eval`: measures how well the model carries out commands, and how near its motions are to real ones."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from daemon.cli.offline.eval_by_data import checked, data_folder, measured, prin
 
 EvalName = Literal["probes", "fidelity", "edits", "words", "scope", "tokenizer", "real", "paper"]
 TABLE_WIDTH = 150
-"""Characters a line, where no terminal says otherwise: a table in a file is not cut."""
+"""Characters of a line where the output is no terminal: a table in a file is not cut."""
 
 
 def eval(

@@ -1,4 +1,4 @@
-"""Figures of `mmmd eval` that compare motions with the commands they were made for."""
+"""Figures of `mmmd eval` that compare motions with the commands for which they were generated."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from mmm_core.motion.motion import Motion
 
 MOST_SEEDS = 1000
-"""Motions for each family at most."""
+"""Number of motions for each family, at most."""
 MIRRORED_SEEDS = 2
-"""Seeds with which each probe that names a side is compared with its mirror image."""
+"""Number of seeds with which each probe that names a side is compared with its mirror image."""
 
 
 MOST_STEPS = 49
@@ -32,7 +32,7 @@ def seeds_executed(executed: int, seeds: int) -> int:
 def measure_probes(
     model: Path | None, seeds: int, robots: Sequence[str], executed: int, which: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Every probe generated once for each seed; the same motions checked on each robot, `executed` seeds as its servos do them."""
+    """Generate every probe once for each seed; check the motions on each robot, and `executed` seeds as its servos execute them."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -107,7 +107,7 @@ def measure_probes(
 def measure_fidelity(
     model: Path | None, seeds: int, families: Sequence[str], steps: int | None
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The corpus's own sentences, each generated once."""
+    """Generate the corpus's own sentences, each once."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -141,7 +141,7 @@ def measure_fidelity(
 def measure_words(
     model: Path | None, seeds: int, robots: Sequence[str], which: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Every sentence generated once for each seed; the same motions checked on each robot."""
+    """Generate every sentence once for each seed; check the motions on each robot."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -194,7 +194,7 @@ def measure_words(
 
 
 def measure_edits(model: Path | None) -> dict[str, Any]:
-    """The cases of both sets, each edited once."""
+    """Carry out the edits of both sets, each once."""
     from rich.console import Console
     from rich.progress import Progress
 
@@ -211,7 +211,7 @@ def measure_edits(model: Path | None) -> dict[str, Any]:
 
 
 def measure_scope(model: Path | None) -> dict[str, Any]:
-    """Held-out prompts, one at a time, as a command comes in."""
+    """Decide on held-out prompts one at a time, as commands arrive."""
     from daemon.bench.report import context
     from mmm_core.corpus.scope_prompts import SCOPE_TEST
     from mmm_core.evaluation.scope import scope_figures
@@ -226,7 +226,7 @@ def measure_scope(model: Path | None) -> dict[str, Any]:
 
 
 def measure_tokenizer(model: Path | None) -> dict[str, Any]:
-    """The corpus's motions, encoded and decoded."""
+    """Encode and decode the corpus's motions."""
     from daemon.bench.report import context
     from mmm_core.evaluation.reconstruction import tokenizer_figures
     from mmm_core.inference.checkpoint import MODEL_FILE, file_hash, load_model

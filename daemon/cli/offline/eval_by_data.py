@@ -17,7 +17,7 @@ MOST_REPEATS = 1000
 
 @dataclass(frozen=True)
 class _Asked:
-    """How much is measured."""
+    """The size of a measurement."""
 
     repeats: int
     each: int
@@ -26,7 +26,7 @@ class _Asked:
 
 
 def checked(name: str, repeats: int, each: int, tables: tuple[int, ...], temperature: float | None) -> _Asked:
-    """The bounds of a measurement that the flags ask for, checked."""
+    """The size of a measurement from the flags, checked."""
     if not 1 <= repeats <= MOST_REPEATS:
         raise CommandError(f"eval {name}: --repeats {repeats}; allowed: 1 to {MOST_REPEATS}")
     if not 2 <= each <= MOST_REPEATS:
@@ -39,7 +39,7 @@ def checked(name: str, repeats: int, each: int, tables: tuple[int, ...], tempera
 
 
 def data_folder(name: str, data: Path | None) -> Path:
-    """The folder of `--data`, which `real` and `paper` need."""
+    """The folder given by `--data`, which `real` and `paper` need."""
     if data is None:
         raise CommandError(f"eval {name}: --data is missing; example: mmmd eval {name} --data ../shared/data")
     return data
@@ -84,7 +84,7 @@ def measured(
 
 
 class _Bar:
-    """A line on stderr that says how far a table is."""
+    """A line on stderr with the progress of a table."""
 
     def __init__(self) -> None:
         from rich.console import Console
@@ -99,7 +99,7 @@ class _Bar:
         self._status.stop()
 
     def titled(self, title: str) -> Callable[[str], None]:
-        """A function that takes how far it is."""
+        """A function that takes the progress as text."""
         return lambda text: self._status.update(f"{title}, repeat {text}")
 
 

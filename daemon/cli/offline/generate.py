@@ -162,7 +162,7 @@ def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candida
 
 
 def _tell(path: Path, out: Path, bvh: Path | None, bvh_names: BvhNames, seed: int, engine: Engine) -> int:
-    """Write a story as one motion; the parts that were rejected are said."""
+    """Generate a story as one motion; print the scenes that were rejected."""
     from mmm_core.generate.story import Scene, check_scenes, generate_story
     from mmm_core.motion.bvh import save_bvh
     from mmm_core.motion.motion import joined
@@ -188,7 +188,7 @@ def _load(model: Path | None, threads: int, precision: Precision | None) -> Engi
 
 
 def _prompts(path: Path) -> list[Prompt]:
-    """The lines of a batch file; ids, which name files, are checked before the first is generated."""
+    """The lines of a batch file; ids, which name files, are checked before the first motion is generated."""
     seen: set[str] = set()
     lines = _lines(path, "--batch", Prompt)
     for number, prompt in lines:
@@ -204,7 +204,7 @@ def _prompts(path: Path) -> list[Prompt]:
 
 
 def _lines(path: Path, option: str, kind: type[Line]) -> list[tuple[int, Line]]:
-    """The JSON lines of a file with their numbers; blank ones are passed over."""
+    """The JSON lines of a file with their numbers, without blank lines."""
     try:
         lines = path.read_text("utf-8").splitlines()
     except UnicodeDecodeError as error:
@@ -226,7 +226,7 @@ def _lines(path: Path, option: str, kind: type[Line]) -> list[tuple[int, Line]]:
 
 
 def _problem(prompt: Prompt) -> str:
-    """What is wrong with a prompt; empty when nothing is."""
+    """The error of a prompt; empty when there is none."""
     if not prompt.text.strip():
         return f"the text is empty; allowed: 1 to {MAX_TEXT_CHARS} characters"
     if len(prompt.text) > MAX_TEXT_CHARS:
@@ -257,7 +257,7 @@ def _say(summary: dict[str, object], json: bool) -> None:
 
 
 def _understood(made: GenerationResult) -> str:
-    """What a motion shows, in one sentence; "" where there is none."""
+    """One sentence on the content of a motion; "" for none."""
     from mmm_core.recognition.seen import Scene, scenes_seen, sentence
 
     motion = made.motion

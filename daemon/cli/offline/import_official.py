@@ -1,4 +1,4 @@
-"""`mmmd import-official`: the MMM authors' checkpoints as one file of ours."""
+"""`mmmd import-official`: converts the MMM authors' checkpoints into one file of ours."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`mmmd replay`: a recorded run again, through the same gate."""
+"""`mmmd replay`: plays a recorded run again, through the same gate."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def replay(
 
 
 def _open(bus: str, robot: RobotModel, log: Log) -> tuple[Port, Clock]:
-    """The port, and the clock that goes with it; plain simulated servos stand where those of the log stood."""
+    """The port, and its clock; simulated servos start where those of the log stood."""
     import numpy as np
 
     from daemon.dynamixel.ports.opening import PortContext, open_port
@@ -92,14 +92,14 @@ def _open(bus: str, robot: RobotModel, log: Log) -> tuple[Port, Clock]:
 
 
 def _audit(port: Port) -> dict[str, Any] | None:
-    """What the simulator says about the goals it got; None on a real bus."""
+    """The simulator's audit of the goals that it received; None on a real bus."""
     from sim.port import SimPort
 
     return port.bus.audit.report() if isinstance(port, SimPort) else None
 
 
 def _told(figures: dict[str, Any]) -> str:
-    """The figures for people."""
+    """The figures as text."""
     verdict = "the servos received the same goals" if figures["identical"] else "the servos received OTHER goals"
     lines = [f"{figures['log']}: {figures['same']} of {figures['goals']} goal sets identical: {verdict}"]
     if figures["first_difference"]:

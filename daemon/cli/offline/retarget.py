@@ -1,4 +1,4 @@
-"""`mmmd retarget`: human motion to a robot's joint angles and servo ticks."""
+"""`mmmd retarget`: converts human motion to a robot's joint angles and servo ticks."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def retarget(
 
 
 def _refuse(option: str, value: float | None, most: float, unit: str) -> None:
-    """Stop at a number that makes no sense; NaN and infinity are none that do."""
+    """Refuse a number outside its range, NaN and infinity included."""
     from daemon.errors import CommandError
 
     if value is not None and not 0 < value <= most:
@@ -88,7 +88,7 @@ def _refuse(option: str, value: float | None, most: float, unit: str) -> None:
 
 
 def _folder(settings: Settings, folder: Path, out: Path, jobs: int, dask: str | None, *, json: bool) -> int:
-    """Everything of a folder that is not there yet; 1 when nothing at all could be used."""
+    """Retarget all files of a folder that have no output yet; return 1 when no file could be used."""
     from rich.console import Console
     from rich.progress import track
 
@@ -97,7 +97,7 @@ def _folder(settings: Settings, folder: Path, out: Path, jobs: int, dask: str | 
     from mmm_core.imports.recordings.files import KINDS, find_motions
     from retarget.robot.loading import load_robot
 
-    load_robot(settings.robot)  # a wrong name is one error, not one a file
+    load_robot(settings.robot)  # a wrong name is then one error, not one for each file
     motions = find_motions(folder)
     if not motions:
         raise CommandError(f"{folder}: no motion files; looked for {', '.join(KINDS)}")

@@ -1,4 +1,7 @@
-"""Retargeting one file into one file, and a folder of thousands into a folder: resumable, on all cores or a Dask cluster.
+"""Retargets one file, or a folder of thousands: resumable, on all cores or a Dask cluster.
+
+An output file appears under its name only when it is complete, so that existing ones need not be made again. `retarget.json` beside
+the outputs contains the robot and the settings: another robot or setting needs another folder.
 
 An output appears under its name only when it is whole, so what is there need not be made again. What was retargeted, for
 which robot and how stands in `retarget.json` beside the outputs: another robot or setting needs another folder.
@@ -34,14 +37,14 @@ _DASK_BATCH = 16
 
 @dataclass(frozen=True)
 class Settings:
-    """How motions are retargeted.
+    """Settings of retargeting.
 
     Attributes:
         robot: name of a packaged robot, or the path of a robot.toml.
         arms_follow: see `Retargeter`.
-        keep_contacts: hands stay where they touch the body or each other.
+        keep_contacts: whether hands that touch the body or each other touch on the robot too.
         most_error_deg: slow down until the mean direction error is at most this; None for as fast as the human.
-        fps: frames per second of the files, where they do not say or say wrong.
+        fps: frames per second of the files; None to take the files' own.
     """
 
     robot: str
@@ -52,10 +55,10 @@ class Settings:
 
 
 def retarget_file(settings: Settings, motion_path: Path, out: Path) -> JointPath:
-    """Retarget one file; an older output stays whole if that fails.
+    """Retarget one file; an older output stays intact if that fails.
 
     Raises:
-        MmmError, RetargetError: what is wrong with the file or the robot.
+        MmmError, RetargetError: the file or the robot cannot be used.
     """
     retargeter = _retargeter(settings)
     motion = read_motion(motion_path, settings.fps)
@@ -96,14 +99,14 @@ def write_path(retargeter: Retargeter, motion: Motion, path: JointPath, out: Pat
 
 @dataclass(frozen=True)
 class Done:
-    """One file of many: `error` is empty when it was written."""
+    """Result for one file of many: `error` is empty when its output was written."""
 
     path: str
     error: str
 
 
 def start_folder(settings: Settings, motions: list[Path], folder: Path, out: Path) -> list[tuple[Path, Path]]:
-    """Which file is still to be retargeted into which; writes the manifest.
+    """Pairs of input files without output and their output files; writes the manifest.
 
     Raises:
         CommandError: the output folder holds results of other settings, or two inputs have one name.
@@ -127,7 +130,7 @@ def start_folder(settings: Settings, motions: list[Path], folder: Path, out: Pat
 
 
 def on_cores(settings: Settings, pairs: list[tuple[Path, Path]], n_workers: int) -> Iterator[Done]:
-    """Retarget pairs of input and output on `n_workers` processes; yields them in the order in which they are done."""
+    """Retarget pairs of input and output in `n_workers` processes; yield results in the order of completion."""
     jobs = ((settings, path, target) for path, target in pairs)
     if n_workers == 1:
         yield from map(_one, jobs)
@@ -141,7 +144,7 @@ def on_dask(settings: Settings, pairs: list[tuple[Path, Path]], address: str) ->
     """Retarget pairs on the workers of a Dask cluster, which must see the same files under the same paths.
 
     Raises:
-        CommandError: Dask is not installed, or nothing answers at the address.
+        CommandError: Dask is not installed, or no scheduler answers at the address.
     """
     try:
         import distributed
@@ -161,7 +164,7 @@ def on_dask(settings: Settings, pairs: list[tuple[Path, Path]], address: str) ->
 
 
 def _alone() -> None:
-    """One thread of arithmetic a worker: there is a worker a core."""
+    """Limit a worker to one thread of arithmetic: there is a worker for each core."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ[name] = "1"
 

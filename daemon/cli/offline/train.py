@@ -1,4 +1,4 @@
-"""`mmmd train`: make the shipped model again, or one on your own data."""
+"""`mmmd train`: trains the shipped model anew, or a model on your own data."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ _HOURS = ("all", "tokenizer", "transformer", "evaluator", "ablation")
 
 
 def _agreed(stage: str, config: str, folder: Path) -> bool:
-    """Whether a person at a terminal says yes to the work; where nobody can be asked it was meant."""
+    """Whether a person at a terminal agrees to the work; True where no one can be asked."""
     if not sys.stdin.isatty():
         return True
     how_long = "for minutes" if config == "small" else "for hours"
@@ -153,7 +153,7 @@ def _average(models: Sequence[Path], out: Path | None) -> int:
 
 
 def _ablation(recipe: Recipe, run: Run, data: Path | None, variants: Sequence[str]) -> int:
-    """Train and measure variants; their tables."""
+    """Train and measure variants; print their tables."""
     from mmm_core.training.ablation import TOKENIZERS, TRANSFORMERS, run_ablations, table
 
     folder = data or (Path(recipe.data.folder) if recipe.data.folder else None)

@@ -1,4 +1,4 @@
-"""`mmmd understand`: what is read in a sentence, or in several of one conversation, without moving anything."""
+"""`mmmd understand`: the commands read in a sentence, or in several of one conversation, without any motion."""
 
 from __future__ import annotations
 

@@ -13,9 +13,9 @@ log = logging.getLogger(__name__)
 
 FIRST_BACK_OFF_S, LONGEST_BACK_OFF_S = 0.5, 30.0
 GOOD_LIFE_S = 60.0
-"""Seconds after which a process that ended did not fail to start: the wait before the next start is short again."""
+"""Seconds of life after which an end does not count as a failed start: the wait before the next start is short again."""
 TOLD = (0, 1, 2)
-"""Exit statuses of an end that was asked for or has been explained; any other one is a crash or a kill."""
+"""Exit statuses of an end on request or with a message; any other status is a crash or a kill."""
 
 
 def generator(
@@ -46,7 +46,7 @@ def generator(
                 try:
                     status = process.wait()
                 finally:
-                    process.terminate()  # on SIGTERM the block waits for it
+                    process.terminate()  # on SIGTERM the `with` block waits for it
             if status in TOLD:
                 return status
             back_off_s = FIRST_BACK_OFF_S if time.monotonic() - began_s > GOOD_LIFE_S else back_off_s

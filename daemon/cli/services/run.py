@@ -1,4 +1,4 @@
-"""`mmmd run` and `mmmd config`: the daemon, and where its settings come from."""
+"""`mmmd run` and `mmmd config`: the daemon, and the sources of its settings."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from daemon.settings.sources import SETTINGS, KnownSetting, config_of, resolve
 
 
 def _with_settings(command: Callable[..., int]) -> Callable[..., int]:
-    """The command with an option for each setting that has one, which come to it as keyword arguments."""
+    """The command with an option for each setting that has one; the values are passed as keyword arguments."""
     own = inspect.signature(command)
     options = [
         inspect.Parameter(
@@ -32,13 +32,13 @@ def _with_settings(command: Callable[..., int]) -> Callable[..., int]:
     parameters = [p for p in own.parameters.values() if p.kind is not inspect.Parameter.VAR_KEYWORD]
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in parameters]
     ordered = [*options[:2], parameters[0], *options[2:], *parameters[1:]]
-    command.__signature__ = own.replace(parameters=ordered)  # type: ignore[attr-defined]  # which tyro reads
+    command.__signature__ = own.replace(parameters=ordered)  # type: ignore[attr-defined]  # tyro reads the signature
     command.__annotations__ |= {p.name: p.annotation for p in options}
     return command
 
 
 def _type_of_option(known: KnownSetting) -> Any:
-    """Switches are what they are; another option may be missing."""
+    """The type of a setting's option: bool for a switch, else the setting's own type or None."""
     if known.kind is bool:
         return bool
     kind: Any = Literal[known.said.choices] if known.said.choices else known.kind
@@ -47,7 +47,7 @@ def _type_of_option(known: KnownSetting) -> Any:
 
 @_with_settings
 def run(config: Path | None = None, quiet: bool = False, **given: Any) -> int:
-    """Take texts over ZeroMQ and move servos, until SIGTERM or Ctrl-C, which park the robot.
+    """Receive texts over ZeroMQ and move servos, until SIGTERM or Ctrl-C, which park the robot.
 
     Every setting can also stand in a TOML file or in the environment (MMMD_ROBOT, ...); `mmmd config show` tells the
     values and where each came from.
@@ -116,7 +116,7 @@ def config(
 
 
 def _flags(given: dict[str, Any]) -> dict[str, Any]:
-    """Options that were given; a switch that stands as it is by default was not."""
+    """Options that the command line sets; a switch with its default value counts as not set."""
     return {
         key: None if SETTINGS[key].kind is bool and value == SETTINGS[key].default else value
         for key, value in given.items()

@@ -70,7 +70,7 @@ def install_service(
 
     Args:
         root: folder to write below, for packages and trials.
-        user: who runs the daemon; you when it is not given. Must be in group dialout.
+        user: user who runs the daemon; you when not given. Must be in group dialout.
         config: configuration that the service reads; one that exists is kept.
         yes: write without asking; below another --root nothing is asked.
     """
@@ -101,10 +101,10 @@ def install_service(
 
 
 def _agreed(paths: list[Path]) -> bool:
-    """Whether a person says yes to files in the system's folders.
+    """Whether the user agrees to files in the system's folders.
 
     Raises:
-        CommandError: nobody can be asked.
+        CommandError: standard input is no terminal, so no one can be asked.
     """
     named = "\n".join(f"  {path}" for path in paths)
     if not sys.stdin.isatty():

@@ -1,4 +1,4 @@
-"""`mmmd view`: the page for a daemon that runs, or for a recorded run."""
+"""`mmmd view`: the web page of a running daemon, or of a recorded run."""
 
 from __future__ import annotations
 
