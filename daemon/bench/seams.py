@@ -61,12 +61,12 @@ def bench_seams(n: int = 60, seed: int = 0, robot: str = "reference") -> dict[st
     motions = [engine.generate(t, seed=seed + i).motion for i, t in enumerate(draw_texts(2 * n, seed))]
     motions = [m for m in motions if len(m.joints_m) > 2 * WINDOW]
     clips = [posture_of(m) for m in motions]
-    real = _real_jerk(folder, rng)
+    real = real_jerk(folder, rng)
     prompt, steps = _prompt_seams(clips, rng, Retargeter(load_robot(robot)))
     prefixed = _prefix_seams(engine, motions, np.random.default_rng(seed))
     idle = [_idle_seam(p, rng) for p in clips[:n]]
     loops = [(p, loop) for p in clips if (loop := find_loop(p)) is not None]
-    rounds = [_peak_jerk(joined([closed(p, loop)] * 3), loop[1] - loop[0]) for p, loop in loops]
+    rounds = [peak_jerk(joined([closed(p, loop)] * 3), loop[1] - loop[0]) for p, loop in loops]
     closure = [_closure_deg(p, loop) for p, loop in loops]
     kinds = {
         "prompt_to_prompt": prompt, "prompt_with_prefix": prefixed, "idle_to_prompt": idle, "loop": rounds,
@@ -96,7 +96,7 @@ def _prompt_seams(
     for a, b in zip(clips[::2], clips[1::2], strict=False):
         k = int(rng.integers(WINDOW // 2, len(a) - WINDOW // 2))
         after = faded_in(b, a.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
-        jerk.append(_peak_jerk(joined([a[:k], after]), k))
+        jerk.append(peak_jerk(joined([a[:k], after]), k))
         first = retargeter.retarget(a)
         q = first.at_rate(rate_hz)
         f = min(len(q) - 2, round(k / FPS * rate_hz))
@@ -121,7 +121,7 @@ def _prefix_seams(engine: Engine, motions: list[Motion], rng: np.random.Generato
         before = replace(shown, features=features_of(shown).numpy())
         after = posture_of(continue_motion(engine, before, PREFIX_S, b.text, seed=b.seed).motion)
         after = faded_in(after, whole.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
-        jerk.append(_peak_jerk(joined([whole[:k], after]), k))
+        jerk.append(peak_jerk(joined([whole[:k], after]), k))
     return jerk
 
 
@@ -135,7 +135,7 @@ def _draft_seams(engine: Engine, motions: list[Motion], rng: np.random.Generator
         draft, whole = posture_of(made.motion), posture_of(motion)
         k = int(rng.integers(1, LATEST_GO_OVER))
         after = faded_in(whole[k:], draft.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
-        jerk.append(_peak_jerk(joined([draft[:k], after]), k))
+        jerk.append(peak_jerk(joined([draft[:k], after]), k))
     return jerk
 
 
@@ -145,7 +145,7 @@ def _idle_seam(p: PoseSequence, rng: np.random.Generator) -> float:
     idle = joined([score.next()[0] for _ in range(4)])
     k = int(rng.integers(WINDOW, len(idle) - FADE_FRAMES))
     after = faded_in(p, idle.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
-    return _peak_jerk(joined([idle[:k], after]), k)
+    return peak_jerk(joined([idle[:k], after]), k)
 
 
 def _closure_deg(p: PoseSequence, loop: tuple[int, int]) -> float:
@@ -153,7 +153,7 @@ def _closure_deg(p: PoseSequence, loop: tuple[int, int]) -> float:
     return float(distance_deg(closed(p, loop)[-1:], p.at(np.array([loop[0] - 1])))[0])
 
 
-def _peak_jerk(p: PoseSequence, at: int) -> float:
+def peak_jerk(p: PoseSequence, at: int) -> float:
     """Largest jerk within half a second of frame `at`, in m/s3."""
     joints = _on_common_body(p).joints_m[:, UPPER]
     around = joints[max(0, at - WINDOW // 2) : at + WINDOW // 2]
@@ -164,7 +164,7 @@ def _on_common_body(p: PoseSequence) -> PoseSequence:
     return replace(p, lengths_m=standing().lengths_m)
 
 
-def _real_jerk(folder: Any, rng: np.random.Generator) -> float:
+def real_jerk(folder: Any, rng: np.random.Generator) -> float:
     """Mean peak jerk of one-second windows of held-out real motion, over the half of the windows with more jerk."""
     peaks: list[float] = []
     for features, _ in read_clips(folder, "test"):
@@ -172,7 +172,7 @@ def _real_jerk(folder: Any, rng: np.random.Generator) -> float:
         p = _posture_of_joints(recovered)
         if len(p) > WINDOW + 4:
             at = int(rng.integers(WINDOW // 2, len(p) - WINDOW // 2))
-            peaks.append(_peak_jerk(p, at))
+            peaks.append(peak_jerk(p, at))
         if len(peaks) >= 600:
             break
     return float(np.mean(np.sort(peaks)[len(peaks) // 2 :]))
