@@ -3,10 +3,6 @@
 Where the manual is silent we chose: in a sync or bulk read the next servo waits for as long as a missing answer would take (on
 protocol 1.0 for ever, as it waits for the packet itself); a fast read ends at the first silent servo, because the next ones cannot
 continue its checksum.
-
-Where the manual is silent: in a sync or bulk read the next servo waits for the time of an answer that does not come (on protocol
-1.0 for ever, for it waits for the packet itself); a fast read ends at the first servo that is silent, for the next ones cannot
-continue its checksum.
 """
 
 from __future__ import annotations

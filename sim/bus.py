@@ -3,10 +3,6 @@
 Modelled are the time of every byte, half duplex with collisions, answers in order, every instruction. Not modelled: see the list in
 docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). `answers.py` has the answers of several
 servos to one packet.
-
-What is modelled: time of every byte, half duplex with collisions, answers in order, every instruction. Not modelled: see
-the list in docs/simulator.md (encoder steps inside the loop, radio noise, electrical shock, ...). How several servos
-answer one packet is in `answers.py`.
 """
 
 from __future__ import annotations
@@ -185,8 +181,6 @@ class SimBus:
 
         The answer carries the id that was addressed, also when the packet changed the servo's id or baud (manual of RX-28, examples
         7 and 8).
-
-        It answers as who was asked, also when it has been given another id or baud (manual of RX-28, examples 7 and 8).
         """
         for servo in listening:
             second_id = servo.memory.get("secondary_id") if "secondary_id" in servo.items else None

@@ -40,8 +40,6 @@ class SimPort:
         """Bytes that have arrived; waits at most `timeout_s` for the first.
 
         The call also waits for the rest of a burst that ends in time, for fewer wake-ups: callers request whole groups.
-
-        Waits for the rest of a burst that ends in time: fewer wake-ups, and the caller asks for whole groups anyway.
         """
         t_s = self._present()
         until_s = t_s + max(0.0, timeout_s)

@@ -3,10 +3,6 @@
 A pty neither delays bytes nor has a baud; the simulator keeps the wire's time itself and reads from the tty the speed that the
 client has set: at another baud the servos stay silent. When unplugged, the tty is gone (its client reads EIO) and comes back as
 another one, under the same link or another.
-
-A pty paces nothing and knows no baud; the simulator keeps the wire's time itself and reads the speed the client has set
-from the tty: at another baud the servos stay silent. Unplugged, the tty is gone (its client reads EIO) and comes back as
-another one, under the same link or another.
 """
 
 from __future__ import annotations

@@ -3,10 +3,6 @@
 The goals of the log are sent by the daemon's own bus driver at the log's times, in either protocol, to servos that start where the
 logged servos stood when torque came on. The positions read back are compared, and for each servo also the lag: the delay of the
 goals that explains its positions best, in the log and in the simulation.
-
-The goals of the log go out over the daemon's own bus driver at the log's times, in either protocol, to servos that stand
-where those of the log stood when torque came on. Compared are the positions read back. For each servo also the lag: the
-delay of the goals that explains its positions best, in the log and here.
 """
 
 from __future__ import annotations

@@ -4,11 +4,6 @@ A virtual machine stands still while its host runs others, for half a second on 
 watchdogs run out, and the robot is rightly in fault. Simulated servos stand still with the machine; a watchdog that ran out would
 describe the host and not the robot. A process that is stopped or starved on a running machine is another matter: the host took no
 time from the machine, and the servos' time goes on.
-
-A virtual machine stands still while its host runs others, for half a second on a busy one. Real servos go on meanwhile, their bus
-watchdogs run out, and the robot is in fault, rightly. Simulated ones stand still with the machine: that their watchdog ran out
-would say something of the host and nothing of the robot. A process that is stopped or starved on a machine that runs is another
-matter: nothing was taken from the machine, and the servos' time goes on.
 """
 
 from __future__ import annotations

@@ -3,10 +3,6 @@
 In virtual time: the same `ControlLoop`, `SafetyLimiter`, `ServoBus` and simulated servos as in a run, without waiting. Every third
 text interrupts the one before at a random moment; every tenth run is stopped half way. Then fewer texts are played once more, while
 the wire and the servos fail on a schedule, requests arrive at random and frames are nonsense. The simulator audits every goal.
-
-Virtual time: the same `ControlLoop`, `SafetyLimiter`, `ServoBus` and simulated servos as in a run, without waiting. Every third
-text interrupts the one before at a random moment; every tenth run is stopped half way. Then fewer texts once more, while the
-wire and the servos fail on a schedule, requests come at random and frames are nonsense. The simulator audits every goal.
 """
 
 from __future__ import annotations
@@ -59,8 +55,6 @@ def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -
     """`prompts`, `robots`, `goals`, `violations`, contacts, `repairs`, and the same for each robot.
 
     The sums of each robot are written to stderr as soon as they are known.
-
-    The sums of each robot go to stderr as soon as they are known.
 
     Args:
         prompts: number of texts.

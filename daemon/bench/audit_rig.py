@@ -89,8 +89,6 @@ class AuditRig:
         """The bus cycles of playing a path (N, J) at bus rate from `state()` on, and of holding its end for `after_s`.
 
         A fault ends them; `fault` then has its reason, and `make_ready` repairs it as a person would.
-
-        A fault ends them; `fault` then names it, and `make_ready` is what a person does next.
         """
         first, rows = self._link.cycles.count, [self._link.cycles.since(self._link.cycles.count)[0]]
         for k in range(0, len(path), _RECORDED):

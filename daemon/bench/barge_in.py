@@ -61,9 +61,6 @@ def bench_barge_in(n: int = 1000, seed: int = 0, robot: str = "reference") -> di
 
     Where the machine holds up the bus process, faults follow, which are counted in `faults`, each reset and armed again. A stop
     after which the bus process made less than half of its cycles cannot be judged: `unseen_stops`.
-
-    A machine that holds the bus process up leads to faults, which are counted in `faults`, each reset and armed again. A stop
-    after which the bus process made less than half of its cycles cannot be judged: `unseen_stops`.
     """
     rng = np.random.default_rng(seed)
     texts = draw_texts(n, seed)

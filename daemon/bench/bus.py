@@ -144,8 +144,6 @@ def _timed(cycle: Callable[[], object], seconds: float) -> tuple[np.ndarray[Any,
     """(N,) seconds of a cycle, each the mean of ten in a row, and processor seconds of a cycle.
 
     The mean of ten is taken because a cycle whose end is noticed late makes the next one look short.
-
-    Of ten, because a cycle that is noticed late makes the next one look short.
     """
     for _ in range(_WARM_CYCLES):
         cycle()

@@ -3,10 +3,6 @@
 The control loop, gate, servo bus and codec are those of a run, in virtual time; behind them are servos with their own profiles,
 loops and limits of torque, and the robot's body in MuJoCo with gravity, inertia, friction and contact. The measured positions that
 the servos report are judged.
-
-The same streamer, gate, servo bus and codec as in a run, in virtual time; behind them servos with their own profiles, loops and
-limits of torque, and the robot's body in MuJoCo with gravity, inertia, friction and contact. Judged are the positions that
-the servos measured and reported.
 """
 
 from __future__ import annotations

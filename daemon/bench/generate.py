@@ -24,8 +24,6 @@ def bench_generate(seed: int = 0) -> dict[str, Any]:
     shape (width 1024, 16 + 2 blocks, 8192 codes, 51 rows, 77 words) in this code with random weights: speed does not depend on
     them.
 
-    `counted_ms` is a text with a number above eight and no length, whose strokes are counted; `uncounted_ms` the same without.
-
     All are timed alternately, so that a busy machine slows both. The reference is the official MMM's shape (width
     1024, 16 + 2 blocks, 8192 codes, 51 rows, 77 words) in this code with random weights: speed does not depend on them.
     """

@@ -21,9 +21,6 @@ def bench_motions(n: int | None, seed: int) -> tuple[str, list[Motion]]:
 
     Recordings are the held-out CMU clips of docs/DATA.md in `$MMMD_SHARED/data` or in `shared/data` beside the checkout, with fast
     runs, dances and karate among them. Recordings do not contain head turning: the head follows the body.
-
-    Recordings are the held-out CMU clips of docs/DATA.md in `$MMMD_SHARED/data` or in `shared/data` beside the checkout:
-    fast runs, dances and karate among them. Recordings show no head turning: it follows the body.
     """
     folder = recordings_folder()
     if folder is not None:

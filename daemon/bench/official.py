@@ -26,11 +26,6 @@ def bench_official(n: int | None = None, seed: int = 0) -> dict[str, Any]:
     (`mmm_core.model.released_sampler`): a whole text, and an edit of its middle, alternately with arg-max and at temperature 1;
     `lengths_that_differ` lists the lengths at which ids differ. The steps are the released ten; the released code needs ten plain
     passes and more.
-
-    Random weights: speed does not depend on them. `tokens_identical` compares, at `n` lengths from 1 to 49 tokens (all when None),
-    the packed fp32 model and the fast decoder with the plain model and the released sampler written plainly
-    (`mmm_core.model.released_sampler`): a whole text, and an edit of its middle, by turns with arg-max and at temperature 1;
-    `lengths_that_differ` names the others. The steps are the released ten; the released code needs ten plain passes and more.
     """
     import torch
 

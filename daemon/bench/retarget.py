@@ -84,8 +84,6 @@ def _fidelity(retargeter: Retargeter, motions: Iterable[Motion], *, whole: bool 
     """Direction error, the share of it that no limit in time and no contact can explain, violations, collisions.
 
     With `whole` also the least error that is possible over whole clips, which takes a second or more for each clip.
-
-    With `whole` also the least error that whole clips allow, which takes a second or more of each.
     """
     check = ContactCheck(retargeter.robot)
     errors: list[Array] = []

@@ -9,8 +9,6 @@ def draw_texts(n: int, seed: int, *, outside_share: float = 0.0) -> list[str]:
     """`n` shuffled sentences of the corpus grammar's plainest form, with a share `outside_share` of texts that the model cannot do.
 
     The sentences differ from each other as long as there are enough.
-
-    They are different as long as there are enough.
     """
     from mmm_core.corpus.outside import OUTSIDE
     from mmm_core.corpus.plain_commands import known_commands

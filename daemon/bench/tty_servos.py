@@ -101,8 +101,6 @@ def served(server: PtyServer) -> Generator[PtyServer]:
 
     The calling thread gets FIFO priority as well, because it sometimes holds the interpreter's lock; processes started meanwhile do
     not get it.
-
-    The caller itself goes first as well, as it holds the interpreter's lock now and then; what is started meanwhile does not.
     """
 
     def serve() -> None:

@@ -67,9 +67,6 @@ def best_of_clip(retargeter: Retargeter, poses: Poses, path: JointPath, *, conta
     Head and waist follow `path`; the arms are free. The program is not convex: it is solved once starting from `path` and once
     starting from the poses, and the solution of lower cost counts.
 
-    Head and waist go where `path` moves them; the arms are free. The program is not convex: it is begun from `path`, and once
-    more from the poses themselves, and the end of less cost counts.
-
     Args:
         retargeter: the robot.
         poses: the poses to be shown.

@@ -2,9 +2,6 @@
 
 Answers are built once and looked up; nothing moves, and writes are not checked. With `--baud 0` every request is answered at once.
 Run as `python -m daemon.bench.wire_emulator`; prints the tty, serves until its standard input closes.
-
-Answers are built once and looked up; no motion, no checks of what is written. With `--baud 0` everything is answered at
-once. Run as `python -m daemon.bench.wire_emulator`; prints the tty, serves until its standard input closes.
 """
 
 from __future__ import annotations

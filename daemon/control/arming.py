@@ -3,10 +3,6 @@
 `arm_in_steps` is a generator that returns control to the bus cycle between its steps. Records continue meanwhile, and an e-stop, a
 stop or a dead front takes effect at once, however long a bad wire or a swinging arm delays arming. Only the last step switches
 torque on, servo by servo; an e-stop requested during that step ends it.
-
-A generator that gives the bus cycle back between its steps: records go on, and an e-stop, a stop or a front that has died
-counts at once, however long a bad wire or a swinging arm makes it. Torque comes on in the last step alone, servo by servo, and
-an e-stop that is asked meanwhile ends it.
 """
 
 from __future__ import annotations
@@ -53,9 +49,6 @@ def arm_in_steps(
 
     Each servo is addressed by itself and answers, which takes tens of milliseconds for all of them. Without `estop_asked` a robot
     of sixteen servos kept its torque for up to 85 ms after an e-stop during this step.
-
-    Each servo is told by itself and answers, which takes tens of milliseconds for all of them: a robot of sixteen kept its torque
-    for up to 85 ms after an e-stop that came then.
 
     Args:
         robot: the robot.

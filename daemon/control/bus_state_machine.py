@@ -114,8 +114,6 @@ class BusStateMachine:
         """Take one step of arming; return the robot's torque and limits after the last step, else None.
 
         Any error during arming is a fault, and torque is cut.
-
-        Any doubt is a fault, and torque is cut.
         """
         if self._arming is None:
             return None

@@ -2,10 +2,6 @@
 
 The running motion slows down along its own path, for all joints alike, so that it stays free of self-contact and ends later; stops
 and the gate keep their full speed. The share of full speed changes slowly, and `status` reports it with its cause.
-
-What is played slows down along its own path, for all joints alike, so that it stays free of self-contact and comes to its
-end later; stops and the gate are as quick as ever. The share of full speed changes slowly, and `status` tells it with its
-cause.
 """
 
 from __future__ import annotations

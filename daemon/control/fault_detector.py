@@ -2,9 +2,6 @@
 
 A servo that was silent for as long as its bus watchdog takes may have been stopped by the watchdog while the others moved on. Such
 a servo answers normally and refuses every goal, so its watchdog is read as soon as it answers again.
-
-A servo that was silent for as long as its bus watchdog takes may have stopped by it while the others went on: it then
-answers as ever and refuses every goal, so it is asked as soon as it is back.
 """
 
 from __future__ import annotations

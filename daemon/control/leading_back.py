@@ -2,9 +2,6 @@
 
 A joint angle maps exactly onto a servo's tick unless several servos drive one joint: play and horns then leave each servo slightly
 off the angle that they share. Sending the mapped ticks as first goals would make each servo jump by its own offset.
-
-Joint angles map onto every servo's tick but where several servos drive one joint: play and horns leave each a little
-beside the angle that all together stand for. Written as joints their first goals would be a jump of as much.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """Pinning before torque comes on: wait until the joints stand still, then set every servo's goal to its position.
 
 The functions are generators: the bus process runs its cycles between their steps.
-
-Generators: between their steps the bus process goes on with its cycles.
 """
 
 from __future__ import annotations
@@ -33,8 +31,6 @@ def reading_at_rest(bus: ServoBus, clock: Clock) -> Generator[None, None, BusRea
     """Return a complete reading of joints at rest: limp joints swing, and a goal pinned during a swing would jerk.
 
     If a servo is still silent after a second, the last reading is returned with that servo marked not valid.
-
-    After a second with a servo silent it is the last one, as it is.
 
     Raises:
         ServoFaultError: a servo still moves after a second.

@@ -2,9 +2,6 @@
 
 For any input, its output keeps position, velocity and acceleration limits and leads the robot into no self-contact: after every
 goal, braking at full deceleration is proved free of contact. Input that already keeps all of these passes bit for bit.
-
-Whatever comes in, what goes out keeps position, velocity and acceleration, and leads the robot not into itself: braking as
-hard as it can is proved free after every goal. What already keeps all that passes bit for bit.
 """
 
 from __future__ import annotations

@@ -32,9 +32,6 @@ def start(
 
     With `after_loss`, or where a servo has torque already, the loop starts in a latched fault: no joint may move by itself, and no
     servo may count as limp that is not. A pending e-stop or torque-off request cuts torque before anything else.
-
-    `after_loss`, or a servo that has torque already, starts it in a latched fault: nothing may move by itself, and nothing
-    may be taken for limp that is not. An e-stop or torque off that nobody has carried out cuts torque before anything else.
     """
     try:
         bus = open_bus()

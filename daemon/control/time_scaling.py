@@ -3,10 +3,6 @@
 Where the gate keeps the robot off itself the motion waits and then continues slowly. A path without self-contact needs this only
 where hard braking at full speed would cause contact. By waiting, the robot stays on its path, and its own arms do not cut it off
 from the rest of the path.
-
-Where the gate holds the robot off itself the motion waits for it and is then played slowly on. A path that touches nothing
-needs that only where hard braking from it at full speed would touch; so the robot does not lose its path there, and is
-not cut off from the rest of it by its own arms.
 """
 
 from __future__ import annotations
@@ -54,8 +50,6 @@ class ScaledSetpoints:
     """Setpoints played at a share of their rate, interpolated where a cycle falls between two of them.
 
     At full speed they pass unchanged, so that a replay is equal bit for bit.
-
-    At full speed they pass as they are, so that a replay is the same bit for bit.
     """
 
     def __init__(self, source: Source) -> None:

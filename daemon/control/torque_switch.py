@@ -2,9 +2,6 @@
 
 No servo answers the packet that cuts torque. So the packet is sent several times, and once more to any servo that still has torque
 in a later reading: a corrupted packet, a lost port or a loose cable then does no harm. Part of the bus process.
-
-Nobody answers torque off. So it goes out several times, and once more to any servo that still has torque in a later reading: a
-spoilt packet, a lost port or a loose cable then costs nothing. Part of the bus process.
 """
 
 from __future__ import annotations

@@ -3,10 +3,6 @@
 A servo in extended position mode forgets whole turns without power: at 192 degrees it reports -168 after a power cycle, and a joint
 that may be at either angle could be turned the wrong way. Whole turns are known once every other number of turns would put the
 joints outside their range, and as long as each servo answers without a pause in which it could have lost power.
-
-A servo in extended position mode forgets whole turns without power: at 192 degrees it reports -168 afterwards, and a joint
-that may be at either would be turned the wrong way. Whole turns are known once every other count of them would put the
-joints outside their range, and as long as each servo is heard without a pause in which it could have lost power.
 """
 
 from __future__ import annotations

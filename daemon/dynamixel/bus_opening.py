@@ -19,8 +19,6 @@ def open_bus(url: str, robot: RobotModel, clock: Clock, *, slow_every: int = 0, 
 
     With several ports every servo is searched on each of them.
 
-    On several ports every servo is looked for on each.
-
     Raises:
         PortError: a port cannot be opened.
         BusMismatchError: a servo answers on two ports.

@@ -3,10 +3,6 @@
 Fast sync read and the bulk read of protocol 1.0 are chained; they are the quicker reads. A reply that breaks off occasionally costs
 the answers of that cycle. A reply that breaks off repeatedly has a cause (a servo is gone, or its firmware does not keep to the
 order); then every servo answers for itself for a while, so that only the silent one is quarantined.
-
-Fast sync read and the bulk read of protocol 1.0 are such; they are the quicker ones. A reply that breaks off now and then
-costs the answers of that cycle. One that breaks off again and again is no accident (a servo is gone, or the firmware does
-not keep to the order), and then every servo answers for itself for a while: so only the silent one is quarantined.
 """
 
 from __future__ import annotations

@@ -67,8 +67,6 @@ class Step(Protocol):
     """One request and its answers; `index` selects its servos' rows in a reading.
 
     `chained`: whether a silent servo silences those behind it.
-
-    `chained`: a servo's silence silences those behind it.
     """
 
     rows: NDArray[np.intp]

@@ -39,9 +39,6 @@ class HealthProbe:
 
         Two servos of a kind answer a ping with the same bytes, and the same bytes at the same time are received as one answer;
         their measured values differ.
-
-        Two servos of a kind say the same to a ping, and the same bytes at the same time are heard as one; what they
-        measure differs.
         """
         for servo_id in servo_ids:
             row = self._link.row_of(servo_id)

@@ -149,9 +149,6 @@ class RegisterAccess:
 
         Firmware of the 330 size that flags the trip but keeps moving is armed as well, and its id returned. Where a trip would move
         the joint the watchdog stays off.
-
-        Firmware of the 330 size that flags the trip but keeps moving is armed as well, and named here. Where a trip would
-        move the joint the watchdog stays off.
         """
         without: list[int] = []
         for servo_id, model, firmware in zip(self._link.ids, self._link.models, self._link.firmware, strict=True):

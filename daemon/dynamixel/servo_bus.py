@@ -88,9 +88,6 @@ class ServoBus:
         Each port gets goals and request in one `write()`, and all ports get theirs before any answer is awaited. A servo that does
         not answer keeps its old values, marked not valid.
 
-        A port gets goals and request in one `write()`, and all ports theirs before any answer is waited for. A servo that
-        does not answer keeps its old values, marked not valid.
-
         Raises:
             LinkLostError: one of the devices is gone; the others have been served.
         """

@@ -2,9 +2,6 @@
 
 On Protocol 2.0 they are far apart; a window of indirect addresses allows one read for all. The window is RAM: after a reboot it
 contains zeros that look like values, so a register that is never zero (status_return_level) is read along.
-
-On Protocol 2.0 they stand far apart; a window of indirect addresses brings them in one read. The window is RAM: after a
-reboot it shows zeros that look like values, so a register that is never zero (status_return_level) is read along.
 """
 
 from __future__ import annotations

@@ -1,9 +1,6 @@
 """The allowed time of an exchange: bytes on the wire, delays of servos and adapter, and a margin.
 
 dynamixel-sdk waits a fixed 34 ms for a silent servo; here a silent servo costs the time of its answer plus the margin.
-
-dynamixel-sdk waits a fixed 34 ms for a servo that is silent; here a silent servo costs what its answer would have taken,
-and the margin.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """Clips on disk: bones above the hips as 16-bit numbers, about 100 bytes a frame before compression.
 
 One .npz file holds any number of clips. The legs are not stored: the person of a clip stands.
-
-One .npz holds any number of clips. The legs are not kept: a clip is of a person who stands.
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """Sorts a robot's joints by the effect of torque off: they hang, fall, sink or stay. Computed from the robot file.
 
 A joint of the trunk or head whose axis is not vertical carries the parts above it: without torque these fall to a stop.
-
-A joint of the trunk or head that does not turn about the vertical carries what is above it: without torque that falls to a stop.
 """
 
 from __future__ import annotations

@@ -173,8 +173,6 @@ def slowed(q_rad: Array, velocity_rad_s: Array) -> tuple[Array, float]:
     """The path (T, J), slowed down where a joint was faster than `velocity_rad_s` (J,), and the largest factor of slowing.
 
     Every frame lies on the straight lines between the given ones, so that none is nearer to contact than they are.
-
-    Every frame lies on the straight lines between the given ones, so that none is nearer to anything than they are.
     """
     share = (np.abs(np.diff(q_rad, axis=0)) * FPS / velocity_rad_s).max(1, initial=0.0)
     times = np.concatenate([[0.0], np.cumsum(np.maximum(share, 1.0))])  # in frames

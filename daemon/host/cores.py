@@ -4,10 +4,6 @@ The bus process has real-time priority and works in every cycle. On a core where
 front's time at unpredictable moments, so that the end of retargeting could not be predicted; the kernel does not separate the two.
 Of several daemons on one machine each needs a core of its own, and one core is left to all; a daemon that starts when no core is
 left gets none.
-
-The bus process has real-time priority and works in every cycle. On the core where the front makes a path it takes a third of the
-time from it, in pieces, so that nobody can tell when the path is ready. The kernel leaves both where they are. Of several
-daemons on one machine each needs a core of its own, and one core is left to all; who comes too late goes without.
 """
 
 from __future__ import annotations
@@ -92,8 +88,6 @@ def on_all_cores() -> Generator[None]:
     """Let processes started inside the block run on every core that this process had at its start.
 
     An event loop may start several processes at a time: the thread returns to its own cores at the end of the last block.
-
-    An event loop may start several processes at a time: the thread goes back to its own cores at the end of the last block.
     """
     if not _ALL:
         yield

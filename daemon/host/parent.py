@@ -2,9 +2,6 @@
 
 The parent passes its id: if it was killed while this process was starting, `getppid` would return the id of the process that
 inherits orphans, and this process would stay for ever.
-
-Its id is handed over: asked for here it would be that of whoever inherits orphans, when the parent was killed while this
-process was starting, and this process would stay for ever.
 """
 
 from __future__ import annotations

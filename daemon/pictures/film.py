@@ -22,8 +22,6 @@ def write_film(pictures: Iterable[Image.Image], file: Path, fps: float) -> int:
 
     The file is written completely or not at all.
 
-    The file appears whole or not at all.
-
     Raises:
         FilmError: the suffix is neither .gif nor .mp4, PyAV is missing, or there are no pictures.
     """

@@ -42,9 +42,6 @@ def find_loop(p: PoseSequence) -> tuple[int, int] | None:
 
     The part ends as it begins, is lively, and stays away from standing where possible: a wave loops above the shoulder. A part from
     rest to rest counts: the loop is then the whole gesture.
-
-    It ends as it begins, is lively, and stays away from standing where it can: a wave goes on above the shoulder. A part
-    from rest to rest counts: it is the whole gesture, done again.
     """
     shortest = round(SHORTEST_LOOP_S * p.fps)
     T = len(p)

@@ -2,9 +2,6 @@
 
 They are made as poses like any motion, so that retargeting keeps limits and self-contact as always. They begin from the standing
 person and never stray far from that pose: amplitudes are a few degrees.
-
-Made as a posture like any motion, so that limits and self-contact are kept where they always are. It begins from the
-standing person and never strays far from there: amplitudes are a few degrees.
 """
 
 from __future__ import annotations

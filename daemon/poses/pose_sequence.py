@@ -2,9 +2,6 @@
 
 The daemon makes every change to a motion before retargeting (tempo, size, mirror, seams, loops, gaze, idling) here, on the human
 poses, so that only retargeting has to keep limits and self-contact.
-
-Everything the daemon does to a motion before retargeting (tempo, size, mirror, seams, loops, gaze, idling) is done
-here, on the human, so that limits and self-contact stay the business of retargeting alone.
 """
 
 from __future__ import annotations

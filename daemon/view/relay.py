@@ -2,9 +2,6 @@
 
 Every web client has a connection of its own to the daemon, so that no client receives another's events. Messages that no client
 reads are dropped here, before they cost the daemon anything.
-
-Every peer of the web has a connection of its own to the daemon, so that nobody gets another's events. What nobody reads is
-dropped here, before it costs the daemon anything.
 """
 
 from __future__ import annotations

@@ -2,9 +2,6 @@
 
 The page places the bodies itself from joint angles, so that only angles are sent while the robot moves. Shapes are those of the
 robot's description: capsules, boxes, spheres, cylinders, and meshes where their files exist.
-
-The page places the bodies itself from joint angles, so that nothing but angles has to be sent while the robot moves. Shapes are
-those of the robot's description: capsules, boxes, spheres, cylinders, and meshes where their files are.
 """
 
 from __future__ import annotations

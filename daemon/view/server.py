@@ -2,9 +2,6 @@
 
 `POST /v1/cmd` and `/v1/ctl` take one request (JSON, or plain text as on the ZeroMQ sockets) and answer with its first event; a
 WebSocket at the same address takes any number of requests and receives all events. `/v1/pub` and `/v1/stream` are WebSockets only.
-
-`POST /v1/cmd` and `/v1/ctl` take one request (JSON, or plain text as on the ZeroMQ sockets) and answer with its first event; a
-WebSocket at the same address takes any number and gets all events. `/v1/pub` and `/v1/stream` are WebSockets alone.
 """
 
 from __future__ import annotations

@@ -4,11 +4,6 @@ Written from the robot file alone, in ticks of each servo. A goal is one step of
 tick to a step and two to the difference of two steps. The bus may pause between two goals (a skipped cycle), but may not hurry:
 more than a few goals in a row that come faster than the robot's rate are a violation of their own. Another violation are goals that
 move a servo which has reported its trip often enough, once there was time to come to rest.
-
-Written from the robot file alone, in ticks of each servo. A goal is one step of one bus period; rounding to ticks adds at most one
-tick to a step and two to the difference of two steps. Between two goals the bus may pause (a skipped cycle), but may
-not hurry: goals that come faster than the robot's rate, more than a few in a row, are a violation of their own. So are
-goals that lead a servo on that has said often enough that it tripped, once there was time to come to rest.
 """
 
 from __future__ import annotations
@@ -175,8 +170,6 @@ class Audit:
         """Count a goal that a servo refused: it was beyond the servo's limits, or its watchdog had stopped the servo.
 
         A servo that has not answered since its watchdog `tripped` may get goals: the client cannot know of the trip.
-
-        One that was not heard since its watchdog `tripped` may get goals: nobody can know.
         """
         track = self._tracks.get(servo_id)
         if track is not None and (faulted or (tripped and t_s <= track.told_s + FAULT_GRACE_S)):

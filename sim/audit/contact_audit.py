@@ -3,10 +3,6 @@
 A commanded pose consists of the last goal sent to each servo, also where the goal was lost on the wire or refused: a servo that is
 stuck, limp or deaf leads to a pose that no goals commanded. Such a pose may be in contact when torque comes on in it; that contact
 is inherited as long as it only grows shallower, and is counted by itself.
-
-What was told is the last goal sent to each servo, also where it was lost on the wire or refused: a servo that is stuck, limp
-or deaf makes a pose that nobody commanded. Such a pose may be in contact when torque comes on over it; that contact is
-inherited as long as it only grows shallower, and counted for itself.
 """
 
 from __future__ import annotations

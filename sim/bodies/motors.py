@@ -5,12 +5,6 @@ pages XM540 and AX); the stall currents of XM540 and AX are not in the shared fa
 and -P (`_data/dxl_y_info.yml`, `_data/dxl_p_info.yml`, at 24 V): the manual gives no stall; for Y we use its maximum torque and
 current (99:1), for P (303.75:1) its continuous torque per ampere at the highest current that its limit allows. All other constants
 are our estimates and marked as such.
-
-Rated voltage, no-load speed, stall torque and stall current: ROBOTIS e-manual (`_data/dxl_x_info.yml`,
-`_data/dxl_mx_info.yml`, pages XM540 and AX); the stall currents of XM540 and AX are not in the shared facts and should
-be checked on a servo. DYNAMIXEL-Y and -P (`_data/dxl_y_info.yml`, `_data/dxl_p_info.yml`, at 24 V): the manual gives no stall;
-of Y its maximum torque and current stand for it (99:1), of P (303.75:1) its continuous torque per ampere at the highest
-current its limit takes. Everything else is our estimate and says so.
 """
 
 from __future__ import annotations

@@ -4,11 +4,6 @@ The robot's description is used unchanged except for its model of the servos: da
 the servo's motor instead (the motor's own back-EMF damps, see `sim/servos/drives.py`). Joints without a stop in the description get
 one slightly outside the limits of the robot file. Bodies that are neighbours, or touch in the rest pose, cannot collide: their
 shapes are too coarse to tell.
-
-The robot's description is taken as it is, but for what stands for the servos in it: damping, friction and armature of its
-joints come from the servo's motor instead (the motor's own back-EMF damps, see `sim/servos/drives.py`). Joints without a stop in
-the description get one a little outside the limits of the robot file. Bodies that are neighbours, or touch in the rest pose,
-do not touch: shapes are too coarse to tell.
 """
 
 from __future__ import annotations

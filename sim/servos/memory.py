@@ -2,9 +2,6 @@
 
 The table knows addresses, sizes, access rights and ranges; `SimServo` knows the meaning of values. An indirect data byte shows the
 byte whose address stands in its indirect address item (ROBOTIS e-manual, "Indirect Address").
-
-Knows addresses, sizes, access rights and ranges; what a value means is the servo's affair. An indirect data byte shows
-the byte whose address stands in its indirect address item (ROBOTIS e-manual, "Indirect Address").
 """
 
 from __future__ import annotations

@@ -1,8 +1,6 @@
 """Bytes in time on one wire, and the bytes that are left when two senders collide.
 
 Bytes that begin together are ANDed bit by bit, as open-collector drivers do; bytes that do not line up become noise.
-
-Bytes that begin together are ANDed bit by bit, as open-collector drivers do; where they do not line up noise is left.
 """
 
 from __future__ import annotations

@@ -2,9 +2,6 @@
 
 The lock file is in a folder to which every user may write, so that another user may have put a file there under its name: only a
 plain file with a single name is locked, and only a file of this user is written to.
-
-The lock file lies in a folder to which everybody may write, so what is found under its name may have been put there: nothing
-but a plain file of that one name is locked, and only one's own is written to.
 """
 
 from __future__ import annotations
