@@ -87,8 +87,6 @@ def _times(
     """Say each text: with `stop` at rest, else while the text before is played, or (without `cancel`) once it idles.
 
     With `before` each text interrupts a story of these scenes.
-
-    With `before` each text interrupts a story of these scenes.
     """
     first_s: list[float] = []
     generate_s: list[float] = []

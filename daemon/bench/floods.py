@@ -1,8 +1,6 @@
 """Floods of a daemon's public sockets, each in a process of its own that ends with its parent.
 
 `python -m daemon.bench.floods KIND ENDPOINT` floods until it is killed; it prints a line once the flood has begun.
-
-`python -m daemon.bench.floods KIND ENDPOINT` floods until it is killed; it prints a line once the flood has begun.
 """
 
 from __future__ import annotations

@@ -23,9 +23,6 @@ def bench_generate(seed: int = 0) -> dict[str, Any]:
     without counting. All are timed alternately, so that a busy machine slows each of them. The reference is the official MMM's
     shape (width 1024, 16 + 2 blocks, 8192 codes, 51 rows, 77 words) in this code with random weights: speed does not depend on
     them.
-
-    All are timed alternately, so that a busy machine slows both. The reference is the official MMM's shape (width
-    1024, 16 + 2 blocks, 8192 codes, 51 rows, 77 words) in this code with random weights: speed does not depend on them.
     """
     import torch
 

@@ -1,8 +1,6 @@
 """mink, where installed, on the problem that our retargeting solves in closed form: elbows and wrists from bone directions.
 
 Both get the same targets on the same robot with position limits only, one frame after another.
-
-Both get the same targets on the same robot with position limits only, one frame after another.
 """
 
 from __future__ import annotations

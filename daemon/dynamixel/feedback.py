@@ -2,9 +2,6 @@
 
 A whole group of Protocol 2.0 servos is one step (sync read, or fast sync read); MX on protocol 1.0 are one step (bulk read); an AX
 knows no group read and is a step of its own.
-
-A whole group of Protocol 2.0 servos is one step (sync read, or fast sync read); MX on protocol 1.0 are one step (bulk
-read); an AX knows no group read and is a step of its own.
 """
 
 from __future__ import annotations

@@ -74,8 +74,6 @@ class ServoLink:
 
         Only instructions that may be repeated are sent this way.
 
-        Only instructions that may be repeated are sent this way.
-
         Raises:
             LinkTimeoutError: the servo stayed silent.
             LinkGarbledError: every attempt brought bytes but no answer.

@@ -146,8 +146,6 @@ class Wire:
         """Time at which bytes are next passed to the client, at best `most` at once; None when none are under way.
 
         Without latency timer and pieces this is the end of the burst, or `until_s` within one.
-
-        Without latency timer and pieces this is the end of the burst, or `until_s` within one.
         """
         if self._held:
             return -math.inf
