@@ -1,4 +1,4 @@
-"""What a request's field may be, in words, where a value was refused: "0.5 to 2", "one of now, after, at". Sans-I/O."""
+"""Names the allowed values of a request's field after a refusal: "0.5 to 2", "one of now, after, at". No I/O."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ _STEP = re.compile(r"\.(\w+)|\[(\d+|\.\.\.)\]")
 def refused_value(
     error: msgspec.ValidationError, raw: dict[str, Any], kind: type[msgspec.Struct]
 ) -> tuple[str, Any, str] | None:
-    """The place of the value that a decoder refused, the value, and what is allowed there.
+    """Place of the value that a decoder refused, the value, and the allowed ones, in words.
 
     Args:
-        error: the decoder's, which names the place.
+        error: the decoder's error, which names the place.
         raw: the request.
-        kind: the struct that it was to become.
+        kind: the struct into which the request was decoded.
 
     Returns:
-        None where the error is of no single value: a missing field, or fields that contradict each other.
+        None where the error concerns no single value: a missing field, or fields that contradict each other.
     """
     found = _PLACE.search(str(error))
     if found is None or not found["path"] or not str(error).startswith("Expected "):
@@ -56,7 +56,7 @@ def _item_types(kind: inspect.Type) -> list[inspect.Type]:
 
 
 def _singles(kind: inspect.Type) -> list[inspect.Type]:
-    """The alternatives of a type; of what is noted about one only the words for a pattern are kept."""
+    """The alternatives of a type; of an alternative's constraints only the words for a pattern are kept."""
     if isinstance(kind, inspect.Metadata):
         patterned = isinstance(kind.type, inspect.StrType) and kind.type.pattern is not None
         return [kind] if patterned and _noted(kind) else _singles(kind.type)
@@ -88,5 +88,5 @@ def _words(kind: inspect.Type) -> str:
 
 
 def _noted(kind: inspect.Metadata) -> dict[str, Any]:
-    """The JSON schema that is noted about a type."""
+    """The JSON schema annotations of a type."""
     return cast("dict[str, Any]", kind.extra_json_schema or {})  # pyright: ignore[reportUnknownMemberType]

@@ -35,11 +35,11 @@ from daemon.wire.showing import shortened, shown
 
 MAX_FRAME_BYTES = 64 * 1024
 MOST_NAMED = 5
-"""Unknown fields that an error names."""
+"""Number of unknown fields that an error names, at most."""
 
 
 class WireError(DaemonError, ValueError):
-    """A frame that cannot be taken; says what was asked, found and allowed, and what to do."""
+    """A frame that cannot be decoded; the text says what was requested, found and allowed, and what to do."""
 
     def __init__(self, code: str, asked: str, found: str, allowed: str, do: str, request_id: str = "") -> None:
         self.code, self.asked, self.found, self.allowed, self.do = code, asked, found, allowed, do
@@ -62,11 +62,11 @@ def decode_event(frame: bytes) -> AnyEvent:
     """The event in a frame.
 
     Raises:
-        WireError: it is none.
+        WireError: the frame is no event.
     """
     try:
         return _EVENT_DECODER.decode(frame)
-    except Exception as error:  # RecursionError, MemoryError, ...: whatever a peer can make a decoder raise
+    except Exception as error:  # RecursionError, MemoryError, ...: any error that a peer can provoke in a decoder
         raise WireError(
             "not_an_event", "read an event", shortened(error), _names(EVENTS), "is this mmmd's port?"
         ) from None
@@ -100,10 +100,10 @@ def decode_target(frame: bytes) -> Target:
 
 
 def only_frame(parts: list[bytes]) -> bytes:
-    """The one frame of a request.
+    """The only frame of a request.
 
     Raises:
-        WireError: there are none or several.
+        WireError: there is no frame, or more than one.
     """
     if len(parts) != 1:
         found, do = f"{len(parts)} frames", "send the request as one frame"
@@ -112,14 +112,14 @@ def only_frame(parts: list[bytes]) -> bytes:
 
 
 def error_event(error: WireError) -> ErrorEvent:
-    """The one event that answers a bad frame."""
+    """The `error` event that answers a bad frame."""
     return ErrorEvent(
         id=error.request_id, code=error.code, asked=error.asked, found=error.found, allowed=error.allowed, do=error.do
     )
 
 
 def _or_refused(read: Callable[[bytes], _Decoded], frame: bytes) -> _Decoded:
-    """What `read` makes of a frame.
+    """Decode a frame with `read`.
 
     Raises:
         WireError: the frame cannot be taken. Nothing else leaves here, whatever the frame made a decoder raise: who reads a
@@ -195,7 +195,7 @@ def _decode_json(text: str, types: tuple[type[Request], ...], union: Any, socket
 
 
 def _bad_value(error: msgspec.ValidationError, raw: dict[str, Any], kind: type[Request], request_id: str) -> WireError:
-    """The error of a request whose fields are known and whose values cannot be taken."""
+    """The error of a request whose fields are known but have values that are not allowed."""
     name = tag_of(kind)
     if (refused := refused_value(error, raw, kind)) is not None:
         place, value, allowed = refused
@@ -236,10 +236,10 @@ def _check_type(raw: dict[str, Any], types: tuple[type[Request], ...], socket: s
 
 
 def check_request(request: Request) -> None:
-    """Refuse what the daemon would refuse, before it is sent.
+    """Refuse a request that the daemon would refuse, before it is sent.
 
     Raises:
-        WireError: a value is outside what the schema says.
+        WireError: a value is outside the schema's bounds.
     """
     decode_cmd(encode(request))
 
@@ -248,7 +248,7 @@ def check_text(text: str, request_id: str = "") -> None:
     """Refuse a text that is empty or too long.
 
     Raises:
-        WireError: it is.
+        WireError: the text is empty or too long.
     """
     if not text.strip():
         raise WireError(

@@ -1,4 +1,4 @@
-"""Requests for motion that is put together: a story, a way through poses, an edit of another motion. Sans-I/O."""
+"""Requests for composed motion: a story, a sequence of poses, an edit of another motion. No I/O."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from msgspec import Meta
 from daemon.wire.request_base import LONGEST_S, MAX_ID_CHARS, MAX_SEED, MAX_TEXT_CHARS, SHORTEST_S, Name, Play, Text
 
 MOST_SCENES = 1000
-"""Of one story; a story that goes round has no end."""
+"""Number of scenes in a story, at most; a looping story has no end."""
 MOST_POSES = 20
 SHORTEST_GAP_S = 0.2
-"""Between poses to be met: one token."""
+"""Seconds between two poses, at least: one token."""
 
 
 class SceneOf(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
-    """A part of a story.
+    """A scene of a story.
 
     Attributes:
         text: what to do, in English.
-        seconds: its length; None lets the model choose.
+        seconds: length of the scene; None lets the model choose.
     """
 
     text: Text
@@ -29,7 +29,7 @@ class SceneOf(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 class Story(Play, tag="story", kw_only=True):
-    """Do one thing after the other in one motion: what is between them is generated.
+    """Play several texts one after another in one motion, with generated transitions.
 
     It moves with the first part while later ones are made, in constant memory, so a story has any length; with `loop` it
     has no end. A part that the model cannot do is left out, which a `progress` event tells.
@@ -43,7 +43,7 @@ class Story(Play, tag="story", kw_only=True):
     seed: Annotated[int, Meta(ge=0, le=MAX_SEED)] = 0
 
     def __post_init__(self) -> None:
-        """Refuse what a story cannot do.
+        """Refuse options that a story does not have.
 
         Raises:
             ValueError: which becomes one `error` event.
@@ -57,7 +57,7 @@ class Story(Play, tag="story", kw_only=True):
 
     @property
     def words(self) -> str:
-        """All texts."""
+        """All texts in one."""
         return "; ".join(self.texts)[:MAX_TEXT_CHARS]
 
     @property
@@ -67,14 +67,14 @@ class Story(Play, tag="story", kw_only=True):
 
 
 class KeyPoseOf(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
-    """A pose that is due at a time. One of `gesture`, `command` and `standing` says which.
+    """A pose that is due at a time: that of `gesture`, of `command`, or `standing`; exactly one of these is given.
 
     Attributes:
-        at_s: from the beginning of the motion.
+        at_s: seconds from the beginning of the motion.
         gesture: the pose of a named clip.
-        command: id of a command that was played, and whose pose is meant.
-        standing: with hanging arms, looking ahead.
-        time_s: time in the clip or motion; None takes the pose that says most.
+        command: id of a played command with this pose.
+        standing: whether the pose is standing with hanging arms, looking ahead.
+        time_s: seconds from the start of the clip or motion; None takes its hold pose.
     """
 
     at_s: Annotated[float, Meta(ge=0, le=LONGEST_S)]
@@ -85,9 +85,9 @@ class KeyPoseOf(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 class Inbetween(Play, tag="inbetween", kw_only=True):
-    """Go through poses at given times: the motion between them is generated.
+    """Pass through poses at given times: the motion between them is generated.
 
-    It begins with what the robot shows when nothing stands at 0 s, and ends with the last pose.
+    The motion begins with the robot's present pose unless a pose is due at 0 s, and ends with the last pose.
 
     Attributes:
         poses: in order of time, at least 0.2 s apart.
@@ -124,7 +124,7 @@ class Inbetween(Play, tag="inbetween", kw_only=True):
 
     @property
     def words(self) -> str:
-        """The text, or how many poses."""
+        """The text, or the number of poses."""
         return self.text or f"{len(self.poses)} poses"
 
     @property
@@ -134,7 +134,7 @@ class Inbetween(Play, tag="inbetween", kw_only=True):
 
 
 class Edit(Play, tag="edit", kw_only=True):
-    """Play a motion of which a part was made again. One of `gesture`, `command`, `plan` and `file` says which.
+    """Play a motion with a part generated anew. Exactly one of `gesture`, `command`, `plan` and `file` names the motion.
 
     Attributes:
         text: what the new part is to be.
@@ -187,7 +187,7 @@ class Edit(Play, tag="edit", kw_only=True):
 
 
 class Replay(Play, tag="replay", kw_only=True):
-    """Play a motion once more, as it was made. One of `command`, `plan` and `file` says which; needs no generator.
+    """Play a motion once more, unchanged, without a generator. Exactly one of `command`, `plan` and `file` names the motion.
 
     Attributes:
         command: id of a command that was played.
@@ -211,5 +211,5 @@ class Replay(Play, tag="replay", kw_only=True):
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """The name of the motion, in words."""
         return self.file or self.command or f"plan {self.plan}"

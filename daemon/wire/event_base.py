@@ -1,4 +1,4 @@
-"""What every event carries. Sans-I/O."""
+"""Fields that every event has. No I/O."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from daemon.wire.requests import PROTOCOL_VERSION
 
 
 class Event(msgspec.Struct, tag_field="type", kw_only=True):
-    """What every event carries; a receiver ignores fields that it does not know.
+    """Fields that every event has; a receiver ignores fields that it does not know.
 
     Attributes:
         v: version of the protocol.

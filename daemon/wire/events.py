@@ -1,4 +1,4 @@
-"""What the daemon says of a command: one struct for each event; and the union of all events. Sans-I/O."""
+"""Events of a command, one struct for each; and the union of all events. No I/O."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ class Accepted(Event, tag="accepted"):
         plan_id: number of the plan in the log.
         text: the text.
         status: accepted, or degraded when only part of the text can be done.
-        understood: what the motion shows that was made for the text, in one sentence; of a lease, what it takes.
+        understood: content of the motion made for the text, in one sentence; of a lease, the targets that it takes.
         nearest: the known command that lies nearest to the text, and its score; empty where no text was read.
         lacks: what this robot lacks to show the motion; empty for nothing.
         commands: what was read in the text, one entry for each command in turn; commands at once are joined by " + ", tempo, size
             and hold stand in brackets. Empty where no text was read.
         denied: what the text says not to do.
         refers_to: id of the earlier command that the text refers to ("again", "slower"); empty where it stands by itself.
-        reason: why it is degraded, else empty.
+        reason: why the text is degraded, else empty.
         scope_score: how near the text lies to what the model can do.
         duration_s: length of the generated motion, of one whose strokes are counted (`say` with a number) as first drafted; 0
             for a story, of which only the first part is known.
@@ -88,8 +88,8 @@ class Done(Event, tag="done"):
         frames: frames played.
         peak_speed_share: largest joint speed as a share of that joint's limit.
         peak_speed_joint: the joint that had it.
-        peak_speed_rad_s: its speed.
-        peak_speed_limit_rad_s: its limit.
+        peak_speed_rad_s: speed of that joint.
+        peak_speed_limit_rad_s: limit of that joint.
         clipped_frames: frames in which a position limit changed the model's motion.
         gate_clipped_frames: frames that the last limiter before the bus changed.
         underruns: cycles in which the plan had no frame ready.
@@ -98,8 +98,8 @@ class Done(Event, tag="done"):
         log_dropped: cycles that are missing from these figures.
         shown: whether the goals that the robot was given show what the motion shows: "shown", "in part" or "not shown"; empty
             where it is not judged (a story, a lease, a motion of more than 15 s).
-        seen: what the motion shows, in one sentence.
-        missing: what was not seen on the robot; empty for nothing.
+        seen: content of the motion, in one sentence.
+        missing: content that was not seen on the robot; empty for none.
     """
 
     terminal: ClassVar[bool] = True
@@ -127,7 +127,7 @@ class Cancelled(Event, tag="cancelled"):
 
     Attributes:
         plan_id: number of the plan, 0 when it had none yet.
-        by: what ended it: stop, estop, park, reset, cancel, shutdown, or `say ID`.
+        by: cause of the end: stop, estop, park, reset, cancel, shutdown, or `say ID`.
     """
 
     terminal: ClassVar[bool] = True
@@ -136,7 +136,7 @@ class Cancelled(Event, tag="cancelled"):
 
 
 class Refusal(Event):
-    """What was asked, found and allowed, and what to do next."""
+    """A refusal: what was requested, found and allowed, and what to do next."""
 
     terminal: ClassVar[bool] = True
     code: str
@@ -152,7 +152,7 @@ class Refusal(Event):
 
 
 class Rejected(Refusal, tag="rejected"):
-    """A well-formed command that is not taken now (state of the robot) or at all (out of the model's scope).
+    """A well-formed command that is not accepted now (state of the robot) or at all (out of the model's scope).
 
     Attributes:
         understood: nearest known command, when the scope was the reason.
@@ -178,12 +178,12 @@ class Failed(Refusal, tag="failed"):
 
 
 class Ack(Event, tag="ack"):
-    """A ctl verb was handed to the bus; or a request that is no motion was carried out, such as a text that means to stop.
+    """A `ctl` verb was passed to the bus, or a request without a motion was carried out, such as a text that means to stop.
 
     Attributes:
         verb: the verb.
-        state: the robot's state when it was handed over.
-        note: what was changed about it, else empty.
+        state: the robot's state when the verb was passed on.
+        note: change made to the request, else empty.
         carried_out: of a `stop` or an `estop` on `ctl`: whether a bus cycle has carried it out; where none has yet (the bus process
             is dead, frozen or starting, its port is lost) it stays asked for, and `carried_out` follows. None of anything else.
     """
@@ -199,8 +199,8 @@ class CarriedOut(Event, tag="carried_out"):
     """A bus cycle has carried out a `stop` or an `estop` that was not carried out yet when it was acknowledged.
 
     Attributes:
-        verb: which.
-        after_s: seconds since it was asked.
+        verb: the verb.
+        after_s: seconds since the request.
     """
 
     terminal: ClassVar[bool] = True

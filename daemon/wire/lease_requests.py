@@ -1,4 +1,4 @@
-"""Joint targets from another program: the lease that allows them, its end, and the targets themselves. Sans-I/O."""
+"""Joint targets from another program: the lease that allows them, its end, and the targets themselves. No I/O."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ Secret = Annotated[
     ),
 ]
 MOST_JOINTS = 256
-"""Longest row of angles that is read at all; the robot's own number is checked afterwards."""
+"""Number of angles in a target that is decoded, at most; the robot's own number is checked afterwards."""
 
 
 def without_secret(frame: bytes, secret: str) -> bytes:
-    """A frame as it is recorded: a log is read by more people than hold the lease."""
+    """A frame for the log, without the lease's secret: more people read a log than may hold the lease."""
     return frame.replace(secret.encode(), b"(secret)") if secret else frame
 
 
@@ -32,9 +32,9 @@ class Lease(Command, tag="lease", kw_only=True):
     (cancelled), or by a silence that lasts (failed, and the robot parks).
 
     Attributes:
-        secret: what every target shows. Ids are published; who reads one on `pub` must not lead the robot with it.
-        holder: who asks, in a word or two; a second asker is told.
-        silence_s: without a target for so long the robot brakes and holds; None takes the daemon's `lease_s`.
+        secret: word that every target contains. Ids are published, and reading one on `pub` must not suffice to move the robot.
+        holder: name of the requesting program in a word or two, reported to a second one.
+        silence_s: seconds without a target after which the robot brakes and holds; None takes the daemon's `lease_s`.
     """
 
     secret: Secret
@@ -43,22 +43,22 @@ class Lease(Command, tag="lease", kw_only=True):
 
     @property
     def words(self) -> str:
-        """Whose it is."""
+        """The holder of the lease, in words."""
         return f"stream of {self.holder}" if self.holder else "stream"
 
 
 class Release(Request, tag="release", kw_only=True):
-    """Give a lease back: the robot goes to the last target, brakes, and the lease ends in `done`.
+    """Release a lease: the robot goes to the last target, brakes, and the lease ends in `done`.
 
     Attributes:
-        lease: id of the lease; empty means whichever is held.
+        lease: id of the lease; empty means the present one.
     """
 
     lease: Id = ""
 
 
 class Target(Request, tag="target", kw_only=True):
-    """Where the joints are to be, sent to the `stream` socket as one frame.
+    """Target angles of the joints, sent to the `stream` socket as one frame.
 
     Attributes:
         id: of the lease.

@@ -1,4 +1,4 @@
-"""What requests have in common: the fields of each, and how a motion is to be played. Sans-I/O."""
+"""Fields that requests have in common, and the options of playing a motion. No I/O."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ MAX_ID_CHARS = 128
 MAX_CLOCK_CHARS = 64
 MAX_SEED = 2**31 - 1
 SHORTEST_S, LONGEST_S = 0.2, 9.8
-"""Lengths of motion that may be asked for: one token and a whole window of the model, which a test holds together."""
+"""Seconds of motion that may be requested: one token to a whole window of the model, which a test compares with the model."""
 SHORTEST_PREFIX_S, LONGEST_PREFIX_S = 0.2, 1.6
-"""One token, and the longest prefix that the model is asked for (`mmm_core.generate.continuation`)."""
+"""Seconds of a prefix: one token, to the longest prefix that the model takes (`mmm_core.generate.continuation`)."""
 LEAST_TEMPO, MOST_TEMPO = 0.5, 2.0
 LEAST_AMPLITUDE, MOST_AMPLITUDE = 0.3, 1.2
 MOST_REPEATS = 1000
@@ -27,14 +27,14 @@ Name = Annotated[str, Meta(pattern=r"^[a-z0-9][a-z0-9_]{0,63}$", description="lo
 
 
 class Request(msgspec.Struct, tag_field="type", forbid_unknown_fields=True, kw_only=True):
-    """What every request may carry.
+    """Fields that every request may have.
 
     Attributes:
         v: version of the protocol.
         id: chosen by the sender, returned in every event; empty lets the daemon choose.
         seq: the sender's count of messages; kept in the log.
         t_mono: the sender's monotonic clock in seconds; kept in the log.
-        clock: which clock that is, as `daemon.host.clock.clock_id` names it; only times of the same clock are compared.
+        clock: name of that clock by `daemon.host.clock.clock_id`; only times of the same clock are compared.
     """
 
     v: int = PROTOCOL_VERSION
@@ -45,7 +45,7 @@ class Request(msgspec.Struct, tag_field="type", forbid_unknown_fields=True, kw_o
 
 
 class Command(Request, kw_only=True):
-    """What every request that moves the robot may carry: when its turn is.
+    """Fields of every request that moves the robot: the time of its turn.
 
     Attributes:
         when: now (takes over from what is played), after (what is played and what waits already), or at `at_s`.
@@ -68,25 +68,25 @@ class Command(Request, kw_only=True):
 
     @property
     def words(self) -> str:
-        """What it is, in a word or a sentence."""
+        """The command in a word or a sentence."""
         raise NotImplementedError
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """What it asks for in a person's words; none where it names something that is kept."""
+        """Texts of a person in the request; empty for a request that names a stored motion."""
         return ()
 
 
 class Play(Command, kw_only=True):
-    """How a motion is to be played, whatever it comes from.
+    """Options of playing a motion from any source.
 
     Attributes:
-        tempo: how much faster than it was made, where the servos can follow.
-        amplitude: every deviation from standing, times this.
-        mirror: left for right.
-        repeat: how often; a part that can go round goes round, else the whole is done again.
-        loop: go round until something ends it.
-        hold: stop in the pose that says most, and stay.
+        tempo: factor of the motion's speed, as far as the servos can follow.
+        amplitude: factor of every deviation from standing.
+        mirror: whether left and right are exchanged.
+        repeat: number of repetitions of the part that can loop, else of the whole motion.
+        loop: whether the motion repeats until a stop or another command.
+        hold: whether the motion stops in its most telling pose and stays there.
     """
 
     tempo: Annotated[float, Meta(ge=LEAST_TEMPO, le=MOST_TEMPO)] = 1.0

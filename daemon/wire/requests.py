@@ -1,4 +1,4 @@
-"""What may be asked of the daemon: one struct for each request. Sans-I/O.
+"""Requests to the daemon, one struct for each. No I/O.
 
 `say`, `gesture`, `story`, `inbetween`, `edit` and `replay` share the options of `Play` (`request_base.py`); a new way to get
 a motion is one more such struct.
@@ -113,8 +113,8 @@ class Say(Play, tag="say", kw_only=True):
         text: what to do, in English.
         seed: the same text, seed and seconds give the same motion.
         seconds: length of the motion; None lets the model choose.
-        prefix_s: so much of what is played just then is context of the new motion, which goes on from it: the longer, the
-            less it sets out anew, and the less it shows of the text. 0 for none.
+        prefix_s: seconds of the running motion that the new one continues from, 0.2 to 1.6; 0 for none. The longer the prefix,
+            the smoother the transition, and the less of the text shows.
         context: whether the text may refer to the last command of the same connection ("again", "with the other hand"); off, it
             is read by itself.
     """
@@ -126,7 +126,7 @@ class Say(Play, tag="say", kw_only=True):
     context: bool = True
 
     def __post_init__(self) -> None:
-        """Refuse a prefix of what is not known yet.
+        """Refuse a prefix for a motion whose start is not known yet.
 
         Raises:
             ValueError: which becomes one `error` event.
@@ -152,14 +152,14 @@ class Gesture(Play, tag="gesture", kw_only=True):
     """Play a named clip of the library; needs no generator.
 
     Attributes:
-        name: of the clip; `capabilities` lists all.
+        name: name of the clip; `capabilities` lists all.
     """
 
     name: Name
 
     @property
     def words(self) -> str:
-        """Its name."""
+        """The clip's name."""
         return self.name
 
 
@@ -169,7 +169,7 @@ class Record(Request, tag="record", kw_only=True):
     Attributes:
         name: of the gesture.
         command: id of the command whose motion to keep; empty means the newest.
-        replace: take the place of a gesture of that name; without it an existing one is refused.
+        replace: whether to overwrite a gesture with that name, which is refused otherwise.
     """
 
     name: Name
@@ -178,11 +178,11 @@ class Record(Request, tag="record", kw_only=True):
 
 
 class Look(Request, tag="look"):
-    """Where the head looks while the rest of the body does something else; neither angle given lets go again.
+    """Turn the head during any motion; without angles the head follows the motion again.
 
     Attributes:
-        yaw_deg: to the left.
-        pitch_deg: down.
+        yaw_deg: degrees to the left.
+        pitch_deg: degrees down.
     """
 
     yaw_deg: Annotated[float, Meta(ge=-120, le=120)] | None = None
@@ -190,11 +190,11 @@ class Look(Request, tag="look"):
 
 
 class Idle(Request, tag="idle"):
-    """Small movements of breath and gaze while there is nothing to play.
+    """Play small movements of breath and gaze while no command is played.
 
     Attributes:
-        on: whether there are any.
-        style: how much of them.
+        on: whether the movements are played.
+        style: amplitude of the movements.
     """
 
     on: bool = True
@@ -202,21 +202,21 @@ class Idle(Request, tag="idle"):
 
 
 class Capabilities(Request, tag="capabilities"):
-    """Ask for a `capabilities` event: what this robot and this daemon can do."""
+    """Request a `capabilities` event: the abilities of this robot and this daemon."""
 
 
 class Cancel(Request, tag="cancel"):
     """End a command: the robot decelerates within its limits and holds.
 
     Attributes:
-        command: id of the command; empty means whatever is running.
+        command: id of the command; empty means all that run or wait.
     """
 
     command: Id = ""
 
 
 class Status(Request, tag="status"):
-    """Ask for a `state` event."""
+    """Request a `state` event."""
 
 
 class Stop(Request, tag="stop"):
@@ -246,7 +246,7 @@ class Torque(Request, tag="torque"):
     """Torque on as by `arm`; or off: brake within the limits, then limp where it stands, until an explicit `arm`.
 
     Attributes:
-        on: which.
+        on: whether torque goes on.
     """
 
     on: bool

@@ -1,4 +1,4 @@
-"""Words for untrusted values in error messages: short, one line, and made without ever raising. Sans-I/O."""
+"""Untrusted values in words for error messages: short, one line, and without raising any error. No I/O."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _STATES = {"fault": "in fault", "estop": "in e-stop"}
 
 
 def in_words(state: str) -> str:
-    """A state of the robot as it follows "the robot is": "limp", "in fault"."""
+    """A state of the robot as words after "the robot is": "limp", "in fault"."""
     return _STATES.get(state, state)
 
 

@@ -1,4 +1,4 @@
-"""What the daemon says of itself and of the robot: state, health, log, capabilities; one struct for each. Sans-I/O."""
+"""Events about the daemon and the robot: state, health, log, capabilities; one struct for each. No I/O."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class GestureInfo(msgspec.Struct):
         name: for `gesture`.
         text: what it shows.
         seconds: its length.
-        loop: whether a part of it goes round; else the whole is done again.
-        hold_s: when it is held, with `hold`.
-        mirror: the clip that shows the same on the other side, empty when it is symmetric.
+        loop: whether a part of it can loop; otherwise the whole is repeated.
+        hold_s: seconds from its start to the hold pose.
+        mirror: name of the clip that is its mirror image, empty when it is symmetric.
         own: recorded, taught or added by the user.
         side: arms that it was taught with, left, right or both; else empty.
     """
@@ -34,7 +34,7 @@ class GestureInfo(msgspec.Struct):
 
 
 class JointInfo(msgspec.Struct):
-    """A joint and what bounds it."""
+    """A joint and its limits."""
 
     name: str
     role: str
@@ -45,7 +45,7 @@ class JointInfo(msgspec.Struct):
 
 
 class CapabilitiesEvent(Event, tag="capabilities"):
-    """What this robot and this daemon can do.
+    """The abilities of this robot and this daemon.
 
     Attributes:
         version: of mmmd.
@@ -60,7 +60,7 @@ class CapabilitiesEvent(Event, tag="capabilities"):
         gestures: the library.
         idle_styles: for `idle`.
         stream: endpoint of the `stream` socket.
-        lease: its times in seconds: silence_s (brake and hold), park_s, limp_s.
+        lease: times of a lease in seconds: silence_s (brake and hold), park_s, limp_s.
     """
 
     version: str
@@ -79,16 +79,16 @@ class CapabilitiesEvent(Event, tag="capabilities"):
 
 
 class LeaseInfo(msgspec.Struct):
-    """The lease that is held.
+    """The lease that is held now.
 
     Attributes:
         id: of its command, which every target names.
-        holder: who asked for it, in its own words.
+        holder: name that the requesting program gave itself.
         state: accepted (not begun yet), waiting (for the first target), streaming, silent or released.
-        held_by: what keeps the robot from its target: self-collision, silence, or nothing.
-        silence_s: without a target for so long it brakes and holds.
-        silent_s: since the last target.
-        targets: messages taken.
+        held_by: cause that keeps the robot from its target: self-collision, silence, or empty.
+        silence_s: seconds without a target after which the robot brakes and holds.
+        silent_s: seconds since the last target.
+        targets: number of accepted messages.
         clipped: frames whose target lay outside a position limit.
     """
 
@@ -107,8 +107,8 @@ class StreamInfo(msgspec.Struct):
 
     Attributes:
         endpoint: where it is.
-        lease: who may send to it now; None for nobody.
-        bad: messages refused since the start, by code.
+        lease: the lease that may send to it now; None for none.
+        bad: number of messages refused since the start, by code.
     """
 
     endpoint: str
@@ -127,7 +127,7 @@ class CurrentCommand(msgspec.Struct):
 
 
 class ServoHealth(msgspec.Struct):
-    """What can be said of a servo, and what was counted since its port was opened.
+    """State of a servo, and its counters since its port was opened.
 
     Attributes:
         id: of the servo.
@@ -163,7 +163,7 @@ class HealthEvent(Event, tag="health"):
     Attributes:
         robot: name of the robot.
         servos: in the order of the robot file; none before the first bus cycle.
-        silent_ms: since the newest bus cycle: what is said of the servos is as old.
+        silent_ms: milliseconds since the newest bus cycle, which is the age of these data.
     """
 
     robot: str
@@ -196,23 +196,23 @@ class StateEvent(Event, tag="state"):
         state: limp, arming, idle, moving, holding, parking, fault or estop.
         must_arm: an explicit `arm` is needed before the next text.
         reason: why the robot is in fault, else empty.
-        command: what is being played, None when nothing is.
+        command: the running command, None when there is none.
         waiting: ids of the commands that wait for their turn or their time.
         idle: style of the idle movements, `off` when there are none.
-        gaze_deg: where the head was told to look (left, down), None when it is free.
-        stream: the socket for joint targets, and who holds its lease.
+        gaze_deg: requested direction of the head (left, down), None when it follows the motion.
+        stream: the socket for joint targets, and its lease.
         generator: ready, starting or down, with the reason.
         joint_names: J names.
-        goal_rad: (J,) what the servos were last told.
-        present_rad: (J,) what they last measured.
-        queued_ms: setpoints that the bus process has in hand.
+        goal_rad: (J,) last goals of the joints.
+        present_rad: (J,) last measured positions of the joints.
+        queued_ms: milliseconds of setpoints queued in the bus process.
         bus_info: counters of the bus process.
         person_m: (66,) the person that the robot shows: x, y, z of each of the 22 joints in metres, x left, y up, z forward.
         person_faces: (3,) unit vector to where the person's head faces, in the same axes.
         effort: (S,) of each servo, in the order and unit of `v1/health`.
         servos_not_ok: those whose state is not ok; all are on `v1/health`.
         recording: path of the log, empty when there is none; says so when recording has stopped.
-        uptime_s: since the start of the daemon.
+        uptime_s: seconds since the start of the daemon.
     """
 
     robot: str
