@@ -58,7 +58,7 @@ def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -
 
     Args:
         prompts: number of texts.
-        seed: of the texts, the motions and the faults.
+        seed: seed of the texts, the motions and the faults.
         robots: names of packaged robots or paths of robot files; every packaged one when empty.
 
     Raises:

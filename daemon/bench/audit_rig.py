@@ -39,7 +39,7 @@ class AuditRig:
     Args:
         robot: the robot.
         faults: faults of its servos and its wire.
-        seed: of the faults' probabilities.
+        seed: seed of the faults' probabilities.
         body: body behind the servos, "plain" or "mujoco" (`sim.options.BODIES`).
     """
 

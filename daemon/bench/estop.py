@@ -34,8 +34,8 @@ def bench_estop(n: int = 30, seed: int = 0, robot: str = "reference") -> dict[st
 
     Args:
         n: e-stops with all cores busy, and in each disturbance.
-        seed: of the instants.
-        robot: its name.
+        seed: seed of the instants.
+        robot: name of the robot.
     """
     busy = _measure_busy(n, seed, robot)
     disturbances, violations = measure_disturbed(n, seed, robot)

@@ -47,9 +47,9 @@ def measure_disturbed(
 
     Args:
         n: e-stops for each disturbance.
-        seed: of the instants.
-        robot: its name.
-        names: of `DISTURBANCES`.
+        seed: seed of the instants.
+        robot: name of the robot.
+        names: names among `DISTURBANCES`.
     """
     figures: dict[str, dict[str, Any]] = {}
     with tempfile.TemporaryDirectory() as folder, EstopRig(robot, Path(folder)) as rig:

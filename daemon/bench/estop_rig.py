@@ -44,13 +44,13 @@ class EstopRig:
     """Starts the daemon when needed, and leads the robot to a state. Ends all processes that it started on exit.
 
     Attributes:
-        servos: of the robot.
-        endpoints: of the daemon, TCP on this machine.
+        servos: simulated servos of the robot.
+        endpoints: endpoints of the daemon, TCP on this machine.
         has_fifo: whether a button may have FIFO priority.
 
     Args:
         robot: name of the robot.
-        folder: for the servos' tty and the daemon's log.
+        folder: folder for the servos' tty and the daemon's log.
     """
 
     def __init__(self, robot: str, folder: Path) -> None:

@@ -101,7 +101,7 @@ def flooded(kind: str, endpoint: str) -> Generator[None]:
     """Run a flood of `FLOODS`, which has begun when the block is entered.
 
     Raises:
-        DaemonError: its process ended before the flood began.
+        DaemonError: the flood's process ended before the flood began.
     """
     command = [sys.executable, "-m", "daemon.bench.floods", kind, endpoint]
     with subprocess.Popen(command, stdout=subprocess.PIPE) as process:

@@ -45,7 +45,7 @@ class TtyServos:
     Attributes:
         bus: the simulated bus.
         server: its tty.
-        url: of the bus, for `mmmd run --bus`.
+        url: URL of the bus, for `mmmd run --bus`.
 
     Args:
         robot: the robot.

@@ -47,7 +47,7 @@ class Emulator:
         loss: share of status packets that are lost, 0 to 1.
         dead: id of a servo that never answers; 0 for none.
         fast: whether the servos know fast sync reads.
-        seed: of the losses.
+        seed: seed of the losses.
     """
 
     def __init__(self, n: int, baud: int, loss: float, dead: int, *, fast: bool, seed: int = 0) -> None:

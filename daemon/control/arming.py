@@ -35,7 +35,7 @@ class Armed:
 
     Attributes:
         goal_tick: (S,) goals that the servos hold.
-        limits: of the servos, read from their registers.
+        limits: limits in the servos' registers.
     """
 
     goal_tick: NDArray[np.int32]
@@ -56,10 +56,10 @@ def arm_in_steps(
         clock: time of the cycles.
         effort: share of full torque at the start, 0 to 1.
         turns: says whether the servos' whole turns are known.
-        estop_asked: whether an e-stop waits for the next cycle; asked before each servo gets torque.
+        estop_asked: returns whether an e-stop waits for the next cycle; called before each servo gets torque.
 
     Raises:
-        BusMismatchError: servos or their settings are not what the robot file needs; they may have been changed since.
+        BusMismatchError: servos or their settings differ from the robot file; they may have been changed since the start.
         ServoFaultError: a servo reports an error, moves, refuses its goal, or may stand elsewhere than it reports.
         LinkError: a servo does not answer, or the port is lost.
     """

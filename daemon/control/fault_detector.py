@@ -113,7 +113,7 @@ class FaultDetector:
         return found == WATCHDOG_TRIPPED
 
     def _lost_torque(self, reading: BusReading) -> str:
-        """Description of a servo that has lost its torque; one servo a call is asked, in turn. Empty for none."""
+        """Read `torque_enable` of one servo a call, in turn; returns a description if it has lost its torque, else empty."""
         if self._cycle % TORQUE_CHECK_CYCLES:
             return ""
         row = self._cycle // TORQUE_CHECK_CYCLES % len(self._bus.ids)

@@ -24,7 +24,7 @@ class PtpTrajectory:
 
     Args:
         way_rad: poses (J,) to pass through; the first is the present one.
-        limits: of the joints.
+        limits: limits of the joints.
 
     Raises:
         ValueError: ruckig finds no trajectory, e.g. for a pose that is not finite.

@@ -60,7 +60,7 @@ def bus_on(
     Args:
         ports: the open ports.
         robot: the robot.
-        clock: of the deadlines.
+        clock: clock of the deadlines.
         slow_every: see `ServoChain`.
         margin_s: seconds by which an answer may be late before the servo counts as silent.
 

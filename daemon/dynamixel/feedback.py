@@ -90,8 +90,8 @@ class SyncStep:
     """Sync read of a group: vectorised when all answers came whole, else byte by byte.
 
     Args:
-        rows: of the servos in the reading.
-        servo_ids: of the same.
+        rows: rows of the servos in the reading.
+        servo_ids: ids of these servos.
         layout: what is read.
     """
 
@@ -184,9 +184,9 @@ class Protocol1Step:
     """Bulk read of MX servos, or the read of a single AX; few bytes, taken byte by byte.
 
     Args:
-        rows: of the servos in the reading.
-        servo_ids: of the same.
-        models: of the same, all with the same items.
+        rows: rows of the servos in the reading.
+        servo_ids: ids of these servos.
+        models: models of these servos, all with equal items.
     """
 
     def __init__(self, rows: Sequence[int], servo_ids: Sequence[int], models: Sequence[BusModel]) -> None:
@@ -235,9 +235,9 @@ def steps_for(
     """The steps that read these servos: those with `fast` in one fast sync read, the others by the best read of their protocol.
 
     Args:
-        rows: of the servos in the reading.
-        servo_ids: of the same.
-        models: of the same.
+        rows: rows of the servos in the reading.
+        servo_ids: ids of these servos.
+        models: models of these servos.
         fast: which of them answer fast sync reads.
         chained: whether to use requests in which a silent servo silences those behind it (fast sync read, bulk read of
             protocol 1.0). Without them every servo's silence is its own.

@@ -26,7 +26,7 @@ class Health(IntEnum):
 
     OK = 0
     LATE = 1
-    """Its last answer came after its deadline."""
+    """The servo's last answer came after its deadline."""
     MISSING = 2
     """The servo did not answer in the last cycle."""
     FAULTED = 3

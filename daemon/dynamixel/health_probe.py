@@ -18,7 +18,7 @@ class HealthProbe:
     """Requests to single servos within a cycle.
 
     Args:
-        link: to the servos.
+        link: link to the servos.
         registers: access to the items of these servos.
         slow_every: read torque, hardware error, voltage and temperature of one servo, in turn, every so many cycles; 0 never.
 

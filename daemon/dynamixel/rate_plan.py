@@ -146,11 +146,11 @@ def plan_for(
     """The plan for such servos before a bus is opened, from the robot file.
 
     Args:
-        models: of the servos.
+        models: models of the servos.
         baud: bits per second.
         fast: whether the servos' firmware has fast sync reads, where the model can have them.
-        return_delay_s: of each answer.
-        turnaround_s: of each request.
+        return_delay_s: return delay of each answer, seconds.
+        turnaround_s: turnaround of each request, seconds.
     """
     ids = list(range(1, len(models) + 1))
     able = [fast and m.fast_sync_firmware is not None for m in models]

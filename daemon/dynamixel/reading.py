@@ -21,12 +21,12 @@ class BusReading:
             is the load in 0.1 % where a servo measures no current.
         valid: (S,) whether these values are from this cycle.
         age_cycles: (S,) cycles since the values were measured.
-        read_s: (S,) clock time at which they were asked for; -inf before the first.
+        read_s: (S,) clock time at which the values were requested, seconds; -inf before the first.
         error: (S,) error byte of the last answer; bit 7 is the hardware alert, in both protocols.
         torque, hardware_error, voltage_raw, temperature_c: (S,) slow registers, read in turn; UNKNOWN before the first.
             `voltage_raw` in 0.1 V; `hardware_error` holds bits, of DYNAMIXEL-Y a code; `temperature_c` of the motor, and
             of Y's inverter less what it may be hotter, whichever is more.
-        slow_read_s: (S,) clock time at which the slow registers were asked for.
+        slow_read_s: (S,) clock time at which the slow registers were requested, seconds.
     """
 
     position_tick: NDArray[np.int32]

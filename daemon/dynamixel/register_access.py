@@ -68,7 +68,7 @@ class RegisterAccess:
         Raises:
             CommandError: the item is read only or the value does not fit.
             ServoFaultError: the servo refused.
-            LinkTimeoutError: it did not answer.
+            LinkTimeoutError: the servo did not answer.
         """
         row = self._link.row_of(servo_id)
         item = self._item(row, name)
@@ -101,7 +101,7 @@ class RegisterAccess:
         Args:
             name: the item.
             value: its value.
-            unless: asked before each servo; true ends it.
+            unless: called before each servo; true ends the writes.
 
         Returns:
             Whether every servo was set.

@@ -71,11 +71,11 @@ def scan(
 
     Args:
         open_at: opens the port at a baud.
-        clock: of the waiting.
-        bauds: to try.
-        protocols: to try.
-        ids: asked one by one in protocol 1.0, which has no broadcast ping worth waiting for.
-        on_progress: told (baud, protocol, share done of this pair).
+        clock: clock of the waiting.
+        bauds: bauds to try.
+        protocols: protocols to try.
+        ids: ids tried one by one in protocol 1.0, which has no broadcast ping worth waiting for.
+        on_progress: called with (baud, protocol, share done of this pair).
     """
     found: list[Found] = []
     garbled: list[int] = []

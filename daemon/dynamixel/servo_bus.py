@@ -120,7 +120,7 @@ class ServoBus:
         """Compare every port with the robot file.
 
         Raises:
-            BusMismatchError: with a table of what was expected and what was found on all ports.
+            BusMismatchError: servos differ from the robot file; the error has a table of those expected and found on all ports.
         """
         found: list[BusMismatchError] = []
         for chain in self.chains:

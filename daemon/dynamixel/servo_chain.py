@@ -36,7 +36,7 @@ class ServoChain:
     Args:
         port: the port.
         servos: the expected servos.
-        clock: of the waiting.
+        clock: clock of the waiting.
         margin_s: seconds by which an answer may be late.
         slow_every: read torque, hardware error, voltage and temperature of one servo, in turn, every so many
             exchanges; 0 never.
@@ -99,7 +99,7 @@ class ServoChain:
         """Compare the bus with the robot file, and find out the abilities of the servos' firmware.
 
         Raises:
-            BusMismatchError: with a table of what was expected and what was found.
+            BusMismatchError: servos differ from the robot file; the error has a table of those expected and found.
         """
         found = self.ping_all()
         garbled = self.probe.look_for_collisions(list(found))

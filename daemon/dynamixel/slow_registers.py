@@ -50,7 +50,7 @@ class SlowReader:
     """Chooses the servo whose slow registers are read next, builds the request and decodes the answer.
 
     Args:
-        models: of the servos, in the order of the reading.
+        models: models of the servos, in the order of the reading.
     """
 
     def __init__(self, models: Sequence[BusModel]) -> None:
@@ -79,8 +79,8 @@ class SlowReader:
         """Map a servo's indirect addresses to the slow registers; return False when it has none or does not keep them.
 
         Args:
-            row: of the servo.
-            firmware: on which the place of the window depends.
+            row: row of the servo.
+            firmware: firmware of the servo, on which the place of the window depends.
             write: writes bytes at an address of that servo.
             read: reads bytes at an address of that servo.
         """

@@ -17,7 +17,7 @@ class Timing:
     """Wire time of a port, and the turnaround measured on it.
 
     Attributes:
-        return_delay_s: of each answer; the longest of the servos, once it was read from them.
+        return_delay_s: return delay of each answer, seconds; the longest of the servos once it was read from them.
         turnaround_s: time of an exchange beyond its wire time and return delays; a running mean, 0 until measured.
     """
 

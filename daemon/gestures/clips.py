@@ -38,7 +38,7 @@ class Clip:
     Attributes:
         name: lower case letters, digits and _.
         text: text of the motion.
-        posture: its frames.
+        posture: its poses.
         marks: frames of its loop and of its hold.
         mirror: name of the clip that shows its mirror image, empty when there is none.
         source: origin of the motion.

@@ -71,9 +71,9 @@ class GestureLibrary:
         """Write a clip to the user's folder.
 
         Args:
-            name: of the clip.
+            name: name of the clip.
             text: text of the motion.
-            posture: its frames.
+            posture: its poses.
             source: origin of the motion.
             side: arms with which the clip was taught.
             replace: overwrite a clip with the same name.

@@ -37,11 +37,11 @@ KEPT_STILL_FRAMES = 4
 MOVED_RAD = float(np.deg2rad(5.0))
 """Radians of range beyond which a joint shows that its arm was led."""
 _PLAY_DEG = 0.5
-"""Further beyond a limit is told: less is play and rounding."""
+"""Degrees beyond a limit from which this is noted: less is play and rounding."""
 POSE_S = 0.5
 """Seconds of positions whose mean is the pose; a pose is kept as a motion of one second."""
 _LONGEST_GAP_S = 0.25
-"""A longer pause between two positions is told; it is bridged by a straight line."""
+"""Seconds between two positions beyond which the pause is noted; a straight line bridges it."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Taught:
     """A motion taught by hand.
 
     Attributes:
-        posture: its frames, as poses of a person.
+        posture: its poses, on a person.
         sides: the arms that were kept.
         notes: changes and observations, a sentence each.
     """
@@ -63,7 +63,7 @@ def taught_gesture(retargeter: Retargeter, t_s: Sequence[float], q_rad: Array, s
     """The gesture in the measured positions.
 
     Args:
-        retargeter: of the robot.
+        retargeter: retargeter of the robot.
         t_s: (N,) times of the measurements, rising.
         q_rad: (N, J) measured joint angles.
         sides: the arms to keep; None for those that were led.

@@ -57,7 +57,7 @@ def run_command(
     Args:
         words: the command line; "mmmd" and "python" are those of this installation.
         limit_s: seconds.
-        folder: to run it in.
+        folder: folder to run it in.
         tell: called with each line of its stderr, from another thread.
     """
     last = deque[str](maxlen=LAST_LINES)

@@ -34,13 +34,13 @@ class Record(msgspec.Struct, frozen=True, kw_only=True):
     """The stored result of a measurement.
 
     Attributes:
-        name: of the measurement.
-        command: as it was typed.
-        version: of mmmd.
-        commit: of the clone; "" where there is none.
+        name: name of the measurement.
+        command: the command as typed.
+        version: version of mmmd.
+        commit: commit of the clone; "" without a clone.
         code: digest of the packages' files; measurements with equal digests measure the same code.
         machine: processor, cores, system, Python.
-        date: of the end, ISO 8601, UTC.
+        date: date of the end, ISO 8601, UTC.
         seconds: wall time of the command.
         quick: whether small numbers were taken.
         others_took: share of the processors' time that other processes took; None where unknown.
@@ -129,10 +129,10 @@ def record_of(
 
     Args:
         measurement: what was measured.
-        command: as typed.
-        outcome: of the command.
+        command: the command as typed.
+        outcome: outcome of the command.
         now: the code and the machine before the command ran; values of code that changed meanwhile are not kept.
-        date: of the end.
+        date: date of the end.
         quick: whether small numbers were taken.
     """
     values, error = _values(measurement, outcome)

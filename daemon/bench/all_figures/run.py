@@ -40,7 +40,7 @@ def bench_all(
         out: folder of one JSON file for each measurement; files of this code and machine are not measured again.
         only: names of measurements to make; all when empty. The report has all that the folder has.
         quick: small numbers of texts and trials.
-        seed: of the benches that take one.
+        seed: seed of the benches that take one.
         measure: False to make only the report, from the folder's files.
         markdown: path of the report; `out`/report.md when None.
         table_file: the table of figures.

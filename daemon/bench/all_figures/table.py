@@ -71,7 +71,7 @@ class Measurement(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A command and the figures that it gives.
 
     Attributes:
-        name: of the measurement and of its file.
+        name: name of the measurement and of its file.
         command: program and arguments; "mmmd" and "python" of this installation; "{recordings}" is the folder of docs/DATA.md.
         options: further arguments.
         quick: the arguments in their place with --quick; None for the same.

@@ -24,8 +24,8 @@ class GroupWrite:
     """A sync write of one little-endian number to each servo of a group.
 
     Args:
-        servo_ids: in the order of the values.
-        address: of the item.
+        servo_ids: ids of the servos, in the order of the values.
+        address: address of the item.
         size: bytes of the item, 1, 2 or 4.
     """
 
@@ -58,7 +58,7 @@ class GroupReply:
     """The answers to a sync read: one status packet from each servo, in order.
 
     Args:
-        servo_ids: as asked.
+        servo_ids: ids of the servos, in the order of the request.
         length: bytes asked of each.
     """
 
@@ -108,7 +108,7 @@ class FastGroupReply:
     compute it over what they hear, and what two servos with one id said at once they hear as we do.
 
     Args:
-        servo_ids: as asked.
+        servo_ids: ids of the servos, in the order of the request.
         length: bytes asked of each.
     """
 

@@ -101,7 +101,7 @@ def accesses(request: Packet) -> list[Access]:
     """The accesses that a read or write of any kind requests of each servo, in the order of their answers.
 
     Raises:
-        PacketError: its parameters are cut short.
+        PacketError: the parameters of the request are cut short.
     """
     p, kind = request.parameters, request.instruction
     if kind == Instruction.READ and len(p) == 2:

@@ -75,7 +75,7 @@ class BusModel:
 
     Attributes:
         name: the maker's name.
-        model_number: what it answers to a ping.
+        model_number: model number that it answers to a ping.
         family: x_current, x_load, x330, mx2_current, mx2_load, mx1, ax, y or p.
         protocol: 1.0 or 2.0.
         table: its control table.
@@ -83,12 +83,12 @@ class BusModel:
         operating_modes: values of operating_mode it takes; empty where there is no such item.
         max_baud: highest baud.
         voltage_v: (low, high) it may be run at.
-        fast_sync_firmware: from which firmware it answers fast sync and bulk reads; None never.
-        watchdog_firmware: from which firmware it has a bus watchdog; None never.
+        fast_sync_firmware: first firmware that answers fast sync and bulk reads; None for none.
+        watchdog_firmware: first firmware with a bus watchdog; None for none.
         watchdog_stops: whether the watchdog is known to stop the servo. Of the 330 size some firmware flags the trip
             but keeps moving (ROBOTIS forum 4814): it is armed there as well, but counts for nothing.
         axes: joints in one housing, each with an id of its own.
-        thermometers: what it measures the temperature of.
+        thermometers: its temperature readings, each with the item of its limit.
     """
 
     name: str
@@ -119,11 +119,11 @@ class BusModel:
 
     @cached_property
     def error_item(self) -> str:
-        """The item that says what is wrong with it; empty on protocol 1.0, where every answer does."""
+        """Name of the item with its errors; empty on protocol 1.0, where every answer carries them."""
         return next((name for name in ("hardware_error_status", "error_code") if name in self.table), "")
 
     def error_text(self, value: int) -> str:
-        """What a value of `error_item` says (protocol 1.0: the error bits of an answer), in words."""
+        """A value of `error_item` in words (on protocol 1.0 the error bits of an answer)."""
         return error_code_text(value) if self.error_item == "error_code" else hardware_error_text(value)
 
     @property

@@ -56,7 +56,7 @@ class Item:
     """One item of a control table.
 
     Attributes:
-        name: as in ROBOTIS' tables, lower case with underscores.
+        name: name as in ROBOTIS' tables, in lower case with underscores.
         address, size: first byte and number of bytes.
         signed: two's complement.
         writable: whether the item can be written; else it is read only.
@@ -65,7 +65,7 @@ class Item:
         initial: value from the factory; None where it depends.
         scale, unit: value * scale is in `unit`.
         sign_bit: protocol 1.0 speeds and loads carry their sign in this bit instead.
-        hybrid: of DYNAMIXEL-Y: kept without power, and written under torque all the same.
+        hybrid: whether the item (of DYNAMIXEL-Y) is kept without power and still writable under torque.
     """
 
     name: str

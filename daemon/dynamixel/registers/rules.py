@@ -31,10 +31,10 @@ class Finding:
     """One setting that differs from the required one.
 
     Attributes:
-        servo_id: of the servo.
+        servo_id: id of the servo.
         joint_name: joint that the servo drives.
-        item: of the control table.
-        found, expected: in words.
+        item: item of the control table.
+        found, expected: value found and value expected, in words.
         severity: NEEDED or ADVISED.
         remedy: correction by hand.
         fix: value that `fix` writes; None where a person has to act.
@@ -70,7 +70,7 @@ def findings_of(
     """Settings of one servo that differ from the required ones.
 
     Args:
-        servo: as in the robot file.
+        servo: the servo as in the robot file.
         ends_tick: lowest and highest goal that its joint may get.
         model: model of the servo.
         firmware: firmware version that the servo reported.

@@ -62,7 +62,7 @@ class Calibrated:
     """Result of the calibration for one servo.
 
     Attributes:
-        servo_id: of the servo.
+        servo_id: id of the servo.
         joint_name: its joint, or its joints joined by "+".
         zero_tick: its position in the zero pose.
         low_deg, high_deg: range in joint angles; None when the joint was not moved, or is moved by several servos.

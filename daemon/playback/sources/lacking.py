@@ -36,7 +36,7 @@ def lacking(retargeter: Retargeter, motion: Motion, acts: Iterable[Sequence[Act]
 
     Args:
         retargeter: retargeter of the robot.
-        motion: as a person performs it.
+        motion: motion as a person performs it.
         acts: acts that the motion shows, scene by scene.
     """
     roles = {joint.role for joint in retargeter.robot.joints}
