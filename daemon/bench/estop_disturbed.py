@@ -30,8 +30,8 @@ class Outcome:
         lost: whether a servo still had torque at the bound.
         told: whether the daemon had reported by the bound that the e-stop was carried out.
         off_s: seconds from the request to torque off of all servos; 0 where none had torque, the bound where the e-stop was lost.
-        back_s: the same from the first bytes that servos heard after the disturbance, if that was after the request; None where the
-            bus process was not away, or no servo had torque.
+        back_s: seconds from the first bytes that servos received after the disturbance to torque off of all servos, if these came
+            after the request; None where the bus process was not away, or no servo had torque.
     """
 
     lost: bool

@@ -126,7 +126,7 @@ class Executed:
         return measured
 
     def figures(self) -> dict[str, Any]:
-        """`kept` of what the paths show, in all and by expectation, faults, tracking, joints that fall short, and the audit."""
+        """Share of the paths' expectations that the robot keeps (`kept`), faults, tracking, joints that fall short, the audit."""
         audit = self._rig.finish()
         total = sum(self._commanded.values())
         return {

@@ -57,7 +57,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
         """Move as the text says.
 
         Args:
-            text: what to do, in English.
+            text: the command, in English.
             seed: seed of the motion; equal text, seed and seconds give equal motions.
             seconds: length of the motion; None lets the model choose.
             prefix_s: seconds of the running motion that the new one continues from, 0.2 to 1.6; 0 for none.

@@ -92,7 +92,7 @@ class SyncStep:
     Args:
         rows: rows of the servos in the reading.
         servo_ids: ids of these servos.
-        layout: what is read.
+        layout: layout of the bytes that are read.
     """
 
     def __init__(self, rows: Sequence[int], servo_ids: Sequence[int], layout: Layout = DIRECT) -> None:

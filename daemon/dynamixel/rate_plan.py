@@ -29,7 +29,7 @@ class RatePlan:
         goal_bytes: bytes that set all goals.
         request_bytes: bytes that request feedback.
         reply_bytes: bytes of the answers.
-        extra_bytes: of the single question asked beside it in some cycles (slow registers); both directions.
+        extra_bytes: bytes, in both directions, of the single request besides the exchange in some cycles (slow registers).
         answers: number of status packets; each is sent after the return delay.
         requests: number of requests; the bus turns round after each.
         return_delay_s: longest return delay of the servos.

@@ -57,9 +57,9 @@ class ServoChain:
         self.cycle = FeedbackCycle(link, self.registers, self.probe)
 
     def ping_all(self, *, patient: bool = False) -> dict[int, Identity]:
-        """Model number and firmware of each servo that answers; all are asked when `patient`, however silent it is.
+        """Model number and firmware of each servo that answers; with `patient` every servo gets a request, however silent all are.
 
-        Few silent ones among others are asked once more: a machine or a wire may be held up for longer than one is waited for.
+        A few silent servos among others get a second request: a machine or a wire may be held up for longer than the margin.
         """
         found: dict[int, Identity] = {}
         for row in range(len(self.link.ids)):

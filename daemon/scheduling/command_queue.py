@@ -63,8 +63,8 @@ class _Stamp:
     """A message of another machine.
 
     Attributes:
-        sent_s: when it was sent, on that machine's clock.
-        came_s: when it came, on ours.
+        sent_s: time of sending on that machine's clock, seconds.
+        came_s: time of arrival on this machine's clock, seconds.
     """
 
     sent_s: float

@@ -128,7 +128,7 @@ def record_of(
     """The record of a command's outcome: its JSON, or the reason why there is none.
 
     Args:
-        measurement: what was measured.
+        measurement: the measurement.
         command: the command as typed.
         outcome: outcome of the command.
         now: the code and the machine before the command ran; values of code that changed meanwhile are not kept.

@@ -31,8 +31,8 @@ class Figure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         at_most: the mark from above; None for none.
         at_least: the mark from below; None for none.
         is_true: whether the mark is that the value is true.
-        either: name of a group of figures of which one has to meet its mark; "" for none.
-        source: who or what sets the mark.
+        either: name of a group of figures, one of which has to meet its mark; "" for none.
+        source: person or document that sets the mark.
     """
 
     what: str

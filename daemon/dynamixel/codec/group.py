@@ -103,9 +103,9 @@ class GroupReply:
 class FastGroupReply:
     """The common answer to a fast sync read; each servo's part is checked by itself.
 
-    A part's CRC goes on from the CRC before it, so a part is good when it follows from the CRC that was received before
-    it: what another servo's part lost costs that part alone. The last CRC alone proves nothing of the others: the servos
-    compute it over what they hear, and what two servos with one id said at once they hear as we do.
+    Each part's CRC continues from the CRC before it, so a part is good when it follows from the CRC that was received before it:
+    bytes lost from one servo's part cost that part alone. The last CRC alone proves nothing about the other parts: the servos
+    compute it over the bytes that they receive, and they receive two answers sent at once by two servos of one id as we do.
 
     Args:
         servo_ids: ids of the servos, in the order of the request.
@@ -156,9 +156,9 @@ class FastGroupReply:
     def _salvaged(self, raw: bytes | bytearray, whole: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Add the parts whose checksum follows from all bytes received before them.
 
-        A servo behind two that have one id goes on from what it has heard, which is not what either of them meant. Where
-        no part between is right and the last one is, the servos leave those checksums empty, as the manual lets them; of two
-        servos that cannot be told from a collision.
+        A servo behind two of one id continues from the bytes that it received, which neither of the two meant. When no part but the
+        last is right, the servos leave the other checksums empty, as the manual lets them. With only two servos this case cannot be
+        distinguished from a collision.
         """
         crc, end, follows = crc16(self._head), _HEAD_BYTES, False
         for i in range(len(self._ids)):

@@ -2,7 +2,7 @@
 
 ROBOTIS e-manual, "DYNAMIXEL Protocol 1.0": header FF FF, id, length, instruction (or, in a status packet, the error
 bits), parameters, checksum: the complement of the sum of all after the header. Bytes are not stuffed, and requests
-and answers look alike: a decoder must be told which of the two it hears.
+and answers look alike, so that a decoder must be set to decode one of the two.
 """
 
 from __future__ import annotations

@@ -128,7 +128,7 @@ class BusModel:
 
     @property
     def feedback_address(self) -> int:
-        """Where effort, velocity and position begin (protocol 2.0)."""
+        """Address of effort, velocity and position (protocol 2.0)."""
         return self.table[self.effort_item].address
 
     def decivolt(self, raw: int) -> int:
@@ -141,7 +141,7 @@ class BusModel:
         return max(found, default=None)
 
     def indirect_windows(self, firmware: int) -> tuple[IndirectWindow, ...]:
-        """Where indirect data stand; they moved in the 330 size with firmware 52."""
+        """Windows of indirect data; their addresses moved in the 330 size with firmware 52."""
         if self.protocol == 1.0:
             return ()
         if self.family == "x330":
@@ -157,7 +157,7 @@ class BusModel:
         return self.watchdog_firmware is not None and firmware >= self.watchdog_firmware
 
     def baud_code(self, baud: int) -> int | None:
-        """What to write to baud_rate for `baud`; None when the model cannot."""
+        """Value of `baud_rate` for `baud`; None when the model does not have it."""
         if baud > self.max_baud:
             return None
         if self.protocol == 2.0:

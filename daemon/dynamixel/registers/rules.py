@@ -58,8 +58,8 @@ def items_of(model: BusModel) -> tuple[str, ...]:
 def _may_have_profile(model: BusModel) -> bool:
     """Whether the servo may have a motion profile that no user has set.
 
-    Of Y it is there from the factory, and slower than a path may be; of P the manual leaves open what it is after power-on.
-    X and MX begin without one.
+    Series Y has a profile from the factory, slower than a path may be; for series P the manual leaves the profile after power-on
+    open. X and MX start without a profile.
     """
     return "profile_velocity" in model.table and model.table["profile_velocity"].initial != 0
 
