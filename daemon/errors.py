@@ -46,7 +46,7 @@ class PortMissingError(PortError):
 
 
 class PortBusyError(PortError):
-    """Somebody else holds the port."""
+    """Another process holds the port."""
 
 
 class PortPermissionError(PortError):

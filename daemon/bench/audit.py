@@ -62,7 +62,7 @@ def bench_audit(prompts: int = 200, seed: int = 0, robots: Sequence[str] = ()) -
         robots: names of packaged robots or paths of robot files; every packaged one when empty.
 
     Raises:
-        CommandError: a robot that was asked for has servos without a control table here, or two robots have one name.
+        CommandError: a requested robot has servos without a control table here, or two robots have the same name.
     """
     from mmm_core.generate.engine import Engine
 

@@ -73,7 +73,7 @@ def bench(
         seed: seed of the texts and of generation.
         n: number of texts, clips or trials, where the figure has any.
         robot: for audit: packaged robots, or paths of robot files or their folders; every packaged robot when not given.
-        out: for all: folder of the figures; what is there already counts.
+        out: for all: folder of the figures; measurements already in it count.
         only: for all: names of what to measure.
         quick: for all: small numbers of texts and trials, which the report says.
         measure: for all: --no-measure makes only the report of what the folder has.

@@ -20,8 +20,6 @@ class LoadingNote:
 
     The status is requested by a client of its own in a thread of its own, as clients are not for several threads.
 
-    The daemon is asked by a client of its own in a thread of its own: clients are not for several threads.
-
     Args:
         at: endpoints of the daemon.
     """

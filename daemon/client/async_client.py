@@ -132,7 +132,7 @@ class AsyncClient(AsyncControlCalls, CompositionCalls[Coroutine[Any, Any, Said]]
         return await self._command(Cancel(id=uuid.uuid4().hex, command=command_id))
 
     async def look(self, yaw_deg: float | None = None, pitch_deg: float | None = None) -> Ack:
-        """Turn the head left and down, whatever the body does; without angles the head is free again."""
+        """Turn the head left and down during any motion; without angles the head is free again."""
         request = Look(id=uuid.uuid4().hex, yaw_deg=yaw_deg, pitch_deg=pitch_deg)
         return await self._command(request)
 

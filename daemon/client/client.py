@@ -141,7 +141,7 @@ class Client(ControlCalls, CompositionCalls[Said]):
         return self._command(Cancel(id=uuid.uuid4().hex, command=command_id))
 
     def look(self, yaw_deg: float | None = None, pitch_deg: float | None = None) -> Ack:
-        """Turn the head left and down, whatever the body does; without angles the head is free again.
+        """Turn the head left and down during any motion; without angles the head is free again.
 
         Raises:
             NoAnswerError: not in time.
@@ -163,12 +163,12 @@ class Client(ControlCalls, CompositionCalls[Said]):
         """A lease on the robot's joints, once it has begun: `with robot.stream() as s: s.send(q_rad)`, again and again.
 
         Args:
-            holder: name of the asking program, in a word or two; a second asker is told it.
+            holder: name of the requesting program in a word or two; the refusal of a second program's request repeats it.
             silence_s: seconds without a target after which the robot brakes and holds; None takes the daemon's setting.
             timeout_s: seconds to wait at most for the lease to begin (the robot may have to be armed) and to end.
 
         Raises:
-            RefusedError: somebody else holds a lease, the robot's state forbids it, or the lease has failed.
+            RefusedError: another program holds a lease, the robot's state forbids it, or the lease has failed.
             CancelledByError: a stop or another command ended it.
             NoAnswerError: not in time.
         """

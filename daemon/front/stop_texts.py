@@ -21,7 +21,7 @@ def asks_to_stop(request: Command) -> bool:
 
 
 def stops(frames: list[bytes]) -> bool:
-    """Whether the frames are one request that means to stop; asked for a client above its rate limit."""
+    """Whether the frames are one request that means to stop; checked for a client above its rate limit."""
     if len(frames) != 1 or len(frames[0]) > _LONGEST_FRAME_BYTES or not _HINT.search(frames[0]):
         return False
     try:

@@ -289,6 +289,6 @@ class GeneratorClient:
 
 
 def _heard(whole: asyncio.Task[Generated]) -> None:
-    """Log the failure of a motion after its draft, because nobody may be waiting for the task any more."""
+    """Log the failure of a motion after its draft, because possibly no caller waits for the task any more."""
     if not whole.cancelled() and whole.exception() is not None:
         log.warning("a draft goes on without its motion: %s", whole.exception())

@@ -16,7 +16,7 @@ from daemon.settings.config import config_error
 TOKEN_VARIABLE = "MMMD_TOKEN"
 """Environment variable that holds the token."""
 SHORTEST_TOKEN = 16
-"""Characters of a token at least: enough that nobody guesses it."""
+"""Characters of a token at least: enough that it cannot be guessed."""
 
 
 @dataclass(frozen=True)

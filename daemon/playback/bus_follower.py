@@ -24,7 +24,7 @@ class BusFollower:
 
     Attributes:
         bus_alive: whether the bus process runs.
-        fault_reason: reason of the robot's fault, or of an e-stop that nobody requested; else empty.
+        fault_reason: reason of the robot's fault, or of an e-stop without a request; else empty.
         stopped: whether a person stopped the robot since it was armed and the last motion began.
         idling: whether idle movements are played.
     """

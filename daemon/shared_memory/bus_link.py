@@ -190,7 +190,7 @@ class BusLink:
     # The ctl process's side.
 
     def ctl_beats(self) -> None:
-        """Record the time of the ctl process's heartbeat: somebody takes e-stops."""
+        """Record the time of the ctl process's heartbeat: e-stops can be received."""
         self._words[_Word.CTL_BEAT_NS] = time.monotonic_ns()
 
     @property

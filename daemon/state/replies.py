@@ -69,7 +69,7 @@ def failed(code: str, found: str, allowed: str, do: str) -> Failed:
 
 
 def lease_held(lease: Entry) -> Rejected:
-    """The event of a lease request while somebody else holds a lease."""
+    """The event of a lease request while another program holds a lease."""
     since_s = time.monotonic() - lease.t_received_ns * 1e-9
     return Rejected(
         code="lease_held", asked="lease", found=f"{lease.request.words} holds lease {lease.id!r} since {since_s:.1f} s",

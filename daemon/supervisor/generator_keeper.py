@@ -1,4 +1,4 @@
-"""Keeps the generator: starts it again when it ends or freezes, or watches one that somebody else runs."""
+"""Keeps the generator: starts it again when it ends or freezes, or watches one that another user or service runs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PING_EVERY_S, PING_TIMEOUT_S = 2.0, 5.0
 FIRST_PING_TIMEOUT_S = 0.25
 """Seconds that a ping waits before the generator has ever answered."""
 FOLLOWING_PING_TIMEOUT_S = 1.0
-"""Seconds that a ping waits for a generator that somebody else runs, once it has answered."""
+"""Seconds that a ping waits for a generator that the daemon did not start, once it has answered."""
 START_TIMEOUT_S = 120.0
 """Seconds that the generator has to load torch and the model, also from a slow card."""
 NO_TORCH = "PyTorch is not installed: `mmmd install-torch`, or `--generator` names one elsewhere"
@@ -102,7 +102,7 @@ class GeneratorKeeper:
         return answered
 
     async def _follow(self, endpoint: str) -> None:
-        """Watch whether a generator that somebody else runs answers, for ever."""
+        """Watch whether a generator that the daemon did not start answers, for ever."""
         client, ready = self.client, False
         while True:
             if not client.busy:

@@ -69,7 +69,7 @@ class Audit:
         waiting_goals: number of goals that may come at once.
         violations: by kind.
         writes_in_fault: goals to a servo whose fault has taken its torque, after a grace of 0.1 s. They move nothing: a group
-            is told to hold, and it is one of them. Goals that lead it on are violations.
+            is told to hold, and the servo belongs to it. Goals that move the servo are violations.
         body_contacts: steps in which the body (MuJoCo) touched itself.
         led_contacts: body contacts while every servo had torque: the goals led the robot there, it did not fall.
         details: description of the first violations.

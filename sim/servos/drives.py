@@ -132,7 +132,7 @@ class Drives:
         self._quiet, self._rows = False, None
 
     def live(self) -> list[tuple[float, ...]]:
-        """For each servo a tuple: position, velocity, current, duty, voltage, temperature, path position, path velocity."""
+        """A tuple for each servo: position, velocity, current, duty, voltage, temperature, path position, path velocity."""
         if self._rows is None:
             ramp_tick_s = self._ramp_tick_s * self.torque
             measured = (

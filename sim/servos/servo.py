@@ -2,7 +2,7 @@
 
 This file covers X and MX; `servo_series_y_p.py` has the differences of Y and P.
 
-ROBOTIS e-manual, "Control Table" of XM430-W350, XL430-W250 and XL330-M288. Time is handed in, never read. Where the
+ROBOTIS e-manual, "Control Table" of XM430-W350, XL430-W250 and XL330-M288. Time is passed in, never read. Where the
 manual is silent we chose, and say so in docs/simulator.md: a write with one bad item writes nothing.
 """
 

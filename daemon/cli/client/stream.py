@@ -25,8 +25,8 @@ def stream(
 ) -> int:
     """Lead the joints by targets from standard input, one JSON line each, under a lease; its end releases it.
 
-    A line is an array of radians in the robot's order (`mmmd capabilities --json`), or an object of some joints by name. Whoever
-    writes the lines has to keep writing: after `lease_s` without one the robot brakes and holds, later it parks.
+    A line is an array of radians in the robot's order (`mmmd capabilities --json`), or an object of some joints by name.
+    The program that writes the lines has to keep writing: after `lease_s` without one the robot brakes and holds, later it parks.
 
     Example: my_tracker | mmmd stream --holder tracker
 
@@ -35,7 +35,7 @@ def stream(
     Example: mmmd stream --rate 50 < path.jsonl
 
     Args:
-        holder: name of this program, which a second program that requests the lease is told.
+        holder: name of this program, which the refusal of a second program's request repeats.
         rate: lines a second, for a file; 0 sends each as it comes.
         silence_s: without a line for so long the robot brakes and holds; the daemon's `lease_s` when it is not given.
         json: print the lease's events as JSON.

@@ -2,9 +2,6 @@
 
 Nothing here commands a joint: the daemon parks the robot and cuts its torque. Afterwards the robot stays limp until it is armed,
 which leads it slowly from its present pose.
-
-Nothing here commands a joint: the daemon parks the robot and cuts its torque, and afterwards it stays limp until it is armed, which
-leads it slowly from where it stands.
 """
 
 from __future__ import annotations

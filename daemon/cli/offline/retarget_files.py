@@ -2,9 +2,6 @@
 
 An output file appears under its name only when it is complete, so that existing ones need not be made again. `retarget.json` beside
 the outputs contains the robot and the settings: another robot or setting needs another folder.
-
-An output appears under its name only when it is whole, so what is there need not be made again. What was retargeted, for
-which robot and how stands in `retarget.json` beside the outputs: another robot or setting needs another folder.
 """
 
 from __future__ import annotations

@@ -151,13 +151,13 @@ def restore(servo_id: int) -> bytes:
 
 
 def sync_read(address: int, length: int, servo_ids: Sequence[int], *, fast: bool = False) -> bytes:
-    """Ask several servos for the same bytes; they answer in this order, with `fast` in one common packet."""
+    """Request the same bytes of several servos; they answer in this order, with `fast` in one common packet."""
     instruction = Instruction.FAST_SYNC_READ if fast else Instruction.SYNC_READ
     return encode(Packet(BROADCAST_ID, instruction, struct.pack("<HH", address, length) + bytes(servo_ids)))
 
 
 def sync_write(address: int, length: int, rows: Sequence[tuple[int, bytes]]) -> bytes:
-    """Write `length` bytes at `address` of several servos at once; nobody answers."""
+    """Write `length` bytes at `address` of several servos at once; no servo answers."""
     data = b"".join(bytes([servo_id]) + value for servo_id, value in rows)
     return encode(Packet(BROADCAST_ID, Instruction.SYNC_WRITE, struct.pack("<HH", address, length) + data))
 
@@ -169,7 +169,7 @@ def bulk_read(rows: Sequence[tuple[int, int, int]], *, fast: bool = False) -> by
 
 
 def bulk_write(rows: Sequence[tuple[int, int, bytes]]) -> bytes:
-    """Write to each servo (id, address, bytes) its own; nobody answers."""
+    """Write to each servo (id, address, bytes) its own bytes; no servo answers."""
     data = b"".join(struct.pack("<BHH", servo_id, address, len(value)) + value for servo_id, address, value in rows)
     return encode(Packet(BROADCAST_ID, Instruction.BULK_WRITE, data))
 

@@ -83,7 +83,7 @@ def reboot(servo_id: int) -> bytes:
 
 
 def sync_write(address: int, length: int, rows: Sequence[tuple[int, bytes]]) -> bytes:
-    """Write `length` bytes at `address` of several servos at once; nobody answers."""
+    """Write `length` bytes at `address` of several servos at once; no servo answers."""
     data = b"".join(bytes([servo_id]) + value for servo_id, value in rows)
     return encode(Packet(BROADCAST_ID, Instruction.SYNC_WRITE, bytes([address, length]) + data))
 

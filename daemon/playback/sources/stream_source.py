@@ -132,7 +132,7 @@ class StreamSource:
 
     @property
     def held_by(self) -> str:
-        """What keeps the robot from its target: "self-collision", "silence", or "" for nothing."""
+        """Cause that keeps the robot from its target: "self-collision", "silence", or "" for none."""
         if self.clock.state in (LeaseState.SILENT, LeaseState.OVER):
             return SILENCE
         return SELF_COLLISION if self._guard.held else ""
