@@ -46,7 +46,6 @@ class LeaseNews:
         return self.events[-1] if self.events and self.events[-1].terminal else None
 
     def take(self, event: AnyEvent) -> None:
-        """Take an event of the lease."""
         self.events.append(event)
         if isinstance(event, Progress):
             self.held_by = {"held": "self-collision", "silent": "silence", "streaming": ""}.get(

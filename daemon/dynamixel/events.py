@@ -49,7 +49,6 @@ class EventLog:
         self._waiting: list[BusEvent] = []
 
     def add(self, kind: BusEventKind, t_s: float, text: str, servo_id: int | None = None) -> None:
-        """Note an event."""
         self.counts[kind] = self.counts.get(kind, 0) + 1
         last_s = self._last_s.get((kind, servo_id))
         self._last_s[kind, servo_id] = t_s

@@ -19,7 +19,6 @@ class JsonLines(logging.Formatter):
         self._process = process
 
     def format(self, record: logging.LogRecord) -> str:
-        """The line."""
         stamp = time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created))
         line = {
             "t": f"{stamp}.{int(record.msecs):03d}Z", "level": record.levelname.lower(), "process": self._process,

@@ -109,7 +109,6 @@ class ConnectionGuard:
         self._thread.start()
 
     def close(self) -> None:
-        """Stop guarding."""
         self._stopping.set()
         if self._thread.ident is not None:
             self._thread.join(2.0)

@@ -142,7 +142,6 @@ class Feed:
         return reader
 
     def leave(self, reader: Reader) -> None:
-        """Remove a reader."""
         self._readers.discard(reader)
 
     async def follow(self) -> None:

@@ -63,7 +63,6 @@ class Protocol2:
     sync_write = staticmethod(packet.sync_write)
 
     def decoder(self) -> StreamDecoder[Packet]:
-        """A decoder of answers."""
         return packet.PacketDecoder()
 
     def refusal(self, error: int) -> str:
@@ -88,7 +87,6 @@ class Protocol1:
     sync_write = staticmethod(packet1.sync_write)
 
     def decoder(self) -> StreamDecoder[Packet]:
-        """A decoder of answers."""
         return packet1.PacketDecoder(answers=True)
 
     def refusal(self, error: int) -> str:
