@@ -96,7 +96,7 @@ class _Program:
         N, n = self._n_points, len(self._joints)
         first = self._differences
         self._rows = _sparse.vstack([self._each(m) for m in (_sparse.identity(N), first, first @ first)]).tocsr()
-        # What came before the first free control point.
+        # Control points before the first free one.
         offset = np.zeros((3, N, n))
         offset[1, 0] = -self._first[1]
         offset[2, 0] = self._first[0] - 2 * self._first[1]

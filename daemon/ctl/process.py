@@ -101,7 +101,7 @@ def _serve(taker: Taker, link: BusLink, channel: Channel, parent: Parent) -> Non
     gc.collect()
     gc.freeze()
     link.ctl_beats()
-    channel.send(Ready())  # before anything that is handed over
+    channel.send(Ready())  # before any request is passed on
     checked_s = time.monotonic()
     while not asked_to_end:
         if time.monotonic() - checked_s > ORPHAN_CHECK_S:

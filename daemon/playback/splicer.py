@@ -116,7 +116,7 @@ class Splicer:
 
     def _at_rest(self, plan: Trajectory | None, began_s: float, latency: LatencyEstimate) -> Splice:
         if plan is not None and plan.resumes and self._buffer.running:
-            plan.end = plan.pushed  # nothing moves until the splice is made or left
+            plan.end = plan.pushed  # frames are not pushed until the splice is made or left
             return Splice(
                 self._buffer.at_rest, plan.posture_from(plan.n_frames - 1, FADE_FRAMES), None, began_s, latency
             )

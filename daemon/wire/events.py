@@ -185,7 +185,7 @@ class Ack(Event, tag="ack"):
         state: the robot's state when the verb was passed on.
         note: change made to the request, else empty.
         carried_out: of a `stop` or an `estop` on `ctl`: whether a bus cycle has carried it out; where none has yet (the bus process
-            is dead, frozen or starting, its port is lost) the request stays pending, and `carried_out` follows. None for others.
+            is dead, frozen or starting, its port is lost) the request stays pending, and `carried_out` follows. Else None.
     """
 
     terminal: ClassVar[bool] = True

@@ -124,7 +124,7 @@ def _compile(robot: RobotModel, motors: Sequence[Motor], gears: Array) -> Any:
 
 
 def _with_stops(robot: RobotModel) -> Any:
-    """The description with a stop for every joint; MuJoCo keeps friction and stops only in models that have some."""
+    """The description with a stop and some friction at every joint; MuJoCo keeps friction only where some is given."""
     spec = description_spec(robot)
     for joint in robot.joints:
         described = spec.joint(joint.name)

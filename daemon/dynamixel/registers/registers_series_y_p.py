@@ -134,7 +134,7 @@ P = table_of(
     ("status_return_level", 516, 1, "", 0, 2, 2, ""),
     ("registered_instruction", 517, 1, "r", None, None, 0, ""),
     ("hardware_error_status", 518, 1, "r", None, None, 0, ""),
-    # What gains, watchdog, goals and profile begin with after power-on the page leaves open.
+    # The page does not give the values of gains, watchdog, goals and profile after power-on.
     ("velocity_i_gain", 524, 2, "", 0, _WORD, None, ""),
     ("velocity_p_gain", 526, 2, "", 0, _WORD, None, ""),
     ("position_d_gain", 528, 2, "", 0, _WORD, None, ""),
