@@ -147,14 +147,15 @@ def test_a_text_moves_over_a_tty_and_sigterm_parks(tty):
     assert tty.audit.exists()
 
 
-def test_ctrl_c_during_a_motion_parks_too_and_the_command_is_cancelled():
+@pytest.mark.parametrize("ends", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_during_a_motion_parks_and_cancels_the_command(ends):
     daemon = RunningDaemon()
     try:
         daemon.until_ready()
         said = subprocess.Popen([*MMMD, "say", "wave", "--seconds", "5", *daemon.at], stdout=subprocess.PIPE, text=True)
         with daemon.client() as client:
             client.wait_for("moving", timeout_s=20)
-        daemon.process.send_signal(signal.SIGINT)
+        daemon.process.send_signal(ends)
         out, _ = said.communicate(timeout=20)
         assert "cancelled by shutdown" in out and said.returncode == 1
         assert daemon.ended() == 0
