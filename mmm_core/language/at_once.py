@@ -43,6 +43,11 @@ _BARE_LIMB = re.compile(
     rf"^(?:with )?(?:your |the |both |left |right |other )*(?:{LIMB}|head|body|eyes|face|chin|nose|mouth|ears?|cheeks?|neck|hair|forehead|shoulders?|chest|heart|belly|stomach|hips?|back|knees?)$"
 )
 """A limb of which nothing is said is no command."""
+_LISTED = re.compile(r"\b(?:your|the|his|her|their|my|its|both) \w+$")
+_LISTED_NEXT = re.compile(
+    r"(?:shoulders?|arms?|hands?|head|body|trunk|hips?|chest|elbows?)(?: (?:over|on|to|towards|against|for|from|with|at)\b|$)"
+)
+"""'Your weight and shoulders over your right leg' names two things that do one thing."""
 _HOLDS = re.compile(r"(?:hold|keep|stay|remain|freeze|wait)s?\b.*\b(?:seconds?|secs?)\b")
 _GERUND = re.compile(r"^\w+(?:ing|ed)\b")
 _IS = re.compile(
@@ -121,6 +126,8 @@ def divided(clause: str) -> list[str]:
         if _OWN_PART.match(second) and a & ARMS and b == SOME_ARM:
             continue
         if _BARE_LIMB.match(first) or _BARE_LIMB.match(second):
+            continue
+        if not asked and _LISTED.search(pair[0]) and _LISTED_NEXT.match(pair[1]):
             continue
         if _HOLDS.match(second) or (not asked and _RAISES.match(first) and _ONLY_WAVES.match(second)):
             continue

@@ -23,6 +23,8 @@ def with_sides(text: str) -> str:
     found = forms.ONE_OTHER.search(text)
     if found is None or not re.search(r"\b(?:then|and|,|after|while|followed)\b|,", found["between"]):
         return text
+    if found["between"].split() in (["after"], ["after", "the"]):
+        return text  # "one fist after the other" is one command, for both arms by turns
     what = found["what"]
     if what in ("arm", "hand", "fist", "one"):
         first, second = f"right {what}", f"left {what}"

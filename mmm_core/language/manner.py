@@ -30,13 +30,13 @@ _NUMBER = (
     r"(a couple of|a few|several|half a|a|\d+(?:\.\d+)?|" + "|".join(word for word in NUMBERS if word.isalpha()) + ")"
 )
 _HOLD = re.compile(
-    r",?\s*(?:(?:and |then )?(?:holds?|holding|keeps?|keeping|stays?|staying|remains?|freezes?|waits?|rests?|leaves?|pauses?)"
+    r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping|stays?|staying|remains?|freezes?|waits?|rests?|leaves?|pauses?)"
     r"(?: (?:it|them|that|this|there|still|so|like (?:that|this)|the (?:pose|position)|your (?:pose|position)|that (?:pose|position)|up|down|in place|"
     r"(?:your|the) (?:left |right )?(?:hand|arm|head)s?))*\s+)?"
     rf"(?:(?:for|about|exactly|at least|around|all of|a full|another) )*(?<!\bin )(?<!\bwithin )(?<!\bafter )(?<!\bevery ){_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
 )
 _COUNT_OF = re.compile(
-    r",?\s*(?:(?:and |then )?(?:holds?|holding|keeps?|keeping)(?: (?:it|them|that|this|there))*\s+)?"
+    r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping)(?: (?:it|them|that|this|there))*\s+)?"
     rf"for (?:a |the )?count of {_NUMBER}\b|,?\s*\bfor {_NUMBER} (?:counts|beats)\b"
 )
 """A hold of as many seconds as are counted."""
