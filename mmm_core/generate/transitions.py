@@ -31,6 +31,8 @@ _SEEN_TOKENS = 4
 """Tokens at the end and at the beginning of the two motions that are decoded to locate the body parts."""
 _PART_COLUMNS = {"left_arm": slice(0, 3), "right_arm": slice(3, 6), "rest": slice(6, 12)}
 """Columns of `body_path` that say where a body part is: wrists, head and trunk."""
+_WHOLE_BODY = slice(0, 12)
+"""Columns that say where the only part of a tokenizer is, or a part that is half of the body."""
 
 
 def transitions(engine: MotionModel, rows: Sequence[Tensor], texts: Sequence[TextStates], seed: int) -> list[Tensor]:
@@ -79,7 +81,8 @@ def _still(engine: MotionModel, rows: Sequence[Tensor]) -> list[Tensor]:
     found: list[Tensor] = []
     for left, right in pairwise(rows):
         end, begin = _pose(engine, left[-_SEEN_TOKENS:], -1), _pose(engine, right[:_SEEN_TOKENS], 0)
-        apart_m = [float(np.linalg.norm(end[_PART_COLUMNS[n]] - begin[_PART_COLUMNS[n]])) for n in names]
+        of_parts = [_PART_COLUMNS.get(name, _WHOLE_BODY) for name in names]
+        apart_m = [float(np.linalg.norm(end[columns] - begin[columns])) for columns in of_parts]
         found.append(torch.tensor([metres < STILL_M for metres in apart_m]))
     return found
 

@@ -109,7 +109,7 @@ def test_a_robot_of_ones_own_can_be_audited(tmp_path, capsys):
     assert "0 outside a limit, 0 poses in self-contact" in err
     assert "poses_checked" not in err, "all figures of every robot stood on stderr, and once more in the result"
     figures = json.loads(out)
-    assert figures["robots"] == [str(mine)] and figures["goals"] > 0 and figures["violations"] == 0
+    assert figures["robots"] == ["mine"] and figures["goals"] > 0 and figures["violations"] == 0
 
 
 def test_an_audit_of_what_cannot_be_simulated_is_refused(tmp_path, capsys):
