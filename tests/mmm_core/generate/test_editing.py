@@ -80,15 +80,12 @@ class TestEdit:
 class TestWhatAnEditShows:
     """`mmmd edit` left the arm down and reported success: kept ids were tested, what the text asks was not."""
 
-    @pytest.mark.parametrize(("n_cases", "at_least"), [(3, 2), pytest.param(5, 3, marks=pytest.mark.soak)])
     @pytest.mark.parametrize("kind", KINDS)
-    def test_most_edits_show_their_text_and_keep_the_rest(
-        self, engine: Engine, kind: str, n_cases: int, at_least: int
-    ) -> None:
-        """Two of three or three of five, of a few cases: the figure for all is `mmmd eval edits`."""
-        cases = [case for case in read_cases("development") if case.kind == kind][:n_cases]
+    def test_most_edits_show_their_text_and_keep_the_rest(self, engine: Engine, kind: str) -> None:
+        """Three of five, of a few cases: the figure for all is `mmmd eval edits`."""
+        cases = [case for case in read_cases("development") if case.kind == kind][:5]
         done = [run_case(engine, case) for case in cases]
-        assert sum(asked and kept for _, asked, kept in done) >= at_least
+        assert sum(asked and kept for _, asked, kept in done) >= 3
         assert all(kept for _, _, kept in done)
 
     def test_both_sets_have_fifty_cases_of_all_kinds(self) -> None:

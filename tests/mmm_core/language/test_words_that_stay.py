@@ -23,6 +23,8 @@ def words(sentence: str) -> list[str]:
         ("act as if you hand out cards", ["act as if you hand out cards"]),
         ("raise you left hand", ["raise your left hand"]),
         ("hammer your chest with one fist after the other", ["hammer your chest with one fist after the other"]),
+        ("use the right for waving; the left does nothing", ["wave with your right hand"]),
+        ("use the right hand", ["use the right hand"]),
         ("one arm up, then the other", ["raise your right hand", "raise your left hand"]),
     ],
 )
