@@ -176,6 +176,6 @@ class Epochs:
 
     @property
     def unknown_halts(self) -> list[Asked]:
-        """Halts requested on `ctl` of which the front does not know yet."""
+        """Halts requested on `ctl` that the front has not been told about yet."""
         halts = self._requests.halts(Asker.CTL).items()
         return [Asked(kind, number) for kind, number in halts if number > self._known[kind]]

@@ -69,7 +69,7 @@ AND = _pattern(r"\s*,\s*(?:and\s+)?|\s+and\s+")
 A_FIRST_B_LATER = _pattern(rf"(.+?)[,;]\s*(?:and\s+|but\s+)?(.+?),?\s+(?:(?:comes?|goes)\s+)?{NEXT}")
 """Two actions in the text's order, with the words of order at the end."""
 ENDS_IN_ORDER = _pattern(rf"\s{NEXT}$")
-"""What every text has that `A_FIRST_B_LATER` matches, which takes the square of the text's length to say no."""
+"""The end of every text that `A_FIRST_B_LATER` matches. It is searched first, since that pattern needs quadratic time to fail."""
 A_BEFORE_B = _pattern(
     rf"(.+?),?\s+(?:(?:right|just)\s+)?{_any('(?:(?:comes|goes|is) )?before', 'prior to', 'precedes', 'ahead of')}\s+(?!(?:the|your)\s+(?:body|chest|face|eyes|mouth|belly|heart|head|breast)\b)(?:{_WHO}\s+)?(.+)"
 )

@@ -85,7 +85,7 @@ KEEPS_ON = re.compile(
     r"(?:hold|keep|do|repeat|stop|continue|stay|leave)(?:s|es|ing)?\b"
     r"(?! (?:it|them) (?:out|forward|away|above|against|behind|in front|over your|to your|towards?)\b)"
 )
-"""What is said of a pose that goes on; "hold it out to me" is another pose."""
+"""Verbs of a clause that keeps the pose of the command before it; "hold it out to me" asks for another pose."""
 BODY_PLACE = re.compile(
     r"^(?:(?:the|your) )?(?P<part>hips?|waist|heads?|shoulders?|knees?|heart|chest|belly|chin|nose|eyes|ears|mouth|back|neck|forehead|face)$"
 )

@@ -81,7 +81,7 @@ def _best(found: list[frozenset[str]]) -> frozenset[str]:
 
 
 def _rarest(text: str) -> str:
-    """Of all three neighbouring letters of a text those that the fewest sentences have."""
+    """The three neighbouring letters of a text that the fewest sentences contain."""
     return min((text[i : i + 3] for i in range(len(text) - 2)), key=_share)
 
 

@@ -25,9 +25,7 @@ from mmm_core.language.requests import everyday, greeting, restated, rewritten, 
 from mmm_core.language.run_on import with_marks
 from mmm_core.language.spelling import mended, normalised
 
-_PAST = re.compile(
-    r"^(?!(?:raised|stretched|crossed|folded|extended|red|need|feed)\b (?:hand|arm|fist)s?\b)(?!\w*eed\b)\w+ed\b"
-)
+_PAST = re.compile(r"^(?!(?:raised|stretched|crossed|folded|extended|red)\b (?:hand|arm|fist)s?\b)(?!\w*eed\b)\w+ed\b")
 """The verb of "once you have clapped", "if you crossed"."""
 _DO_IT = re.compile(
     r"(?:go ahead and )?(?:do (?:it|that|so|this)|prove it|show (?:me|us|him|her|them|everybody|it))"

@@ -33,7 +33,7 @@ def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array)
     rises, falls = slope > 0, slope < 0
     low, high = np.where(rises, -half_m, at).max(0), np.where(falls, half_m, at).min(0)
     fall, rise = np.where(rises, -_STEEP, slope).max(0), np.where(falls, _STEEP, slope).min(0)
-    # Where it only rises or only falls both are the end that is nearest, and where it is 0 all between is.
+    # A slope that only rises or only falls makes `low` and `high` the nearest end; between them a slope of 0 is nearest throughout.
     nearest = low - fall / np.where(rise > fall, rise - fall, 1.0) * (high - low)
     beyond = _beyond(o + a * nearest, h)
     return np.sqrt((beyond * beyond).sum(0)), beyond.T

@@ -23,7 +23,7 @@ _LEAST_M = 1e-9
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of R poses and n pairs of shapes.
+    """Positions of all shapes and distances of n pairs of them, in R poses.
 
     Attributes:
         centre: (R, geoms, 3) centres of all shapes.

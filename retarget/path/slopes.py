@@ -34,7 +34,7 @@ class PairSlopes(PairDistances):
     """Distances of pairs of shapes, and how they grow with each joint."""
 
     def worst(self, q_rad: Array, aim_m: float, least_m: Array) -> tuple[Array, Array, Array]:
-        """What the worst pair of each pose (T, J) lacks of its margin and `aim_m` more, given bounds (T, P) of distances.
+        """How much the worst pair of each pose (T, J) lacks of its margin plus `aim_m`, given bounds (T, P) of distances.
 
         Returns:
             Metres that the worst pair lacks, (T,), 0 or less where none lacks any; how its distance grows with each
@@ -52,7 +52,7 @@ class PairSlopes(PairDistances):
         return lack[rows, worst], self._slopes(q_rad, placed, found, of, rows, worst), least_m
 
     def nearest(self, q_rad: Array, of: Indices) -> tuple[Array, Array]:
-        """What lies between the nearest of some pairs beyond its margin, (T,), and how that grows with each joint, (T, J)."""
+        """The room of the nearest of some pairs beyond its margin, (T,), and how the room grows with each joint, (T, J)."""
         placed = self._placed(q_rad, with_joints=True)
         found = self._distances(q_rad, placed, of)
         beyond = found.distance_m - self._margin_m[of]
