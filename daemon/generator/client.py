@@ -97,11 +97,15 @@ class GeneratorClient:
         self._lives += 1
         self._lose_requests()
 
-    def mark_down(self, reason: str) -> None:
-        """Note that the generator is gone: open and new requests fail at once."""
+    def mark_down(self, reason: str, *, ended: bool = True) -> None:
+        """Note that the generator is down: new requests fail at once, and open ones too if its process has `ended`.
+
+        A generator on another machine that is silent may still answer what is open, which has a time-out of its own.
+        """
         self.state, self._down_reason = f"down: {reason}", reason
         self._ready.clear()
-        self._lose_requests()
+        if ended:
+            self._lose_requests()
 
     def _lose_requests(self) -> None:
         """Fail all open requests: the process that they were sent to is gone, so no answer will come."""

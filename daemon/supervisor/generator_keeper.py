@@ -116,7 +116,7 @@ class GeneratorKeeper:
                     timeout = error.code == "generator_timeout"
                     why = f"no answer from {endpoint}" if timeout else str(error)
                     if ready or client.state == "starting" or not client.state.endswith(why):
-                        client.mark_down(why)
+                        client.mark_down(why, ended=False)
                         log.error("generator %s", client.state)
                     ready = False
             await asyncio.sleep(PING_EVERY_S / 2 if ready else 0.1)

@@ -243,6 +243,23 @@ def test_an_open_request_fails_at_once_when_its_generator_ends(endpoint, lose):
     assert ask(endpoint, call).code == "generator_down"
 
 
+def test_a_silent_generator_elsewhere_may_still_answer_what_is_open(endpoint):
+    peer = KinematicGenerator(endpoint)
+
+    async def call(client):
+        asking = asyncio.create_task(client.generate("wave", 0, None, 20.0))
+        async with asyncio.timeout(10.0):
+            while not client.busy:
+                await asyncio.sleep(0)
+        client.mark_down("no answer", ended=False)
+        return await asking
+
+    try:
+        assert len(ask(endpoint, call).motion.joints_m)
+    finally:
+        peer.close()
+
+
 def test_a_generator_that_is_down_fails_at_once(endpoint):
     async def call(client):
         client.mark_down("ended with status 1")
