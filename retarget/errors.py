@@ -14,11 +14,11 @@ from pathlib import Path
 
 
 class RetargetError(Exception):
-    """Anything that goes wrong between a human motion and servo ticks."""
+    """Base of all errors between a human motion and servo ticks."""
 
 
 class UnknownRobotError(RetargetError, LookupError):
-    """No robot of that name is packaged, and it is no path to a robot.toml."""
+    """A robot's name that is neither a packaged robot nor a path to a robot.toml."""
 
     def __init__(self, name: str, known: Sequence[str]) -> None:
         self.name, self.known = name, tuple(known)
@@ -39,7 +39,7 @@ class RobotFileError(RetargetError, ValueError):
 
 
 class MotionError(RetargetError, ValueError):
-    """A human motion that cannot be retargeted; `of` says which, a file where it comes from one."""
+    """A human motion that cannot be retargeted; `of` names the motion, or the file that it was read from."""
 
     def __init__(self, key: str, found: str, allowed: str, of: str = "motion") -> None:
         self.key, self.found, self.allowed, self.of = key, found, allowed, of

@@ -1,6 +1,6 @@
-"""Motion to joint path: the only file that knows the order of the steps.
+"""From a human motion to a joint path of a robot; the order of the steps stands in this file alone.
 
-human -> waist -> neck -> arms -> unseen joints rest -> limits -> self-contact -> spline.
+human -> waist -> neck -> arms -> rest of unobservable joints -> limits -> self-contact -> spline.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ from retarget.robot.robot import RobotModel
 Array = NDArray[np.float64]
 _MOST_FPS = 1000
 BLOCK_FRAMES, _AHEAD_FRAMES = 24, 8
-"""Frames of the blocks in which a long motion is made into a path, and frames after each that are taken into account: 0.4 s."""
+"""Frames of a block, in which a long motion is retargeted, and frames after each block that its solution looks ahead (0.4 s)."""
 _STRETCHES = (1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
-"""How many times slower is tried, one after another, to keep an error asked for."""
+"""Factors by which a motion is slowed down, tried in this order until the requested direction error is kept."""
 _WORTH = 0.97
-"""Going slower counts as of use when it leaves at most this share of the error."""
+"""Largest share of the direction error that a slower path may leave; with more, slowing down counts as useless and ends."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,9 @@ class _Wanted:
     """Demands of a motion on a robot.
 
     Attributes:
-        poses: its poses, and the directions of the person's bones.
-        aims: the same poses, with the bones' own directions where hands are drawn to what they touch.
-        contacts: what its hands touch.
+        poses: the robot's poses, and the directions of the person's bones.
+        aims: the poses of `poses`; where a hand is drawn to a contact, with the robot's bone directions instead of the person's.
+        contacts: contacts of the person's hands.
     """
 
     poses: Poses
@@ -56,12 +56,12 @@ class _Wanted:
 
 
 class Retargeter:
-    """Turns human motions into paths of one robot.
+    """Turns human motions into joint paths of one robot.
 
     Attributes:
         robot, kinematics, limits: the robot.
-        arms: left and right.
-        contact: its distances to itself.
+        arms: left and right arm.
+        contact: distances between the robot's shapes.
     """
 
     def __init__(
@@ -76,9 +76,9 @@ class Retargeter:
 
         Args:
             robot: the robot.
-            arms_follow: arms keep their directions against the chest, or against the world as the pelvis faces it.
-            keep_contacts: hands that touch each other or the body touch there on the robot too, whatever its proportions.
-            contact: what knows the robot's distances to itself; None: all that its description says.
+            arms_follow: frame in which the arms keep their directions: the chest's, or the world's as the pelvis faces it.
+            keep_contacts: whether hands that touch each other or the body touch on the robot too, whatever its proportions.
+            contact: distances between the robot's shapes; None builds them from its description.
         """
         self.robot = robot
         self.kinematics = Kinematics(robot)
@@ -103,10 +103,10 @@ class Retargeter:
 
         Args:
             motion: T frames at `motion.fps`.
-            start: what the joints were last told; the path joins on to it. None: at rest in the first frame's pose.
-            settle: end at rest, with a few more frames where braking needs them.
-            most_error_deg: where the mean direction error is larger, go slower than the human until it is not, or slower
-                does not help; the report's `time_stretch` says how much.
+            start: last commanded state of the joints, from which the path continues. None: at rest in the first frame's pose.
+            settle: whether the path ends at rest, with a few more frames where braking needs them.
+            most_error_deg: largest mean direction error; a motion with a larger one is slowed down until the error is kept or
+                slowing down does not help. The report's `time_stretch` has the factor. None never slows down.
 
         Raises:
             MotionError: the motion is empty or has bones that no human has.
@@ -131,17 +131,17 @@ class Retargeter:
         first_at_once: bool = False,
         block_frames: int = BLOCK_FRAMES,
     ) -> Iterator[tuple[JointPath, int]]:
-        """The path, block after block as each is made, and how many frames of the motion each is.
+        """The path in blocks, each yielded as soon as it is solved, with the number of motion frames in the block.
 
-        Each begins where the one before ends, and should no other follow there is a free way to brake at its end. With
-        `BLOCK_FRAMES` it is the path of `retarget`.
+        Each block begins where the previous one ends. Braking at the end of a block is free of contact, so that playback may
+        end there. With `BLOCK_FRAMES` the blocks together are the path of `retarget`.
 
         Args:
             motion: as in `retarget`.
             start: as in `retarget`.
             settle: as in `retarget`.
-            first_at_once: somebody waits for the first block: where a contact is near it keeps every limit and touches
-                nothing, but shows the motion less well than it could.
+            first_at_once: whether the first block is needed soon. Near a contact it then keeps every limit and touches
+                nothing, but follows the motion less closely than it could.
             block_frames: frames of all blocks but the last, 1 or more.
 
         Raises:
@@ -170,7 +170,7 @@ class Retargeter:
         return _Wanted(drawn, replace(drawn, upper=upper, fore=fore), contacts)
 
     def _path(self, wanted: _Wanted, fps: float, start: JointState | None, settle: bool, stretch: float) -> JointPath:
-        """The path of poses that keeps every limit and touches nothing."""
+        """The path through the poses that keeps every limit and is free of contact."""
         blocks = list(self._blocks(wanted.aims, self._begin(wanted.poses.q_rad, start), 1.0 / fps, settle))
         path = np.concatenate([block if i == 0 else block[2:] for i, (block, _, _) in enumerate(blocks)])
         return self._joint_path(
@@ -188,13 +188,13 @@ class Retargeter:
         self, poses: Poses, begin: JointState, period: float, settle: bool, first_at_once: bool = False,
         block_frames: int = BLOCK_FRAMES,
     ) -> Iterator[tuple[Array, int, int]]:  # fmt: skip
-        """Control points for poses, block by block, how many frames each is, and times it was changed.
+        """Yields for each block its control points, its number of frames, and how often avoidance changed it.
 
-        The first two of a block are the last two of the one before.
+        The first two control points of a block are the last two of the previous block.
         """
         posed, T, first = poses.q_rad, len(poses.q_rad), 0
         while first < T:
-            # A block is solved with some frames after it in view; a rest that is hardly longer is part of it.
+            # The solution of a block looks ahead at the frames after it; a remainder no longer than that joins the block.
             is_last = first + block_frames + _AHEAD_FRAMES >= T
             last = T if is_last else first + block_frames + _AHEAD_FRAMES
             keep = last - first if is_last else block_frames
@@ -208,27 +208,27 @@ class Retargeter:
             first += keep
 
     def poses(self, human: HumanPose, start: JointState | None = None) -> Poses:
-        """The poses for each frame within the position limits, before limits in time and contacts."""
+        """The pose of each frame within the position limits; velocity, acceleration and contacts are not yet limited."""
         return self._poser.solve(human, None if start is None else start.position_rad)
 
     def solve(self, human: HumanPose, start: JointState | None = None) -> Array:
-        """(T, J) angles of `poses`."""
+        """(T, J) joint angles of `poses`, in radians."""
         return self.poses(human, start).q_rad
 
     def direction_errors_deg(self, poses: Poses, q_rad: Array) -> Array:
-        """(4, T) angle between human and robot bone in poses (T, J), in the order of `report.BONES`."""
+        """(4, T) angles in degrees between human and robot bones in poses (T, J), in the order of `report.BONES`."""
         found = np.concatenate(self._poser.directions(q_rad))
         wanted = np.concatenate([poses.upper, poses.fore])[:, : len(q_rad)]
-        # Exact for small angles too, where an arc cosine is not.
+        # The arc tangent is exact for small angles too; an arc cosine is not.
         apart, sum_ = np.linalg.norm(found - wanted, axis=-1), np.linalg.norm(found + wanted, axis=-1)
         errors = np.rad2deg(2 * np.arctan2(apart, sum_))
         assert len(errors) == len(BONES)
         return errors
 
     def missed(self, poses: Poses, q_rad: Array) -> Array:
-        """(4, T, 3) human less robot bone in poses (T, J), so weighted that the squares are what the poses are best in.
+        """(4, T, 3) weighted difference of human and robot bones in poses (T, J); the poses minimise the sum of its squares.
 
-        In the order of `report.BONES` where both bones count alike; else upper arm and forearm are mixed.
+        With equal weights the rows stand in the order of `report.BONES`; unequal weights mix upper arm and forearm.
         """
         upper, fore = self._poser.directions(q_rad)
         T = len(q_rad)
@@ -237,11 +237,11 @@ class Retargeter:
         return (np.swapaxes(root, -1, -2) @ apart).transpose(2, 0, 1, 3).reshape(4, T, 3)
 
     def shown(self, poses: Poses, q_rad: Array) -> tuple[Array, Array]:
-        """Half the weighted squared error of all bones linearised at poses (T, J): hessian (T, J, J) and fall (T, J)."""
+        """Half the weighted squared error of all bones linearised at poses (T, J): Hessian (T, J, J) and descent (T, J)."""
         return self._poser.shown(poses, q_rad)
 
     def _begin(self, wanted: Array, start: JointState | None) -> JointState:
-        """The given start, or at rest in the first frame's pose, led round contacts."""
+        """`start`; where that is None, rest in the first frame's pose, pushed out of contacts."""
         if start is not None:
             return start
         first, _ = self._avoidance.push_out(wanted[:1], self.robot.rest_rad)
@@ -250,7 +250,7 @@ class Retargeter:
     def _compare(
         self, poses: Poses, contacts: HumanContacts, path: Array, rate_hz: float, interventions: int, stretch: float
     ) -> Comparison:
-        """What came out against what was wanted, frame by frame."""
+        """Comparison of a path with the poses and contacts that the motion demands, frame by frame."""
         T = len(poses.q_rad)
         q = ((path[1:-1] + path[2:]) / 2)[:T]
         hands = self._hands if stretch == 1.0 else None

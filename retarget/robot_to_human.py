@@ -1,7 +1,7 @@
-"""A robot's pose shown on a person: the way back from joint angles to the 22 joints and the head, for checks and pictures.
+"""The inverse of retargeting: from a robot's joint angles to the 22 joints and the head of a person, for checks and pictures.
 
-The chest turns as the robot's does, the arms point where its arms point, bones have a person's lengths. What a robot has not
-(legs, a waist, a neck joint) stands still.
+The person's chest turns like the robot's, the arms point in the robot's directions, and bones have a person's lengths. Body parts
+that the robot lacks (legs, a waist, a neck joint) stand still.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from retarget.robot.kinematics import Kinematics
 
 Array = NDArray[np.float64]
 _TO_HUMAN = np.array([[0.0, 1, 0], [0, 0, 1], [1, 0, 0]])
-"""Robot axes (forward, left, up) to a person's (left, up, forward)."""
+"""Rotation from robot axes (forward, left, up) to a person's (left, up, forward)."""
 _ARMS = {"left": (16, 18, 20), "right": (17, 19, 21)}
 _ABOVE_CHEST = (6, 9, 12, 13, 14, 15, 16, 17)
 """Joints that turn with the chest, about the first joint of the spine."""
@@ -45,7 +45,7 @@ def joints_of_path(kinematics: Kinematics, q_rad: Array) -> tuple[Array, Array]:
 
 
 def shown_on_a_person(retargeter: Retargeter, motion: Motion) -> Motion:
-    """What a robot makes of a motion, on a person; an empty motion stays empty."""
+    """A motion retargeted to a robot and transferred back to a person; an empty motion stays empty."""
     if not len(motion.joints_m):
         return motion
     path = retargeter.retarget(motion)

@@ -1,4 +1,4 @@
-"""One arm as the description has it: which joints, about which axes, and where its bones lie in the zero pose."""
+"""One arm read from the robot description: its joints, their axes, and its bones in the zero pose."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from retarget.robot.kinematics import Kinematics, cross
 
 Array = NDArray[np.float64]
 _LEAST_SINE = 0.3
-"""Sine of the angle between neighbouring shoulder axes below which one of them is of no use."""
+"""Least sine of the angle between neighbouring shoulder axes; an arm with more nearly parallel axes is refused."""
 _SAME_M = 1e-6
-"""Metres within which an axis passes through the shoulder."""
+"""Metres from the shoulder within which an axis counts as passing through the shoulder."""
 _SHOULDER_PARTS = ("shoulder_pitch", "shoulder_roll", "shoulder_yaw")
 
 
 @dataclass(frozen=True)
 class ArmChain:
-    """The joints of one arm from the chest to the elbow, in order, and its two bones; all in base axes, zero pose.
+    """The joints of one arm from the chest to the elbow, in order, and its two bones, in base axes in the zero pose.
 
     Attributes:
         side: "left" or "right".
-        joints: indices of one to three shoulder joints and the elbow, where it has one.
-        has_elbow: whether the last joint is an elbow; without one both bones are one.
-        axes: (n, 3).
-        low: (n,) position limits.
-        high: (n,) position limits.
-        upper_m: (3,) shoulder to elbow.
-        fore_m: (3,) elbow to wrist; the upper arm's where there is no elbow.
-        beside_m: (n, 3) from the shoulder to a joint whose axis misses it on the way to the elbow; else 0.
+        joints: indices of one to three shoulder joints and of the elbow, if there is one.
+        has_elbow: whether the last joint is an elbow; without an elbow the arm is one bone.
+        axes: (n, 3) unit axes.
+        low: (n,) lower position limits, radians.
+        high: (n,) upper position limits, radians.
+        upper_m: (3,) vector from shoulder to elbow.
+        fore_m: (3,) vector from elbow to wrist; without an elbow that of the upper arm.
+        beside_m: (n, 3) vector from the shoulder to each joint whose axis misses the shoulder; 0 for the other joints.
     """
 
     side: str
@@ -46,15 +46,15 @@ class ArmChain:
 
     @property
     def kind(self) -> tuple[int, bool, bool]:
-        """Arms of one kind are solved together: joints, elbow, offsets."""
+        """Number of joints, whether there is an elbow, whether an axis misses the shoulder; equal kinds are solved together."""
         return len(self.joints), self.has_elbow, bool(self.beside_m.any())
 
 
 def read_arm(kinematics: Kinematics, side: str) -> ArmChain:
-    """The arm of a side.
+    """The arm of one side of a robot.
 
     Raises:
-        RobotFileError: roles are missing, in no usable order, or two neighbouring shoulder axes are nearly parallel.
+        RobotFileError: roles are missing or in no usable order, or two neighbouring shoulder axes are nearly parallel.
     """
     robot = kinematics.robot
     points = {p.name: p for p in kinematics.key_points}

@@ -49,7 +49,7 @@ class ArmKinematics:
         return upper, (shoulder @ (R[:, :, -1] @ self.fore0[:, None, :, None]))[..., 0]
 
     def bones(self, q: Array) -> Bones:
-        """Directions of both bones for angles (G, M, n), and how they change."""
+        """Directions of both bones for angles (G, M, n), with their derivatives."""
         R = self._rotations(q)
         turned = above = R[:, :, 0]
         axes = np.empty((*q.shape, 3))
@@ -69,12 +69,12 @@ class ArmKinematics:
         return Bones(upper, fore, slope)
 
     def _rotations(self, q: Array) -> Array:
-        """(G, M, n, 3, 3) rotation of each joint."""
+        """(G, M, n, 3, 3) rotations of the joints."""
         sine, versine = np.sin(q)[..., None, None], (1 - np.cos(q))[..., None, None]
         return _EYE + sine * self._skews[:, None] + versine * self._skews_squared[:, None]
 
     def _levers(self, R: Array) -> tuple[Array, list[Array]]:
-        """(G, M, 3) shoulder to elbow, and for each shoulder joint the vector that it turns to move the elbow."""
+        """(G, M, 3) vectors from shoulder to elbow, and for each shoulder joint the lever at which it moves the elbow."""
         levers: list[Array] = []
         v: Array = np.broadcast_to(self._upper_m[:, None], (*R.shape[:2], 3))
         for j in range(self._n_shoulder - 1, -1, -1):
@@ -85,7 +85,7 @@ class ArmKinematics:
         return v, levers
 
     def _upper_with_offsets(self, R: Array, axes: Array) -> tuple[Array, Array]:
-        """Direction of the upper arm, (G, M, 3), and its change per radian of each shoulder joint, (G, M, n, 3)."""
+        """Directions of upper arms (G, M, 3), and their derivatives by each shoulder joint (G, M, n, 3)."""
         v, levers = self._levers(R)
         length = np.linalg.norm(v, axis=-1, keepdims=True)
         upper = v / length

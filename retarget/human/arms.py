@@ -32,17 +32,17 @@ _DONE_RAD = 1e-4
 _DAMPING = 1e-3
 _LARGEST_STEP_RAD = 0.6
 _LIMIT_COST, _ERROR_COST = 5.0, 4.0
-"""Per radian outside a limit and per radian of direction error, against per radian of joint motion."""
+"""Costs of a radian outside a limit and of a radian of direction error; a radian of joint motion costs 1."""
 _SEEN_ACROSS, _SEEN_BENT = 0.15, 0.05
-"""Squared sines from which on the first and the third shoulder joint count as fully seen."""
+"""Squared sines above which the first and the third shoulder joint count as fully observable."""
 _SPREAD = {2: 21, 3: 9}
-"""Poses for each joint among which a start for the least error is looked for, by number of joints."""
+"""Grid points per joint from which the minimisation may start, by number of joints."""
 _STRAIGHT = 1e-6
 """Sine below which two directions count as parallel."""
 
 
 class Arms(ArmKinematics):
-    """Joint angles of G arms of one kind for directions of their bones."""
+    """Solves the joint angles of G arms of one kind for directions of their bones."""
 
     def __init__(self, chains: Sequence[ArmChain]) -> None:
         super().__init__(chains)
@@ -70,8 +70,9 @@ class Arms(ArmKinematics):
     def ik_solutions(self, upper: Array, fore: Array, weights: Array | None = None) -> tuple[Array, Array]:
         """Joint angles of each solution for unit directions (G, M, 3), and the observability of each joint, both (G, M, C, n).
 
-        Solutions of arms that reach all directions may lie outside the limits. Observability is 0 to 1: with the third axis
-        along the first only the sum of both is observable, with the arm straight the third is not.
+        Solutions of arms that reach all directions may lie outside the limits. Observability is 0 to 1: where the first and
+        the third axis are parallel only the sum of their angles is observable, and where the arm is straight the third
+        angle is unobservable.
         """
         if not self.reaches_all:
             if weights is None:
@@ -86,7 +87,7 @@ class Arms(ArmKinematics):
     def unary_cost(
         self, solutions: Array, upper: Array, fore: Array, observability: Array, weights: Array | None = None
     ) -> Array:
-        """(G, M, C) cost of each solution by itself, in radians of movement: angles outside limits and directions missed."""
+        """(G, M, C) cost of each solution by itself, in radians of movement: angles outside limits and direction errors."""
         outside = np.abs(solutions - np.minimum(np.maximum(solutions, self.low[:, None]), self.high[:, None]))
         cost = _LIMIT_COST * np.einsum("gmcn,gmcn->gmc", outside, observability)
         if not self.reaches_all or self._has_offsets:
@@ -105,7 +106,7 @@ class Arms(ArmKinematics):
         return cost
 
     def within_limits(self, q: Array, upper: Array, fore: Array, weights: Array | None = None) -> Array:
-        """(G, M, n) angles within the limits; where one is cut off, the other joints make up for it as far as they can."""
+        """(G, M, n) angles within the limits; where one joint is clipped, the other joints compensate as far as they can."""
         inside = np.minimum(np.maximum(q, self.low), self.high)
         cut = (inside != q).any((0, 2))
         if cut.any():
@@ -116,9 +117,9 @@ class Arms(ArmKinematics):
         return inside
 
     def rested(self, q: Array, observability: Array, upper: Array, fore: Array, previous: Array) -> Array:
-        """(G, M, n) angles near which those of `q` that do not show may rest, from `previous` (G, n) on.
+        """(G, M, n) angles `q` with the unobservable ones replaced by rest positions, continued from `previous` (G, n).
 
-        With the first and the third axis in line only the sum of their angles shows, which stays as it is.
+        Where the first and the third axis are parallel, the sum of their angles is observable and stays unchanged.
         """
         if not (observability < UNSEEN).any():
             return q
@@ -132,7 +133,7 @@ class Arms(ArmKinematics):
         return x
 
     def _every_pair(self, upper: Array, fore: Array) -> tuple[Array, Array]:
-        """The four ways of three shoulder axes and an elbow, where bones turn about the shoulder, and what shows."""
+        """The four solutions of three shoulder axes through the shoulder and an elbow, and the joints' observability."""
         G, M = upper.shape[:2]
         a1, _, a3, _ = np.moveaxis(self.axes, 1, 0)
         cosine = np.einsum("gmi,gmi->gm", upper, fore)
@@ -148,7 +149,7 @@ class Arms(ArmKinematics):
         q3, _ = angle_about(a3, first, self._first_turn.at(c2, -s2), first_has_ways=False)
         solutions = np.empty((G, M, 2, 2, 4))
         solutions[..., 0], solutions[..., 1], solutions[..., 2], solutions[..., 3] = q1, q2, q3, elbow[..., None]
-        if lost.any():  # the first and the third axis in line: their sum alone counts, and must be right
+        if lost.any():  # the first and the third axis are parallel: only the sum of their angles is observable
             solutions[..., 2] = np.where(lost, self._third_alone(solutions, R), q3)
         observability = np.ones((G, M, 2, 2, 4))
         across = np.minimum(np.maximum(1 - height**2, 0.0) / _SEEN_ACROSS, 1)
@@ -159,7 +160,7 @@ class Arms(ArmKinematics):
         return solutions.reshape(G, M, 4, 4), observability.reshape(G, M, 4, 4)
 
     def _zero_frame(self, bent: Array) -> Array:
-        """(..., 3, 3) frames of the zero pose with the elbow bent: upper arm, across both bones, across those."""
+        """(..., 3, 3) frames of the zero pose with the elbow bent: upper arm, normal of both bones, and their cross product."""
         across = bent @ np.swapaxes(self._skew_upper, -1, -2)[:, None]
         length = np.linalg.norm(across, axis=-1, keepdims=True)
         straight = length < _STRAIGHT
@@ -175,7 +176,7 @@ class Arms(ArmKinematics):
         return columns
 
     def _third_alone(self, solutions: Array, R: Array) -> Array:
-        """(G, M, 2, 2) the third angle that completes the first two to the rotation `R` (G, M, 2, 3, 3)."""
+        """(G, M, 2, 2) third angles that complete the first two to the rotation `R` (G, M, 2, 3, 3)."""
         a3 = self.axes[:, 2]
         probe = unit(cross(a3, np.eye(3)[np.abs(a3).argmin(-1)]))
         turns = self._rotations(solutions.reshape(len(solutions), -1, 4)).reshape(*solutions.shape, 3, 3)
@@ -185,8 +186,8 @@ class Arms(ArmKinematics):
         return np.arctan2(sine, np.einsum("gmewi,gi->gmew", moved, probe))
 
     def _starts(self, upper: Array, fore: Array, weights: Array) -> Array:
-        """(G, M, C, n) angles from which to look for the least error."""
-        # The nearest of poses spread over the range: limits make valleys that the others may miss.
+        """(G, M, C, n) angles at which the minimisation of the direction error starts."""
+        # One start is the nearest grid pose: limits divide the error into valleys that the other starts may miss.
         aim = weighted(np.concatenate([upper, fore], -1), weights)
         likeness = aim @ np.swapaxes(self._pose_directions, -1, -2) - weights[..., :1, 1] * self._pose_cosines[:, None]
         nearest = likeness.argmax(-1)  # (G, M)
@@ -217,7 +218,7 @@ class Arms(ArmKinematics):
         return np.concatenate([shoulder, elbow], -1)
 
     def _refine(self, solutions: Array, upper: Array, fore: Array, steps: int, weights: Array | None = None) -> Array:
-        """Gauss-Newton on both direction errors from angles (G, M, C, n), kept inside their limits."""
+        """Gauss-Newton steps on both direction errors from angles (G, M, C, n), clipped to the limits."""
         G, M, C, n = solutions.shape
         q = self._nearest_turn(solutions).reshape(G, M * C, n)
         q = np.minimum(np.maximum(q, self.low), self.high)
@@ -227,7 +228,7 @@ class Arms(ArmKinematics):
         for _ in range(steps):
             b = self.bones(q)
             fall, slope = b.towards(upper, fore, of), b.slope
-            # A joint at its limit that is pushed further out stays; the others make up for it.
+            # A joint at its limit that a step would push further out stays fixed; the other joints compensate.
             stuck = ((q <= self.low) & (fall < 0)) | ((q >= self.high) & (fall > 0))
             slope = np.where(stuck[..., None], 0.0, slope)
             both = slope if of is None else weighted(slope, of[:, :, None])
@@ -240,5 +241,5 @@ class Arms(ArmKinematics):
         return q.reshape(G, M, C, n)
 
     def _nearest_turn(self, solutions: Array) -> Array:
-        """Whole turns added where that brings an angle into its limits."""
+        """Angles with whole turns added where a turn brings an angle inside its limits."""
         return solutions - 2 * np.pi * np.round((solutions - self._middle[:, None]) / (2 * np.pi))

@@ -1,4 +1,4 @@
-"""Directions of the bones of arms, and how they change with the joints."""
+"""Directions of the bones of arms, and their derivatives by the joints."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Bones:
-    """Directions of both bones in poses (G, M), and how they change.
+    """Directions of both bones in poses (G, M), and their derivatives.
 
     Attributes:
-        upper: (G, M, 3) unit directions.
-        fore: (G, M, 3) unit directions.
-        slope: (G, M, n, 6) change of both per radian of each joint.
+        upper: (G, M, 3) unit directions of upper arms.
+        fore: (G, M, 3) unit directions of forearms.
+        slope: (G, M, n, 6) derivatives of both directions by each joint, per radian.
     """
 
     upper: Array
@@ -25,12 +25,12 @@ class Bones:
     slope: Array
 
     def hessian(self, weights: Array | None = None) -> Array:
-        """(G, M, n, n) of half the squared error of both directions, weighted by `weights` (G, M, 2, 2)."""
+        """(G, M, n, n) Gauss-Newton Hessian of half the squared error of both directions, with `weights` (G, M, 2, 2)."""
         slope = self.slope if weights is None else weighted(self.slope, weights[:, :, None])
         return slope @ np.swapaxes(self.slope, -1, -2)
 
     def towards(self, upper: Array, fore: Array, weights: Array | None = None) -> Array:
-        """(G, M, n) how fast half the squared error against directions (G, M, 3) falls with each joint."""
+        """(G, M, n) negative gradient, by the joints, of half the squared error against directions (G, M, 3)."""
         error = np.concatenate([upper - self.upper, fore - self.fore], -1)
         if weights is not None:
             error = weighted(error, weights)
@@ -38,6 +38,6 @@ class Bones:
 
 
 def weighted(errors: Array, weights: Array) -> Array:
-    """(..., 6) errors of both directions times symmetric weights (..., 2, 2) of the bones."""
+    """(..., 6) errors of both directions, multiplied by symmetric weights (..., 2, 2) of the bones."""
     apart = errors.reshape(*errors.shape[:-1], 2, 3)
     return (weights @ apart).reshape(errors.shape)

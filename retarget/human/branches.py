@@ -1,8 +1,8 @@
-"""Which of an arm's solutions for the same directions: dynamic programming over all frames and the pose before them.
+"""Chooses one of an arm's solutions in each frame, by dynamic programming over all frames and the pose before them.
 
-Staying within the limits and moving least decide. A joint whose turning cannot be seen at a frame (the yaw of a straight
-arm, the first joint of an arm along its axis) has no say there: it counts as staying where it was last seen, so that an
-arm led through such a pose comes out the way that is near on the other side.
+The cost of a sequence is its excess over the limits and its movement. A joint that is unobservable in a frame (the yaw of a
+straight arm, the first joint of an arm along its axis) adds no movement there: its last observable angle counts, so that an arm
+that passes through such a pose leaves it on the solution that is nearest beyond it.
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 UNSEEN = 0.5
-"""A joint seen less than this is filled in from the frames around."""
+"""Observability below which a joint's angle is interpolated from neighbouring frames."""
 _OUT_OF_QUESTION_RAD = 0.5
-"""Radians: a solution that costs more in every frame is left out where another costs nothing."""
+"""Radians of cost: a solution that exceeds them in every frame is discarded if another one costs nothing in any frame."""
 _HIDDEN_SHARE = 0.3
-"""Share of the angles' change that a change of solutions costs where it is not observable; with none, solutions alternate."""
+"""Share of an unobservable change of angles that a switch between solutions costs; at 0 the solutions would alternate."""
 
 
 def choose(solutions: Array, unary_cost: Array, observability: Array, previous_rad: Array) -> tuple[Array, Array]:
-    """Angles of the cheapest sequence of solutions, and the observability of each, both (G, T, n).
+    """Angles of the cheapest sequence of solutions, and the observability of each angle, both (G, T, n).
 
     Args:
         solutions: (G, T, C, n) angles of G arms in C solutions.
-        unary_cost: (G, T, C) cost of each by itself, in radians of movement.
-        observability: (G, T, C, n) of each joint, 0 to 1.
+        unary_cost: (G, T, C) cost of each solution by itself, in radians of movement.
+        observability: (G, T, C, n) observability of each joint, 0 to 1.
         previous_rad: (G, n) angles before the first frame.
     """
     G, T, C, n = solutions.shape
@@ -51,14 +51,14 @@ def choose(solutions: Array, unary_cost: Array, observability: Array, previous_r
 
 
 def _moved(angles: Array) -> Array:
-    """(G, T, C to, C from) how far the joints go from each solution of (G, T + 1, C, n) to each of the next frame."""
+    """(G, T, C to, C from) distances in joint space from each solution in (G, T + 1, C, n) to each one of the next frame."""
     return np.abs(angles[:, 1:, :, None] - angles[:, :-1, None]).sum(-1)
 
 
 def fill_unseen(q_rad: Array, observability: Array, previous_rad: float) -> None:
-    """Draw a line in place over the angles (T,) of one joint where it is hardly seen (T,).
+    """Interpolate in place the angles (T,) of one joint over the frames in which its observability (T,) is below `UNSEEN`.
 
-    Before the first seen frame the joint comes from `previous_rad`; after the last it stays.
+    Before the first observable frame the joint moves from `previous_rad`; after the last one it stays.
     """
     hidden = observability < UNSEEN
     if hidden.any():
@@ -68,9 +68,9 @@ def fill_unseen(q_rad: Array, observability: Array, previous_rad: float) -> None
 
 
 def _cheapest(move: list[list[list[float]]], own: list[list[float]]) -> list[int]:
-    """The solution of each frame, for costs of going (T, C to, C from) and of being there (T, C); all start as one.
+    """Index of the solution of each frame, for costs of transitions (T, C to, C from) and of solutions (T, C).
 
-    Plain numbers: with so few solutions a loop is faster than arrays.
+    All solutions start from one pose. The function takes lists of numbers because for four solutions a loop is faster than arrays.
     """
     total = [0.0] * len(own[0])
     came: list[list[int]] = []

@@ -1,6 +1,6 @@
-"""Parts of closed-form arms: turns about axes, and the angles that bring one direction onto another.
+"""Paden-Kahan subproblems (Murray, Li, Sastry 1994, sec. 3.2): angles about axes that bring one direction onto another.
 
-The subproblems of Paden and Kahan (Murray, Li, Sastry 1994, sec. 3.2), for G axes and any number of directions at once.
+Each is solved for G axes and any number of directions at once.
 """
 
 from __future__ import annotations
@@ -20,28 +20,28 @@ class Turn:
     """Vectors `v` (G, 3) turned about unit axes (G, 3)."""
 
     def __init__(self, axis: Array, v: Array) -> None:
-        """Split what stays from what turns."""
+        """Split the vectors into the component along the axis and the two components that turn."""
         along = (axis * v).sum(-1, keepdims=True) * axis
         self.still, self.cosine, self.sine = along, v - along, cross(axis, v)
 
     def at(self, cosine: Array, sine: Array) -> Array:
-        """(G, ..., 3) the vectors turned by angles (G, ...) of which cosine and sine are given."""
+        """(G, ..., 3) vectors turned by angles (G, ...), given as cosine and sine."""
         shape = (len(self.still), *[1] * (cosine.ndim - 1), 3)
         turned = cosine[..., None] * self.cosine.reshape(shape) + sine[..., None] * self.sine.reshape(shape)
         return turned + self.still.reshape(shape)
 
 
 class Reach:
-    """Which turns bring a vector to a given height along another."""
+    """Solves the angles at which a turning vector has a given height, its product with a fixed direction."""
 
     def __init__(self, turn: Turn, onto: Array) -> None:
-        """`onto`: unit directions (G, 3) that the height is measured along."""
+        """Prepare heights of `turn` along unit directions `onto` (G, 3)."""
         cosine, sine = (turn.cosine * onto).sum(-1), (turn.sine * onto).sum(-1)
         self._still, self._middle = (turn.still * onto).sum(-1), np.arctan2(sine, cosine)
         self._reach = np.maximum(np.hypot(cosine, sine), 1e-9)
 
     def angles(self, height: Array) -> Array:
-        """(G, ..., 2) both angles for heights (G, ...); as near as can be where none reaches."""
+        """(G, ..., 2) both angles for heights (G, ...); a height out of reach gives the angle nearest to it."""
         shape = (-1, *[1] * (height.ndim - 1))
         share = (height - self._still.reshape(shape)) / self._reach.reshape(shape)
         spread = np.arccos(np.minimum(np.maximum(share, -1.0), 1.0))
@@ -49,16 +49,16 @@ class Reach:
 
 
 def angle_about(axis: Array, a: Array, b: Array, *, first_has_ways: bool = True) -> tuple[Array, NDArray[np.bool_]]:
-    """Angles (G, M, ..., W) about unit `axis` (G, 3) that turn `a` nearest to `b`, and where either lies along it.
+    """Angles (G, M, ..., W) about unit `axis` (G, 3) that turn `a` nearest to `b`, and where either is parallel to the axis.
 
-    One of the two has W ways more than the other, in the axis before the last: `a` (G, M, ..., W, 3) and `b`
-    (G, M, ..., 3), or the other way round. Angles are 0 where they are not determined.
+    One argument holds W solutions in the axis before its last, the other none: with `first_has_ways` `a` is
+    (G, M, ..., W, 3) and `b` (G, M, ..., 3), else the reverse. Undetermined angles are 0.
     """
     many, one = (a, b) if first_has_ways else (b, a)
     shape = (len(axis), *[1] * (one.ndim - 2), 3)
     along = axis.reshape(shape)
     height = (one * along).sum(-1, keepdims=True)
-    flat = one - height * along  # what of it is across the axis
+    flat = one - height * along  # its component perpendicular to the axis
     across = cross(flat, along) if first_has_ways else cross(along, flat)
     sine = np.einsum("...wi,...i->...w", many, across)
     cosine = np.einsum("...wi,...i->...w", many, flat)
@@ -67,7 +67,7 @@ def angle_about(axis: Array, a: Array, b: Array, *, first_has_ways: bool = True)
 
 
 def frame(a: Array, b: Array) -> Array:
-    """(..., 3, 3) rotations whose columns are `a`, what is across both, and what is across that; any such when parallel."""
+    """(..., 3, 3) rotations with columns `a`, the normal of `a` and `b`, and their cross product; any normal if parallel."""
     across = cross(a, b)
     length = np.sqrt(np.einsum("...i,...i", across, across))[..., None]
     straight = length < _STRAIGHT
@@ -81,5 +81,5 @@ def frame(a: Array, b: Array) -> Array:
 
 
 def unit(v: Array) -> Array:
-    """(..., 3) at length one; what has no length stays near zero."""
+    """(..., 3) vectors scaled to length one; a zero vector stays near zero."""
     return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)

@@ -1,7 +1,7 @@
-"""Waist and neck: the trunk's and the head's orientation on the joints that a robot has.
+"""Waist and neck: maps the orientation of trunk and head to the joints that a robot has.
 
-The waist takes the chest's turn and bend against the pelvis. The neck takes what is left of the head's orientation
-above the robot's own chest: a robot without a waist then bows with its head.
+The waist takes the rotation of the chest against the pelvis. The neck takes the rotation of the head that remains above the
+robot's own chest, so a robot without a waist bows with its head.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 _WAIST = ("waist_yaw", "waist_pitch", "waist_roll")
 _NECK = ("head_yaw", "head_pitch", "head_roll")
 _AXES = np.array([[0.0, 0, 1], [0, 1, 0], [1, 0, 0]])
-"""Up, left, forward: positive yaw turns to the left, pitch bends forward, roll leans to the right."""
+"""Axes up, left, forward: positive yaw turns to the left, positive pitch bends forward, positive roll leans to the right."""
 
 
 class Trunk:
@@ -28,7 +28,7 @@ class Trunk:
         self._waist_chain = tuple(sorted(chain, key=lambda j: len(kinematics.chains[j])))
 
     def _joints(self, roles: tuple[str, ...]) -> list[tuple[int, int, float]]:
-        """For each role that the robot has: the angle, the joint, and its sense."""
+        """(index of the angle, index of the joint, sense 1 or -1) for each of `roles` that the robot has."""
         found: list[tuple[int, int, float]] = []
         for i, role in enumerate(roles):
             joint = self._kinematics.robot.joint_with_role(role)
@@ -46,11 +46,11 @@ class Trunk:
         self._write(self._waist, chest_rotation, q_rad)
 
     def solve_neck(self, head_rotation: Array, q_rad: Array) -> None:
-        """Write the neck joints of `q_rad` (T, J) for the head against the pelvis; its waist joints must be final."""
+        """Write the neck joints of `q_rad` (T, J), whose waist joints are final, for the head against the pelvis (T, 3, 3)."""
         self._write(self._neck, self.into_chest(q_rad) @ head_rotation, q_rad)
 
     def into_chest(self, q_rad: Array) -> Array:
-        """(T, 3, 3) from the robot's base to its own chest, or (3, 3) for a robot without a waist."""
+        """(T, 3, 3) rotations from the robot's base to its chest; (3, 3) for a robot without a waist."""
         turned: Array = np.eye(3)
         for j in self._waist_chain:
             K = self._kinematics.skews[j]
@@ -60,7 +60,7 @@ class Trunk:
 
     @staticmethod
     def _write(joints: list[tuple[int, int, float]], R: Array, q_rad: Array) -> None:
-        """Yaw, pitch and roll, in this order, of rotations (T, 3, 3)."""
+        """Write yaw, pitch and roll of rotations (T, 3, 3), composed in this order."""
         if not joints:
             return
         yaw = np.arctan2(R[:, 1, 0], R[:, 0, 0])

@@ -1,14 +1,15 @@
-"""How much each bone of an arm counts in each frame, for arms that cannot show both bones at once.
+"""Weights of the bones of an arm in each frame, for arms that cannot match the directions of both bones at once.
 
-An arm of two or three joints has to choose. Where a forearm swings about a still upper arm (a wave, a beat), the forearm tells the
-gesture. Elsewhere the place of the hand does, and most of all where hands meet. A hand before the chest is told by both: a finger
-that points there must point at it. The error of a frame is
+An arm of two or three joints cannot reach every pair of directions. Where a forearm swings about a still upper arm (a wave, a
+beat), the direction of the forearm carries the gesture. In other frames the position of the hand carries the gesture, above all
+where hands meet. For a hand before the chest both directions count: a finger that points at the chest must point at it. The
+error of a frame is
 
     w_upper |e_upper|^2 + w_fore |e_fore|^2 + w_hand |l_upper e_upper + l_fore e_fore|^2
 
-of the errors of both unit directions, with lengths l of a person's arm that have the mean 1: the hand is meant where it is seen
-against the shoulder, whatever the robot's proportions. The weights change smoothly with time, so that the best pose does
-as well. Arms of four and more joints reach every pair of directions: they need no choice, and both bones count alike.
+with the errors e of both unit directions and the bone lengths l of a person, scaled to the mean 1: the hand's position counts
+relative to the shoulder, whatever the robot's proportions. The weights change smoothly with time, and so does the best pose. Arms
+of four and more joints reach every pair of directions; both of their bones have weight 1.
 """
 
 from __future__ import annotations
@@ -38,19 +39,20 @@ REACHING = BoneWeights(0.7, 0.7, 2.0)
 SWINGING = BoneWeights(0.3, 1.0, 0.0)
 MEETING = BoneWeights(0.3, 0.3, 4.0)
 AT_CHEST = BoneWeights(1.0, 1.0, 0.0)
-"""Found on generated gestures and recordings on OP3, see docs/retargeting.md."""
+"""Weights in the four kinds of frames, tuned on generated gestures and recordings on OP3, see docs/retargeting.md."""
 _SWING_RAD_S = (0.6, 1.5)
-"""Root mean square speed of a forearm from which on it begins to swing, and at which it does."""
+"""Root mean square speeds of a forearm at which swinging begins to count and counts fully."""
 _STILL_SHARE = (0.65, 0.35)
-"""Speed of the upper arm as a share of the forearm's at which the upper arm moves along, and at which it is still."""
+"""Ratios of the upper arm's speed to the forearm's at which the upper arm counts as moving and as still."""
 _SWING_S = 0.4
-"""Seconds: standard deviation of the Gaussian over which speeds are taken."""
+"""Seconds of standard deviation of the Gaussian window in which speeds are averaged."""
 _MEET_M, _CHEST_M = (0.32, 0.2), (0.22, 0.12)
-"""Distance of a person's wrists from each other, and from the breastbone, at which they come near, and at which they are there."""
+"""Metres between the wrists, and from a wrist to the breastbone, at which a meeting begins to count and counts fully."""
 _UPPER_M, _FORE_M = float(BONE_LENGTHS_M[18]), float(BONE_LENGTHS_M[20])
 _SHOULDERS_M = np.array([[0.0, 0.17, 0.0], [0.0, -0.17, 0.0]])
 _BREASTBONE_M = np.array([0.13, 0.0, -0.13])
-"""Left and right shoulder and the breastbone of the common body in the chest frame: forward, left, up of the shoulders' middle."""
+"""Metres from the middle of the shoulders of the common body to the shoulders and the breastbone, in the chest frame
+(forward, left, up)."""
 
 
 def bone_weights(human: HumanPose) -> Array:
@@ -68,7 +70,7 @@ def bone_weights(human: HumanPose) -> Array:
 
 
 def swinging(human: HumanPose) -> Array:
-    """(2, T) how much each forearm swings about a still upper arm, 0 to 1."""
+    """(2, T) degree, 0 to 1, to which each forearm swings about a still upper arm."""
     upper, fore = (_speed_rad_s(d, human.fps) for d in (human.upper, human.fore))
     return smooth_step(fore, *_SWING_RAD_S) * smooth_step(upper / np.maximum(fore, 1e-6), *_STILL_SHARE)
 
