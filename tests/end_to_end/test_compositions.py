@@ -16,6 +16,7 @@ from daemon.wire.requests import KeyPoseOf, Say, SceneOf, Story
 from mmm_core.inference.checkpoint import MODEL_FILE
 from tests.end_to_end.test_start_and_end import child_pid
 from tests.support.harness import RATE_HZ, RunningDaemon, plays_well
+from tests.support.robot_states import STAYS, bring_to, within
 from tests.support.shipped import loaded_once
 
 pytestmark = [
@@ -91,6 +92,18 @@ def test_a_story_outlives_its_generator(run):
         assert isinstance(heard[-1], ev.Done), heard[-1]
         assert [e.scene for e in heard if isinstance(e, ev.Progress) and e.scene is not None][-1] == 5
         assert heard[-1].frames == pytest.approx((5 * 2.0 + 4 * 0.4) * RATE_HZ, abs=30)
+
+
+def test_a_frozen_generator_is_started_again_and_the_motion_goes_on(run):
+    """The soak run freezes and kills it in every state (tests/end_to_end/test_recorder_and_generator_lost.py)."""
+    with run.client() as robot:
+        bring_to(robot, "moving")
+        os.kill(child_pid(run, "daemon.generator.process"), signal.SIGSTOP)
+        within(12, "noticed", lambda: not robot.status().generator.startswith("ready"))
+        assert robot.status().state in STAYS["moving"]
+        assert robot.gesture("nod").done  # the library needs no generator
+        within(60, "back", lambda: robot.status().generator.startswith("ready"))
+        assert robot.say("nod twice").done
 
 
 def test_a_text_goes_on_from_what_is_played(run):
