@@ -1,8 +1,8 @@
-"""Contacts of hands kept as contacts: what claps, prays, or rests on hip, chest or head does so on other proportions too.
+"""Keeps contacts of the hands (clapping, praying, resting on hip, chest or head) on a robot of other proportions.
 
-Directions alone bring hands together only on a body of the same proportions. Where a person's hand comes near the other
-hand or a landmark, the robot's hand is drawn to its own other hand or body until nothing but the margin is between them,
-by the least movement of its arm joints, and the more so the nearer the person comes.
+Bone directions alone bring hands together only on a body of a person's proportions. Where a person's hand comes near the other
+hand or a landmark, the smallest movement of the arm joints draws the robot's hand to its other hand or its body, until only
+the margin of self-contact separates them; the nearer the person's hand is, the closer the robot's is drawn.
 """
 
 from __future__ import annotations
@@ -19,36 +19,36 @@ from retarget.robot.kinematics import Kinematics
 
 Array = NDArray[np.float64]
 _PALM_M = 0.09
-"""From a person's wrist to the middle of the palm."""
+"""Metres from a person's wrist to the middle of the palm."""
 _HUMAN = {"other hand": (0.10, 0.28), "head": (0.15, 0.25), "chest": (0.17, 0.26), "hip": (0.14, 0.22)}
-"""Distance of a palm from the other palm, the head, the spine at the chest and a hip joint at which it touches, and from
-which on it does not."""
+"""Metres from a palm to the other palm, the head, the spine at the chest and a hip joint: at the first a palm touches, at the
+second contact ends."""
 _LANDMARKS = {"head": (15,), "chest": (9,), "hip": (1, 2)}
 _BETWEEN_M = 0.004
-"""Left between hands that touch, beyond the margin of self-contact."""
+"""Metres between touching hands, beyond the margin of self-contact."""
 _STEPS = 10
 _LARGEST_STEP_RAD = 0.15
 _DAMPING = 2e-4
 _WORTH_IT = 0.5
-"""A contact that the robot reaches in less than this share of its frames is not gone for."""
+"""Share of a contact's frames in which the robot must reach it; a contact reached in fewer is not pursued."""
 _KEPT_M = 0.02
 """Metres between two shapes, beyond the margin, up to which their contact counts as kept."""
 
 
 @dataclass(frozen=True)
 class HumanContacts:
-    """How much a person's palm touches something, (T,) in 0..1, by side and by what it touches."""
+    """Degree of contact (T,), 0 to 1, of a person's palms, by side and by the place that the palm touches."""
 
     share: dict[tuple[str, str], Array]
 
     @property
     def any(self) -> bool:
-        """Whether anything touches at all."""
+        """Whether a palm touches in any frame."""
         return any(s.any() for s in self.share.values())
 
 
 def read_contacts(motion: HumanMotion) -> HumanContacts:
-    """Which contacts a motion shows."""
+    """Contacts of the hands in a motion."""
     joints = motion.joints_m.astype(np.float64)
     palm = {s: _palm(joints, e, w) for s, (e, w) in zip(SIDES, ((18, 20), (19, 21)), strict=True)}
     share: dict[tuple[str, str], Array] = {}
@@ -61,7 +61,7 @@ def read_contacts(motion: HumanMotion) -> HumanContacts:
 
 
 class Hands:
-    """The hands of one robot: the shapes beyond its last arm joint, or its forearms where there are none."""
+    """The hands of one robot: the shapes beyond the last arm joint, or the forearms if no shape lies beyond."""
 
     def __init__(self, kinematics: Kinematics, contact: SelfContact, limits: JointLimits) -> None:
         self._contact = contact
@@ -82,7 +82,7 @@ class Hands:
                     self._pairs[side, what] = pairs
 
     def _last_shapes(self, chain: tuple[int, ...]) -> NDArray[np.int64]:
-        """Shapes moved by the last joint of a chain that moves any."""
+        """Shapes moved by the last joint of a chain that moves a shape."""
         for joint in reversed(chain):
             shapes = self._contact.shapes_moved_by([joint], [])
             if len(shapes):
@@ -90,7 +90,7 @@ class Hands:
         return np.zeros(0, np.int64)
 
     def keep(self, q_rad: Array, human: HumanContacts) -> Array:
-        """Poses (T, J) with the hands drawn to where they touch on the person; contacts out of reach are left alone."""
+        """Poses (T, J) with the hands drawn to the person's contacts; contacts out of reach do not change the poses."""
         wanted = [key for key, share in human.share.items() if share.any() and key in self._pairs]
         q = self._drawn(q_rad, human, wanted)
         counts = self.kept(q, human)
@@ -116,12 +116,12 @@ class Hands:
         return q
 
     def apart_m(self, q_rad: Array) -> float:
-        """Least distance between the two hands in poses (T, J); infinite for a robot without two hands that can touch."""
+        """Least distance of the hands beyond their margin in poses (T, J); infinite for a robot whose hands cannot touch."""
         pairs = self._pairs.get(("left", "other hand"))
         return float("inf") if pairs is None else float(self._contact.nearest(q_rad, pairs)[0].min())
 
     def kept(self, q_rad: Array, human: HumanContacts) -> dict[str, dict[str, int]]:
-        """For each contact of the person, in how many frames it is whole, and in how many of those on the robot."""
+        """For each contact, the number of frames in which the person touches fully, and of those in which the robot does."""
         counts: dict[str, dict[str, int]] = {}
         for (side, what), share in human.share.items():
             whole = np.flatnonzero(share[: len(q_rad)] >= 1)
@@ -141,7 +141,7 @@ def _palm(joints: Array, elbow: int, wrist: int) -> Array:
 
 
 def _near(distance_m: Array, what: str) -> Array:
-    """1 where it touches, 0 where it is far, smooth between."""
+    """Degree of contact at a distance: 1 where the palm touches, 0 where it is far, smooth between."""
     touch, far = _HUMAN[what]
     x = np.clip((far - distance_m) / (far - touch), 0.0, 1.0)
     return x * x * (3 - 2 * x)

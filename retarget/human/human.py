@@ -21,20 +21,21 @@ _L_HIP, _R_HIP, _SPINE1, _NECK = 1, 2, 3, 12
 SIDES = ("left", "right")
 _ABOVE = np.array(PARENTS[1:], np.int64)
 _ARMS = slice(17, 21)
-"""Where the bones that end in elbows and wrists stand among all, left before right."""
+"""Rows of the bones that end in elbows and wrists among all bones, left before right."""
 _SHORTEST_BONE_M, _LONGEST_BONE_M = 0.02, 0.6
-"""A forearm of a person of 2.7 m (Robert Wadlow) was under 0.45 m; units other than metres lie far outside."""
+"""Metres within which a bone of a person lies. The forearm of the tallest person (Robert Wadlow, 2.7 m) was under 0.45 m;
+other units than metres lie far outside."""
 _BONES = ("left upper arm", "right upper arm", "left forearm", "right forearm")
 _LONGEST_LEG_BONE_M = 0.8
 _LIMBS = ((3, 4), (6, 7), (17, 18), (19, 20))
-"""Left and right bones that end in knees, ankles, elbows and wrists."""
+"""Rows of left and right bones that end in knees, ankles, elbows and wrists."""
 _MOST_UNEQUAL = 2.0
-"""A left bone this many times as long as the right one is no bone of one person: joints in another order."""
+"""Ratio of a left and a right bone of one person at most; a larger one shows joints in another order."""
 _SQUARE = 1e-6
 
 
 class HumanMotion(Protocol):
-    """T frames of one person: a `Motion`, or whatever else gives joints, head and forearms."""
+    """T frames of one person: a `Motion`, or any object with joints, head and forearms."""
 
     @property
     def joints_m(self) -> NDArray[np.floating[Any]]:
@@ -48,25 +49,23 @@ class HumanMotion(Protocol):
 
     @property
     def forearm_twist_rad(self) -> NDArray[np.floating[Any]]:
-        """(T, 2) left and right."""
+        """(T, 2) twist of the left and the right forearm."""
         ...
 
     @property
-    def fps(self) -> float:
-        """Frames per second."""
-        ...
+    def fps(self) -> float: ...
 
 
 @dataclass(frozen=True)
 class HumanPose:
-    """(T, ...) what is read from a motion, in the robot's axes.
+    """Directions and rotations of a person in T frames, in the robot's axes.
 
     Attributes:
         upper: (2, T, 3) unit directions of left and right upper arm in the chest frame.
-        fore: (2, T, 3) of the forearms.
-        forearm_twist_rad: (2, T).
-        chest_rotation: (T, 3, 3) chest against where the pelvis faces, upright; the identity for a person who stands upright.
-        head_rotation: (T, 3, 3) head against the same.
+        fore: (2, T, 3) unit directions of left and right forearm in the chest frame.
+        forearm_twist_rad: (2, T) twist of left and right forearm.
+        chest_rotation: (T, 3, 3) chest against the pelvis's upright heading; the identity for a person who stands upright.
+        head_rotation: (T, 3, 3) head against the pelvis's upright heading.
         fps: frames per second.
     """
 
@@ -79,10 +78,10 @@ class HumanPose:
 
 
 def read_human(motion: HumanMotion) -> HumanPose:
-    """Directions and angles of a motion.
+    """Directions and rotations of the person in a motion.
 
     Raises:
-        MotionError: no frames, values that are not finite, or bones that no human has; frame and bone are named.
+        MotionError: no frames, values that are not finite, or bones that no human has; the message names frame and bone.
     """
     joints = motion.joints_m.astype(np.float64)
     if len(joints) == 0:
@@ -119,7 +118,7 @@ def _refuse_bones(length_m: Array) -> None:
 
 
 def _refuse_another_order(mean_m: list[float]) -> None:
-    """Stop where a bone is longer than a thigh, or a left one far longer than the right one; (21,) means over all frames."""
+    """Refuse mean lengths (21,) in which a bone is longer than a thigh, or a left and a right bone are far from equal."""
     longest = max(range(len(mean_m)), key=mean_m.__getitem__)
     if mean_m[longest] > _LONGEST_LEG_BONE_M:
         allowed = f"at most {_LONGEST_LEG_BONE_M} m, joints in metres in HumanML3D's order"
@@ -136,7 +135,7 @@ def _name(bone: int) -> str:
 
 
 def _frame(left: Array, up: Array, key: str) -> Array:
-    """(T, 3, 3) rotations whose columns are left, up, forward; `up` is made square to `left`."""
+    """(T, 3, 3) rotations whose columns are left, up, forward; `up` is made orthogonal to `left`."""
     z = cross(left, up)
     for v in (left, z):
         flat = np.einsum("ti,ti->t", v, v) < _SQUARE**2
@@ -149,7 +148,7 @@ def _frame(left: Array, up: Array, key: str) -> Array:
 
 
 def _from_upright() -> Array:
-    """(3, 3) that takes the spine's lean of a person who stands upright out of a chest frame: the neck is 3.4 degrees before it."""
+    """(3, 3) rotation that removes the lean of an upright person's spine, 3.4 degrees forward, from a chest frame."""
     joints = standing_joints()
     return np.ascontiguousarray(_frame(across_shoulders(joints), joints[:, _NECK] - joints[:, _SPINE1], "")[0].T)
 

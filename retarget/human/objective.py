@@ -1,6 +1,6 @@
 """The objective of poses for the limiter: bone directions for arms, angles for the other joints.
 
-Directions are linearised around poses: the wanted ones first, then the solutions inside the limits.
+Directions are linearised around poses: first around the wanted poses, then around the solutions inside the limits.
 """
 
 from __future__ import annotations
@@ -15,29 +15,30 @@ from retarget.path.limit_path import Angles, QuadraticCost
 
 Array = NDArray[np.float64]
 _LEAST = 1e-4
-"""Weight of a joint's own angle, so that an unseen joint too has somewhere to go."""
+"""Weight of a joint's own angle, so that an unobservable joint has a target too."""
 _LED_WEIGHT = 3.0
 _LED_RAD = 1e-6
-"""Weight of the way in which a pose was led round a contact, against one radian of direction error; least such way."""
+"""Weight of the displacement by which a pose was pushed out of a contact, against one radian of direction error; and the least
+displacement in radians that counts."""
 
 
 class ArmObjective:
     """The objective of the arms of one kind in T frames."""
 
     def __init__(self, arms: Arms, joints: NDArray[np.int64], q_rad: Array, led_rad: Array) -> None:
-        """Take the wanted poses.
+        """Linearise the directions around the wanted poses.
 
         Args:
             arms: G arms.
-            joints: (G, n) their joints.
-            q_rad: (T, J) the wanted poses.
-            led_rad: (T, J) how far they were pushed out of contacts.
+            joints: (G, n) indices of their joints.
+            q_rad: (T, J) wanted poses.
+            led_rad: (T, J) displacements by which the poses were pushed out of contacts.
         """
         self._arms, self._joints = arms, joints
         self._target_rad = q_rad[:, joints].transpose(1, 0, 2)
         self._bones = arms.bones(self._target_rad)
         led = led_rad[:, joints].transpose(1, 0, 2)
-        self._angles = _LEAST * np.eye(arms.n_joints)  # weight of angles, or of each frame's
+        self._angles = _LEAST * np.eye(arms.n_joints)  # (n, n), or (G, T, n, n) with pushes
         length = np.linalg.norm(led, axis=-1, keepdims=True)
         if (length > _LED_RAD).any():
             way = np.where(length > _LED_RAD, led / np.maximum(length, _LED_RAD), 0.0)

@@ -1,8 +1,8 @@
-"""Poses from a human motion: waist, neck, arms, and joints that rest where their turning cannot be seen.
+"""Poses from a human motion: waist, neck, arms, and rest of the joints that are unobservable.
 
-Where an arm points along one of its axes, or is straight, some joint turns without being seen. The closed form says
-nothing of use for it there; what is wanted then is the path of least movement that shows the same directions: a least-
-squares problem over all frames, solved by a few Gauss-Newton steps on one banded matrix.
+Where an arm points along one of its axes, or is straight, one joint turns without changing a bone's direction, and the closed form
+leaves its angle undetermined. The poser then takes the path of least movement with unchanged directions: a least-squares
+problem over all frames, solved by a few Gauss-Newton steps on one banded matrix.
 """
 
 from __future__ import annotations
@@ -29,28 +29,29 @@ from retarget.robot.kinematics import Kinematics
 Array = NDArray[np.float64]
 ArmsFollow = Literal["chest", "world"]
 _REST_PULL = 0.004
-"""Weight of squared steps against squared direction errors: a tenth of a degree for human motion, all for an unseen joint."""
+"""Weight of squared steps against squared direction errors. The weight costs human motion a tenth of a degree of direction;
+an unobservable joint follows the squared steps alone."""
 _REST_STEPS = 3
 _CHOICE_PULL = 0.03
-"""Weight of squared steps for arms that cannot show both bones: they show less where more would need a jump."""
+"""Weight of squared steps for arms that cannot match both bones: a larger error is preferred to a jump."""
 _SEEN_RAD = 0.004
-"""Direction error that resting may leave before it is tried again from where it came to."""
+"""Radians of direction error that a resting step may leave; a larger one is followed by another step."""
 _NEARBY = 0.01
-"""Weight of squared steps from one such trial to the next: directions are linear in angles nearby only."""
+"""Weight of squared changes from one Gauss-Newton step to the next: directions are linear in angles nearby only."""
 _MOST_LOST_RAD = 0.03
-"""A frame in which resting still costs more than this keeps its closed-form pose."""
+"""Radians of direction error above which a frame keeps its closed-form pose instead of the resting one."""
 
 
 @dataclass(frozen=True)
 class Poses:
-    """What a robot should do, before limits in time and contacts.
+    """Poses of a robot within its position limits; velocity, acceleration and contacts are not yet limited.
 
     Attributes:
         q_rad: (T, J) angles within the position limits.
-        outside: (T, J) whether a position limit changed one.
-        upper: (2, T, 3) directions of left and right upper arm, in the robot's chest frame, that they are for.
-        fore: (2, T, 3) of the forearms.
-        weights: (2, T, 2, 2) how much the errors of both count, see `weighing`.
+        outside: (T, J) whether a position limit changed the angle.
+        upper: (2, T, 3) target directions of left and right upper arm, in the robot's chest frame.
+        fore: (2, T, 3) target directions of left and right forearm.
+        weights: (2, T, 2, 2) weights of the errors of both bones, see `weighing`.
     """
 
     q_rad: Array
@@ -60,7 +61,7 @@ class Poses:
     weights: Array
 
     def part(self, frames: slice) -> Poses:
-        """Some of the frames."""
+        """The poses of some frames."""
         return Poses(
             self.q_rad[frames],
             self.outside[frames],
@@ -104,7 +105,7 @@ class Poser:
                 self._twists.append((i, twist, float(np.sign(kinematics.axes[twist] @ chain.fore_m))))
 
     def solve(self, human: HumanPose, before_rad: Array | None) -> Poses:
-        """Poses for each frame, the first near `before_rad` (J,), or near the rest pose."""
+        """Poses for all frames; the first is near `before_rad` (J,), or near the rest pose where that is None."""
         low, high = self._limits.position_min_rad, self._limits.position_max_rad
         before = self._rest_rad if before_rad is None else before_rad
         q = np.tile(self._rest_rad, (human.upper.shape[1], 1))
@@ -128,7 +129,7 @@ class Poser:
         return Poses(np.minimum(np.maximum(q, low), high), outside, upper, fore, weights)
 
     def _weights(self, human: HumanPose) -> Array:
-        """(2, T, 2, 2) weights of upper arm and forearm; equal ones for arms that reach every direction of both."""
+        """(2, T, 2, 2) weights of upper arm and forearm; the identity for arms that reach every pair of directions."""
         weights = np.tile(np.eye(2), (2, human.upper.shape[1], 1, 1))
         some = [i for arms, sides in zip(self._arms, self._sides, strict=True) if not arms.reaches_all for i in sides]
         if some:
@@ -136,14 +137,14 @@ class Poser:
         return weights
 
     def directions(self, q_rad: Array) -> tuple[Array, Array]:
-        """(2, T, 3) directions of the upper arms and of the forearms, left and right, in poses (T, J)."""
+        """Directions of the upper arms and of the forearms, each (2, T, 3) for left and right, in poses (T, J)."""
         upper, fore = np.empty((2, 2, len(q_rad), 3))
         for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
             upper[sides], fore[sides] = arms.directions(q_rad[:, joints].transpose(1, 0, 2))
         return upper, fore
 
     def stiffness(self, q_rad: Array) -> Array:
-        """(T, J, J) what a small movement away from poses (T, J) changes: bone directions, and every angle as much."""
+        """(T, J, J) quadratic cost of a small movement away from poses (T, J): change of bone directions, plus that of angles."""
         T, J = q_rad.shape
         every = np.zeros((T, J, J))
         every[:, np.arange(J), np.arange(J)] = 1.0
@@ -154,7 +155,7 @@ class Poser:
         return every
 
     def shown(self, poses: Poses, q_rad: Array) -> tuple[Array, Array]:
-        """(T, J, J), (T, J): see `Retargeter.shown`."""
+        """Half the weighted squared error linearised at poses (T, J), see `Retargeter.shown`."""
         T, J = q_rad.shape
         every, falls = np.zeros((T, J, J)), np.zeros((T, J))
         for arms, sides, joints in zip(self._arms, self._sides, self._joints, strict=True):
@@ -168,9 +169,9 @@ class Poser:
         return every, falls
 
     def objective(self, q_rad: Array, led_rad: Array) -> PoseObjective:
-        """The objective of showing poses (T, J): directions for arms, angles for the other joints.
+        """The objective of following poses (T, J): directions for arms, angles for the other joints.
 
-        Where poses were pushed out of a contact by `led_rad` (T, J), going less far that way has a cost too.
+        Where poses were pushed out of a contact by `led_rad` (T, J), a smaller displacement along the push has a cost too.
         """
         arms = [ArmObjective(a, j, q_rad, led_rad) for a, j in zip(self._arms, self._joints, strict=True)]
         return PoseObjective(arms, Angles(q_rad, self._others) if self._others else None)
@@ -178,10 +179,10 @@ class Poser:
     def _arm_angles(
         self, arms: Arms, upper: Array, fore: Array, weights: Array, before: Array
     ) -> tuple[Array, NDArray[np.bool_]]:
-        """Angles of arms of one kind for directions (G, T, 3), from `before` (G, n) on, and which were cut, (G, T, n).
+        """Angles of arms of one kind for directions (G, T, 3), continued from `before` (G, n), and which were clipped, (G, T, n).
 
-        Arms that reach every pair of directions rest where their turning is not seen; the others move less where little is
-        lost by it.
+        Arms that reach every pair of directions rest where a joint is unobservable; other arms move less where that costs
+        little direction error.
         """
         solutions, observability = arms.ik_solutions(upper, fore, weights)
         chosen, observability = choose(
@@ -193,7 +194,7 @@ class Poser:
             x = closed
             for _ in range(_REST_STEPS):
                 x = self._calmer(arms, x, arms.bones(x), (upper, fore), weights, _CHOICE_PULL, before)
-                x = arms.within_limits(x, upper, fore, weights)  # where a joint is cut off the others make up for it
+                x = arms.within_limits(x, upper, fore, weights)  # the others compensate for a clipped joint
             return x, cut
         bones = arms.bones(closed)
         shown = bones.upper, bones.fore
@@ -219,7 +220,7 @@ class Poser:
         pull: float,
         before: Array,
     ) -> Array:
-        """(G, T, n) one Gauss-Newton step from angles `x` with `bones` towards directions `wanted` and little movement.
+        """(G, T, n) angles after one Gauss-Newton step from `x`, with `bones`, towards directions `wanted` and little movement.
 
         The angles may lie outside the limits.
         """

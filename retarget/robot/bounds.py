@@ -1,4 +1,4 @@
-"""What the numbers of a robot file may be: wide enough for any servo robot, narrow enough that sums over them stay numbers."""
+"""Bounds on the numbers of a robot file: wide enough for any servo robot, narrow enough that sums of them stay finite."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ BOUNDS: dict[str, tuple[float, float, str]] = {
     "joint_per_servo": (-100, 100, "-100 to 100"),
     "offset_m": (-10, 10, "-10 to 10 m"),
 }  # fmt: skip
-"""Least, most, and what to say, by key; items of lists as well."""
+"""Least value, largest value and the text of the error by key; the bounds of a list hold for its items."""
 _LAST_KEY = re.compile(r"([A-Za-z_0-9]+)(?:\[\d+\])*$")
 
 
@@ -33,7 +33,7 @@ def require_bounds(path: Path, raw: dict[str, Any]) -> None:
     """Refuse numbers that no robot has.
 
     Raises:
-        RobotFileError: one is outside its bounds.
+        RobotFileError: a number is outside its bounds.
     """
     for where, key, value in walk(raw):
         name = _LAST_KEY.search(f"{where}{key}")

@@ -1,8 +1,8 @@
-"""A robot's description, MJCF or URDF, as MuJoCo reads it: for kinematics and contacts, with what is missing left out.
+"""Reads a robot's description, MJCF or URDF, with MuJoCo, for kinematics and contacts.
 
-Meshes are not needed: one whose file is not there is left out (its shape then cannot be checked for contacts). Masses
-and inertias are not used. What would give wrong angles is refused: a joint that only follows another, and a loop of
-bodies, are not part of the tree that angles are computed on.
+Meshes are optional: a mesh without its file is left out, and its shape is then not checked for contacts. Masses and inertias are
+not used. Joints that only follow another joint and loops of bodies lie outside the tree on which angles are computed, so a
+description in which they would give wrong angles is refused.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from retarget.errors import RobotFileError
 from retarget.robot.robot import DIRECTIONS, RobotModel
 
-mujoco: Any = importlib.import_module("mujoco")  # it has no types: declared here, once, instead of at each use
+mujoco: Any = importlib.import_module("mujoco")  # without type stubs: declared Any here, once, instead of at each use
 _SMALL = 1e-9
 _ALLOWED = "MJCF or URDF that MuJoCo reads"
 
@@ -100,7 +100,7 @@ def compiled(path: Path, spec: Any) -> Any:
 
 
 def followers(spec: Any) -> list[Follower]:
-    """Joints that only follow another one."""
+    """Joints of a specification that only follow another joint."""
     joint_equality = mujoco.mjtEq.mjEQ_JOINT
     return [Follower(e.name1, e.name2) for e in spec.equalities if e.type == joint_equality and e.name1 and e.name2]
 
@@ -112,10 +112,10 @@ def loops(spec: Any) -> list[tuple[str, str]]:
 
 
 def refuse_unseen_motion(robot: RobotModel, spec: Any) -> None:
-    """Refuse followers and loops that would move a listed joint or a point otherwise than the tree says.
+    """Refuse followers and loops that would move a listed joint or a point off the place that the tree gives.
 
     Raises:
-        RobotFileError: with what to do instead.
+        RobotFileError: there is such a follower or loop; the message has the remedy.
     """
     listed = set(robot.joint_names)
     needed = _needed_bodies(robot, spec)
@@ -137,7 +137,7 @@ def refuse_unseen_motion(robot: RobotModel, spec: Any) -> None:
 
 
 def _needed_bodies(robot: RobotModel, spec: Any) -> set[str]:
-    """Bodies that angles are computed for: those of listed joints and of points."""
+    """Names of the bodies with a listed joint or a point."""
     needed = {joint.parent.name for joint in spec.joints if joint.name in robot.joint_names}
     needed |= {point.body for _, point in robot.points}
     return needed | {
@@ -146,7 +146,7 @@ def _needed_bodies(robot: RobotModel, spec: Any) -> set[str]:
 
 
 def _above(bodies: set[str], parent: dict[str, str]) -> set[str]:
-    """The bodies and all that carry them, but for the world."""
+    """The bodies and all bodies that carry them, without the world."""
     found: set[str] = set()
     for body in bodies:
         name = body

@@ -1,6 +1,6 @@
-"""Servos of a robot file: which joints move them, through what, and what that leaves the joints.
+"""Servos of a robot file: their couplings to joints through gears, linkages and differentials, and the joints' speeds.
 
-A servo belongs to one joint, or several servos to one, or as many servos as joints to a differential.
+A joint has a servo of its own or several servos, or a differential couples as many servos as joints.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from retarget.robot.servos import ServoModel, servo_models
 from retarget.robot.tables import BLANK, JointTable, LinkageTable, RobotTable, ServoTable
 
 _UNKNOWN_MODEL = ServoModel(BLANK, 0, 2.0, 4096, 2048, 0, 4095, 5.0, False, True)
-"""Stands for a servo whose model is still blank, when the file is only looked at."""
+"""Placeholder for a servo whose model is still blank, in a file that is only inspected."""
 _MOST_CONDITION, _MOST_COUPLING = 1e3, 1000.0
-"""A differential nearer to none than so, or geared higher, is a slip of the pen."""
+"""Largest condition number and largest coefficient of a differential's inverse; a larger one is taken for a typing mistake."""
 _STEEPEST = 50.0
-"""Beyond that a linkage is at its dead point, where a servo moves its joint by nothing, or a tick by degrees."""
+"""Largest ratio of servo and joint speed, and of their inverse, in a linkage; beyond it the linkage is at its dead point."""
 
 
 @dataclass(frozen=True)
 class Drive:
-    """A servo of the file, where it stands there, and the joints that it moves with."""
+    """A servo of the file: its key, its table, and its couplings as pairs of joint index and coefficient."""
 
     key: str
     table: ServoTable
@@ -37,17 +37,21 @@ class Drive:
 
     @property
     def blanks(self) -> list[str]:
-        """Keys of this servo that are blank."""
+        """Keys of this servo that are still blank."""
         return [f"{self.key}.{name}" for name in ("id", "model") if getattr(self.table, name) == BLANK]
 
     def limits_key(self, table: RobotTable) -> str:
-        """Where its joints' position limits stand."""
+        """Key of the position limits of the joints that the servo drives, for error messages."""
         names = " and ".join(f"joint[{i}] '{table.joint[i].name}'" for i, _ in self.couplings)
         return f"{names}: position_limit_deg"
 
 
 def read_drives(path: Path, table: RobotTable) -> list[Drive]:
-    """All servos, in the order of their first joints."""
+    """All servos of a file, in the order of their first joints.
+
+    Raises:
+        RobotFileError: a joint has no servo or several kinds of drives, or a differential has no inverse.
+    """
     found: list[Drive] = []
     coupled = _differentials(path, table, found)
     for i, joint in enumerate(table.joint):
@@ -66,7 +70,7 @@ def read_drives(path: Path, table: RobotTable) -> list[Drive]:
 
 
 def _differentials(path: Path, table: RobotTable, found: list[Drive]) -> set[int]:
-    """Add the differentials' servos to `found`; the joints that they drive."""
+    """Append the differentials' servos to `found`; returns the indices of the joints that they drive."""
     index = {joint.name: i for i, joint in enumerate(table.joint)}
     taken: set[int] = set()
     for n, differential in enumerate(table.differential):
@@ -99,10 +103,10 @@ def _has_inverse(joint_per_servo: NDArray[np.float64]) -> bool:
 
 
 def servo_of(path: Path, drive: Drive, table: RobotTable, n: int) -> ServoSpec:
-    """The n-th servo.
+    """The specification of the n-th servo.
 
     Raises:
-        RobotFileError: its model, id, sense, gear, mode or linkage cannot be.
+        RobotFileError: the model, id, direction, mode or linkage is impossible.
     """
     key, s = drive.key, drive.table
     if s.id != BLANK and (isinstance(s.id, str) or not 0 <= s.id <= 252):
@@ -154,7 +158,7 @@ def _linkage(path: Path, key: str, table: LinkageTable, joint: JointTable) -> Li
 
 
 def refuse_beyond_servo(path: Path, key: str, servo: ServoSpec, joints: Sequence[JointSpec]) -> None:
-    """A servo refuses goals outside its range: every pose inside the joints' limits must lie within."""
+    """Refuse a servo whose range does not cover every pose inside the joints' limits: it would refuse goals outside its range."""
     least = sum(min(c * joints[i].position_min_rad, c * joints[i].position_max_rad) for i, c in servo.couplings)
     most = sum(max(c * joints[i].position_min_rad, c * joints[i].position_max_rad) for i, c in servo.couplings)
     reach = np.array([least, most])
@@ -170,10 +174,10 @@ def refuse_beyond_servo(path: Path, key: str, servo: ServoSpec, joints: Sequence
 def with_speeds(
     path: Path, table: RobotTable, joints: tuple[JointSpec, ...], servos: tuple[ServoSpec, ...]
 ) -> tuple[JointSpec, ...]:
-    """Joints with speeds that their servos can do together.
+    """Joints with speed limits that their servos can reach together.
 
-    A joint's own limit holds where it is lower. What the joints with limits of their own leave of a differential's
-    servos is shared equally among its others.
+    A joint's own limit holds where it is lower. The joints of a differential that have no limit of their own share equally
+    the speed that the other joints leave.
     """
     given = [j.velocity_limit_rad_s for j in joints]
     speed = [math.inf if math.isnan(v) else v for v in given]

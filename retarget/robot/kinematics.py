@@ -1,8 +1,7 @@
 """Forward kinematics of a robot, batched, from its description: products of exponentials.
 
-The description (MJCF or URDF) is read once through MuJoCo. What is kept are the axis and anchor of each joint and the
-place of each point in the zero pose; a point's place in another pose follows by turning it about the joints above it,
-the nearest first.
+MuJoCo reads the description (MJCF or URDF) once and gives the axis and anchor of each joint and the position of each point in the
+zero pose. The position of a point in another pose is the product of the rotations about the joints above it, the nearest first.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ def cross(a: Array, b: Array) -> Array:
 
 
 def rotate(axis: Array, angle_rad: Array, v: Array) -> Array:
-    """Turn vectors `v` (..., 3) about unit `axis` (3,) by `angle_rad` (...), Rodrigues' formula."""
+    """Vectors `v` (..., 3) turned about unit `axis` (3,) by `angle_rad` (...), with Rodrigues' formula."""
     c, s = np.cos(angle_rad)[..., None], np.sin(angle_rad)[..., None]
     return v * c + (v @ skew(axis).T) * s + (v @ np.outer(axis, axis)) * (1 - c)
 
@@ -93,21 +92,21 @@ class Kinematics:
         return [KeyPoint(name, self._site_pos[site], self._chain(int(self.model.site_bodyid[site])))]
 
     def place(self, point: KeyPoint, q_rad: Array) -> Array:
-        """(T, 3) place of a key point for joints (T, J)."""
+        """(T, 3) positions of a key point, in metres, for joint angles (T, J)."""
         p = np.broadcast_to(point.zero_m, (len(q_rad), 3))
         for j in reversed(point.chain):
             p = self.anchors[j] + rotate(self.axes[j], q_rad[:, j], p - self.anchors[j])
         return p
 
     def turn(self, chain: tuple[int, ...], q_rad: Array, v: Array) -> Array:
-        """(T, 3) direction `v` (3,) or (T, 3), fixed to the end of `chain` in the zero pose, for joints (T, J)."""
+        """(T, 3) directions `v`, (3,) or (T, 3) in the zero pose and fixed to the end of `chain`, for joint angles (T, J)."""
         v = np.broadcast_to(v, (len(q_rad), 3))
         for j in reversed(chain):
             v = rotate(self.axes[j], q_rad[:, j], v)
         return v
 
     def places(self, q_rad: Array) -> Array:
-        """(T, K, 3) places of all key points."""
+        """(T, K, 3) positions of all key points, in metres."""
         return np.stack([self.place(point, q_rad) for point in self.key_points], 1)
 
 

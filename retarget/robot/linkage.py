@@ -1,7 +1,7 @@
-"""Rods between a servo and its joint: the servo's angle as a table over the joint's, smooth and with an exact inverse.
+"""Linkage of rods between a servo and its joint: the servo's angle as a smooth function of the joint's, with its inverse.
 
-The few rows of a table are joined by a monotone cubic (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980) and that is
-sampled finely once; both ways are then linear between the same samples, so each is the other's inverse to rounding.
+A monotone cubic (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980) joins the few rows of a table and is sampled finely once.
+Both directions interpolate linearly between these samples, so each is the inverse of the other up to rounding.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ class Linkage:
         return cls(np.append(joint.ravel(), joint_rad[-1]), np.append(servo.ravel(), servo_rad[-1]))
 
     def to_servo(self, joint_rad: Array) -> Array:
-        """Servo angles for joint angles; beyond the table it goes on as steep as it ends."""
+        """Servo angles for joint angles; beyond the table the curve continues in a straight line."""
         return _straight_on(joint_rad, self.joint_rad, self.servo_rad)
 
     def to_joint(self, servo_rad: Array) -> Array:
-        """Joint angles for servo angles; beyond the table it goes on as steep as it ends.
+        """Joint angles for servo angles; beyond the table the curve continues in a straight line.
 
-        So a servo found beyond it stands at an angle of its own there, from which it is led back; were it taken for one at the
-        table's end, its first goal would be a jump to that end.
+        A servo found beyond the table therefore has a joint angle of its own, from which the motion starts. Clipped to the end of
+        the table, the servo would jump there with its first goal.
         """
         if self.servo_rad[0] > self.servo_rad[-1]:
             return _straight_on(servo_rad, self.servo_rad[::-1], self.joint_rad[::-1])
@@ -62,7 +62,7 @@ class Linkage:
 
     @property
     def curvature(self) -> float:
-        """Largest change of that speed, per radian of the joint."""
+        """Largest second derivative of the servo's angle by the joint's angle."""
         middle = (self.joint_rad[1:] + self.joint_rad[:-1]) / 2
         return float(np.abs(np.diff(self._slope()) / np.diff(middle)).max())
 

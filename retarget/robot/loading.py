@@ -17,14 +17,14 @@ def list_robots() -> list[str]:
 
 
 def load_robot(name_or_path: str, *, blanks: bool = False) -> RobotModel:
-    """The packaged robot of that name, or the one of a robot.toml (or its folder).
+    """A packaged robot by its name, or the robot of a robot.toml.
 
     Args:
-        name_or_path: which.
-        blanks: take a file whose servo ids or models are still blank ("?"), for looking at; it cannot be run.
+        name_or_path: name of a packaged robot, or path of a robot.toml or of its folder.
+        blanks: whether to accept a file whose servo ids or models are still blank ("?"), for inspection; such a robot cannot run.
 
     Raises:
-        UnknownRobotError: neither.
+        UnknownRobotError: `name_or_path` is neither a packaged robot nor a path to a robot.toml.
         RobotFileError: the file has a wrong key, unit or value, or a blank.
     """
     path = ROBOTS_DIR / name_or_path / "robot.toml"

@@ -1,4 +1,4 @@
-"""A robot's pose in words: where each arm, the head and the trunk point, for a person who brings the robot into it by hand."""
+"""A robot's pose in words: directions of arms, head and trunk, for a person who brings the robot into the pose by hand."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 ONE_WAY_SHARE = 0.94
-"""Share of a direction's length along one axis from which the other axes are not named: within 20 degrees of the axis."""
+"""Cosine of the angle to an axis, 20 degrees, within which a direction is named by this axis alone."""
 _SECOND_SHARE = 0.34
-"""Share along a second axis from which it is named: beyond 20 degrees."""
+"""Component of a unit direction along a second axis from which the second axis is named too: 20 degrees off the first."""
 _SHORTEST_M = 0.01
 
 
@@ -20,7 +20,7 @@ def pose_in_words(robot: RobotModel, q_rad: Array) -> list[str]:
     """One sentence for each arm, for head and trunk; sides are the robot's own.
 
     Args:
-        robot: whose pose.
+        robot: the robot.
         q_rad: (J,) joint angles.
     """
     kinematics = Kinematics(robot)
@@ -43,7 +43,7 @@ def pose_in_words(robot: RobotModel, q_rad: Array) -> list[str]:
 
 
 def _turned(robot: RobotModel, q_rad: Array) -> list[str]:
-    """Head and trunk: straight ahead, or by how many degrees each joint is off."""
+    """Sentences on head and trunk: straight ahead, or the degrees by which each joint is off."""
     lines: list[str] = []
     for part, straight in (("head", "head looking straight ahead"), ("waist", "trunk upright, facing ahead")):
         joints = [i for i, j in enumerate(robot.joints) if j.role.startswith(f"{part}_")]

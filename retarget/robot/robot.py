@@ -1,4 +1,4 @@
-"""The record of a robot: its joints, limits, servos and bus (`robot_file` reads it). Angles are radians here."""
+"""The record of a robot: joints, limits, servos and bus, with angles in radians; `robot_file` reads it from a file."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ ROLES = (
     "head_yaw", "head_pitch", "head_roll", "waist_yaw", "waist_pitch", "waist_roll",
     *(f"{side}_{part}" for side in ("left", "right") for part in _ARM_PARTS),
 )  # fmt: skip
-"""Roles of joints. Joints with nothing human to follow (wrists, waist roll) rest."""
+"""Roles of joints. Joints that follow no human joint (wrists) rest."""
 POINTS = ("left_wrist", "right_wrist", "head", "chest")
-"""Places that retargeting and pictures need: sites of the description, or [points] of the robot file."""
+"""Names of the points that retargeting and pictures need: sites of the description, or [points] of the robot file."""
 DIRECTIONS = {
     "x": (1.0, 0.0, 0.0), "-x": (-1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "-y": (0.0, -1.0, 0.0), "z": (0.0, 0.0, 1.0),
     "-z": (0.0, 0.0, -1.0),
@@ -57,8 +57,8 @@ class ServoSpec:
         gear_ratio: turns of the servo for one of the joint.
         zero_tick: tick at angle 0.
         couplings: (joint index, coefficient) of each joint that moves it.
-        min_tick: first goal it takes, or that its mechanics allow where the file says so.
-        max_tick: last one.
+        min_tick: first goal that the servo accepts, or that the mechanics allow where the file has a limit.
+        max_tick: last goal that the servo accepts, or that the mechanics allow.
         extended: whether it runs in extended position mode, of many turns.
         linkage: rods between servo and joint, None when there are none.
     """
@@ -83,13 +83,13 @@ class ServoSpec:
 
     @property
     def ticks_per_rad(self) -> float:
-        """Ticks, with their sign, for a radian behind the couplings and the linkage."""
+        """Signed ticks per radian of the servo's angle after couplings and linkage."""
         return self.direction * self.gear_ratio * self.model.ticks_per_turn / (2 * np.pi)
 
 
 @dataclass(frozen=True)
 class BusSettings:
-    """How the robot's servos are reached."""
+    """Protocol, baud rate and cycle rate of the robot's servo bus."""
 
     protocol: float
     baud: int
@@ -97,13 +97,13 @@ class BusSettings:
 
     @property
     def period_s(self) -> float:
-        """Time between two goals."""
+        """Seconds between two goals."""
         return 1.0 / self.rate_hz
 
 
 @dataclass(frozen=True)
 class PointSpec:
-    """A place fixed to a body of the description, `offset_m` in the body's own axes."""
+    """A point fixed to a body of the description, `offset_m` in the body's own axes."""
 
     body: str
     offset_m: tuple[float, float, float]
@@ -114,9 +114,9 @@ class RobotModel:
     """A robot's upper body of J joints and S servos.
 
     Attributes:
-        forward, up: the description's axes that look ahead and up, keys of `DIRECTIONS`.
-        points: places that the description itself does not name, by name.
-        blanks: what only the owner knows and has not filled in; empty but for `load_robot(..., blanks=True)`.
+        forward, up: the description's axes that point ahead and up, keys of `DIRECTIONS`.
+        points: named points that the description itself has no site for.
+        blanks: keys that the owner has not filled in yet; empty unless read by `load_robot(..., blanks=True)`.
     """
 
     name: str
@@ -133,17 +133,15 @@ class RobotModel:
 
     @property
     def n_joints(self) -> int:
-        """Number of joints."""
         return len(self.joints)
 
     @property
     def n_servos(self) -> int:
-        """Number of servos: more than joints where several drive one."""
+        """Number of servos, larger than that of joints where several servos drive a joint."""
         return len(self.servos)
 
     @cached_property
     def joint_names(self) -> tuple[str, ...]:
-        """Joint names in order."""
         return tuple(j.name for j in self.joints)
 
     @cached_property
@@ -182,9 +180,9 @@ class RobotModel:
 
     @cached_property
     def park_rad(self) -> NDArray[np.float64]:
-        """(J,) pose in which torque may be cut."""
+        """(J,) pose in which torque may be switched off."""
         return self.column("park_rad")
 
     def joint_with_role(self, role: str) -> int | None:
-        """Index of the joint with `role`, None when the robot has none."""
+        """Index of the joint with `role`; None when the robot has no such joint."""
         return next((i for i, j in enumerate(self.joints) if j.role == role), None)

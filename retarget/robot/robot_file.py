@@ -1,8 +1,8 @@
-"""Reads a robot file: a TOML beside an MJCF or URDF. Degrees there, radians here.
+"""Reads a robot file, a TOML beside an MJCF or URDF, and converts degrees to radians.
 
-Everything is checked as it is read: a wrong key, unit or value is named with what was found and what is allowed. What
-holds after that: every pose inside the joints' limits lies inside the range of every servo, and no joint moving within
-its speed limit needs more than `velocity_margin` of any servo's no-load speed.
+Every key is checked on reading; an error names the key, the value found and the values allowed. A robot that was read has two
+properties: every pose inside the joints' limits lies inside the range of every servo, and no joint that keeps its speed limit needs
+more than `velocity_margin` of a servo's no-load speed.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from retarget.robot.tables import FORMAT, JointTable, MotionTable, RobotTable, k
 from retarget.robot.ticks import JointServoMap
 
 _MOST_RAD = 6.3
-"""Degrees within which the limits of all joints can only mean that the file was written in radians."""
+"""Degrees: if no joint's limit is larger, the file is taken to be written in radians and is refused."""
 
 
 def read_robot_file(path: Path, blanks: bool = False) -> RobotModel:
-    """The robot of a file; with `blanks`, also of one that still has some.
+    """The robot of a file; `blanks` accepts a file in which servo ids or models are still blank.
 
     Raises:
         RobotFileError: the file has a wrong key, unit or value, or a blank.
@@ -63,7 +63,7 @@ def read_robot_file(path: Path, blanks: bool = False) -> RobotModel:
 
 
 def _refuse_no_room(path: Path, robot: RobotModel) -> None:
-    """A joint moves by whole ticks of its servos: there must be some within its range."""
+    """Refuse a joint whose range contains no whole tick of its servos."""
     low, high = JointServoMap(robot).position_range_rad
     for joint, room_rad in zip(robot.joints, (high - low).tolist(), strict=True):
         if not room_rad > 0:
@@ -93,7 +93,7 @@ def _parse(path: Path) -> RobotTable:
 
 
 def _check_whole(path: Path, table: RobotTable) -> None:
-    """What can be said of the file without its servos."""
+    """Check the keys that do not depend on servos."""
     if table.format != FORMAT:
         raise RobotFileError(path, "format", str(table.format), str(FORMAT))
     if not table.joint:
@@ -115,7 +115,7 @@ def _check_whole(path: Path, table: RobotTable) -> None:
 
 
 def _joint(path: Path, i: int, j: JointTable, motion: MotionTable) -> JointSpec:
-    """A joint without its speed, which depends on its servos."""
+    """A joint without its speed limit, which depends on its servos."""
     key = f"joint[{i}] '{j.name}'"
     low, high = j.position_limit_deg
     if not (-720 <= low < high <= 720):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 _FILE = Path(__file__).parent / "servos.toml"
 EXTENDED_TURNS = 256
-"""In extended position mode a goal may be up to 256 turns from zero (e-manual, Operating Mode 4)."""
+"""Turns from zero within which goals lie in extended position mode (e-manual, Operating Mode 4)."""
 
 
 @dataclass(frozen=True)
@@ -18,12 +18,12 @@ class ServoModel:
 
     Attributes:
         name: the maker's name, e.g. "XM430-W350".
-        model_number: what the servo answers to a ping.
+        model_number: number in the servo's answer to a ping.
         protocol: 1.0 or 2.0.
-        ticks_per_turn: position resolution, of a full turn even where the servo cannot make one.
-        zero_tick: middle of its range.
-        min_tick, max_tick: goals it takes in position mode.
-        no_load_speed_rad_s: upper bound of its speed, at the rated voltage.
+        ticks_per_turn: position resolution per full turn, also for a servo that cannot make a full turn.
+        zero_tick: middle of the range.
+        min_tick, max_tick: first and last goal in position mode.
+        no_load_speed_rad_s: upper bound of the speed, at the rated voltage.
         has_current: whether it measures current (else load).
         has_extended: whether it has the extended position mode, of many turns.
     """
@@ -40,7 +40,7 @@ class ServoModel:
     has_extended: bool
 
     def tick_range(self, extended: bool) -> tuple[int, int]:
-        """First and last goal the servo takes, in position mode or in extended position mode."""
+        """First and last goal that the servo accepts in position mode or, if `extended`, in extended position mode."""
         if not extended:
             return self.min_tick, self.max_tick
         reach = round(EXTENDED_TURNS * self.ticks_per_turn) - 1

@@ -1,4 +1,4 @@
-"""The keys of a robot file: what msgspec checks by type, before `robot_file` checks what they say."""
+"""The keys of a robot file with their types, which msgspec checks before `robot_file` checks the values."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import msgspec
 
 FORMAT = 1
 BLANK = "?"
-"""Stands where only the owner knows the value."""
+"""Placeholder for a value that only the robot's owner knows."""
 
 
 class LinkageTable(msgspec.Struct, forbid_unknown_fields=True):
@@ -32,7 +32,7 @@ class ServoTable(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class JointTable(msgspec.Struct, forbid_unknown_fields=True):
-    """A joint; `servo`, or `servos` when several drive it, or neither in a differential."""
+    """A joint with one `servo`, with `servos` when several drive it, or with neither in a differential."""
 
     name: str
     role: str
@@ -54,7 +54,7 @@ class DifferentialTable(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class BusTable(msgspec.Struct, forbid_unknown_fields=True):
-    """How the servos are reached."""
+    """Protocol, baud rate and cycle rate of the servo bus."""
 
     baud: int
     rate_hz: float
@@ -69,21 +69,21 @@ class MotionTable(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class FrameTable(msgspec.Struct, forbid_unknown_fields=True):
-    """Axes of the description."""
+    """Axes of the description that point ahead and up."""
 
     forward: str = "x"
     up: str = "z"
 
 
 class PointTable(msgspec.Struct, forbid_unknown_fields=True):
-    """A place on a body."""
+    """A point on a body, at an offset in the body's axes."""
 
     body: str
     offset_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 class PointTables(msgspec.Struct, forbid_unknown_fields=True):
-    """The places that have a meaning."""
+    """The points that retargeting and pictures need."""
 
     left_wrist: PointTable | None = None
     right_wrist: PointTable | None = None
@@ -113,13 +113,13 @@ _PARTS: tuple[tuple[str, type[msgspec.Struct]], ...] = (
 
 
 def keys_at(where: str) -> str:
-    """The keys allowed at a place of the file, as msgspec names it (`$.joint[0].servo.id`)."""
+    """The keys allowed at a place of the file, given in msgspec's notation (`$.joint[0].servo.id`)."""
     struct = next((kind for part, kind in _PARTS if f".{part}" in where), RobotTable)
     return ", ".join(f.name for f in msgspec.structs.fields(struct))
 
 
 def walk(value: Any, where: str = "") -> list[tuple[str, str, Any]]:
-    """(place, key, value) of every key of a parsed TOML, nested ones too; items of arrays stand under `key[i]`."""
+    """(place, key, value) of every key of a parsed TOML, nested keys included; items of arrays have the place `key[i]`."""
     found: list[tuple[str, str, Any]] = []
     if isinstance(value, dict):
         for key, inner in cast(dict[str, Any], value).items():

@@ -1,6 +1,6 @@
 """Joints to servo ticks and back: direction, gear, zero, resolution, linkages, differentials, several servos on a joint.
 
-Sums over few terms, not matrix products: the same joints give the same bits in a batch and alone.
+Sums over few terms are used, not matrix products, so that equal joints give equal bits in a batch and alone.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ class JointServoMap:
     """The map of a robot's J joints to its S servos' position ticks, with the limits in servo space.
 
     Attributes:
-        zero_tick: (S,) ticks where the joints that move a servo are at 0 (before any linkage).
-        position_range_rad: (J,) and (J,) the part of the joints' ranges in which rounding to the nearest tick never
-            leaves them. A joint with servos of its own ends at whole ticks; one of a differential half a tick of each
+        zero_tick: (S,) ticks of the servos where their joints are at 0 (before any linkage).
+        position_range_rad: (J,) and (J,) ends of the range in which rounding to the nearest tick never leaves the joints'
+            limits. A joint with servos of its own ends at whole ticks; a joint of a differential ends half a tick of each
             servo before its limits.
-        position_min_tick, position_max_tick: (S,) ticks of that part.
-        velocity_limit_tick_s, acceleration_limit_tick_s2: (S,) what the joints' limits come to, all at once.
+        position_min_tick, position_max_tick: (S,) ticks of this range.
+        velocity_limit_tick_s, acceleration_limit_tick_s2: (S,) servo limits if all joints move at their limits at once.
     """
 
     def __init__(self, robot: RobotModel) -> None:
@@ -54,7 +54,7 @@ class JointServoMap:
         return np.clip(ticks, self.position_min_tick, self.position_max_tick, dtype=np.int32)
 
     def tick_to_rad(self, ticks: NDArray[np.integer] | Array) -> Array:
-        """(..., S) ticks -> (..., J) radians; the mean where several servos drive a joint."""
+        """(..., S) ticks -> (..., J) radians; where several servos drive a joint, the mean of their angles."""
         angle = (ticks - self.zero_tick) / self.ticks_per_rad
         for i, linkage in self._linkages:
             angle[..., i] = linkage.to_joint(angle[..., i])
@@ -62,7 +62,7 @@ class JointServoMap:
 
     @cached_property
     def velocity_limit_tick_s(self) -> Array:
-        """(S,) largest speed of each servo when all its joints move at theirs."""
+        """(S,) largest speed of each servo while all its joints move at their limits."""
         steepest = self._of_linkage("steepest", 1.0)
         joints = self._robot.velocity_limit_rad_s[self._joint]
         return (joints * np.abs(self._coupling)).sum(-1) * steepest * np.abs(self.ticks_per_rad)
@@ -99,7 +99,7 @@ class JointServoMap:
         return low, high
 
     def _joint_angle(self, ticks: Array) -> Array:
-        """(..., S) what each servo's ticks say of its own joint alone."""
+        """(..., S) angle of its own joint, in radians, for the ticks of each servo alone."""
         angle = (ticks - self.zero_tick) / self.ticks_per_rad
         for i, linkage in self._linkages:
             angle[..., i] = linkage.to_joint(angle[..., i])
@@ -116,7 +116,7 @@ class JointServoMap:
 
 
 _WHOLE = 1e-9
-"""Ticks between a limit and a whole tick within which the limit was meant to be on it."""
+"""Ticks of rounding within which a limit counts as lying on a whole tick."""
 _Terms = list[list[tuple[int, float]]]
 
 
@@ -131,7 +131,7 @@ def _padded(terms: _Terms) -> tuple[NDArray[np.intp], Array]:
 
 
 def _inverse(forward: _Terms, n_joints: int) -> _Terms:
-    """For each joint its angle as a sum over servos: least squares within each group that hangs together."""
+    """For each joint its angle as a sum over servos: the least-squares inverse of each group of coupled joints and servos."""
     matrix = np.zeros((len(forward), n_joints))
     for s, row in enumerate(forward):
         for j, c in row:
