@@ -13,7 +13,7 @@ from mmm_core.generate.motion_model import MotionModel, check_seed
 from mmm_core.generate.result import GenerationResult
 from mmm_core.inference.checkpoint import MODEL_FILE, Model, file_hash, load_model, load_text_encoder
 from mmm_core.inference.int8_linear import convert_to_int8, int8_is_supported
-from mmm_core.inference.onednn_linear import can_pack, can_pack_bf16, fastest_precision, pack
+from mmm_core.inference.onednn_linear import can_pack, can_pack_bf16, fastest_precision, has_bf16_matrix_units, pack
 from mmm_core.model.sampling import OFFICIAL_SAMPLING, OFFICIAL_UPPER_BODY, SamplingSettings
 from mmm_core.model.text import TextEncoder
 from mmm_core.model.tokens import frames_for_seconds
@@ -60,7 +60,8 @@ class Engine(MotionModel):
             threads: torch's threads for the whole process; None leaves them as they are.
             settings: how tokens are sampled; None takes the settings that suit the checkpoint.
             precision: of the transformer; None takes int8 for a model of this repository on a processor that multiplies
-                eight-bit integers, else fp32; "auto" times fp32 and bf16. With int8 the text encoder stays fp32.
+                eight-bit integers, else fp32; "auto" times fp32 and bf16. With int8 the text encoder is bf16 on a
+                processor with matrix units for it, else fp32.
 
         Raises:
             CheckpointError: a file is missing or does not fit.
@@ -91,7 +92,7 @@ class Engine(MotionModel):
             raise GenerationError(
                 "precision bf16 was asked for", "fp32: bf16 needs a processor with AVX-512 or the like"
             )
-        words = "bf16" if chosen == "bf16" else "fp32"
+        words = "bf16" if chosen == "bf16" or (chosen == "int8" and has_bf16_matrix_units()) else "fp32"
         pack(encoder, words)
         engine = cls(model, encoder, file_hash(path), settings or plain, chosen)
         if chosen == "int8":

@@ -120,8 +120,8 @@ class MotionGeneration:
 
     @cached_property
     def _drafts(self) -> list[Tensor]:
-        """(L, C) ids of each command of the first step after one decoding step."""
-        step, one_step = self._steps[0], replace(self.settings, steps=1)
+        """(L, C) ids of each command of the first step after one decoding step: the likeliest ids, without randomness."""
+        step, one_step = self._steps[0], replace(self.settings, steps=1, temperature=0.0)
         rows = [empty_row(self._engine.model.transformer, step.tokens_of(k)) for k in range(len(step.commands))]
         return [
             self._fill(command.states, [row], [self._seed_of(0, k)], one_step, self._first_steps[k])[0]

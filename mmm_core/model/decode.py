@@ -95,7 +95,8 @@ def decode(
     if counts is None:
         counts = [masked_counts(n, settings.n_steps, settings.schedule) for n in open_positions.sum(1).tolist()]
     uncertainty = torch.where(open_positions, 1.0, -1.0)  # (B, L); positions below `KEPT` are never masked again
-    for step in range(max((len(c) for c in counts), default=0)):
+    n_steps = max((len(c) for c in counts), default=0)
+    for step in range(n_steps):
         wanted = torch.tensor([c[step] if step < len(c) else 0 for c in counts])
         rank = uncertainty.argsort(dim=1, descending=True, stable=True).argsort(dim=1)
         masked = (rank < wanted[:, None]) & (uncertainty > KEPT)  # (B, L): the `wanted` most uncertain of each row
@@ -108,6 +109,8 @@ def decode(
         chosen[opening] = logits[opening].argmax(-1)
         filled = open_ids[masked]  # (N, P): ids that are really chosen; the others are known
         tokens[masked] = torch.where(filled, chosen, tokens[masked])
+        if step + 1 == n_steps:
+            break  # nothing is masked again
         likelihood = logits.softmax(-1).gather(-1, chosen[..., None])[..., 0]
         uncertainty.fill_(-1.0)
         uncertainty[masked] = 1.0 - (likelihood * filled).sum(-1) / filled.sum(-1)

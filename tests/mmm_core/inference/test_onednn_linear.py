@@ -10,6 +10,7 @@ from torch import nn
 
 from mmm_core.errors import GenerationError
 from mmm_core.generate.engine import Engine
+from mmm_core.inference.int8_linear import int8_is_supported
 from mmm_core.inference.onednn_linear import OneDnnLinear, can_pack, can_pack_bf16, fastest_precision, pack
 from mmm_core.model.sampling import SamplingSettings, empty_row, fill
 from mmm_core.model.text import TextStates
@@ -85,3 +86,18 @@ def test_a_precision_is_chosen_that_the_processor_has() -> None:
 def test_bf16_is_refused_by_name_where_the_processor_lacks_it() -> None:
     with pytest.raises(GenerationError, match=r"bf16 was asked for.*AVX-512"):
         Engine.load(precision="bf16", threads=None)
+
+
+@needs_bf16
+@pytest.mark.skipif(not int8_is_supported(), reason="this processor multiplies no eight-bit integers")
+@pytest.mark.parametrize("has_units", [False, True])
+def test_words_are_bf16_beside_int8_where_there_are_matrix_units(
+    has_units: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    texts = ["wave with your left hand"]
+    exact = Engine.load(precision="fp32", threads=None).read(texts)
+    monkeypatch.setattr("mmm_core.generate.engine.has_bf16_matrix_units", lambda: has_units)
+    states = Engine.load(precision="int8", threads=None).read(texts)
+    error = float((states.words - exact.words).norm() / exact.words.norm())
+    assert states.words.dtype == torch.float32
+    assert 0.0 < error < 0.02 if has_units else error == 0.0
