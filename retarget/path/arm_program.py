@@ -21,11 +21,11 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 _MOST_STEPS = 25
 _GAP, _RESIDUAL = 3e-6, 1e-7
-"""Mean complementarity, and what a row may be passed by, at which a solution counts as found."""
+"""Mean complementarity and largest violation of a row at which a solution counts as found."""
 _START = 1e-2
-"""Slacks and multipliers begin at this or more."""
+"""Least initial value of slacks and multipliers."""
 _TO_BORDER = 0.99
-"""Share of the way to the nearest bound that a step goes."""
+"""Largest share of the distance to the nearest bound that a step covers."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Frames:
 
     Attributes:
         hessian: (N, n, n) H.
-        fall: (N, n) f, how fast the cost falls with each joint.
+        fall: (N, n) f, the negative gradient of the cost.
     """
 
     hessian: Array
@@ -43,14 +43,14 @@ class Frames:
 
 @dataclass(frozen=True)
 class Rooms:
-    """Distances that are to be kept: a pair has room to come nearer by `room_m`, and more as joints change.
+    """Distances to be kept: each pair may approach by `room_m`, and the room changes with the joints.
 
     Attributes:
         point: (R,) index of a control point, in rising order.
-        share: (R, 2) how far a pose goes along with the point before and with this one: 1/2, 1/2 in a frame.
-        grows: (R, n) metres that the room grows by per radian of each joint.
-        room_m: (R,) metres.
-        stiffness: weight of half the squared metres that are lacking.
+        share: (R, 2) weights of the previous control point and of this one in the pose: 1/2 and 1/2 in a frame.
+        grows: (R, n) derivative of the room by each joint, metres per radian.
+        room_m: (R,) metres of room.
+        stiffness: weight of half the squared metres of missing room.
     """
 
     point: Indices
@@ -81,7 +81,7 @@ class ArmProgram:
         self._upper, self._lower, self._before = upper, lower, before
 
     def change(self, points: Array, frames: Frames, rooms: Rooms, steady: Steady, most_rad: float) -> Array | None:
-        """(N, n) the best change of `points` (N, n), no element larger than `most_rad`; None where none was found."""
+        """(N, n) best change of `points` (N, n), no element larger than `most_rad`; None if the solver found no solution."""
         N, n = points.shape
         at = _differences(points)
         at[1, 0] -= self._before[1]
@@ -137,7 +137,7 @@ class _Solver:
             dx, ds, dz = self._step(centring * gap - ds * dz, s, z, dual, primal, weight, factor)
             length = _TO_BORDER * min(_longest(s, ds), _longest(z, dz))
             x, s, z = x + length * dx, s + length * ds, z + length * dz
-            # Residuals are linear: a step of this length leaves the rest of them.
+            # Residuals are linear: a step of this length leaves the share 1 - length of each.
             dual, primal = (1 - length) * dual, (1 - length) * primal
         return None
 
@@ -152,7 +152,7 @@ class _Solver:
         return dx, (aim - s * dz) / z - s, dz
 
     def _take_rooms(self) -> None:
-        """Lay the rows of rooms out by control point, all as many, (N, M, 2 n): for the point before, then for itself."""
+        """Lay out the rows of rooms by control point, padded to M each, (N, M, 2 n): previous point, then the point."""
         rooms, (N, n) = self._rooms, self._shape
         first: Indices = np.asarray(np.searchsorted(rooms.point, np.arange(N, dtype=np.int64)), np.int64)
         place: Indices = np.arange(len(rooms.point), dtype=np.int64) - first[rooms.point]
@@ -163,14 +163,14 @@ class _Solver:
         self._grows = grows.reshape(N, self._wide, 2 * n)
 
     def _spread(self, y: Array) -> Array:
-        """(N, M) what belongs to each row of rooms (R,), laid out like them, and 0."""
+        """(N, M) values `y` of the rows of rooms (R,), laid out like the rows, padded with 0."""
         N = self._shape[0]
         every = np.zeros(N * self._wide)
         every[self._place] = y
         return every.reshape(N, self._wide)
 
     def _along(self, x: Array) -> Array:
-        """The rows' values: differences, the same negated, and the loss of room."""
+        """Product of the constraint matrix and `x`: differences, negated differences, and loss of room."""
         boxes = _differences(x).ravel()
         if not self._wide:
             return np.concatenate([boxes, -boxes])
@@ -180,7 +180,7 @@ class _Solver:
         return np.concatenate([boxes, -boxes, -room])
 
     def _back(self, y: Array) -> Array:
-        """The rows' transpose."""
+        """Product of the transposed constraint matrix and `y`."""
         m = self._n_boxes
         x = _summed((y[:m] - y[m : 2 * m]).reshape(3, *self._shape))
         if self._wide:
@@ -191,7 +191,7 @@ class _Solver:
         return x
 
     def _normal(self, weight: Array) -> Array:
-        """(N n, 2 n + 1) rows of the lower band."""
+        """(N n, 2 n + 1) lower band of the normal matrix, row by row."""
         m = self._n_boxes
         boxes = (weight[:m] + weight[m : 2 * m]).reshape(3, *self._shape)
         band = self._fixed + _banded_boxes(boxes)
@@ -225,14 +225,14 @@ def _summed(y: Array) -> Array:
 
 
 def _halves_summed(frames: Array) -> Array:
-    """(N, n) what costs of frames (N, n), half way between control points, are for the control points."""
+    """(N, n) gradients of control points from gradients of frames (N, n), which lie half way between control points."""
     every = frames / 2
     every[:-1] += frames[1:] / 2
     return every
 
 
 def _add_blocks(band: Array, own: Array, before: Array) -> None:
-    """Add to a lower band (N, n, 2 n + 1) what control points have with themselves and with the one before, (N, n, n)."""
+    """Add to a lower band (N, n, 2 n + 1) the blocks (N, n, n) of control points with themselves and with the previous one."""
     n = own.shape[-1]
     column, row, across, along = _places(n)
     band[:, column, row - column] += own[:, row, column]
@@ -262,5 +262,5 @@ def _places(n: int) -> tuple[Indices, Indices, Indices, Indices]:
 
 
 def _longest(v: Array, change: Array) -> float:
-    """The largest share, 1 at most, of a change that leaves every element of `v` positive."""
+    """Largest share, at most 1, of a change that leaves every element of `v` positive."""
     return 1.0 / max(1.0, float((-change / v).max()))

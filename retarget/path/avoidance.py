@@ -1,4 +1,4 @@
-"""Leading a robot round itself: poses pushed out of contact, and a path's targets pushed where the path still touches."""
+"""Avoids self-contact: pushes poses out of contact, and pushes the targets of a path that still touches."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 STRENGTHS = (0.0, 0.0, 0.0, 0.1, 0.3, 0.6, 1.0)
-"""Share drawn towards the rest pose around what a path touches, one attempt after another; first by pushes alone."""
+"""Share by which frames around a contact are drawn towards the rest pose, by attempt; the first attempts push only."""
 _AIM_M = 0.002
-"""Metres beyond the margin that a pose is led round by, for what the limits in time then cut off."""
+"""Metres beyond the margin to which a pose is pushed out, a reserve for corners that velocity and acceleration limits cut."""
 _PUSHED_ON_M = 0.004
-"""Metres beyond the margin that a touching path is pushed to."""
+"""Metres beyond the margin to which a touching path is pushed."""
 _PUSHES = 6
 _MOST_PUSHED_RAD = 0.15
 _COME_STEPS = 5
-"""Steps of that size by which a pose without a way out is looked for from clear ones."""
+"""Number of steps in which a pose that pushes cannot free is approached from a clear pose."""
 _DAMPING = 1e-5
 _AROUND = (1.0, 0.85, 0.5, 0.2)
-"""How much of a push reaches the frames 0, 1, 2, 3 away."""
+"""Share of a push that reaches the frames 0, 1, 2, 3 away."""
 
 
 class Avoidance:
-    """Keeps one robot off itself. The arms give way; head and waist go where they are meant to."""
+    """Keeps one robot out of self-contact. The arms give way; head and waist keep their targets."""
 
     def __init__(
         self, robot: RobotModel, contact: SelfContact, limits: JointLimits, stiffness: Callable[[Array], Array]
@@ -38,9 +38,9 @@ class Avoidance:
 
         Args:
             robot: the robot.
-            contact: its distances to itself.
-            limits: its position limits.
-            stiffness: (T, J, J) for poses (T, J), what moving away from each costs: half of x' K x.
+            contact: distances between the robot's shapes.
+            limits: position limits.
+            stiffness: gives for poses (T, J) matrices K (T, J, J); moving by x from a pose costs x' K x / 2.
         """
         self._contact, self._stiffness = contact, stiffness
         self._low, self._high = limits.position_min_rad, limits.position_max_rad
@@ -48,9 +48,9 @@ class Avoidance:
         self._mobility = np.array([j.role.startswith(("left_", "right_")) for j in robot.joints], np.float64)
 
     def push_out(self, wanted_rad: Array, before_rad: Array, least: LeastDistances | None = None) -> tuple[Array, int]:
-        """Poses (T, J) clear of the robot, each near the wanted one; how many stretches of them were changed.
+        """Poses (T, J) without self-contact near the wanted ones, and the number of runs of changed frames.
 
-        `least` has the distances in the wanted poses, where they are known.
+        `least` has bounds of the distances in the wanted poses; None computes them.
         """
         least = least or self._contact.least(wanted_rad)
         clear = wanted_rad.copy()
@@ -59,13 +59,13 @@ class Avoidance:
         if len(some):
             clear[some], free = self._pushed_out(clear[some], _AIM_M, least.part(some))
             lost = some[~free]
-            if len(lost):  # too deep to see the way out: come from between the clear poses before and after
+            if len(lost):  # too deep for a push: approach from between the clear poses before and after
                 between = _between(clear, lost, before_rad)
                 clear[lost] = self._from_between(wanted_rad[lost], between, least.part(lost))
         return clear, stretches(touching)
 
     def push(self, eased_rad: Array, path_rad: Array, hit: NDArray[np.bool_], strength: float) -> Array:
-        """Targets (T, J) changed where the path made of them, (N, J) control points, touches in segments `hit` (N - 2,)."""
+        """Targets (T, J), changed near the segments `hit` (N - 2,) in which their path, (N, J) control points, touches."""
         T = len(eased_rad)
         pushes = np.zeros_like(eased_rad)
         segments = np.flatnonzero(hit)
@@ -91,9 +91,9 @@ class Avoidance:
         return np.clip(changed, self._low, self._high)
 
     def _from_between(self, wanted_rad: Array, between_rad: Array, least: LeastDistances) -> Array:
-        """Poses (n, J) near the wanted ones: head and waist from between clear poses, where that is enough, else all joints.
+        """Poses (n, J) near the wanted ones: interpolates head and waist between clear poses; if that fails, all joints.
 
-        A head turned against a shoulder would otherwise hold both arms up, which have no part in it.
+        Interpolating all joints at once would hold up both arms because of a head turned against a shoulder.
         """
         q, free = self._pushed_out(np.where(self._mobility > 0, wanted_rad, between_rad), _AIM_M, least)
         if not free.all():
@@ -101,7 +101,7 @@ class Avoidance:
         return q
 
     def _come_near(self, wanted_rad: Array, from_rad: Array, least: LeastDistances) -> Array:
-        """Poses (n, J) as near the wanted ones as steps from others lead, pushed out of contact after each step."""
+        """Poses (n, J) reached in steps from `from_rad` towards the wanted ones, pushed out of contact after each step."""
         q, free = self._pushed_out(from_rad, _AIM_M, least)
         for _ in range(_COME_STEPS):
             step = np.minimum(np.maximum(wanted_rad - q, -_MOST_PUSHED_RAD), _MOST_PUSHED_RAD)
@@ -112,9 +112,9 @@ class Avoidance:
         return q
 
     def _pushed_out(self, q_rad: Array, aim_m: float, least: LeastDistances) -> tuple[Array, NDArray[np.bool_]]:
-        """Poses (T, J) moved little until they keep the margin and `aim_m` more, and which of them keep the margin.
+        """Poses (T, J) moved little until they keep the margin plus `aim_m`, and (T,) whether each keeps the margin.
 
-        The worst pair of each is pushed apart by the movement that costs least, again and again.
+        Each iteration pushes apart the worst pair of each pose by the movement of least cost.
         """
         q = q_rad.copy()
         yielding = np.linalg.inv(self._stiffness(q_rad))
@@ -142,7 +142,7 @@ def stretches(of: NDArray[np.bool_]) -> int:
 
 
 def _between(q_rad: Array, frames: NDArray[np.int64], before_rad: Array) -> Array:
-    """(n, J) poses on lines between those of `q_rad` (T, J) beside `frames` (n,); the last known stays."""
+    """(n, J) poses at `frames` (n,), interpolated between the other poses of `q_rad` (T, J); after the last of these constant."""
     kept = np.setdiff1d(np.arange(len(q_rad)), frames)
     at = np.concatenate([[0], kept + 1])
     known = np.concatenate([before_rad[None], q_rad[kept]])
@@ -150,5 +150,5 @@ def _between(q_rad: Array, frames: NDArray[np.int64], before_rad: Array) -> Arra
 
 
 def _larger(a: Array, b: Array) -> Array:
-    """Element by element what is further from zero."""
+    """Element by element the value that is further from zero."""
     return np.where(np.abs(b) > np.abs(a), b, a)

@@ -1,7 +1,7 @@
-"""One block of a long motion made into a path: inside every limit, off the robot itself, and safe to cut off and brake.
+"""Plans one block of a long motion as a path inside every limit, without self-contact, with free braking at its end.
 
-Poses that touch are led out of contact, the limiter makes a path of them, and where a contact was near `refining` makes it better
-with the distances among its bounds. What still touches then is pushed, drawn towards the rest pose, and held, in this order.
+Poses in contact are pushed out of contact, the limiter turns them into a path, and near contacts `refining` improves the path with
+the distances among its bounds. A path that still touches is pushed, then drawn towards the rest pose, then stopped.
 """
 
 from __future__ import annotations
@@ -22,24 +22,24 @@ from retarget.path.refining import Refiner, Shown
 
 Array = NDArray[np.float64]
 _SETTLE_FRAMES = 16
-"""Time given to reach the last pose; what then still moves, brakes."""
+"""Frames in which joints may reach the last pose; joints that then still move brake."""
 _AWAY_FRAMES = 8
-"""Time given to leave a pose within a margin where the way to the motion from there touches."""
+"""Frames for leaving a pose within the margin from which the path to the motion touches."""
 _STILL_RAD = 5e-4
-"""Less in a frame is the end of settling: a third of a tick of 4,096."""
+"""Radians of movement in a frame below which settling ends: a third of a tick of 4,096 a turn."""
 _AROUND_CUT = 3
-"""Frames on both sides of the end of a block that give way where braking from there touches."""
+"""Frames on both sides of the end of a block that change where braking from this end touches."""
 
 
 class BlockPlanner:
-    """Makes the blocks of one robot.
+    """Plans the blocks of one robot.
 
     Args:
-        contact: the robot's distances to itself.
-        limits: its bounds.
-        avoidance: what leads it round itself.
-        objective: the objective of poses (T, J) that were led round contacts by (T, J), for the limiter.
-        arms: joints of all arms.
+        contact: distances between the robot's shapes.
+        limits: joint limits.
+        avoidance: pushes poses out of self-contact.
+        objective: gives the limiter's objective for poses (T, J) and the displacements (T, J) of their pushes.
+        arms: indices of the joints of all arms.
     """
 
     def __init__(
@@ -60,10 +60,10 @@ class BlockPlanner:
         settle: bool,
         continued: bool,
     ) -> tuple[Array, int]:
-        """Control points for poses (T, J), safe to cut off and brake after `keep` frames; times they were changed.
+        """Control points for poses (T, J), with free braking after `keep` frames, and the number of interventions.
 
-        When `continued`, the first pose is the one before the block. `shown` is the cost of its frames; without it the path
-        comes sooner, and is not made better where a contact is near.
+        When `continued`, the first pose is the one before the block. `shown` is the cost of the block's frames; with None the
+        path is ready sooner but is not refined near contacts.
         """
         before, posed = (posed[:1], posed[1:]) if continued else (posed[:1], posed)
         least = self._contact.least(posed)
@@ -80,7 +80,7 @@ class BlockPlanner:
             interventions += stretches(hit)
             eased = self._avoidance.push(eased, path, hits_of_frames(hit, len(path)), strength)
             path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
-        if hit.any() and allowed is not None:  # it begins too near itself to turn to the motion: away from there first
+        if hit.any() and allowed is not None:  # the start is within the margin and blocks the motion: first leave it
             eased = eased.copy()
             eased[:_AWAY_FRAMES] = self._avoidance.push_out(begin.position_rad[None], begin.position_rad)[0]
             path, hit, least = self._limited(eased, posed, before, begin, period, keep, settle, allowed, least)
@@ -92,7 +92,7 @@ class BlockPlanner:
         self, refiner: Refiner, path: Array, shown: Shown, n_frames: int, period: float, keep: int, settle: bool,
         allowed: Allowed | None, least: LeastDistances,
     ) -> Array | None:  # fmt: skip
-        """A path that shows more and touches nothing, from one of the limiter; None where none was found."""
+        """A path without contact and with smaller direction errors than the limiter's `path`; None if none was found."""
         stop = braking(path, period, self._limits)
         tail = max(len(stop), _SETTLE_FRAMES if settle else self._braking_frames(period))
         end = stop[-1:] if len(stop) else path[-1:]
@@ -128,7 +128,7 @@ class BlockPlanner:
     def _cut_hits(
         self, points: Array, period: float, keep: int, n_frames: int, allowed: Allowed | None, least: LeastDistances
     ) -> tuple[NDArray[np.bool_], LeastDistances]:
-        """Which segments touch when the path brakes at its end, or after `keep` frames; and bounds of distances on it."""
+        """Segments that touch when the path brakes at its end or after `keep` frames, and bounds of the distances on the path."""
         whole = np.concatenate([points, braking(points, period, self._limits)])
         hit, least = self._contact.along_near(whole, allowed, least)
         if keep < n_frames:
@@ -138,7 +138,7 @@ class BlockPlanner:
         return hit, least
 
     def _settled(self, points: Array, least: int, period: float) -> Array:
-        """Control points (N, J) up to where the robot first stands after `least` of them, at rest at their end."""
+        """Control points (N, J) up to the first standstill after `least` of them, at rest at the end."""
         moves = np.abs(np.diff(points[least - 1 :], axis=0)).max(1) > _STILL_RAD
         still = np.flatnonzero(~moves)
         last = least + (int(still[0]) if len(still) else len(moves))
@@ -147,7 +147,7 @@ class BlockPlanner:
     def _stop_before_contact(
         self, path: Array, hit: NDArray[np.bool_], period: float, allowed: Allowed | None
     ) -> Array:
-        """The path up to where it can brake before it first touches, then held; the last resort."""
+        """The path, braked before its first contact and then held; the last resort."""
         first = int(hit.argmax())
         back = 1
         while True:
@@ -161,10 +161,10 @@ class BlockPlanner:
         self, eased: Array, posed: Array, pose_before: Array, start: JointState, period: float, keep: int, settle: bool,
         allowed: Allowed | None, least: LeastDistances,
     ) -> tuple[Array, NDArray[np.bool_], LeastDistances]:  # fmt: skip
-        """Control points of a path near `eased` (T, J) that keeps every limit, which segments touch, and bounds of distances.
+        """Control points of a path near `eased` (T, J) that keeps every limit, its touching segments, and bounds of distances.
 
-        What of `eased` differs from `posed` matters most. When settling, the last pose is held until reached; else what
-        touches when the path brakes after `keep` frames or at its end counts too.
+        The differences of `eased` from `posed` have the largest weight. When settling, the last pose is held until reached;
+        otherwise contacts while braking after `keep` frames or at the end count too.
         """
         wanted, shown, led = controls_near(eased, pose_before), eased, eased - posed
         half = start.velocity_rad_s * (period / 2)

@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 _LEAST = 1e-12
 _STEEP = 1e9
-"""Metres: steeper than any slope."""
+"""Metres that exceed every slope."""
 
 
 def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array) -> tuple[Array, Array]:
-    """Distance (n,) of n capsules' axes to boxes, and which way (n, 3) they are from there; both 0 where one goes through.
+    """Distances (n,) from boxes to capsules' axes, and vectors (n, 3) from box to axis; both 0 where an axis crosses its box.
 
-    Half the squared distance of a point on the axis is convex, and its slope a line between the planes of the box's faces: the
-    nearest point lies where the slope between the last plane at which it falls and the first at which it rises is 0.
+    Half the squared distance of a point on the axis is convex, and its slope is linear between the planes of the box's faces: the
+    nearest point is the zero of the slope between the last plane with a negative and the first with a positive slope.
 
     Args:
         offset: (n, 3) centre of the capsule in the box's own axes.
@@ -40,14 +40,15 @@ def capsule_to_box(offset: Array, axis: Array, half_m: Array, box_half_m: Array)
 
 
 def _beyond(point: Array, half_m: Array) -> Array:
-    """From the nearest point of a box to a point."""
+    """Vectors from the nearest points of boxes to points."""
     return point - np.minimum(np.maximum(point, -half_m), half_m)
 
 
 def box_to_box(offset: Array, turn1: Array, half1_m: Array, turn2: Array, half2_m: Array) -> tuple[Array, Array]:
-    """Not more than the distance of n pairs of boxes, (n,): that of either to the other's bounds along its own axes.
+    """Lower bounds (n,) of the distances of n pairs of boxes, and vectors (n, 3) from the first to the second.
 
-    And which way, (n, 3), that is from the first to the second; 0 where no such axis parts them.
+    The bound is the distance of either box to the other's bounding box in its own axes, the larger of both; it and the vector
+    are 0 where no axis of the boxes separates them.
 
     Args:
         offset: (n, 3) centre of the second less centre of the first.

@@ -1,7 +1,7 @@
-"""Self-contact: how near a robot comes to itself, along a whole path, and which way leads out.
+"""Self-contact: distances between a robot's shapes along a whole path, and the directions that increase them.
 
-Between two poses no distance changes by more than what the shapes move, which bounds it from below: a path found free is
-free at every instant, not at samples.
+Between two poses no distance changes by more than the shapes move. This bounds the distances between samples from below: a path
+that is found free is free at every instant.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from retarget.robot.robot import RobotModel
 KEPT = 0.8
 """Share of the margin that is proved for every instant of a path."""
 _FROM_WITHIN = 0.1
-"""A path that begins within a margin may come nearer by this share of it while it turns away."""
+"""Share of the margin by which a path that begins within the margin may come nearer while it turns away."""
 _EACH = 5
-"""Poses of which one is measured for bounds of the distances in the others."""
+"""Number of consecutive poses whose distances are bounded from the measured distances of one of them."""
 _DEEPEST = 8
-"""Halvings of a segment after which it counts as touching; distances that near and movements that small do not occur."""
+"""Halvings of a segment after which it counts as touching; distances this near the bound do not occur in practice."""
 _ROUNDING_M = 1e-6
 Allowed = tuple[Array, Array]
-"""(P,) metres that each pair keeps at the borders of segments, and at every instant."""
+"""(P,) metres of distance that each pair keeps at the borders of segments, and (P,) metres that it keeps at every instant."""
 
 
 class SelfContact(PairSlopes):
-    """Where one robot comes near itself."""
+    """Distances between the shapes of one robot, and proofs that paths keep them."""
 
     def __init__(self, robot: RobotModel, margin_m: float = MARGIN_M) -> None:
         super().__init__(robot, margin_m)
@@ -40,11 +40,11 @@ class SelfContact(PairSlopes):
         self._bounded = self._spans.known
 
     def frames(self, q_rad: Array, share: float = KEPT) -> NDArray[np.bool_]:
-        """(T,) whether each frame of (T, J) comes closer to itself than a share of the margin, what paths keep of it."""
+        """(T,) whether a pair is nearer than `share` of its margin in each pose of (T, J); paths keep the default share."""
         return np.asarray((self.distances_m(q_rad) < share * self._margin_m).any(1), bool)
 
     def least(self, q_rad: Array) -> LeastDistances:
-        """Lower bounds of all distances in poses (T, J), exact where less than the margin; quick where poses are near the next."""
+        """Lower bounds of all distances in poses (T, J), exact below the margin; fast if consecutive poses are near each other."""
         placed = self._placed(q_rad, with_joints=False)
         least_m = self._bounds(q_rad, placed)
         of = np.flatnonzero((least_m < self._margin_m).any(0))
@@ -53,33 +53,33 @@ class SelfContact(PairSlopes):
         return LeastDistances(q_rad, least_m, self._sweep_m)
 
     def touching(self, least: LeastDistances) -> NDArray[np.bool_]:
-        """(T,) whether each frame of `least` comes closer to itself than its margin."""
+        """(T,) whether a pair is nearer than its margin in each frame of `least`."""
         return np.asarray((least.least_m < self._margin_m).any(1), bool)
 
     def clearance_m(self, q_rad: Array) -> Array:
-        """(T,) smallest distance of each frame of (T, J)."""
+        """(T,) smallest distance of all pairs in each pose of (T, J)."""
         return self.distances_m(q_rad).min(1, initial=np.inf)
 
     def slacks_m(self, q_rad: Array, share: float = KEPT) -> Array:
-        """(T, P) what each pair has beyond a share of its margin, what paths keep of it, in each pose of (T, J)."""
+        """(T, P) distance of each pair less `share` of its margin, in each pose of (T, J); paths keep the default share."""
         return self.distances_m(q_rad) - share * self._margin_m
 
     def slack_m(self, q_rad: Array, share: float = KEPT) -> Array:
-        """(P,) the same in one pose (J,)."""
+        """(P,) distance of each pair less `share` of its margin, in one pose (J,)."""
         return self.slacks_m(q_rad[None], share)[0]
 
     def within_slack(self, slack_m: Array, moved_rad: Array) -> bool:
-        """Whether every pair keeps that share wherever the joints are within (J,) `moved_rad` of where it has `slack_m` (P,)."""
+        """Whether the slacks (P,) of a pose stay positive in every pose that differs by at most `moved_rad` (J,)."""
         return bool((slack_m > self._sweep_m @ moved_rad).all())
 
     def pairs(self, q_rad: Array) -> list[tuple[str, str]]:
-        """Names of the bodies that touch in one pose (J,)."""
+        """Names of the bodies that touch in a pose (J,), in pairs."""
         touching = self._pairs[self.distances_m(q_rad[None])[0] < self._margin_m]
         bodies = self._model.geom_bodyid[touching]
         return sorted({(str(self._model.body(a).name), str(self._model.body(b).name)) for a, b in bodies})
 
     def pairs_between(self, some: Indices, others: Indices) -> Indices:
-        """Which pairs have one shape of `some` and one of `others`."""
+        """Indices of the pairs of one shape of `some` and one of `others`."""
         a, b = self._pairs.T
         crossed = (np.isin(a, some) & np.isin(b, others)) | (np.isin(a, others) & np.isin(b, some))
         return np.flatnonzero(crossed)
@@ -93,7 +93,7 @@ class SelfContact(PairSlopes):
         return np.flatnonzero(solid & moved & ~above[:, none_of].any(1))
 
     def allowed_from(self, q_rad: Array) -> Allowed | None:
-        """What a path that begins in a pose (J,) within a margin keeps of it; None where the pose keeps them all."""
+        """Distances that a path from a pose (J,) within a margin must keep; None if the pose keeps all margins."""
         distance_m = self.distances_m(q_rad[None])[0]
         within = distance_m < self._margin_m
         if not within.any():
@@ -106,20 +106,20 @@ class SelfContact(PairSlopes):
     def along(self, control_rad: Array, allowed: Allowed | None = None) -> NDArray[np.bool_]:
         """(N - 2,) whether the robot may touch itself in each segment of a quadratic spline of N control points.
 
-        `allowed` is that of a pose within a margin in which a path began: nobody could ever leave such a pose otherwise.
+        `allowed` holds the distances for a path that begins within a margin; without them no path could leave such a pose.
         """
         return self.along_near(control_rad, allowed, None)[0]
 
     def along_near(
         self, control_rad: Array, allowed: Allowed | None, least: LeastDistances | None
     ) -> tuple[NDArray[np.bool_], LeastDistances]:
-        """The same near frames of which lower bounds are known; and those of its own frames, from the second border on."""
+        """`along`, given lower bounds of the distances in nearby frames; also returns bounds from the second border on."""
         margin_m, kept_m = (self._margin_m, KEPT * self._margin_m) if allowed is None else allowed
         q_rad = (control_rad[:-1] + control_rad[1:]) / 2
         placed = self._placed(q_rad, with_joints=False)
         least_m = self._bounds(q_rad, placed) if least is None else least.at(q_rad, -1)
         step_rad = np.abs(control_rad[1:] - control_rad[:-1])
-        # Speed changes in a straight line, so a segment moves by no more than the mean of the speeds at its ends.
+        # The speed is linear in time, so a segment moves by no more than the mean of the speeds at its ends.
         step = step_rad @ self._sweep_m.T  # (N - 1, P)
         moves = (step[:-1] + step[1:]) / 2
         every = np.asarray(least_m[:-1] + least_m[1:] - moves < 2 * kept_m, bool).any(0) | (least_m < margin_m).any(0)
@@ -133,7 +133,7 @@ class SelfContact(PairSlopes):
         segment, some = np.flatnonzero(near.any(1)), np.flatnonzero(near.any(0))
         if not len(segment):
             return hit, found
-        # From here on only those pairs that may come near, each half of a segment moving by half of its fastest.
+        # From here on only pairs that may come near are computed; half a segment moves by at most half of its largest speed.
         of, known, near = of[some], known.of(some), near[segment][:, some]
         moved = np.maximum(step[:-1], step[1:])
         bend_rad = np.abs(control_rad[2:] - 2 * control_rad[1:-1] + control_rad[:-2])
@@ -164,10 +164,10 @@ class SelfContact(PairSlopes):
     def clear_along(self, way_rad: Array, share: float = KEPT, first_slack_m: Array | None = None) -> bool:
         """Whether straight lines from pose to pose of (N, J) keep a share of every margin at every instant.
 
-        On a segment whose ends have the slack a and b and on which a pair moves by m, it has at least (a + b - m) / 2;
-        segments on which that is not enough are halved. `first_slack_m` (P,) is the slack at the first pose where it is known.
+        A pair with slacks a and b at the ends of a segment, which moves by m on it, has at least the slack (a + b - m) / 2;
+        segments on which this bound is negative are halved. `first_slack_m` (P,) is the slack at the first pose; None computes it.
         """
-        gone = np.zeros_like(way_rad)  # (N, J) what each joint has turned so far
+        gone = np.zeros_like(way_rad)  # (N, J) total movement of each joint up to each pose
         np.cumsum(np.abs(np.diff(way_rad, axis=0)), 0, out=gone[1:])
         kept_m, of, sweep_m = share * self._margin_m, self._every, self._sweep_m
         first = (self.slack_m(way_rad[0], share) if first_slack_m is None else first_slack_m)[None]
@@ -200,7 +200,7 @@ class SelfContact(PairSlopes):
         return Known(placed.centre, placed.turn, found.distance_m, self._apart(placed, of, found))
 
     def _bounds(self, q_rad: Array, placed: Placed) -> Array:
-        """(T, P) lower bounds of distances in poses (T, J) of which each is near the next: some are measured."""
+        """(T, P) lower bounds of distances in poses (T, J), each near the next: every `_EACH`-th pose is measured."""
         frames = np.arange(len(q_rad))
         some = frames[min(_EACH // 2, len(frames) - 1) :: _EACH]
         nearest = np.minimum(frames // _EACH, len(some) - 1)
@@ -210,21 +210,21 @@ class SelfContact(PairSlopes):
     def _still_near(
         self, near: NDArray[np.bool_], known: Known, ends: Indices, of: Indices, bent: Array, kept_m: Array
     ) -> NDArray[np.bool_]:
-        """(n, m) which of m pairs are still `near` in n spans when what is curved about their movement is bounded too."""
+        """(n, m) whether each of m pairs is still `near` in n spans after the second-order bound on their movement."""
         span, at = np.nonzero(near & self._bounded[of])
         least = self._spans.least_m(known, ends[:, span], at, of[at]) - bent[span, at]
         near[span, at] = least < kept_m[at]
         return near
 
     def _extents_m(self) -> tuple[Array, Array]:
-        """(geoms, 3) half edges of boxes and half lengths of capsules, and (geoms,) the radii of what is no box."""
+        """(geoms, 3) half edges of boxes and half lengths of capsules, and (geoms,) radii, 0 for boxes."""
         box: NDArray[np.bool_] = np.asarray(self._model.geom_type == int(mujoco.mjtGeom.mjGEOM_BOX), bool)[:, None]
         along_axis = np.zeros_like(self._box_half_m)
         along_axis[:, 2] = self._half_m
         return np.where(box, self._box_half_m, along_axis), np.where(box[:, 0], 0.0, self._radius_m)
 
     def _sweeps(self) -> Array:
-        """(P, J) metres that the shapes of each pair move against each other at most, per radian of each joint."""
+        """(P, J) largest relative movement of the shapes of each pair, metres per radian of each joint."""
         model = self._model
         reach = np.zeros((model.ngeom, len(self._joint_ids)))  # of each shape from each joint above it
         for g in range(model.ngeom):

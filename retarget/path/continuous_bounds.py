@@ -1,4 +1,4 @@
-"""How near two shapes can come between two poses: a bound from below, to second order in what the joints move.
+"""Lower bound of the distance of two shapes between two poses, to second order in the movement of the joints.
 
 In the frame of the last body that carries both shapes take any fixed direction n. Along n they are apart by the least,
 over their points, of n . (b - a), which is not more than their distance. Between two instants h apart the points'
@@ -6,7 +6,7 @@ accelerations are at most A, so that this keeps above its smaller value at both 
 joints that turn by w and are accelerated by w' has at most sum(w) sum(r w) + sum(r w'): its second derivatives by two
 joints are a1 x (a2 x r), not longer than the reach of the outer one, which is the shorter reach of both.
 
-The same from first derivatives alone falls off with h, so this spares most halvings of a segment.
+A bound from first derivatives alone falls off with h; the second-order bound therefore saves most halvings of a segment.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Known:
         centre: (R, geoms, 3) centres of all shapes.
         turn: (R, geoms, 9) their rotations.
         distance: (R, n) of each pair.
-        apart: (R, n, 3) about from the first to the second of each pair where they are nearest, of any length.
+        apart: (R, n, 3) approximate vectors between the nearest points of each pair, first to second, of any length.
     """
 
     centre: Array
@@ -38,11 +38,11 @@ class Known:
     apart: Array
 
     def of(self, pairs: Indices) -> Known:
-        """The bounds of some of the pairs."""
+        """The distances of some of the pairs."""
         return Known(self.centre, self.turn, self.distance[:, pairs], self.apart[:, pairs])
 
     def and_also(self, more: Known) -> Known:
-        """These poses, then those."""
+        """These poses, followed by the poses of `more`."""
         return Known(*(np.concatenate([getattr(self, f.name), getattr(more, f.name)]) for f in fields(self)))
 
 
@@ -56,7 +56,7 @@ class Spans:
             pairs: (P, 2) shapes.
             above: (geoms, J) 1 where a joint moves a shape.
             half_m: (geoms, 3) half edges of the boxes; of a capsule its half length along its axis.
-            round_m: (geoms,) what rounds them: radii of capsules.
+            round_m: (geoms,) radii of capsules; 0 for boxes.
             sweep_m: (P, J) reach of each pair from each joint that parts it.
         """
         self._pairs, self._half_m, self._sweep_m = pairs, half_m, sweep_m
@@ -65,7 +65,7 @@ class Spans:
         self._parting: Array = (above[a] != above[b]).astype(np.float64)
         beside = (above[None] == (above[a] * above[b])[:, None]).all(2)  # shapes fixed to what carries both
         self.known: NDArray[np.bool_] = np.asarray(beside.any(1), bool)
-        """(P,) of which pairs a shape is fixed to the last body that carries both; the others have no bound here."""
+        """(P,) whether a shape of the pair is fixed to the last body that carries both; other pairs have no bound here."""
         self._carrier: Indices = (
             beside.argmax(1) if beside.size else np.zeros(len(pairs), np.intp)
         )  # a robot without shapes
@@ -74,9 +74,9 @@ class Spans:
         """(N - 2, P) A / 8 of a spline's segments.
 
         Args:
-            step_rad: (N - 1, J) what joints move from one control point to the next, without sign.
-            bend_rad: (N - 2, J) how that changes, without sign.
-            moved_m: (N - 2, P) what pairs move in a segment at its fastest.
+            step_rad: (N - 1, J) absolute first differences of the control points.
+            bend_rad: (N - 2, J) absolute second differences of the control points.
+            moved_m: (N - 2, P) largest speed of each pair in a segment, metres per segment.
         """
         turned = step_rad @ self._parting.T
         return (np.maximum(turned[:-1], turned[1:]) * moved_m + bend_rad @ self._sweep_m.T) / 8
@@ -86,9 +86,9 @@ class Spans:
 
         Args:
             known: poses and pairs.
-            rows: (2, K) which two poses of `known`.
-            at: (K,) which of its pairs.
-            pair: (K,) the same among all pairs.
+            rows: (2, K) indices of the two poses in `known`.
+            at: (K,) indices of the pairs in `known`.
+            pair: (K,) indices of the pairs among all pairs.
         """
         a, b = self._pairs[pair].T
         apart = known.apart[rows, at]  # (2, K, 3)
@@ -103,6 +103,6 @@ class Spans:
         return (np.vecdot(along, offset) - ends).min(0) - self._radii_m[pair]
 
     def _half_along(self, known: Known, rows: Indices, of: Indices, along: Array) -> Array:
-        """(2, K) how far shapes reach from their centres along unit directions (2, K, 3), without what rounds them."""
+        """(2, K) extents of shapes from their centres along unit directions (2, K, 3), without the radii."""
         turn = known.turn[rows, of].reshape(*rows.shape, 3, 3)
         return np.vecdot(np.abs((along[..., None, :] @ turn)[..., 0, :]), self._half_m[of])

@@ -1,4 +1,4 @@
-"""Control points of a spline: near frames, braking, held, and joined on to a start that leaves hardly room to brake."""
+"""Control points of a spline: near given frames, while braking and holding, and after a start close to a position limit."""
 
 from __future__ import annotations
 
@@ -47,10 +47,9 @@ def joined(
 ) -> Array:  # fmt: skip
     """(T + 1, J) control points from the second, `position`, on, near `wanted` (T, J).
 
-    `matters_from` gives the objective from a frame on.
-
-    A joint that the start leaves just enough room to brake has its next control points at or beyond the position
-    limit, though its path is not: until there is room for whole steps it brakes as hard as the path needs.
+    `objective_from` gives the objective from a frame on. A joint that begins with just enough room to brake has its next control
+    points at or beyond the position limit, although its path stays inside; until there is room for whole steps the joint brakes as
+    hard as its path needs.
     """
     points = [before, position]
     for k in range(len(wanted)):
@@ -71,7 +70,7 @@ def joined(
 
 
 def hits_of_frames(hit: NDArray[np.bool_], n: int) -> NDArray[np.bool_]:
-    """(n - 2,) segments of n control points that touch; what touches while braking after them is the last one's doing."""
+    """(n - 2,) touching segments of n control points; a contact while braking after them is assigned to the last segment."""
     of = hit[: n - 2].copy()
     of[-1] |= hit[n - 2 :].any()
     return of

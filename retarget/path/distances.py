@@ -1,8 +1,8 @@
 """Distances between a robot's shapes, all pairs that can meet in all poses at once.
 
-Capsules and spheres are measured exactly by closed form; another shape is first bounded by a capsule round it and, when
-that comes near, measured: a capsule against a box here, others by MuJoCo. Bodies joined by one or two joints, and pairs
-that touch in the rest pose, cannot be told apart by shapes this coarse and are left out.
+A closed form gives the exact distances of capsules and spheres. Other shapes are first bounded by a capsule round them and, when it
+comes near, measured: a capsule against a box here, other pairs by MuJoCo. Bodies joined by one or two joints, and pairs that touch
+in the rest pose, are left out, because their coarse shapes overlap.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from retarget.robot.robot import RobotModel
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 MARGIN_M = 0.010
-"""Poses nearer to themselves than this count as touching; pairs that rest nearer may come half as near as they rest."""
+"""Metres of distance below which a pair counts as touching; a pair nearer at rest has half its distance at rest as margin."""
 _FARTHEST_M = 1.0
 MEASURED_M = 0.007
-"""Metres beyond the margin below which shapes are measured exactly, not bounded: more than poses are led round by."""
+"""Metres beyond the margin below which shapes are measured exactly, not bounded: more than the reserve of pushed poses."""
 _CAPSULE_TYPES = (2, 3)  # mjGEOM_SPHERE, mjGEOM_CAPSULE
 
 
 @dataclass(frozen=True)
 class Placed:
-    """Shapes, (T, geoms, 3) centres and axes of their capsules, (T, geoms, 9) rotations, in T poses.
+    """Shapes in T poses: centres and axes (T, geoms, 3) of their capsules, and rotations (T, geoms, 9).
 
-    Where asked for also joints, (T, J, 3) axes and anchors.
+    Axes and anchors of the joints are (T, J, 3), or empty if they were not requested.
     """
 
     centre: Array
@@ -48,13 +48,13 @@ class Placed:
 
 @dataclass(frozen=True)
 class Measured:
-    """Distances of n pairs in T poses, and where they are taken.
+    """Distances of n pairs in T poses, and their nearest points.
 
     Attributes:
-        distance_m: (T, n).
-        along: twice (T, n): metres from the centre of each capsule of a pair, or of one round a shape, along its axis.
-        points_m: nearest points, both in (6,), of those that MuJoCo measured, by pose and column.
-        others: poses and columns (R,), and (R, 3) about which way the shapes are apart, of those that boxes were measured.
+        distance_m: (T, n) distances.
+        along: two arrays (T, n), metres from the centre of each capsule of a pair, or of the capsule round a shape, along its axis.
+        points_m: both nearest points in (6,), by pose and column, of the pairs that MuJoCo measured.
+        others: poses and columns (R,), and approximate vectors between the shapes (R, 3), of the pairs with boxes.
     """
 
     distance_m: Array
@@ -82,11 +82,11 @@ class PairDistances:
         self._margin_m[resting[resting > 0] > margin_m] = margin_m
 
     def distances_m(self, q_rad: Array) -> Array:
-        """(T, P) distance of each pair in each pose (T, J): exact where small, else not more than the true one."""
+        """(T, P) distance of each pair in each pose (T, J): exact where it is small, elsewhere a lower bound."""
         return self._distances(q_rad, self._placed(q_rad, with_joints=False), self._every).distance_m
 
     def _distances(self, q_rad: Array, placed: Placed, of: Indices, least_m: Array | None = None) -> Measured:
-        """Distances (T, n) of n pairs, of which lower bounds may be known, (T, n)."""
+        """Distances (T, n) of n pairs; `least_m` (T, n) has known lower bounds."""
         # All inner products of centres and axes by one multiplication, then those of each pair.
         vectors = np.concatenate([placed.centre, placed.axis], 1)
         products: Array = (vectors @ vectors.transpose(0, 2, 1)).reshape(len(q_rad), vectors.shape[1] ** 2)
@@ -137,9 +137,9 @@ class PairDistances:
     def _beside_boxes(
         self, placed: Placed, t: Indices, p: Indices, pair: Indices, found: Measured
     ) -> NDArray[np.bool_]:
-        """Write distances of capsules to boxes, as `_bound_boxes`; (n,) whether MuJoCo still knows better.
+        """Write distances of capsules to boxes, as `_bound_boxes`; returns (n,) whether MuJoCo must still measure the pair.
 
-        It does where an axis goes through a box, and for a cylinder, which its capsule sticks out of.
+        MuJoCo measures pairs in which an axis crosses the box, and cylinders, which are smaller than their capsules.
         """
         box, other = self._box[pair], self._round[pair]
         turn = placed.turn[t, box].reshape(-1, 3, 3)  # columns are the box's axes
@@ -152,7 +152,7 @@ class PairDistances:
         return ~self._exact_geom[other] | (apart <= 0)
 
     def _apart(self, placed: Placed, of: Indices, found: Measured) -> Array:
-        """(T, n, 3) about which way the second shape of each of n pairs is from the first where they are nearest."""
+        """(T, n, 3) approximate vectors between the nearest points of each of n pairs, from the first shape to the second."""
         (a, b), (s, t) = self._pairs[of].T, found.along
         apart = placed.centre[:, b] - placed.centre[:, a]
         apart += t[..., None] * placed.axis[:, b] - s[..., None] * placed.axis[:, a]
@@ -193,7 +193,7 @@ class PairDistances:
         return float(mujoco.mj_geomDistance(self._model, self._data, a, b, _FARTHEST_M, points)), points
 
     def _shapes(self) -> None:
-        """A capsule for each shape: itself, or one round it."""
+        """Compute a capsule for each shape: the shape itself, or a capsule round it."""
         model = self._model
         kinds, size = model.geom_type, model.geom_size
         self._half_m, radius = np.zeros(model.ngeom), model.geom_rbound.copy()
@@ -215,7 +215,7 @@ class PairDistances:
         self._axis_columns = along[:, None] + np.array([0, 3, 6])
 
     def _take(self, pairs: Indices) -> None:
-        """Look at these pairs of shapes, (P, 2), from now on."""
+        """Measure these pairs of shapes, (P, 2), from now on."""
         self._pairs, self._pair_list = pairs, [(int(a), int(b)) for a, b in pairs]
         a, b = pairs.T
         self._exact = self._exact_geom[a] & self._exact_geom[b]
@@ -236,7 +236,7 @@ class PairDistances:
         self._margin_m = np.zeros(len(pairs))
 
     def _pairs_that_can_meet(self) -> Indices:
-        """(P, 2) shapes that MuJoCo would check against each other, of bodies three steps of the tree and two joints apart."""
+        """(P, 2) shapes that MuJoCo would check for contact, on bodies at least three steps of the tree and two joints apart."""
         model = self._model
         parent, body = model.body_parentid, model.geom_bodyid
         excluded = {int(s) for s in model.exclude_signature}

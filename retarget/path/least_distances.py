@@ -1,4 +1,4 @@
-"""Lower bounds of the distances of all pairs of shapes, carried from poses to others nearby.
+"""Lower bounds of the distances of all pairs of shapes, transferred from poses to nearby poses.
 
 Between two poses no distance changes by more than what the joints sweep, so a pair that is far apart in one pose need not be
 measured in the next ones.
@@ -21,8 +21,8 @@ class LeastDistances:
 
     Attributes:
         q_rad: (T, J) poses.
-        least_m: (T, P) no more than each pair's distance.
-        sweep_m: (P, J) metres that the shapes of each pair move against each other at most, per radian of each joint.
+        least_m: (T, P) lower bound of each pair's distance.
+        sweep_m: (P, J) largest relative movement of the shapes of each pair, metres per radian of each joint.
     """
 
     q_rad: Array

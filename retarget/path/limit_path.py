@@ -1,4 +1,4 @@
-"""Paths near a reference that keep every limit, with all that is known of the future in view.
+"""Paths near a reference that keep every limit, computed with all known future frames.
 
 A reference that keeps the limits is left alone, bit for bit. For the rest `lookahead_qp` finds the best path inside them, with
 the objective linearised at the reference, then at each solution until it settles (Gauss-Newton); where a start breaks a limit,
@@ -25,9 +25,9 @@ _TAIL_WEIGHT = 1e-3
 """Weight of the frames after the last known one, in which the joints come to rest."""
 _PULL = 1e-3
 _LINEARISED = 4
-"""Linearisations at most: where the reference jumps, the second one is not the last that gains."""
+"""Largest number of linearisations: where the reference jumps, more than two improve the path."""
 _SETTLED_RAD = 0.1
-"""Radians: the objective is linearised again as long as a control point moved further."""
+"""Radians of the largest movement of a control point above which the objective is linearised again."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Objective(Protocol):
 
 
 class Angles:
-    """The objective of joints whose angles (T, J) are to be met, all alike."""
+    """The objective of joints that follow given angles (T, J), with equal weights."""
 
     def __init__(self, q_rad: Array, joints: Sequence[int]) -> None:
         """Take the angles (T, J) of some joints."""
@@ -62,7 +62,7 @@ class Angles:
         self._target_rad: Array = q_rad[:, joints].T[..., None]  # (G, T, 1)
 
     def around(self, first: int, q_rad: Array | None) -> Sequence[QuadraticCost]:
-        """The squared distances from the poses wanted, whatever the path `q_rad` is."""
+        """The squared distances from the wanted angles, independent of the path `q_rad`."""
         target = self._target_rad[:, first : None if q_rad is None else first + len(q_rad)]
         return (QuadraticCost(self._joints, np.ones((*target.shape, 1)), target),)
 
@@ -103,7 +103,7 @@ def limit_path(
             part[:n] = _follow(part[:n], position, velocity, limits, period_s)
         before = path[k + n - 2] if n > 1 else position
         position, velocity = path[k + n - 1].copy(), (path[k + n - 1] - before) / period_s
-        # What was planned beyond this window is planned anew from where it ends.
+        # The frames beyond this window are planned again from its end.
         part[n:] = np.clip(reference_rad[k + n : k + len(part)], limits.position_min_rad, limits.position_max_rad)
     return path
 
@@ -119,7 +119,7 @@ def _solve(
     limits: JointLimits,
     period_s: float,
 ) -> None:
-    """Make a path (n, J), whose frames begin with frame `first`, the best for all groups of which a joint is not `kept`."""
+    """Optimise in place a path (n, J) from frame `first` on, for all groups with a joint that is not `kept`."""
     inside = kept.copy()
     for linearised in range(_LINEARISED):
         led = path.copy()
@@ -150,7 +150,7 @@ def _solve(
 
 
 def _held(x: Array, n: int) -> Array:
-    """(G, T + n, ...) the last of (G, T, ...) held."""
+    """(G, T + n, ...) values (G, T, ...) with the last one repeated n times."""
     return np.concatenate([x, np.repeat(x[:, -1:], n, 1)], 1)
 
 

@@ -63,8 +63,8 @@ def limit_step(
     A joint outside its range moves back at full braking.
 
     Args:
-        target_rad: where to be after this step.
-        position_rad: where the joint was told to be last.
+        target_rad: target position after this step.
+        position_rad: last commanded position.
         velocity_rad_s: the last step divided by the period.
         limits: bounds.
         period_s: step period.
@@ -97,7 +97,7 @@ def limit_step(
 
 
 def _within(values: Array, low: Array, high: Array) -> Array:
-    """What `np.clip` gives, three times as fast for the few joints of a robot."""
+    """The result of `np.clip`, computed three times as fast for the few joints of a robot."""
     return np.minimum(np.maximum(values, low), high)
 
 
@@ -109,7 +109,7 @@ def keeps(
     period_s: float,
     target_velocity_rad_s: Array,
 ) -> NDArray[np.bool_]:
-    """(...) whether `limit_step` of the same arguments goes to the target, without saying where it goes else."""
+    """(...) whether `limit_step` with these arguments reaches the target."""
     a, v_max = limits.acceleration_rad_s2 * period_s, limits.velocity_rad_s
     low_end, high_end = limits.position_min_rad, limits.position_max_rad
     gaps = np.stack([high_end - position_rad, position_rad - low_end])

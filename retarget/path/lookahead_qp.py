@@ -21,7 +21,7 @@ _daqp: Any = importlib.import_module("daqp")  # neither has types
 _lapack: Any = importlib.import_module("scipy.linalg.lapack")
 Array = NDArray[np.float64]
 _SAME_TARGET_RAD = 0.01
-"""Radians: a joint whose optimum is nowhere further away is not solved anew."""
+"""Radians from its optimum within which a joint's path is not solved again."""
 _OPTIMAL = 1
 _TIGHTENED = 1e-4
 """Share of a bound kept free: the solver keeps bounds within 1e-6."""
@@ -57,7 +57,7 @@ class LeastSquares:
 
 
 def least_moving(objective: LeastSquares, start: Array) -> Array:
-    """(G, T, w) the optimum without bounds from `start` (G, w): joints without a cost rest.
+    """(G, T, w) optimum without bounds from `start` (G, w); joints without a cost rest.
 
     The matrix couples the joints of a group within a frame and each joint with itself a frame later: it is banded.
     """
@@ -86,7 +86,7 @@ def nearer_path(
     bounds: Bounds,
     inside: NDArray[np.bool_],
 ) -> bool:
-    """Move a path within the bounds to the optimum, one joint after another; whether the solver succeeded.
+    """Move a path in place to the optimum within the bounds, joint by joint; returns whether the solver succeeded.
 
     The path is a spline's control points, the costs are those of the frames half way between them. There a zigzag of control points
     does not show: half of each step's difference from `near`'s counts like an error of the joint's own in the frame.
@@ -139,7 +139,7 @@ def nearer_path(
 
 
 def frames_between(path: Array, start: Array) -> Array:
-    """(G, T, w) what a spline of control points `path` (G, T, w) after `start` (G, w) shows: half way between each two."""
+    """(G, T, w) frames of a spline with control points `path` (G, T, w) after `start` (G, w): half way between two points."""
     frames = path.copy()
     frames[:, 1:] += path[:, :-1]
     frames[:, 0] += start
@@ -164,7 +164,7 @@ def _sides(bounds: Bounds, start: Array, start_step: Array, T: int) -> tuple[Arr
     upper[..., T : 2 * T], upper[..., 2 * T :] = step[..., None], bend[..., None]
     upper[..., 2 * T - 1] = np.minimum(step, _LAST_STEP * bend)
     lower[..., T:] = -upper[..., T:]
-    # The rows leave out what came before the first frame.
+    # The rows do not contain the two points before the first frame.
     for side in (upper, lower):
         side[..., T] += start
         side[..., 2 * T] += start + start_step

@@ -36,8 +36,8 @@ class JointPath:
             the middle of the last two.
         joint_names: J names.
         rate_hz: control points per second.
-        comparison: what the path is to be compared with.
-        ends_rad: (J,) position limits, beyond which nothing goes by rounding; a start outside them may lie beyond.
+        comparison: the demands of the motion, for the report.
+        ends_rad: (J,) position limits, which rounding never exceeds; a path that starts outside may lie outside.
     """
 
     control_rad: Array
@@ -48,12 +48,12 @@ class JointPath:
 
     @cached_property
     def report(self) -> RetargetReport:
-        """What retargeting changed; made when first asked for."""
+        """The changes that retargeting made, computed on first access."""
         return self.comparison.report()
 
     @property
     def duration_s(self) -> float:
-        """Time from start to end."""
+        """Seconds from start to end."""
         return (len(self.control_rad) - 2) / self.rate_hz
 
     @cached_property

@@ -1,8 +1,8 @@
-"""A path made better where contacts are near: all arms at once, with the distances among the bounds.
+"""Refines a path near contacts: optimises all arms at once, with the distances among the constraints.
 
 The errors of bone directions and the distances are linearised at the path, the program of `arm_program` is solved, and both are
-linearised again where it led, until nothing touches (sequential quadratic programming within a trust region; Nocedal, Wright
-2006, section 18.5).
+linearised again at its solution, until the path is free of contact (sequential quadratic programming within a trust region;
+Nocedal, Wright 2006, section 18.5).
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Touching = Callable[[Array, LeastDistances], NDArray[np.bool_]]
 Shown = Callable[[Array], tuple[Array, Array]]
-"""Half the squared error of frames (T, J) linearised: hessian (T, J, J) and how fast it falls (T, J)."""
+"""Linearises half the squared error of frames (T, J): Hessian (T, J, J) and negative gradient (T, J)."""
 _TRUST_RAD = (0.4, 0.2, 0.1, 0.1, 0.1)
-"""Radians that a control point may move in each round."""
+"""Radians by which a control point may move, by round."""
 _NEAR_M = 0.03
 """Metres beyond its margin within which a pair is part of the program, in a frame; between frames a third of it."""
 _MOST_PAIRS = 4
-"""Pairs of each pose that are part of it, the nearest."""
+"""Number of nearest pairs of each pose that are part of the program."""
 _AIM_M = 0.001
-"""Metres more than the margin that poses keep, for what the linearisation leaves out."""
+"""Metres beyond the margin that poses keep, a reserve for the error of the linearisation."""
 _MORE_M = 0.0015
-"""Metres more that poses keep where the last round touched."""
+"""Additional metres that poses keep where the path of the previous round touched."""
 _BETWEEN_M = (1 - KEPT) * 0.010
 """Metres of the margin that poses between frames may lack."""
 _STIFFNESS = 4e4
-"""Weight of a squared metre that a pair comes too near: a millimetre costs as much as 11 degrees in one frame."""
+"""Weight of the squared metres by which a pair is too near: a millimetre costs as much as 11 degrees in one frame."""
 _STEADY = Steady(1e-3, 1e-2)
 """Weights of squared steps and of their changes: between frames a path must not zigzag unseen."""
 _LEAST = 1e-4
@@ -48,12 +48,12 @@ _TIGHTENED, _INWARD_RAD, _LAST_STEP = 1e-4, 4e-6, 0.02
 
 
 class Refiner:
-    """Makes paths of one robot's arms better.
+    """Refines paths of one robot's arms.
 
     Args:
-        contact: its distances to itself.
-        limits: its bounds.
-        joints: (n,) those of all arms.
+        contact: distances between the robot's shapes.
+        limits: joint limits.
+        joints: (n,) indices of the joints of all arms.
     """
 
     def __init__(self, contact: SelfContact, limits: JointLimits, joints: Indices) -> None:
@@ -68,14 +68,15 @@ class Refiner:
         touching: Touching,
         least: LeastDistances,
     ) -> Array | None:
-        """Control points that show more than the given ones and touch nothing; None where none were found.
+        """Control points without contact and with smaller direction errors than the given ones; None if none were found.
 
         Args:
-            control_rad: (N, J) where to begin; the first two stay, and joints of no arm. At the end the arms come to rest.
+            control_rad: (N, J) initial control points; the first two, and joints outside the arms, do not change. At the end
+                the arms come to rest.
             shown: the cost of frames (T, J).
-            n_frames: T; frames after them have hardly any weight.
-            period_s: between control points.
-            touching: which of the N - 2 segments of such control points touch, given bounds of distances in their frames.
+            n_frames: T; later frames have hardly any weight.
+            period_s: seconds between control points.
+            touching: gives the touching ones of N - 2 segments, for control points and bounds of distances in their frames.
             least: bounds of distances in frames near those of `control_rad`.
         """
         control, joints, N = control_rad.copy(), self._joints, len(control_rad) - 2
@@ -102,7 +103,7 @@ class Refiner:
         return None
 
     def _near(self, control: Array, least: LeastDistances) -> tuple[NearPairs, LeastDistances]:
-        """The near pairs of N frames and of the N poses between them; and bounds of distances in the frames."""
+        """Near pairs in N frames and in the N poses between them, and bounds of distances in the frames."""
         frames = (control[1:-1] + control[2:]) / 2
         between = (control[:-2] + 6 * control[1:-1] + control[2:]) / 8
         within_m = np.repeat((_NEAR_M, _NEAR_M / 3), len(frames))
@@ -125,7 +126,7 @@ class Refiner:
         return ArmProgram(upper, lower, control[:2, joints])
 
     def _costs(self, shown: Shown, frames: Array, n_frames: int) -> Frames:
-        """The costs of N frames; those after the motion are lightly held where they are."""
+        """The costs of N frames; frames after the motion have a small weight on their present angles."""
         N, joints = len(frames), self._joints
         n = len(joints)
         hessian, fall = np.zeros((N, n, n)), np.zeros((N, n))
@@ -136,13 +137,13 @@ class Refiner:
         return Frames(hessian, fall)
 
     def _rooms(self, near: NearPairs, more_m: Array) -> Rooms:
-        """The rows of N frames and of the N poses between them, which count as their control points."""
+        """Constraint rows of N frames and of the N poses between them; the latter are control points."""
         N, pose, room_m = len(more_m), near.pose, near.room_m
         some = np.flatnonzero(_rank(pose, room_m) < _MOST_PAIRS)
         some = some[np.argsort(pose[some] % N, kind="stable")]
         point, is_frame = pose[some] % N, pose[some] < N
         share = np.where(is_frame[:, None], 0.5, (0.0, 1.0))
-        share[point == 0, 0] = 0.0  # what comes before it is known
+        share[point == 0, 0] = 0.0  # the point before it is fixed
         return Rooms(point, share, near.grows(some)[:, self._joints], room_m[some] - more_m[point], _STIFFNESS)
 
 

@@ -14,7 +14,7 @@ from retarget.path.limits import JointLimits
 Array = NDArray[np.float64]
 BONES = ("left_upper_arm", "right_upper_arm", "left_forearm", "right_forearm")
 _AT_LIMIT = 0.995
-"""Share of a limit in time from which a joint counts as held up by it."""
+"""Share of a velocity or acceleration limit from which the limit counts as reached."""
 _CHANGED_RAD = np.deg2rad(1.0)
 
 
@@ -68,18 +68,18 @@ class RetargetReport:
 
 @dataclass(frozen=True)
 class Comparison:
-    """What a report is made of.
+    """The data from which a report is computed.
 
     Attributes:
         names: J joint names.
         errors_deg: gives the (4, T) direction error of each of `BONES` in each frame.
-        off_rad: (T, J) what was wanted less what came out.
-        outside: (T, J) whether what was wanted lay outside a position limit.
+        off_rad: (T, J) wanted angle less the angle of the path.
+        outside: (T, J) whether the wanted angle lay outside a position limit.
         control_rad: (N, J) control points of the path.
         rate_hz: their rate.
         limits: the joints' limits.
         interventions: see the report.
-        contacts: gives what the report says of them.
+        contacts: gives the report's counts of contacts.
         time_stretch: see the report.
     """
 
@@ -122,7 +122,7 @@ class Comparison:
         )
 
     def _frames(self, of: NDArray[np.bool_]) -> dict[str, int]:
-        """Number of frames of each joint that has any."""
+        """Number of frames by joint, for joints with at least one frame."""
         return {self.names[j]: int(n) for j, n in enumerate(of.sum(0)) if n}
 
 

@@ -1,9 +1,9 @@
-"""A way from one pose to another that stays off the robot: straight lines in joint space, looked for bit by bit.
+"""Plans a path of straight lines in joint space from one pose to another without self-contact, in small increments of work.
 
-First the straight line; where the robot is in its own way, two trees of free poses grow towards each other from both ends
-(RRT-Connect: Kuffner, LaValle 2000), and the way they find is shortened. `work` does one small piece of it, so that a loop
-with a deadline looks for a way between its cycles. A start within the margin is led out first, each pair that is too near
-only growing apart; what is deeper than that is not gone through.
+The planner first tries the straight line. If the robot itself is in the way, two trees of free poses grow towards each other from
+both ends (RRT-Connect: Kuffner, LaValle 2000), and the path found is shortened. `work` does one small increment, so that a loop
+with a deadline plans between its cycles. From a start within the margin the path first leads out: pairs that are too near only move
+apart, and no contact deeper than the start's is passed.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from retarget.robot.robot import RobotModel
 Array = NDArray[np.float64]
 Pieces = Generator[None, None, list[Array] | None]
 SHARES = (0.8, 0.5)
-"""Shares of the margin that a way keeps: what paths keep, and less where nothing else leads there."""
+"""Shares of the margin that a path keeps: the share of all paths, then a smaller one if no path was found."""
 TRIES = 800
-"""Branches that are tried at each share before there is no way."""
+"""Branches that are tried at each share before the search fails."""
 PIECE_RAD = 0.25
-"""A piece of a line that is proved at once, by its fastest joint."""
+"""Radians of the fastest joint in one piece of a line, which is proved free in one increment of work."""
 _BRANCH_RAD = 0.5
 _SHORTCUTS = 20
 _OUT_STEPS, _OUT_RAD, _OUT_M = 60, 0.06, 0.001
-"""Steps out of the margin: how many, how far each joint goes in one, and how much room there is at their end."""
+"""Steps out of the margin: their largest number, radians of each joint in one step, and metres of room after the last."""
 _OUT_SHRINKS = (1.0, 0.4, 0.1)
 _OUT_TURNS = 12
 _NEARER_M = 1e-6
@@ -36,20 +36,19 @@ _DAMPING = 1e-4
 
 
 class RrtConnect:
-    """Looks for one way. No clock; the same arguments, the same way.
+    """One search for a path. It uses no clock, so equal arguments give equal paths.
 
     Args:
-        robot: whose arms may move apart from each other.
-        contact: of the robot.
-        start_rad: (J,) where it stands, at rest.
-        goal_rad: (J,) where it shall go.
-        seed: of the poses tried.
+        robot: the robot; the search may move its arms independently.
+        contact: distances between the robot's shapes.
+        start_rad: (J,) pose at the start, at rest.
+        goal_rad: (J,) pose at the goal.
+        seed: seed of the random poses.
 
     Attributes:
-        done: whether it has ended.
-        way: poses (J,) from start to goal, each reached from the one before on a straight line; None when there is none,
-            and before it is done.
-        pieces: of work so far.
+        done: whether the search has ended.
+        way: poses (J,) from start to goal, joined by straight lines; None before the end, and if no path was found.
+        pieces: increments of work so far.
     """
 
     def __init__(
@@ -68,7 +67,7 @@ class RrtConnect:
         self.way: list[Array] | None = None
 
     def work(self) -> bool:
-        """Do one piece; whether it is done."""
+        """Do one increment of work; returns whether the search has ended."""
         if not self.done:
             self.pieces += 1
             try:
@@ -98,7 +97,7 @@ class RrtConnect:
     # Lines.
 
     def _free(self, a: Array, b: Array) -> Generator[None, None, bool]:
-        """Whether the line from `a` to `b` keeps the share, piece by piece."""
+        """Whether the line from `a` to `b` keeps the share of the margin; one piece an increment."""
         n = max(1, int(np.ceil(np.abs(b - a).max() / PIECE_RAD)))
         ends = a + np.linspace(0.0, 1.0, n + 1)[:, None] * (b - a)
         for i in range(n):
@@ -108,7 +107,7 @@ class RrtConnect:
         return True
 
     def _shortened(self, way: list[Array]) -> Generator[None, None, list[Array]]:
-        """The way with corners cut that need not be."""
+        """The path without corners that a straight line can replace."""
         for _ in range(_SHORTCUTS):
             if len(way) < 3:
                 break
@@ -116,7 +115,7 @@ class RrtConnect:
             if k > i + 1 and (yield from self._free(way[i], way[k])):
                 way = [*way[: i + 1], *way[k:]]
         at = 0
-        while at + 2 < len(way):  # corners that are left
+        while at + 2 < len(way):  # remaining corners
             if (yield from self._free(way[at], way[at + 2])):
                 del way[at + 1]
             else:
@@ -126,7 +125,7 @@ class RrtConnect:
     # Trees.
 
     def _connect(self, start: Array, goal: Array) -> Pieces:
-        """A way from `start` to `goal`, both free; None when none was found."""
+        """A path from `start` to `goal`, both free; None when none was found."""
         here, there = _Tree(start), _Tree(goal)
         forward = True
         for _ in range(TRIES):
@@ -141,7 +140,7 @@ class RrtConnect:
         return None
 
     def _drawn(self, start: Array, goal: Array) -> Array:
-        """A pose to grow towards: arms and trunk each anywhere, or as at the start or the goal."""
+        """A random pose to grow towards: each arm and the trunk anywhere, or as at the start or at the goal."""
         q = (start if self._draw.random() < 0.5 else goal).copy()
         anywhere = self._draw.uniform(self._limits.position_min_rad, self._limits.position_max_rad)
         for group in self._groups:
@@ -160,7 +159,7 @@ class RrtConnect:
         return tree.add(pose, near) if (yield from self._free(tree.poses[near], pose)) else None
 
     def _reach(self, tree: _Tree, pose: Array) -> Generator[None, None, int | None]:
-        """Index of `pose` in the tree, grown there branch by branch; None when something is in the way."""
+        """Index of `pose` in the tree, reached branch by branch; None when a branch would touch."""
         while (grown := (yield from self._grow(tree, pose))) is not None:
             if np.array_equal(tree.poses[grown], pose):
                 return grown
@@ -169,7 +168,7 @@ class RrtConnect:
     # Out of the margin.
 
     def _way_out(self) -> Pieces:
-        """Poses from the start to one that has room; None when none was found."""
+        """Poses from the start to one outside the margin; None when none was found."""
         low, high = self._limits.position_min_rad, self._limits.position_max_rad
         q, way = self._start, [self._start]
         for _ in range(_OUT_STEPS):
@@ -194,12 +193,12 @@ class RrtConnect:
         return None
 
     def _other_pushes(self, moves: NDArray[np.bool_]) -> list[Array]:
-        """Where straight out something else is in the way: each joint that `moves` by itself, and all of them anyhow."""
+        """Alternatives to the direct push: each joint that `moves` alone, and random directions of all of them."""
         single = np.eye(len(moves))[moves]
         return [*single, *-single, *self._draw.normal(size=(_OUT_TURNS, len(moves))) * moves]
 
     def _outward(self, q: Array, push: Array, low: Array, high: Array) -> Array | None:
-        """A pose some way along `push` (J,) from which no pair is nearer than before; None when there is none."""
+        """A pose along `push` (J,) to which no pair within the margin comes nearer; None when there is none."""
         for shrink in _OUT_SHRINKS:
             pose = np.clip(q + shrink * push, low, high)
             if (pose != q).any() and self._only_parts(q, pose):
@@ -207,7 +206,7 @@ class RrtConnect:
         return None
 
     def _only_parts(self, a: Array, b: Array) -> bool:
-        """Whether on the line from `a` to `b` pairs that are too near only part, at least one of them, and none comes too near."""
+        """Whether on the line from `a` to `b` at least one pair within the margin moves apart and no pair comes nearer."""
         n = max(1, int(np.ceil(np.abs(b - a).max() / _OUT_RAD)))
         looks = np.linspace(0.0, 1.0, 4 * n + 1)[:, None]
         room = np.minimum(self._contact.slacks_m(a + looks * (b - a), self._share), 0.0)
@@ -215,7 +214,7 @@ class RrtConnect:
         return bool(parted and (np.diff(room, axis=0) >= -_NEARER_M).all())
 
     def _straightened(self, way: list[Array]) -> list[Array]:
-        """The way out with as few corners as may be."""
+        """The path out of the margin with corners removed where possible."""
         short, at = way[:1], 0
         while at < len(way) - 1:
             at = next(k for k in range(len(way) - 1, at, -1) if k == at + 1 or self._only_parts(way[at], way[k]))
@@ -224,7 +223,7 @@ class RrtConnect:
 
 
 class _Tree:
-    """Poses, each with the one it was reached from."""
+    """Tree of poses, each with the index of its parent."""
 
     def __init__(self, root: Array) -> None:
         self.poses, self._parents = [root], [-1]
@@ -240,7 +239,7 @@ class _Tree:
         return int(((np.array(self.poses) - pose) ** 2).sum(1).argmin())
 
     def back_from(self, index: int) -> list[Array]:
-        """Poses from one back to the root."""
+        """Poses from the one at `index` back to the root."""
         way = [self.poses[index]]
         while (index := self._parents[index]) >= 0:
             way.append(self.poses[index])

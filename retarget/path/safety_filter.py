@@ -1,8 +1,8 @@
-"""Steps towards targets that nobody knows beforehand, kept within every limit and off the robot itself.
+"""Steps towards targets that are not known in advance, within every limit and without self-contact.
 
-The invariant: from where the last step led, braking as hard as the limits allow touches nothing. A step is taken only
-when that holds after it, else the robot brakes on the way that the step before has already proved free. So whatever ends
-the steps (a stop, a lost sender, no further frame), the same braking in the bus process stays clear as well.
+The invariant: braking from the last step's end, as hard as the limits allow, is free of contact. A step is taken only if the
+invariant holds after it; otherwise the robot brakes on the path that the previous step has proved free. However the steps end (a
+stop, a lost sender, no further frame), the same braking in the bus process therefore stays free of contact.
 """
 
 from __future__ import annotations
@@ -16,24 +16,25 @@ from retarget.robot.robot import RobotModel
 
 Array = NDArray[np.float64]
 LOOK_AHEAD_S = 0.15
-"""Seconds of the way to the target that must be free before a robot that has braked for a contact goes on: it does not creep."""
+"""Seconds of the path to the target that must be free before a robot that has braked for a contact continues; without this
+reserve it would creep towards the contact."""
 _NEARER_M = 1e-6
-"""Poses that are within the margin already may not come nearer to themselves than by rounding."""
+"""Metres of rounding by which poses within the margin may come nearer."""
 
 
 class SafetyFilter:
-    """One robot's next positions towards a target, step by step. No clock, no I/O; not for several threads.
+    """One robot's next positions towards a target, step by step. It has no clock and no I/O, and is not thread-safe.
 
     Args:
-        robot: which one.
-        contact: of the robot; made anew when None.
-        share: of the margin that is kept.
+        robot: the robot.
+        contact: distances between the robot's shapes; None builds them.
+        share: share of the margin that is kept.
 
     Attributes:
-        position_rad, velocity_rad_s: (J,) the last step's end and its difference quotient.
-        held: whether it brakes, or stands, because the way to the target would touch.
+        position_rad, velocity_rad_s: (J,) end of the last step and its difference quotient.
+        held: whether the robot brakes or stands because the path to the target would touch.
         clipped: whether the last target lay outside the position limits.
-        holds: times it began to be held.
+        holds: number of times that `held` became true.
     """
 
     def __init__(self, robot: RobotModel, contact: SelfContact | None = None, share: float = KEPT) -> None:
@@ -46,7 +47,7 @@ class SafetyFilter:
         self.reset(robot.rest_rad, np.zeros(robot.n_joints))
 
     def reset(self, position_rad: Array, velocity_rad_s: Array) -> None:
-        """Go on from here."""
+        """Continue from a position and velocity (J,)."""
         self.position_rad, self.velocity_rad_s = position_rad.copy(), velocity_rad_s.copy()
         self.held = self.clipped = False
         self._refused_rad: Array | None = None
@@ -86,7 +87,7 @@ class SafetyFilter:
         return goal
 
     def _free_ahead(self, target: Array) -> bool:
-        """Whether the way of the next steps, and braking after them, is free."""
+        """Whether the next `LOOK_AHEAD_S` towards the target, and braking after them, are free of contact."""
         if self.at_rest and self._refused_rad is not None and np.array_equal(target, self._refused_rad):
             return False
         position, velocity, path = self.position_rad, self.velocity_rad_s, list[Array]()
@@ -100,7 +101,7 @@ class SafetyFilter:
         return free
 
     def _free(self, goal: Array) -> bool:
-        """Whether a step to `goal` and braking after it stay clear."""
+        """Whether a step to `goal` and braking after it are free of contact."""
         way = [goal, *self._braking(goal, (goal - self.position_rad) / self.period_s)]
         if len(way) == 1 and (goal == self.position_rad).all():
             return True
@@ -110,12 +111,12 @@ class SafetyFilter:
         return self._within_slack(way) or self._clear(way, self._slack_m)
 
     def _within_slack(self, way: list[Array]) -> bool:
-        """Whether nothing can touch because all poses are near one that has slack enough on every side."""
+        """Whether all poses are so near a known pose that its slacks exclude contact."""
         far = np.abs(np.array([self.position_rad, *way]) - self._known_rad).max(0)
         return self._contact.within_slack(self._slack_m, far)
 
     def _braking(self, position: Array, velocity: Array) -> list[Array]:
-        """Positions while every joint stops as hard as it can; what `brake` gives step by step, at once where it is plain."""
+        """Positions while every joint brakes as hard as it can: the steps of `brake`, in closed form inside the position limits."""
         low, high = self.limits.position_min_rad, self.limits.position_max_rad
         if ((position >= low) & (position <= high)).all():
             loss = self.limits.acceleration_rad_s2 * self.period_s
@@ -130,10 +131,10 @@ class SafetyFilter:
         return way
 
     def _clear(self, way: list[Array], here: Array) -> bool:
-        """Whether a way from here, where each pair has (P,) slack, stays off the robot, between its poses too."""
+        """Whether a path from here, with slacks `here` (P,), is free of contact at and between its poses."""
         points = np.array([self.position_rad, *way])
         if (here > 0).all():
             return self._contact.clear_along(points, self._share, here)
-        # A robot that stands within the margin (it was led there by hand, or rests so) may leave it, not go deeper.
+        # A robot within the margin (moved there by hand, or resting there) may leave the margin but not come nearer.
         path = np.concatenate([points[1:], (points[1:] + points[:-1]) / 2])
         return bool((self._contact.slacks_m(path, self._share) >= np.minimum(here, 0.0) - _NEARER_M).all())

@@ -1,4 +1,4 @@
-"""How the distances of a robot's shapes grow with its joints: which way leads apart."""
+"""Derivatives of the distances between a robot's shapes by its joints."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class NearPairs:
     Attributes:
         pose: (R,) index of the pose.
         room_m: (R,) metres between them beyond their margin.
-        grows: (r, J) metres that the room of r of the R grows by per radian of each joint.
+        grows: gives for r of the R pairs the derivatives (r, J) of their room by each joint, metres per radian.
         least_m: (T, P) lower bounds of all distances in the poses.
     """
 
@@ -31,14 +31,14 @@ class NearPairs:
 
 
 class PairSlopes(PairDistances):
-    """Distances of pairs of shapes, and how they grow with each joint."""
+    """Distances of pairs of shapes, and their derivatives by the joints."""
 
     def worst(self, q_rad: Array, aim_m: float, least_m: Array) -> tuple[Array, Array, Array]:
-        """How much the worst pair of each pose (T, J) lacks of its margin plus `aim_m`, given bounds (T, P) of distances.
+        """The worst pair of each pose (T, J) against its margin plus `aim_m`, given lower bounds (T, P) of distances.
 
         Returns:
-            Metres that the worst pair lacks, (T,), 0 or less where none lacks any; how its distance grows with each
-            joint, (T, J); and the bounds with what was measured, (T, P).
+            Metres that the worst pair lacks, (T,), 0 or less where every pair keeps its distance; derivatives of the pair's
+            distance by each joint, (T, J); and the bounds with the measured distances entered, (T, P).
         """
         of = np.flatnonzero((least_m < self._margin_m + aim_m).any(0))
         if not len(of):
@@ -52,7 +52,7 @@ class PairSlopes(PairDistances):
         return lack[rows, worst], self._slopes(q_rad, placed, found, of, rows, worst), least_m
 
     def nearest(self, q_rad: Array, of: Indices) -> tuple[Array, Array]:
-        """The room of the nearest of some pairs beyond its margin, (T,), and how the room grows with each joint, (T, J)."""
+        """Distance beyond its margin of the nearest of some pairs, (T,), and the derivatives by each joint, (T, J)."""
         placed = self._placed(q_rad, with_joints=True)
         found = self._distances(q_rad, placed, of)
         beyond = found.distance_m - self._margin_m[of]
@@ -78,7 +78,7 @@ class PairSlopes(PairDistances):
     def _slopes(
         self, q_rad: Array, placed: Placed, found: Measured, of: Indices, pose: Indices, column: Indices
     ) -> Array:
-        """(R, J) how R of the distances `found` of pairs `of` grow with each joint, each given by its pose and column."""
+        """(R, J) derivatives by each joint of R of the distances `found` of pairs `of`, selected by pose and column."""
         pair = of[column]
         s, t = (x[pose, column, None] for x in found.along)
         a, b = self._pairs[pair].T

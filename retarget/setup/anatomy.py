@@ -14,9 +14,9 @@ class FoundJoint:
 
     Attributes:
         axis: unit axis in the zero pose, x forward, y left, z up.
-        range_deg: its range, None where the description has none.
-        sign: 1 where its positive sense is the usual one (raises the arm forward or sideways, bends the elbow, turns to
-            the left, nods down), -1 where it is the other, 0 where the zero pose does not tell.
+        range_deg: range of the joint; None where the description has no range.
+        sign: 1 if the positive sense is the usual one (raises the arm forward or sideways, bends the elbow, turns to the
+            left, nods down), -1 if it is the opposite, 0 if the zero pose does not decide.
         gear: (turns of the servo for one of the joint, direction) where another joint of the description drives it.
     """
 
@@ -34,12 +34,12 @@ class Anatomy:
 
     Attributes:
         path: the description.
-        forward: its axis that looks ahead.
-        up: its axis that looks up.
+        forward: axis of the description that points ahead.
+        up: axis of the description that points up.
         joints: joints with a role.
-        points: the places that retargeting needs and the description does not name.
-        reach_m: from the shoulder over the elbow to the wrist.
-        notes: what was decided or left out, and why.
+        points: points that retargeting needs and the description has no site for.
+        reach_m: metres from the shoulder over the elbow to the wrist.
+        notes: decisions and omissions, with their reasons.
     """
 
     path: Path

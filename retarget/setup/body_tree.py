@@ -1,4 +1,4 @@
-"""A description as a tree of bodies and hinge joints, turned to standard axes, with what may be asked of it."""
+"""A robot description as a tree of bodies and hinge joints, rotated to standard axes, with queries on the tree."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ Array = NDArray[np.float64]
 _LEFT = re.compile(r"(^|[_\W])l(eft)?([_\W]|$)", re.IGNORECASE)
 _RIGHT = re.compile(r"(^|[_\W])r(ight)?([_\W]|$)", re.IGNORECASE)
 _OFF_CENTRE = 0.02
-"""What lies nearer to the mirror plane than this share of the robot's size is central."""
+"""Share of the robot's size within which a part counts as lying on the mirror plane."""
 
 
 @dataclass(frozen=True)
 class FoundPoint:
-    """A place on a body, in the body's own axes."""
+    """A point on a body, in the body's own axes."""
 
     body: str
     offset_m: tuple[float, float, float]
@@ -33,11 +33,11 @@ class BodyTree:
     """Bodies and hinge joints of a description in its zero pose: x forward, y left, z up.
 
     Attributes:
-        joints: MuJoCo's numbers of the hinge joints.
-        name, body, axis, anchor: of each of them.
-        forward, up: the description's own axes that look ahead and up.
-        middle: y of the mirror plane.
-        notes: what was decided.
+        joints: MuJoCo's ids of the hinge joints.
+        name, body, axis, anchor: name, body, axis and anchor by joint id.
+        forward, up: the description's own axes that point ahead and up.
+        middle: y coordinate of the mirror plane, metres.
+        notes: decisions, with their reasons.
     """
 
     def __init__(self, path: Path) -> None:
@@ -58,13 +58,13 @@ class BodyTree:
         self.middle = self._lateral_middle()
 
     def _leave_out_drives(self) -> None:
-        """A gear that turns another joint and carries nothing itself is a servo's business, not a joint's."""
+        """Drop joints that only turn another joint and carry no body: such a gear belongs to the servo."""
         leaders = {f.leader for f in followers(self.spec)}
         parents = {int(p) for p in self.model.body_parentid}
         self.joints = [j for j in self.joints if self.name[j] not in leaders or self.body[j] in parents]
 
     def _frame(self) -> tuple[Array, str, str]:
-        """Rotation to standard axes, and which of the description's axes look forward and up."""
+        """Rotation to standard axes, and the description's axes that point forward and up."""
         gravity = np.array(self.model.opt.gravity)
         up = np.array([0.0, 0, 1]) if np.abs(gravity).max() < 1e-6 else -gravity / np.linalg.norm(gravity)
         up_key = max(DIRECTIONS, key=lambda k: float(np.dot(DIRECTIONS[k], up)))
@@ -95,14 +95,14 @@ class BodyTree:
         return min(level, key=lambda k: spread[k])
 
     def _lateral_middle(self) -> float:
-        """Where the mirror plane stands: limbs come in pairs, so half way between the outermost joints."""
+        """Lateral position (y) of the mirror plane: half way between the outermost joints, since limbs come in pairs."""
         lateral = [float(a[1]) for a in self.anchor.values()]
         if not lateral:
             raise RobotFileError(self.path, "description", "no hinge joint", "a robot with arms")
         return (min(lateral) + max(lateral)) / 2
 
     def side(self, j: int) -> float:
-        """1 for a joint that carries things on the left only, -1 on the right, 0 else."""
+        """1 for a joint that carries parts on the left only, -1 for one with parts on the right only, else 0."""
         lateral = self.carried(self.body[j])[:, 1] - self.middle
         edge = _OFF_CENTRE * self.size()
         if lateral.min() > -edge and lateral.mean() > edge:
@@ -110,7 +110,7 @@ class BodyTree:
         return -1.0 if lateral.max() < edge and lateral.mean() < -edge else 0.0
 
     def longest(self, body: int) -> int:
-        """Most joints on a way outwards from a body, its own with them."""
+        """Largest number of joints on a chain outwards from a body, its own joints included."""
         own = sum(self.body[j] == body for j in self.joints)
         return own + max(
             (self.longest(c) for c in range(1, self.model.nbody) if self.model.body_parentid[c] == body), default=0
@@ -126,13 +126,13 @@ class BodyTree:
         return self.anchor[j] + a * along
 
     def point(self, body: int, place: Array) -> FoundPoint:
-        """A place (3,), as it is fixed to a body."""
+        """A position (3,) as a point fixed to a body."""
         local = self.data.xmat[body].reshape(3, 3).T @ (self.R.T @ place - self.data.xpos[body])
         x, y, z = (round(float(v), 4) + 0.0 for v in local)
         return FoundPoint(str(self.model.body(body).name), (x, y, z))
 
     def bodies_above(self, body: int) -> list[int]:
-        """A body and all that carry it, the world last."""
+        """A body and all bodies that carry it, the world last."""
         above = [body]
         while body:
             body = int(self.model.body_parentid[body])
@@ -140,27 +140,27 @@ class BodyTree:
         return above
 
     def bodies_below(self, body: int) -> list[int]:
-        """A body and all that it carries."""
+        """A body and all bodies that it carries."""
         return [b for b in range(1, self.model.nbody) if body in self.bodies_above(b)]
 
     def depth(self, body: int) -> int:
-        """How far out in the tree a body is."""
+        """Number of bodies from a body to the world."""
         return len(self.bodies_above(body))
 
     def joints_above(self, body: int, but: int) -> list[int]:
-        """Joints that move a body, but for one."""
+        """Joints that move a body, without the joint `but`."""
         above = set(self.bodies_above(body))
         return [j for j in self.joints if self.body[j] in above and j != but]
 
     def carried(self, body: int) -> Array:
-        """(N, 3) places of what a body carries: its shapes and those of the bodies on it, or their origins."""
+        """(N, 3) positions of the shapes of a body and of the bodies on it; without shapes, centres of mass of the bodies."""
         below = self.bodies_below(body)
         shapes = [g for g in range(self.model.ngeom) if int(self.model.geom_bodyid[g]) in below]
         places = [self.data.geom_xpos[g] for g in shapes] or [self.data.xipos[b] for b in below]
         return np.array(places) @ self.R.T
 
     def farthest(self, body: int, from_m: Array) -> Array:
-        """The farthest point of what a body carries."""
+        """The point (3,) of a body and the bodies on it that is farthest from `from_m`."""
         best = self.R @ self.data.xipos[body]
         below = self.bodies_below(body)
         for b in below:
@@ -177,7 +177,7 @@ class BodyTree:
         return best
 
     def size(self) -> float:
-        """How big the robot is."""
+        """Diagonal of the box round all joint anchors, metres."""
         places = np.array(list(self.anchor.values()))
         return float(np.linalg.norm(np.ptp(places, axis=0)))
 

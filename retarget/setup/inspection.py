@@ -1,4 +1,4 @@
-"""Checks of a robot before it may be run: what is missing, and what its owner should look at."""
+"""Checks of a robot before its first run: missing values, contacts at rest, and doubts for its owner."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from retarget.robot.description import load_description, read_spec
 from retarget.robot.robot import RobotModel
 
 _BEYOND_DEG = 0.51
-"""Limits of the file may be rounded to whole degrees."""
+"""Degrees by which a limit of the file may exceed the description's: limits may be rounded to whole degrees."""
 
 
 @dataclass(frozen=True)
 class Inspection:
-    """A finding.
+    """Findings of the inspection of a robot.
 
     Attributes:
-        missing: without these it cannot be run, or would touch itself; each with what to do.
-        doubts: what the description does not tell.
+        missing: reasons why the robot cannot run or would touch itself, each with the remedy.
+        doubts: facts that the description leaves open.
     """
 
     missing: tuple[str, ...]
@@ -29,7 +29,7 @@ class Inspection:
 
 
 def inspect_robot(robot: RobotModel) -> Inspection:
-    """Look at a robot read with `blanks=True`.
+    """Inspect a robot that was read with `blanks=True`.
 
     Raises:
         RobotFileError: the description cannot be used.

@@ -1,8 +1,8 @@
-"""Finds arms, neck and waist in a description that says nothing of them, by forward kinematics in its zero pose.
+"""Finds arms, neck and waist in a description without roles, by forward kinematics in its zero pose.
 
-What a joint is for follows from what it carries and where its axis looks, not from its name: limbs come in pairs that
-mirror each other, the upper pair are the arms; the elbow is the joint across the arm that is far from both shoulder and
-hand. Names decide two things only, where they speak of them: which side is left, and which joints are fingers.
+The role of a joint follows from the bodies that it carries and the direction of its axis, not from its name. Limbs come in mirrored
+pairs, and the upper pair are the arms; the elbow is the joint across the arm that is far from both shoulder and hand. Names decide
+only two questions: which side is left, and which joints are fingers.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from retarget.setup.body_tree import BodyTree, FoundPoint
 
 Array = NDArray[np.float64]
 _ALONG = 0.7
-"""Cosine from which an axis counts as looking along a direction."""
+"""Cosine from which an axis counts as parallel to a direction."""
 _FINGERS = re.compile(r"grip|finger|thumb|claw|jaw|hand_?joint", re.IGNORECASE)
 _ELBOW = 0.15
-"""An elbow is farther from shoulder and hand than this share of the distance between them."""
+"""Least distance of an elbow from shoulder and hand, as a share of the distance between them."""
 _TO_THE_WRIST = 0.3
-"""A joint nearer to the elbow than this share of forearm and hand is no wrist."""
+"""Least distance of a wrist from the elbow, as a share of the length of forearm and hand."""
 
 
 def find_anatomy(path: Path) -> Anatomy:
@@ -46,7 +46,7 @@ class _Finder:
         self._reach_m = 0.0
 
     def found(self) -> Anatomy:
-        """All of it."""
+        """The arms, neck and waist with their roles and points."""
         left, right = self._arms()
         roles: dict[int, str] = {}
         points: dict[str, FoundPoint] = {}
@@ -88,7 +88,7 @@ class _Finder:
         return [self._main_chain(j) for j in roots]
 
     def _main_chain(self, root: int) -> list[int]:
-        """From a limb's first joint outwards, always where most joints follow; ends where that is a tie (fingers)."""
+        """Joints from a limb's first one outwards, always on the branch with most joints; a tie (fingers) ends the chain."""
         chain, body = [root], self._tree.body[root]
         while True:
             following = sorted(
@@ -107,7 +107,7 @@ class _Finder:
             ]
 
     def _name_arm(self, side: str, arm: list[int], roles: dict[int, str]) -> FoundPoint:
-        """Give an arm's joints their roles; where its wrist is."""
+        """Give an arm's joints their roles; returns the point of its wrist."""
         tree = self._tree
         shoulder = tree.anchor[arm[0]]
         far = {j: tree.farthest(tree.body[arm[-1]], tree.anchor[j]) for j in arm}
@@ -125,7 +125,7 @@ class _Finder:
         return self._name_forearm(side, elbow, arm[at + 1 :], (shoulder, far[elbow]), roles)
 
     def _name_stiff_arm(self, side: str, arm: list[int], tip: Array, roles: dict[int, str]) -> FoundPoint:
-        """An arm without an elbow: shoulder joints only, the wrist is its end."""
+        """Give the joints of an arm without an elbow shoulder roles; returns the point of its wrist, the arm's end."""
         tree = self._tree
         self._tree.notes.append(f"{side} arm: no joint is an elbow, far from both shoulder and hand")
         self._name_shoulder(side, arm[:3], _unit(tip - tree.anchor[arm[0]]), roles)
@@ -147,7 +147,7 @@ class _Finder:
     def _name_forearm(
         self, side: str, elbow: int, after: list[int], ends: tuple[Array, Array], roles: dict[int, str]
     ) -> FoundPoint:
-        """Forearm and wrist; the wrist's place is its first joint, or the farthest point where it has none."""
+        """Give forearm and wrist joints their roles; returns the first wrist joint's point, without one the farthest point."""
         (shoulder, tip), start = ends, self._tree.anchor[elbow]
         reach = _length(tip - start)
         wrist, place, carrier = list[int](), tip, elbow
@@ -228,7 +228,7 @@ class _Finder:
             )
 
     def _gears(self) -> dict[str, tuple[float, int]]:
-        """For each joint that follows another in proportion: turns of the leader for one of it, and their sense."""
+        """For each joint that follows a leader in proportion: turns of the leader per turn of the joint, and their sense."""
         ratio = {e.name1: float(e.data[1]) for e in self._tree.spec.equalities if e.type == mujoco.mjtEq.mjEQ_JOINT}
         return {
             f.name: (round(1 / abs(ratio[f.name]), 6), 1 if ratio[f.name] > 0 else -1)

@@ -1,4 +1,4 @@
-"""Writes a robot file for a description: all that can be found out, what only the owner knows as blanks."""
+"""Writes a robot file for a description: detected values, and blanks for values that only the owner knows."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from retarget.setup.standing_pose import standing_pose
 Array = NDArray[np.float64]
 _UNLIMITED_DEG = (-90.0, 90.0)
 _HAND_ACCELERATION_M_S2 = 12.0
-"""Acceleration of the hand at the outstretched arm: about what the reference robot's arms are allowed."""
+"""Metres per second squared of the hand at the end of a straight arm: about the limit of the reference robot's arms."""
 _CLEAR_M = 0.015
 _OUTWARD = (0.15, 0.25, 0.35, 0.5, 0.7, 1.0)
-"""Metres outwards per metre down at which arms may hang: the first that keeps clear of the body is taken."""
+"""Metres outwards per metre down of hanging arms, tried in this order until the arms are clear of the body."""
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """A robot file and what was found for it.
+    """A proposed robot file and the findings behind it.
 
     Attributes:
         text: the TOML.
@@ -44,12 +44,12 @@ class Proposal:
 
 
 def propose(description: Path, robot_file: Path, servo: str = BLANK) -> Proposal:
-    """Find what there is to find and write `robot_file`.
+    """Detect the anatomy of a description and write `robot_file`.
 
     Args:
-        description: MJCF or URDF.
-        robot_file: where the TOML goes; it refers to the description from there.
-        servo: model of all servos, when they are all alike.
+        description: path of an MJCF or URDF.
+        robot_file: path of the TOML; the path of the description in it is relative to this file.
+        servo: model of all servos; a blank if they differ.
 
     Raises:
         RobotFileError: no arms in the description, or an unknown servo model.
@@ -73,7 +73,7 @@ def propose(description: Path, robot_file: Path, servo: str = BLANK) -> Proposal
 
 
 def _hanging(retargeter: Retargeter) -> Array:
-    """(J,) arms down and a little outwards, elbows a little bent, clear of the body where that can be."""
+    """(J,) pose with the arms down and a little outwards and the elbows a little bent, clear of the body if possible."""
     q = retargeter.robot.rest_rad
     for outward in _OUTWARD:
         q = standing_pose(retargeter, (0.0, outward, -1.0), (0.25, outward, -1.0))
@@ -83,7 +83,7 @@ def _hanging(retargeter: Retargeter) -> Array:
 
 
 class _Writer:
-    """The text of the file; `notes` gathers what had to be decided."""
+    """Writes the text of the file and collects its decisions in `notes`."""
 
     def __init__(self, anatomy: Anatomy, robot_file: Path, servo: str) -> None:
         self._anatomy, self._file, self._servo = anatomy, robot_file, servo
@@ -168,7 +168,7 @@ class _Writer:
         return "{ " + ", ".join(keys) + " }"
 
     def _acceleration(self) -> int:
-        """From the length of the arm, so that hands of all sizes move alike."""
+        """Acceleration limit in degrees/s^2 from the length of the arm, so that hands on arms of all lengths accelerate alike."""
         reach = max(self._anatomy.reach_m, 0.1)
         return int(np.clip(round(np.rad2deg(_HAND_ACCELERATION_M_S2 / reach), -2), 300, 3000))
 

@@ -1,4 +1,4 @@
-"""A person who stands still with the arms in given directions: to ask a robot for a pose in the way all motions ask."""
+"""A person who stands still with the arms in given directions, to pose a robot by retargeting like any motion."""
 
 from __future__ import annotations
 
@@ -35,5 +35,5 @@ def standing_motion(upper: Direction, fore: Direction) -> Motion:
 
 
 def standing_pose(retargeter: Retargeter, upper: Direction, fore: Direction) -> Array:
-    """(J,) what the robot makes of it: within its limits, clear of itself."""
+    """(J,) the robot's pose for a person with these arm directions, within its limits and without self-contact."""
     return retargeter.retarget(standing_motion(upper, fore)).q_rad[-1]
