@@ -99,7 +99,7 @@ def test_a_missing_tty():
 
 
 def test_a_bus_that_is_none():
-    assert "known" in refused("--bus", "can://x")
+    assert "known" in refused("--bus", "can://x", here=True)
 
 
 def test_a_log_that_exists_is_not_overwritten(tmp_path):

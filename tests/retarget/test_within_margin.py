@@ -16,25 +16,25 @@ from retarget.robot.robot import RobotModel
 from tests.retarget.gestures import gesture
 
 ROBOTS = ("reference", "op3", "toddlerbot")
-N_POSES = 8
 
 
-def poses_within(robot: RobotModel, contact: SelfContact) -> NDArray[np.float64]:
-    """Poses that no path comes to, but that the gate lets be."""
+def poses_within(robot: RobotModel, contact: SelfContact, n_poses: int) -> NDArray[np.float64]:
+    """The first `n_poses` drawn poses that no path comes to, but that the gate lets be."""
     rng, limits = np.random.default_rng(3), JointLimits.of(robot)
     anywhere = rng.uniform(limits.position_min_rad, limits.position_max_rad, (4000, robot.n_joints))
     q_rad = robot.rest_rad + rng.random((4000, 1)) * (anywhere - robot.rest_rad)
     room, gate_room = contact.slacks_m(q_rad, 1.0).min(1), contact.slacks_m(q_rad, 1.05 * GATE_SHARE).min(1)
-    return q_rad[(room < 0) & (gate_room > 0)][:N_POSES]
+    return q_rad[(room < 0) & (gate_room > 0)][:n_poses]
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_a_motion_leaves_a_pose_within_the_margin(name: str) -> None:
+@pytest.mark.parametrize(("n_poses", "most_stay"), [(3, 0), pytest.param(8, 1, marks=pytest.mark.soak)])
+def test_a_motion_leaves_a_pose_within_the_margin(name: str, n_poses: int, most_stay: int) -> None:
     robot = load_robot(name)
     contact = SelfContact(robot)
     retargeter, motion = Retargeter(robot, contact=contact), gesture("wave")
-    poses = poses_within(robot, contact)
-    assert len(poses) == N_POSES
+    poses = poses_within(robot, contact, n_poses)
+    assert len(poses) == n_poses
     stayed = 0
     for pose in poses:
         path = retargeter.retarget(motion, JointState(pose, np.zeros(robot.n_joints)))
@@ -48,7 +48,7 @@ def test_a_motion_leaves_a_pose_within_the_margin(name: str) -> None:
         for target in path.at_rate(robot.bus.rate_hz):
             goals.append(gate.step(target))
         stayed += bool(np.abs(np.array(goals) - pose).max() < 0.05)
-    assert stayed <= 1, f"{stayed} of {N_POSES} motions did not leave"
+    assert stayed <= most_stay, f"{stayed} of {n_poses} motions did not leave"
 
 
 def test_a_pose_that_keeps_the_margins_is_given_nothing() -> None:

@@ -10,9 +10,12 @@ import pytest
 
 from daemon.bench.tty_servos import served
 from daemon.control.arming import WATCHDOG_UNITS
+from daemon.control.starting import start
+from daemon.dynamixel.bus_opening import open_bus
 from daemon.dynamixel.registers.registers import WATCHDOG_TRIPPED, WATCHDOG_UNIT_S
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState, Readiness
 from sim.bus import SimBus
+from sim.clock import VirtualClock
 from sim.pty import PtyServer
 from tests.support.robots import packaged
 
@@ -95,6 +98,24 @@ def test_it_says_why_it_has_no_robot(started, url, says, readiness):
     assert bus.link.readiness is readiness
     assert says in bus.link.text
     assert "Traceback" not in bus.process.stderr.read()
+
+
+@pytest.mark.parametrize(
+    ("url", "says"),
+    [
+        ("sim://?body=foo", "body = 'foo'"),
+        ("sim://?baud=abc", "baud 'abc'"),
+        ("sim://?faults=missing.toml", "missing.toml"),
+    ],
+)
+def test_an_option_that_the_bus_cannot_have_is_refused(url, says):
+    """In this process: a refusal ends the daemon with status 2 (tests/daemon/cli/test_first_hour.py)."""
+    link, clock = BusLink.create(ROBOT.n_joints, ROBOT.n_servos), VirtualClock()
+    try:
+        assert start(ROBOT, lambda: open_bus(url, ROBOT, clock), link, clock) is None
+        assert link.readiness is Readiness.REFUSED and says in link.text
+    finally:
+        link.close()
 
 
 def test_killed_while_armed_the_servos_stop_by_their_watchdog(started, servos, tmp_path):
