@@ -16,8 +16,9 @@ from daemon.state.ledger import Entry
 from daemon.state.replies import NotPlayableError
 from daemon.wire.events import Rejected
 from daemon.wire.requests import MAX_TEXT_CHARS, Gesture, Lease, Say, tag_of
+from mmm_core.language.command_changes import NothingToReferToError
 from mmm_core.language.commands import Reading, exactly
-from mmm_core.language.context import InContext, NothingToReferToError, in_context
+from mmm_core.language.context import InContext, in_context
 from mmm_core.language.reading import read
 from mmm_core.language.warming import warmed
 

@@ -32,7 +32,8 @@ def understand(
         texts: one sentence, or several that follow each other.
         json: print one JSON object instead of lines; several sentences are under `texts`.
     """
-    from mmm_core.language.context import NothingToReferToError, conversation
+    from mmm_core.language.command_changes import NothingToReferToError
+    from mmm_core.language.context import conversation
 
     if not texts:
         raise CommandError('no sentence; e.g. mmmd understand "wave with your left hand"')

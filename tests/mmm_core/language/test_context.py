@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mmm_core.language.command_changes import NothingToReferToError
 from mmm_core.language.commands import PlainCommand, exactly, read_exactly
-from mmm_core.language.context import NothingToReferToError, conversation, in_context
+from mmm_core.language.context import conversation, in_context
 from mmm_core.language.manner import Manner
 from mmm_core.language.reading import read
 from mmm_core.language.stop_words import means_stop
