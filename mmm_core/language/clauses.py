@@ -1,4 +1,4 @@
-"""Commands that a text asks for one after another: "clap before you bow, then nod" -> clap, bow, nod.
+"""Divides a text into commands in order of execution: "clap before you bow, then nod" -> clap, bow, nod.
 
 A rule, not a model: English says the order of two actions with a small, closed set of words
 (`mmm_core.language.clause_patterns`), while a text encoder of this size hardly keeps it (docs/model.md). A clause that
@@ -20,7 +20,7 @@ from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.requests import everyday
 
 MOST_COMMANDS, MOST_WORDS = 4, 60
-"""Most commands and most words of a text that is divided; a longer text stays one command."""
+"""Largest number of commands and of words in a text that is divided; a longer text stays one command."""
 _ALL_AGAIN = re.compile(
     r"(?:and )?(?:repeat|again|(?:do|repeat) (?:it|that|them|all|everything|the lot)(?: all)?(?: again)?|the same again|and again)"
 )
@@ -100,7 +100,7 @@ def _divided(text: str) -> list[str]:
 
 
 def _other_side(parts: list[str], wanted: str) -> list[str]:
-    """Commands of one side on the other; none where they name no side, two, or the one that is wanted."""
+    """Commands of one side, transferred to the other; empty if they name no side, both sides, or already the wanted side."""
     sides = {side for part in parts for side in re.findall(r"\b(?:left|right)\b", part)}
     if len(sides) != 1 or sides == {wanted}:
         return []
@@ -117,7 +117,7 @@ def _spans(text: str, whole: _Span, between: re.Pattern[str]) -> list[_Span]:
 
 
 def _listed(text: str, whole: _Span) -> list[_Span]:
-    """'wave, nod and bow' where every part begins with a verb of its own, or after a comma leaves it out; else the whole."""
+    """The parts of 'wave, nod and bow' if each begins with a verb or, after a comma, omits the verb; else the whole span."""
     spans = _spans(text, whole, words.AND)
     parts = [_bare(s.of(text)) for s in spans]
     if len(parts) == 2 and _THE_SAME.match(parts[1]) and completed(parts[1], parts[0]):
@@ -189,7 +189,7 @@ def _reordered(part: str) -> list[str]:
 
 
 def _both_stand(*pair: str) -> bool:
-    """Whether both are commands by themselves."""
+    """Whether both texts are complete commands."""
     return not any(words.NO_COMMAND.match(p.strip()) or _leans(p) or not _READS.search(_bare(p)) for p in pair)
 
 

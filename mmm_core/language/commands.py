@@ -1,4 +1,4 @@
-"""Plain commands, what was read in a sentence, and the form in which commands are written so that they are read as they stand.
+"""Plain commands, the reading of a sentence, and a notation for commands that is read verbatim.
 
 `exactly: wave your right hand (0.62 times as fast) + nod; bow (held for 2 s)` has two steps, the first of two commands at once.
 """
@@ -13,9 +13,9 @@ from mmm_core.language.limbs import limbs_of
 from mmm_core.language.manner import FASTEST, LARGEST, LONGEST_HOLD_S, Manner
 
 EXACTLY = "exactly:"
-"""What a text begins with that is read as it stands."""
+"""Prefix of a text that is read verbatim."""
 MOST_STEPS, MOST_AT_ONCE = 8, 3
-"""Most steps of such a text, and most commands of a step: the model has three body parts."""
+"""Largest number of steps in a text read verbatim, and of commands in a step: the model has three body parts."""
 _MARKS = re.compile(r"[();+]")
 _COMMAND = re.compile(r"(?P<text>[^()]*?[a-z][^()]*?)\s*(?:\((?P<manner>[^()]*)\))?", re.IGNORECASE)
 _SAID = re.compile(r"(?:(?P<tempo>N) times as fast|(?P<size>N) times as large|held for (?P<hold>N) s)".replace(
@@ -27,9 +27,9 @@ class PlainCommand:
     """One command that the model is given.
 
     Attributes:
-        text: its words.
+        text: words of the command.
         manner: tempo, size and hold.
-        limbs: left_arm, right_arm, some_arm, head, trunk, as far as its words say so.
+        limbs: limbs that the words name: left_arm, right_arm, some_arm, head, trunk.
     """
 
     text: str
@@ -38,7 +38,7 @@ class PlainCommand:
 
     @property
     def sentence(self) -> str:
-        """Its words and its manner: "bow (0.55 times as fast, held for 2 s)"."""
+        """Words and manner of the command: "bow (0.55 times as fast, held for 2 s)"."""
         manner = self.manner
         said = [f"{manner.tempo:.2g} times as fast"] if manner.tempo != 1.0 else []
         said += [f"{manner.size:.2g} times as large"] if manner.size != 1.0 else []
@@ -47,19 +47,19 @@ class PlainCommand:
 
 
 Steps = tuple[tuple[PlainCommand, ...], ...]
-"""Commands in turn, each with those done at once."""
+"""Steps in order; each is a tuple of commands that are done at once."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What was read in a sentence.
+    """The commands read in a sentence.
 
     Attributes:
         text: the sentence.
-        steps: commands in turn, each with those done at once; none where nothing is to be done.
-        denied: what is not to be done.
-        notes: what was changed that the speaker may not expect.
-        plain: whether the sentence is passed on as it is.
+        steps: steps in order, each with the commands done at once; empty where the sentence requests nothing.
+        denied: denied commands.
+        notes: changes that the speaker may not expect.
+        plain: whether the sentence is passed on unchanged.
     """
 
     text: str

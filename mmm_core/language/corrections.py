@@ -1,4 +1,4 @@
-"""A command that is taken back for another side or way: "raise your left arm. No, not that arm, the other one"."""
+"""Commands that the speaker corrects to another side or direction: "raise your left arm. No, not that arm, the other one"."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _I_SAID = re.compile(
 
 
 def corrected(said: str) -> str:
-    """A sentence with what it takes back put right; the sentence itself where it takes nothing back.
+    """A sentence with its correction applied; the sentence itself where it contains no correction.
 
     >>> corrected("raise your right arm, I said left, not right".lower())
     'raise your left arm'

@@ -1,7 +1,6 @@
-"""Limbs that a command moves, by its words.
+"""Limbs that the words of a command move.
 
-Words and phrases that tell a limb stand in `words/limb_phrases.txt`, verbs and nouns of the corpus's gestures in
-`words/limb_words.txt`.
+`words/limb_phrases.txt` has words and phrases that decide a limb, `words/limb_words.txt` verbs and nouns of the corpus's gestures.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ _TRUNK_NOT = re.compile(
 )
 _A_LIMB, _NAMED_LIMB = re.compile(rf"\b{LIMB}\b"), re.compile(rf"\b(?:left|right|your|both|the) {LIMB}\b")
 SAYS_NO_LIMB = frozenset(_phrases("says no limb"))
-"""Words from which no limb can be told, whatever gestures of the corpus have them."""
+"""Words that decide no limb, whatever gestures of the corpus have them."""
 _BEGINS_NO_GESTURE = frozenset(_phrases("begins no gesture"))
 """Words with which a place begins, or an act that moves neither arms, head nor trunk."""
 _WORDS = re.compile(r"[a-z]+")
@@ -41,7 +40,7 @@ _TRUNK_PLACE = re.compile(r"\b(?:your|the) (?:chest|ribs|spine|waist|hips|breast
 
 
 def limbs_of(clause: str) -> frozenset[str]:
-    """Limbs that a clause moves: left_arm, right_arm, some_arm, head, trunk; empty where its words do not say.
+    """Limbs that a clause moves: left_arm, right_arm, some_arm, head, trunk; empty where its words decide none.
 
     >>> sorted(limbs_of("wave with your left hand")), sorted(limbs_of("scratch your head")), sorted(limbs_of("shake your head"))
     (['left_arm'], ['some_arm'], ['head'])
@@ -52,7 +51,7 @@ def limbs_of(clause: str) -> frozenset[str]:
 
 
 def limbs_named(clause: str) -> frozenset[str]:
-    """Limbs that a clause names, or that the commonest verbs and gestures move; the same as `limbs_of` without its table."""
+    """Limbs that a clause names, or that the commonest verbs and gestures move: `limbs_of` without the table of limb words."""
     if _HEAD.search(clause) and not _HEAD_NOT.search(clause) and not _A_LIMB.search(clause):
         return HEAD
     if _TRUNK.search(clause) and not _TRUNK_NOT.search(clause) and not _NAMED_LIMB.search(clause):
@@ -66,7 +65,7 @@ def limbs_named(clause: str) -> frozenset[str]:
 
 
 def _limb_of_words(clause: str) -> frozenset[str]:
-    """The limb of a clause by its verb or, where that says none, by its nouns, else by the part of the body that it names."""
+    """The limb of a clause by its verb; if the verb decides none by its nouns, else by the part of the body that it names."""
     first, *others = _WORDS.findall(clause) or [""]
     if first in _BEGINS_NO_GESTURE:
         return frozenset()
@@ -80,7 +79,7 @@ def _limb_of_words(clause: str) -> frozenset[str]:
 
 
 def is_gesture_verb(word: str) -> bool:
-    """Whether phrases of the corpus begin with a word that tells their limb: "shovel", "knit"."""
+    """Whether phrases of the corpus begin with this word and the word decides their limb: "shovel", "knit"."""
     return word in _limb_words()["verbs"]
 
 

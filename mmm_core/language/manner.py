@@ -12,7 +12,7 @@ from mmm_core.language.word_tables import Rule, RuleTable, lines
 STRONGER = 1.25
 """Factor, on the logarithm, of "very" and the like before a word of manner."""
 FASTEST, LARGEST = 2.0, 1.8
-"""Greatest factors of tempo and size; the least ones are their inverses."""
+"""Largest factors of tempo and size; the smallest factors are their inverses."""
 LONGEST_HOLD_S = 30.0
 _GESTURES = (
     "(?:waves?|nods?|bows?|claps?|claps|shrugs?|hugs?|salutes?|leans?|tilts?|punch(?:es)?|stretch(?:es)?|circles?|shakes?|turns?|"
@@ -20,7 +20,7 @@ _GESTURES = (
     "head ?shakes?|applause|greeting|handshakes?|throws?|jabs?|hooks?|pumps?|cheers?|yawns?|points?|dips?|flaps?|sweeps?|arcs?|"
     "glances?|looks?|rolls?|presses|press|push(?:es)?|pulls?|raises?|lifts?)"
 )
-"""Nouns of gestures, which an adjective of size stands before."""
+"""Nouns of gestures that an adjective of size may precede."""
 _VERY = r"(?:(?:ever so|oh so|very|really|real|dead|proper|bloody|insanely|crazy|ridiculously|painfully|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|way) )*"
 _STRONG = re.compile(
     r"\b(?:ever so|very|really|dead|insanely|ridiculously|painfully|super|extremely|incredibly|ultra|extra|terribly|awfully|much|way|oh so)\b"
@@ -39,12 +39,12 @@ _COUNT_OF = re.compile(
     r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping)(?: (?:it|them|that|this|there))*\s+)?"
     rf"for (?:a |the )?count of {_NUMBER}\b|,?\s*\bfor {_NUMBER} (?:counts|beats)\b"
 )
-"""A hold of as many seconds as are counted."""
+"""Pattern of a hold with a counted number of seconds."""
 _ONLY_SECONDS = re.compile(
     rf",?\s*\b(?:(?:for|about|exactly|at least|around|all of|a full) )+{_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
 )
 _SECOND = re.compile(r"\d ?s|sec")
-"""Letters that every hold has."""
+"""Pattern that occurs in every text with a hold, for a quick test."""
 _BEFORE_MARK = re.compile(r"\s+([,.])")
 _AT_ENDS = re.compile(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+")
 _TWICE_AND = re.compile(r"\s+(?:and|but)(?=,? (?:and|but)\b)")
@@ -60,18 +60,18 @@ _AFTER_ADJECTIVE = re.compile(
     + "|and|with|to|at|for|then|now|please|on|in|twice|once|thrice|your|three|two|four|five|the|times|"
     + "left|right|up|down|back|forward|from"
 )
-"""Words before which an adjective of tempo is one of manner."""
+"""Words before which an adjective of tempo counts as manner."""
 _KEEPS = re.compile(r"^(?:hold|keep|leave) (?=(?:your|the|both) )")
 
 
 @dataclass(frozen=True)
 class Manner:
-    """How a command is to be done.
+    """Tempo, size and hold of a command.
 
     Attributes:
-        tempo: times as fast as it would be.
-        size: times as large.
-        hold_s: seconds that the pose is kept; 0 where none are said.
+        tempo: factor of the speed.
+        size: factor of the amplitude.
+        hold_s: seconds for which the pose is held; 0 where the clause names none.
     """
 
     tempo: float = 1.0
@@ -80,7 +80,7 @@ class Manner:
 
     @property
     def plain(self) -> bool:
-        """Whether nothing is said."""
+        """Whether tempo, size and hold are the defaults."""
         return self == Manner()
 
 
@@ -125,7 +125,7 @@ def _factor(clause: str, table: str, most: float) -> tuple[str, float]:
 
 
 def _is_manner(clause: str, found: re.Match[str]) -> bool:
-    """Whether a word of manner is one here: "slow" before a noun that is no gesture is not, nor is the whole clause."""
+    """Whether a matched word is manner here: "slow" before a noun that is no gesture is not, nor is a whole clause."""
     word = found[0].strip()
     if clause.strip(" .,!") == word:
         return False
@@ -137,7 +137,7 @@ def _is_manner(clause: str, found: re.Match[str]) -> bool:
 
 @cache
 def _rules(table: str) -> RuleTable:
-    """The rules of a table; the words of each are its factor."""
+    """The rules of a table; the replacement text of each rule is its factor."""
     split = [line.partition(" ") for line in lines(table)]
     return RuleTable(
         Rule(re.compile(rf"\b{_VERY}(?:{pattern.replace('@NOUN', _GESTURES)})(?![\w-])"), worth)

@@ -1,7 +1,7 @@
-"""The arm of commands in turn that name it once: "raise your left hand, salute, and lower it again".
+"""The arm of successive commands that name it once: "raise your left hand, salute, and lower it again".
 
-A command takes the side that the commands around it name where it names none, and where no other side is named. It stands
-between two commands of that arm, or it speaks of a part of an arm ("bend the elbow", "make a fist") after one.
+A command without a side takes the side of the commands around it if they name only one side. The command must stand between two
+commands of that arm, or name a part of an arm ("bend the elbow", "make a fist") after a command of that arm.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _MAKES_A_FIST = re.compile(r"(?:make|form|clench|ball|close|open)\b.*\bfist\b(?:
 
 
 def of_one_arm(commands: Sequence[str]) -> list[str]:
-    """Commands in turn, in lower case, each with the arm that those around it name.
+    """Successive commands in lower case, each with the arm that the commands around it name.
 
     >>> of_one_arm(["raise your left hand", "salute", "lower your left hand"])[1]
     'salute with your left hand'

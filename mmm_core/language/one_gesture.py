@@ -19,7 +19,7 @@ JOINING = (
     "and", ",", "then", ";", ":", "while", "whilst", "not", "no", "never", "avoid", "without", "stop", "before", "after", "as",
     "together", "meanwhile", "now", "next", "first", "last", "with", "time",
 )  # fmt: skip
-"""Words and marks that part or deny commands."""
+"""Words and punctuation that divide or deny commands."""
 _HIDDEN = {word: chr(0xE000 + i) for i, word in enumerate(JOINING)}
 _SHOWN = {hidden: word for word, hidden in _HIDDEN.items()}
 _ANY_HIDDEN = re.compile(f"[{''.join(_SHOWN)}]")
@@ -52,12 +52,12 @@ def held_together(said: str) -> str:
 
 
 def as_said(text: str) -> str:
-    """A text with its hidden words."""
+    """A text with its hidden words restored."""
     return _ANY_HIDDEN.sub(lambda m: _SHOWN[m[0]], text) if _ANY_HIDDEN.search(text) else text
 
 
 def stems_of(phrase: str) -> tuple[str, ...]:
-    """The words of a phrase without articles, sides and endings: what its sentences have in common."""
+    """The words that the sentences of a phrase have in common: without articles, sides and endings."""
     return tuple(stem(word) for word in _TOKEN.findall(phrase) if word not in _LEFT_OUT)
 
 

@@ -1,8 +1,8 @@
-"""Reads a sentence: plain commands in turn and at once, each with its parameters, in words the model knows.
+"""Reads a sentence: plain commands in order and at once, each with its parameters, in words that the model knows.
 
-The order of the steps, nothing else: slips mended (`spelling`), words around the request taken off (`requests`), denials kept
-apart (`denial`), commands in turn (`clauses`) with what each leaves out (`ellipsis`), commands at once (`at_once`), manner
-(`manner`). A sentence in which nothing of this is found is passed on as it is. Rules and figures: docs/language.md.
+This file fixes the order of the steps: correct spelling (`spelling`), remove the words around the request (`requests`), separate
+denials (`denial`), divide commands in order (`clauses`) and complete them (`ellipsis`), divide commands at once (`at_once`), and
+read manner (`manner`). A sentence without any of these is passed on unchanged. Rules and figures: docs/language.md.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _OWN_PART = re.compile(
 _ACT_ON_IT = re.compile(r"((?!do\b)\w+) (?:it|them)\b")
 """A part of the robot that a sentence names before a pronoun stands for it: "there is a fly on your nose, scratch it"."""
 _ANYTHING = ("wave your right hand", "clap your hands")
-"""What is done where anything but the denied is asked for."""
+"""Commands for a request of anything except a denied command."""
 
 
 def read(text: str, *, by_rules_alone: bool = False) -> Reading:
@@ -48,7 +48,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
 
     Args:
         text: the sentence.
-        by_rules_alone: whether phrases that only the corpus shows to be one gesture (`one_gesture`) are parted as well.
+        by_rules_alone: whether phrases that only the corpus shows to be one gesture (`one_gesture`) are divided as well.
 
     >>> [[c.text for c in step] for step in read("turn your head left, then right").steps]
     [['turn your head left'], ['turn your head right']]
@@ -88,7 +88,7 @@ def _shown(denied: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _referring(bare: str, said: str) -> str:
-    """A request with what its words before the request name: "that way" a side, "do it" an act that somebody cannot do."""
+    """A request with the referent from the words before it: "that way" for a side, "do it" for an act that somebody cannot do."""
     before = said.removesuffix(bare)
     side = re.search(r"\b(?:on|to|from|by) (?:your|the) (left|right)\b(?! (?:hand|arm))", before)
     if side and re.search(r"\b(?:that way|over there|in that direction)\b", bare):
@@ -111,7 +111,7 @@ def _known(text: str, command: str) -> Reading:
 
 
 def _hand_first(said: str) -> tuple[str, str]:
-    """Several commands without the hand that their beginning names for all: "with your right arm first point up, then forward"."""
+    """A sentence without the hand named at its beginning for all commands, and that hand: "with your right arm first point up"."""
     listed = _LIMB_OF_ALL.match(said)
     if listed is not None:
         parts = re.split(r",?\s+(?:and|then)\s+|,\s*", listed["parts"])
@@ -137,7 +137,7 @@ def _hand_first(said: str) -> tuple[str, str]:
 
 
 def _for_all(said: str) -> tuple[str, str]:
-    """A sentence without a hand that its end names for all of it: "..., both with the right hand"; and that hand."""
+    """A sentence without the hand named at its end for all commands, and that hand: "..., both with the right hand"."""
     found = re.search(
         r",? (?:both|all)(?: of (?:it|them|that))? (?:with|using) (?:your |the )?(left|right) hand$", said
     )
@@ -145,7 +145,7 @@ def _for_all(said: str) -> tuple[str, str]:
 
 
 def _steps(clause: str, notes: list[str]) -> list[tuple[PlainCommand, ...]]:
-    """The steps of one clause: commands at once, or in turn where they want the same limb."""
+    """The steps of one clause: commands at once, or in order where they need the same limb."""
     clause = without_request(clause)
     at_once = divided(clause)
     if 1 < len(at_once) <= MOST_AT_ONCE:
@@ -165,7 +165,7 @@ def _command(clause: str) -> PlainCommand:
 
 
 def _is_plain(text: str, said: str, steps: list[tuple[PlainCommand, ...]]) -> bool:
-    """Whether the one command is the sentence itself, but for case and marks at its end."""
+    """Whether the only command equals the sentence, apart from case and final punctuation."""
     if len(steps) != 1 or len(steps[0]) != 1 or not steps[0][0].manner.plain:
         return False
     return _letters(steps[0][0].text) == _letters(said) == _letters(text)

@@ -1,4 +1,4 @@
-"""Words around a request, everyday phrases and the words that the model knows for others: three tables and their use."""
+"""Words around a request, everyday phrases, and synonyms that the model knows: three tables and their use."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _STORY = (
     .replace("|@ACT)*", ")*")
     .replace("@ACT", _ACT)
 )
-"""What a story before a request does not begin with: a command, an order of commands, a denial."""
+"""Beginnings that a story before a request does not have: a command, an order of commands, a denial."""
 _ASKS = (
     r"(?:(?:can|could|would|will|might) you|(?:might|may|could|can|must|should|would) (?:i|we) (?:please |just |kindly |also )*(?:trouble|ask|beg|request|invite|persuade|bother|get|have) you to|"
     r"(?:i|we) (?:(?:would|do|really|just|only|simply|also|am|was|were) )*wonder(?:ing)?(?: if| whether) you (?:would|could|might|can|will)|"
@@ -34,24 +34,24 @@ _ASKS = (
     r"(?:so|therefore|and|now) (?:please|kindly|just|do)|(?:so|and) be (?:so )?(?:kind|good|nice|an? \w+)(?: enough)?(?: as)? (?:to|and)|do (?:just|please|kindly)|please|go ahead and|why do not you|how about you|"
     r"let (?:me|us) see you|the time has come (?:for you )?to|it is (?:now )?time (?:for you )?to|your (?:job|task|turn|part) (?:now )?is (?:simply |just )?to|what about|how about)[, ]+"
 )
-"""Words that ask for something in the middle of a sentence."""
+"""Words that begin a request in the middle of a sentence."""
 _ALL = r"(?:,? (?:to )?(?:you|all|everyone|everybody|every one|guys|folks|people|kids|children|friends?|my friends?|ladies and gentlemen|team|class|lads|girls|boys|world|robot|there|again|now|then|for now|of you|too|sir|mister|grandma|grandpa|mum|dad|mom|me|us|please|very much|so much|today|tonight|right now))*"
-"""Who is spoken to after an everyday phrase, for its table."""
+"""Forms of address after an everyday phrase, for its table."""
 _HERE = r"(?: (?:in here|out here|here|outside|inside|out there|in there|over there|today|tonight|this (?:morning|evening|afternoon)|now|in this (?:room|place|house|hall)))*"
 _SO = r"(?:so |too |very |really |pretty |a bit |a little |quite |rather |awfully |terribly |getting |bloody |ever so |all |still )*"
 MOST_WORDS_OF_TALK = 8
-"""Most words of a sentence that its beginning alone says the gesture of."""
+"""Largest number of words in a sentence whose beginning alone decides the gesture."""
 _TALK = re.compile(
     r"(?![\w'-]| (?:is|are|was|were|what|how|why|when|where|can|could|would|will|do|does|did)\b)[^,.;:!?]*"
 )
 _GOES_ON = re.compile(
     r"(?:i|you|we|he|she|it|they|that|this|there|the|my|your|our|his|her|an?|what an?|so|very|not|everybody|everyone)\b|\w+$"
 )
-"""Beginnings of talk that asks for nothing: "quiet please, we are filming"."""
+"""Beginnings of talk without a request: "quiet please, we are filming"."""
 _NAMES_AN_ACT = re.compile(
     rf"\b(?:left|right|up|down|forwards?|backwards?|both|{LIMB}|head|eyes|shoulders?|body|then|but|not|never|while|before|after|\w+ly|twice|times)\b"
 )
-"""Words by which what follows asks for something of its own."""
+"""Words after which a request of its own follows."""
 _END, _MARKS = re.compile(r"[\s,.!?;:]+$"), re.compile(r"\s*[,.!?;:]+\s*")
 _WORD = re.compile(r"[a-z]{2,}")
 _JOINED_GERUND = re.compile(
@@ -74,21 +74,21 @@ def _frames() -> tuple[RuleTable, RuleTable]:
 
 @lru_cache(maxsize=REMEMBERED)
 def without_request(said: str) -> str:
-    """A sentence in lower case without the words around what it asks for; the sentence itself where nothing would be left.
+    """A sentence in lower case without the words around its request; the sentence itself where no word would remain.
 
     >>> without_request("could you please wave for me"), without_request("i would love it if you could bow")
     ('wave', 'bow')
     """
     rest, unchanged = said.strip(), 0
     tables = cycle(_frames())
-    while unchanged < len(_frames()):  # until no rule of either table finds anything more
+    while unchanged < len(_frames()):  # until no rule of either table matches
         shorter = _without(rest, next(tables))
         unchanged, rest = (unchanged + 1 if shorter == rest else 0), shorter
     return _gerund_request(rest)
 
 
 def _without(rest: str, table: RuleTable) -> str:
-    """What the first match of each rule in turn leaves of a request."""
+    """A request after removal of the first match of each rule in turn."""
     numbers = iter(table.possible(rest))
     while (number := next(numbers, None)) is not None:
         found = table.rules[number].pattern.search(rest)
@@ -118,7 +118,7 @@ def _is_verb(word: str) -> bool:
 
 @lru_cache(maxsize=REMEMBERED)
 def everyday(said: str) -> str:
-    """The plain command that an everyday phrase means, "" where it is none.
+    """The plain command that an everyday phrase means; "" for any other text.
 
     >>> everyday("say hello"), everyday("say hello to my little friend")
     ('wave your right hand', 'wave your right hand')
@@ -133,7 +133,7 @@ def everyday(said: str) -> str:
 
 
 def greeting(said: str) -> str:
-    """The plain command that the beginning of a short sentence means, whatever it talks of then; "" where it means none.
+    """The plain command that the beginning of a short sentence means, whatever follows; "" where it means none.
 
     >>> greeting("thank you for coming"), greeting("hello, raise your arm")
     ('bow politely', '')
@@ -157,7 +157,7 @@ def _names_an_act(talk: str) -> bool:
 
 
 def _said_again(bare: str) -> str:
-    """The command that each of several everyday phrases means: "shoo, go away"; "" where they mean different ones."""
+    """The common command of several everyday phrases: "shoo, go away"; "" where they mean different commands."""
     parts = [part for part in _MARKS.split(bare) if part] if _MARKS.search(bare) else []
     first = everyday(parts[0]) if len(parts) > 1 else ""
     return first if first and all(everyday(part) == first for part in parts[1:]) else ""
@@ -171,7 +171,7 @@ def _openings() -> RuleTable:
 
 @cache
 def _everyday() -> RuleTable:
-    """Everyday phrases, each line a whole."""
+    """Everyday phrases, one a line."""
     return RuleTable(
         Rule(re.compile(pattern.replace("@ALL", _ALL).replace("@HERE", _HERE).replace("@SO", _SO)), words)
         for pattern, words in pairs("everyday")
@@ -187,7 +187,7 @@ def _sentences() -> RuleTable:
 
 
 def restated(said: str) -> str:
-    """A sentence with its commands in the order in which they are done, and what is listed said in full.
+    """A sentence with its commands in order of execution and its lists written out.
 
     >>> restated("look up and down"), restated("end with a bow but clap before that")
     ('look up, then down', 'clap, then end with a bow')
@@ -196,5 +196,5 @@ def restated(said: str) -> str:
 
 
 def rewritten(clause: str) -> str:
-    """A clause with words that the model knows in place of others that mean the same."""
+    """A clause with synonyms replaced by words that the model knows."""
     return replaced(clause, substitutions("rewrites"))

@@ -1,4 +1,4 @@
-"""Marks between commands that are said without any: "wave bow clap" -> "wave, bow, clap", "once you have waved bow".
+"""Inserts punctuation between run-on commands: "wave bow clap" -> "wave, bow, clap", "once you have waved bow".
 
 Transcripts of speech and hasty messages have no commas. A command ends where a word that may end one ("left", "twice", a gesture)
 stands before a verb that begins one, or before a limb of its own ("left arm up right arm up").

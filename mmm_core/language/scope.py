@@ -49,9 +49,9 @@ _BETWEEN_CLAUSES = re.compile(
 )
 _LATIN_WORD = re.compile(r"[A-Za-z]{2,}")
 _CODE = re.compile(r"[{}<\\$|=]|(?<!-)>|://|\w\((?!s\))|\.\./|--\w")
-"""Signs of programs, addresses and paths, which sentences do not have."""
+"""Characters of programs, addresses and paths that do not occur in sentences."""
 MOST_CLAUSES, MOST_WORDS = 4, 30
-"""Most clauses and most words of a text that is judged clause by clause, so that a decision stays below 30 ms."""
+"""Largest number of clauses and of words in a text judged clause by clause, so that a decision takes less than 30 ms."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class ScopeIndex:
         commands: the known commands first, then texts out of scope.
         vectors: (N, D), in the same order.
         n_known: number of known commands.
-        classifier: None in checkpoints of before there was one; cosines decide then.
+        classifier: classifier of the scope; None in older checkpoints, in which cosines decide.
     """
 
     commands: list[str]
@@ -140,7 +140,7 @@ class ScopeIndex:
 
 
 def clauses_of(text: str) -> list[str]:
-    """The clauses of a text, in order; a text of one, of more than `MOST_CLAUSES` or `MOST_WORDS` gives none."""
+    """The clauses of a text, in order; empty for a single clause, or above `MOST_CLAUSES` or `MOST_WORDS`."""
     if len(text.split(None, MOST_WORDS)) > MOST_WORDS:
         return []
     parts = [part for part in _BETWEEN_CLAUSES.split(text.strip()) if _LATIN_WORD.search(part)]
@@ -164,7 +164,7 @@ def with_clauses(whole: ScopeVerdict, clauses: list[str], verdicts: list[ScopeVe
 
 
 def taken_clauses(whole: ScopeVerdict, verdicts: list[ScopeVerdict]) -> list[int]:
-    """The clauses that are carried out, by their numbers, given the verdicts on a text and on them."""
+    """Indices of the clauses that are carried out, given the verdicts on the text and on its clauses."""
     least = CLAUSE_KEPT_FROM if whole.status == "rejected" else CLAUSE_BELOW
     return [i for i, verdict in enumerate(verdicts) if verdict.score >= least]
 
