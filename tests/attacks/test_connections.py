@@ -17,7 +17,6 @@ from tests.attacks.zmtp import RawPeer, connected, frame
 from tests.support.harness import RunningDaemon
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
-CONNECTIONS = 1500
 STANDS = ("idle", "holding")
 """States of an armed robot that nobody moves; a daemon that an attack holds up for long lets it park, or ends in a fault."""
 MOST_GROWTH_BYTES = 500 << 20
@@ -57,14 +56,22 @@ def crowd(endpoint: str, n: int):
 
 
 @pytest.mark.parametrize(
-    ("running", "name"),
-    [("tcp", "cmd"), ("tcp", "ctl"), ("tcp", "pub"), ("tcp", "stream"), ("ipc", "cmd"), ("ipc", "ctl")],
+    ("running", "name", "n"),
+    [("tcp", "cmd", 1500), ("ipc", "ctl", 1500)]
+    + [("tcp", "ctl", 700), ("tcp", "pub", 700), ("tcp", "stream", 700), ("ipc", "cmd", 700)]
+    + [
+        pytest.param(transport, name, 1500, marks=pytest.mark.soak)
+        for transport, name in (("tcp", "ctl"), ("tcp", "pub"), ("tcp", "stream"), ("ipc", "cmd"))
+    ],
     indirect=["running"],
 )
-def test_1500_connections_to_a_socket_keep_no_new_client_out(running, name):
-    """They took every descriptor of the daemon in 0.7 s: no new client got in; over ipc libzmq aborted the daemon."""
-    with crowd(getattr(running.endpoints, name), CONNECTIONS) as sockets:
-        assert len(sockets) > 1000
+def test_many_connections_to_a_socket_keep_no_new_client_out(running, name, n):
+    """1500 took every descriptor of the daemon in 0.7 s: no new client got in; over ipc libzmq aborted the daemon.
+
+    Of a crowd of 700, more than a socket may keep, as many are shut.
+    """
+    with crowd(getattr(running.endpoints, name), n) as sockets:
+        assert len(sockets) > 2 * n / 3
         with running.client() as client:
             assert client.status().state in STANDS
             assert client.stop().verb == "stop"
