@@ -1,4 +1,4 @@
-"""Commands that a clause asks for at the same time, each for its own limbs: "left hand on your heart and salute with the right"."""
+"""Simultaneous commands of a clause, each for its own limbs: "left hand on your heart and salute with the right"."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _HAND_TO = re.compile(r"(?:your |the )?(?:left|right) (?:hand|arm) to\b")
 _BARE_LIMB = re.compile(
     rf"^(?:with )?(?:your |the |both |left |right |other )*(?:{LIMB}|head|body|eyes|face|chin|nose|mouth|ears?|cheeks?|neck|hair|forehead|shoulders?|chest|heart|belly|stomach|hips?|back|knees?)$"
 )
-"""A limb of which nothing is said is no command."""
+"""A limb without a verb or place is no command."""
 _LISTED = re.compile(r"\b(?:your|the|his|her|their|my|its|both) \w+$")
 _LISTED_NEXT = re.compile(
     r"(?:shoulders?|arms?|hands?|head|body|trunk|hips?|chest|elbows?)(?: (?:over|on|to|towards|against|for|from|with|at)\b|$)"
@@ -88,9 +88,9 @@ _RAISED_WITH = re.compile(
 
 
 def are_at_once(a: str, b: str, *, joined: bool = True) -> bool:
-    """Whether "a and b", or not `joined` "a, b", means both at the same time: on other limbs, with a pose or without a verb.
+    """Whether "a and b" (with `joined`) or "a, b" means both at once: different limbs, and a pose or no verb.
 
-    "nod and clap" is at once as well, "nod, clap" and "clap and bow" are in turn.
+    "nod and clap" is at once as well; "nod, clap" and "clap and bow" are successive.
     """
     moved = limbs_of(a), limbs_of(b)
     if not _apart(*moved):
@@ -103,7 +103,7 @@ def are_at_once(a: str, b: str, *, joined: bool = True) -> bool:
 
 
 def is_pose(clause: str) -> bool:
-    """Whether a command is a pose, which lasts as long as what is done beside it."""
+    """Whether a command is a pose, which lasts as long as the simultaneous command."""
     return bool(_POSE.match(clause)) and not _NO_POSE.match(clause)
 
 
@@ -114,7 +114,7 @@ def _apart(a: frozenset[str], b: frozenset[str]) -> bool:
 
 
 def divided(clause: str) -> list[str]:
-    """The commands of a clause that are done at the same time; one where there is only one.
+    """The simultaneous commands of a clause; a clause with one command gives that command.
 
     >>> divided("wave with your right hand while nodding")
     ['wave with your right hand', 'nod']
@@ -158,12 +158,12 @@ def divided(clause: str) -> list[str]:
 
 
 def goes_on(first: str, second: str) -> bool:
-    """Whether two parts are one command: the second is the way back, does something to what the first took, or shares its limb."""
+    """Whether two parts are one command: the second returns, acts on the object of the first, or shares its limb."""
     return bool(_SHARES.match(first) or _RETURNS.match(second) or (_TAKES.search(first) and _IT.search(second)))
 
 
 def _is_one_gesture(first: str, second: str) -> bool:
-    """Whether the second of two parts only goes on with the first, or is a part of its arm or what its arm got ready for."""
+    """Whether the second part continues the first, moves a part of its arm, or is the act that the first prepares."""
     if goes_on(first, second):
         return True
     a, b = limbs_of(first), limbs_of(second)
@@ -177,7 +177,7 @@ def _is_one_gesture(first: str, second: str) -> bool:
 
 
 def same_limbs(clause: str) -> list[str]:
-    """Two commands that a clause asks for at once of the same limbs, which can only follow each other; else the clause alone."""
+    """Two commands that a clause requests at once of equal limbs and that must follow each other; else the clause alone."""
     for pair, asked in _pairs(clause):
         first, second = (_imperative(part) for part in pair)
         a, b = limbs_named(first), limbs_named(second)
@@ -187,7 +187,7 @@ def same_limbs(clause: str) -> list[str]:
 
 
 def _pairs(clause: str) -> list[tuple[tuple[str, str], bool]]:
-    """Ways to part a clause in two, each with whether its words say that both are done at once."""
+    """Divisions of a clause into two parts, each with whether its words state that both are simultaneous."""
     found: list[tuple[tuple[str, str], bool]] = []
     if (lead := _LEADING.match(clause)) or (lead := _WITH_LEADING.match(clause)):
         found.append(((lead["first"], lead["second"]), True))
@@ -209,7 +209,7 @@ def _pairs(clause: str) -> list[tuple[tuple[str, str], bool]]:
 
 
 def _is_its_own_arm(clause: str, start: int) -> bool:
-    """Whether the arm in "... with your left arm overhead" is the one that the words before move: they name no other."""
+    """Whether the arm in "... with your left arm overhead" is the arm of the words before, which name no other."""
     raised, moved = _RAISED_WITH.match(clause, start), limbs_of(clause[:start])
     if moved & (ARMS | SOME_ARM) and _OWN_PARTS.match(clause, start):
         return True
@@ -280,7 +280,7 @@ def _freed(clause: str, other: frozenset[str]) -> str:
 
 
 def _there(clause: str, first: str) -> str:
-    """A clause with the way of the first in place of "there": "look there" beside "point to the left" -> "look to the left"."""
+    """A clause with "there" replaced by the direction of `first`: "look there" beside "point to the left" -> "look to the left"."""
     way = re.search(r"\b(?:to (?:the |your )?(?:left|right)|up|down|left|right)\b(?! (?:hand|arm))", first)
     found = re.match(
         r"(look|point)(?: (?:there|that way|over there|in that direction)(?: too)?| (?=with\b)|$)(?P<rest>.*)", clause

@@ -11,7 +11,7 @@ MOST = 12
 """Largest number read as a count: more strokes do not fit into a motion."""
 _WORDS = ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 NUMBERS = {word: i for i, word in enumerate(_WORDS, 1)} | {str(i): i for i in range(1, MOST + 1)}
-"""Number that a word or digits stand for."""
+"""Number by the word or the digits for it."""
 ADVERBS = {"once": 1, "twice": 2, "thrice": 3}
 """Adverbs that name a number of times by themselves."""
 _NUMBER = rf"({'|'.join(NUMBERS)})"

@@ -1,6 +1,6 @@
-"""What a clause leaves out, taken from the clause before it: "look left" + "right" -> "look right".
+"""Completes a clause with words that it omits, from the clause before it: "look left" + "right" -> "look right".
 
-Carried over are the verb, the limb and the side; "it" is the limb that was last named, "the other" the other side.
+The clause takes over verb, limb and side; "it" is the limb named last, "the other" the other side.
 """
 
 from __future__ import annotations
@@ -41,16 +41,16 @@ def with_sides(text: str) -> str:
 
 
 def is_manner(clause: str) -> bool:
-    """Whether a clause is nothing but words of manner: "slowly", which after a comma belong to the command before it."""
+    """Whether a clause has only words of manner, like "slowly"; after a comma they belong to the command before."""
     return bool(forms.ONLY_MANNER.match(clause))
 
 
 def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one branch for each form of ellipsis
-    """A clause with what it leaves out of the one before; None where it stands by itself.
+    """A clause completed with omitted words from the command before; None where the clause is complete.
 
     Args:
-        clause: in lower case, without words of order around it.
-        before: the command before it, itself completed.
+        clause: clause in lower case, without words of order around it.
+        before: the command before it, already completed.
 
     >>> completed("right", "turn your head left"), completed("with the other hand", "wave with your right hand")
     ('turn your head right', 'wave with your left hand')
@@ -205,7 +205,7 @@ def _with_limb(clause: str, before: str) -> str | None:
         )
         if inside is None:
             return None
-        named = side[1] if side else "right"  # the hand of a gesture of which no side is said
+        named = side[1] if side else "right"  # the default hand of a gesture without a side
         limb = inside["limb"] if inside["limb"] not in (None, "one") else side[2] if side else "hand"
         lead = "with " if inside[0].startswith(("with", "using")) else ""
         return f"{clause[: inside.start()]}{lead}your {OTHER[named]} {limb}{clause[inside.end() :]}"

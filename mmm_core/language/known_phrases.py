@@ -1,4 +1,4 @@
-"""Whether a text says no more than a phrase of the corpus, but for articles, sides, numbers, endings of words and courtesy.
+"""Whether a text equals a phrase of the corpus, apart from articles, sides, numbers, endings of words and courtesy.
 
 The scope classifier generalises, and so it refuses 0.6 % of the phrases that the model was trained with ("do a star jump") and
 doubts 2.3 %. A phrase of the corpus is in scope whatever the classifier says. Of each phrase the file holds a 32-bit hash, which a
@@ -18,7 +18,7 @@ from mmm_core.language.one_gesture import stem
 from mmm_core.language.word_tables import KNOWN_PHRASES_FILE
 
 FEWEST_LETTERS = 8
-"""Letters that a phrase has at least: a single short word is left to the classifier."""
+"""Least number of letters in a phrase: the classifier judges single short words."""
 _WORD = re.compile(r"[a-z']+|\d+")
 _SAYS_NOTHING = frozenset(
     (
@@ -26,11 +26,11 @@ _SAYS_NOTHING = frozenset(
         "some with using hand hands arm arms time times"
     ).split()
 ) | {*NUMBERS, *ADVERBS}
-"""Words that may be added to a command or left out of it, and the model still knows its gesture."""
+"""Words that a command may gain or lose without a change of its gesture."""
 
 
 def key_of(text: str) -> int | None:
-    """The hash of what a text says; None where that is too short.
+    """The hash of a text's significant words; None where they are too short.
 
     >>> key_of("Do five star jumps!") == key_of("a star jump"), key_of("nod")
     (True, None)
@@ -41,7 +41,7 @@ def key_of(text: str) -> int | None:
 
 
 def is_known_phrase(text: str) -> bool:
-    """Whether a text says no more than a phrase of the corpus."""
+    """Whether the significant words of a text are those of a phrase of the corpus."""
     key, known = key_of(text), _known()
     at = bisect_left(known, key) if key is not None else len(known)
     return at < len(known) and known[at] == key

@@ -1,4 +1,4 @@
-"""The words that a slip may mean, by their weighted distance to it: those of the gesture corpus, the commonest of English."""
+"""Candidates for a misspelled word, by weighted distance: words of the gesture corpus and the commonest words of English."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rapidfuzz.distance import OSA
 from mmm_core.language.word_tables import REMEMBERED, lines
 
 MOST_SLIPS = {3: 1, 4: 1, 5: 2}
-"""Letters of a word: greatest distance to the word that was meant; longer words 2."""
+"""Largest distance to the intended word, by number of letters; 2 for longer words."""
 _FIRST_LETTER, _EXCHANGED, _OTHER_KEY = 0.35, 0.25, 0.35
 """Weights: another first letter; two letters that change places, which costs less than one lost or added; one letter for another
 that is neither a neighbour on the keyboard nor a vowel for a vowel."""
@@ -26,19 +26,19 @@ _NEIGHBOURS = {
 }
 """Keys beside, above and below each key."""
 MEANT_AS_WELL, _OTHER_RARE = 4000, 1.3
-"""Commonest words of English that a slip is mended to where no word of the corpus is nearer, and how rare they are taken to be."""
+"""Number of common English words that a misspelling may be corrected to if no corpus word is nearer, and their rarity."""
 _RARE = 0.35
-"""Weight of how rare a word is in the corpus, from 0, the commonest, to 1."""
+"""Weight of a word's rarity in the corpus, which runs from 0, the commonest, to 1."""
 
 
 def nearest(word: str) -> tuple[float, str]:
-    """The corpus word nearest to a slip, with its weighted distance; infinity where none is near."""
+    """The weighted distance to the word nearest to a misspelling, and the word; infinity where none is near."""
     return near(word)[0] if near(word) else (math.inf, word)
 
 
 @lru_cache(maxsize=REMEMBERED)
 def near(word: str) -> tuple[tuple[float, str], ...]:
-    """Corpus words that may be meant by a slip, the nearest first, each with its weighted distance."""
+    """Candidates for a misspelling, the nearest first, each with its weighted distance."""
     most = MOST_SLIPS.get(len(word), 2)
     words, letters = _as_long(len(word), most)
     alike = np.flatnonzero(np.bitwise_count(letters ^ _letters_in(word)) <= 2 * most)
@@ -49,7 +49,7 @@ def near(word: str) -> tuple[tuple[float, str], ...]:
 
 @cache
 def rarity() -> dict[str, float]:
-    """How rare each word that a slip may mean is: in the corpus from 0 to 1, by the logarithm of its rank; others 1.3."""
+    """Rarity of each candidate: for corpus words 0 to 1, by the logarithm of the rank; for other words 1.3."""
     words = lines("corpus_words")
     other = dict.fromkeys(lines("english_words")[:MEANT_AS_WELL], _OTHER_RARE)
     return other | {word: math.log(i + 1) / math.log(len(words)) for i, word in enumerate(words)}
@@ -89,7 +89,7 @@ def _letters_in(word: str) -> int:
 
 
 def loaded(longest: int) -> None:
-    """Loads what slips of up to `longest` letters are looked up in."""
+    """Load the tables for misspellings of up to `longest` letters."""
     for n in range(3, longest + 1):
         _as_long(n, MOST_SLIPS.get(n, 2))
 

@@ -15,7 +15,7 @@ from re import _parser  # type: ignore[attr-defined]
 from typing import Any
 
 MOST_ALTERNATIVES = 400
-"""Alternatives of a pattern beyond which it is always tried."""
+"""Largest number of alternatives of a pattern; a pattern with more is always tried."""
 _SHARES = (
     (45, " th|the|he |you| yo|our|ur "), (30, "and|igh|ght| le|lef|eft|rig|nd | ha|th |han| ri"),
     (20, " wi|wit|ith|ht |ft | a |arm|ing| ar|t a| to|t h"),
@@ -36,7 +36,7 @@ def letters_of(text: str) -> frozenset[str]:
 
 
 def needed_letters(pattern: re.Pattern[str]) -> frozenset[str]:
-    """Trigrams of which every text has at least one in which the pattern is found; empty where the pattern asks for none.
+    """Trigrams of a pattern: every text that matches has at least one of them; empty where the pattern requires none.
 
     >>> sorted(needed_letters(re.compile("(?:clap|wave) your hands?")))
     ['cla', 'wav']
@@ -73,7 +73,7 @@ def _needed(parts: Iterable[Any]) -> Iterator[frozenset[str]]:
 
 
 def _best(found: list[frozenset[str]]) -> frozenset[str]:
-    """Of several sets of alternatives, all of which are needed, the one that rules out most texts."""
+    """The set of alternatives that excludes most texts, from several sets that a match all requires."""
     usable = [
         each for each in found if 0 < len(each) <= MOST_ALTERNATIVES and all(len(text) >= _SHORTEST for text in each)
     ]

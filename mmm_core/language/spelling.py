@@ -1,6 +1,6 @@
-"""Text as people type and speak it -> the same text in plain spelling: chat words, fillers, restarts, homophones and slips.
+"""Corrects the spelling of typed and spoken text: chat words, fillers, restarts, homophones and misspellings.
 
-Slips of single words are mended by `slips`.
+`slips` corrects misspellings of single words.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ _RESTART = re.compile(
 )
 _STUTTER = re.compile(r"\b(the|your|to|with|a|and|then|left|right|hand|arm|raise|turn|look|wave|lift|put|clap|nod|bow|shrug|point)(?:,|\.{2,}|-)? (?=\1\b)(?!\1 (?:and|then) \1)", re.IGNORECASE)  # fmt: skip
 _TWICE = re.compile(r"\b((?:\w+ ){2,}\w+) \1\b")
-"""A command said again in the same breath: "lift your right arm lift your right arm"."""
+"""A command repeated at once: "lift your right arm lift your right arm"."""
 _PAUSES = re.compile(rf"\b(?:{_FILLER}|i mean|sorry|no wait)\b")
-"""Words that a restart has."""
+"""Words that mark a restart."""
 _FILLERS = re.compile(
     rf"(?:^|(?<=[\s,.]))(?:{_FILLER}|(?<!do )(?<!did )you know(?! how\b)|i mean|kinda|sorta)(?:\s*,|\s*\.{{2,}})?(?:\s+|$)",
     re.IGNORECASE,
@@ -47,7 +47,7 @@ def _shortened(found: re.Match[str]) -> str:
 
 
 def mended(text: str) -> str:
-    """Text in lower case with chat words, fillers, restarts, homophones and slips mended; punctuation stays.
+    """Text in lower case with chat words, fillers, restarts, homophones and misspellings corrected; punctuation stays.
 
     >>> mended("bwo deeply pls"), mended("wave um wave your left hand"), mended("Rays your write hand")
     ('bow deeply please', 'wave your left hand', 'raise your right hand')
@@ -68,7 +68,7 @@ def mended(text: str) -> str:
 
 
 def _without_other_senses(said: str) -> str:
-    """A text with other words for "left" and "right" where these name no side: "what is left", "look right at me"."""
+    """A text with "left" and "right" replaced by synonyms where they name no side: "what is left", "look right at me"."""
     return replaced(said, substitutions("no_side")) if "left" in said or "right" in said else said
 
 
@@ -96,7 +96,7 @@ def _chat_word(token: str, words: dict[str, str]) -> str:
 
 
 def _taken_back(said: str) -> str:
-    """A text without what it takes back in the same breath: "left, I mean right" -> "right"."""
+    """A text without words that the speaker corrects at once: "left, I mean right" -> "right"."""
     return replaced(said, _corrections())
 
 

@@ -18,7 +18,7 @@ _COURTESY = frozenset(
     uh um want will with would you your yourself s is are re am m ll d
     """.split()
 )
-"""Words that change nothing about a text that means stopping; alone they mean nothing."""
+"""Words that leave the meaning of a stop unchanged and have no meaning alone."""
 
 _STOP_WORDS = frozenset(
     """
@@ -26,7 +26,7 @@ _STOP_WORDS = frozenset(
     hlat anhalten arrete alto basta fermati stoj stoi
     """.split()
 )
-"""Words that stop: the usual ones, their commonest slips, and what people of other languages call out."""
+"""Words that stop: the usual ones, their commonest misspellings, and calls in other languages."""
 
 _STOP_PHRASES = tuple(
     " ".join(phrase.split())
@@ -39,7 +39,7 @@ _STOP_PHRASES = tuple(
     of that
     """.split(",")
 )
-"""Phrases that stop, or that say no more than what is to stop."""
+"""Phrases that stop, or that only name the motion that is to stop."""
 
 _PHRASE = re.compile(rf"\b({'|'.join(sorted(_STOP_PHRASES, key=len, reverse=True))})\b")
 
@@ -55,7 +55,7 @@ _ACTIVITY = re.compile(
     r"\b(stop|stopp|cease|quit|halt|pause|cancel|enough|no more|dont keep|not keep) "
     r"(?:(?:it|with|of|the|that|all|your|now|please) )*([a-z]+ing)\b((?: (?!(?:stop|please|now|halt)\b)\w+)*)"
 )
-"""A word that stops, an activity, and what belongs to it: "stop waving your hand"."""
+"""A word that stops, an activity, and its object: "stop waving your hand"."""
 _NO_ACTIVITIES = frozenset(
     ("anything", "everything", "king", "nothing", "ring", "something", "string", "thing", "wing", "sling")
 )
@@ -64,7 +64,7 @@ _GOES_ON = re.compile(r"\b(and|then|but|instead|start|begin|rather|let|while|bef
 
 
 def means_stop(text: str) -> bool:
-    """Whether a text asks for nothing but to stop.
+    """Whether a text requests only a stop.
 
     >>> means_stop("Stop!!!"), means_stop("could you stop waving, please"), means_stop("make a stop sign")
     (True, True, False)
@@ -80,7 +80,7 @@ def means_stop(text: str) -> bool:
 
 
 def _stop_of(found: re.Match[str]) -> str:
-    """The word "stop" for a stop with its activity; the text itself where it goes on to something else."""
+    """The word "stop" for a stop with its activity; the matched text where another request follows."""
     activity, rest = found[2], found[3]
     if activity in _NO_ACTIVITIES or len(rest.split()) > _MOST_WORDS_OF_ACTIVITY or _GOES_ON.search(rest):
         return found[0]

@@ -1,4 +1,4 @@
-"""The word tables of `mmm_core/language/words`, read once when they are first needed."""
+"""The word tables of `mmm_core/language/words`, read once on first use."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ONE_GESTURE_FILE = _FOLDER.joinpath("one_gesture.txt")
 WORD_PAIRS_FILE = _FOLDER.joinpath("word_pairs.txt")
 
 REMEMBERED = 2048
-"""Words or sentences whose readings are kept by a cache; the longest unused goes."""
+"""Largest number of words or sentences in a cache of readings; the least recently used one is dropped."""
 WAY = "left|right|up|down|forwards?|backwards?|back"
 """Directions, for patterns of tables."""
 LIMB = r"(?:hands?|arms?|fists?|palms?|fingers?|elbows?|forearms?|biceps|thumbs?)"
@@ -66,10 +66,10 @@ class Rule(NamedTuple):
 
 
 class RuleTable:
-    """Rules in order, of which only those are tried whose letters a text has (`needed_letters`).
+    """Rules in order; only rules whose required letters occur in a text are tried (`needed_letters`).
 
     Args:
-        rules: compiled, in the order in which they are tried.
+        rules: compiled rules, in the order in which they are tried.
     """
 
     def __init__(self, rules: Iterable[Rule]) -> None:
@@ -86,7 +86,7 @@ class RuleTable:
         self._last: tuple[str, list[int]] = "", self._found("")
 
     def possible(self, text: str, after: int = -1) -> list[int]:
-        """Numbers of the rules after one that may be found in a text, in order."""
+        """Ascending indices of the rules beyond index `after` that may match a text."""
         last, found = self._last  # one tuple, so that threads never see the text of one and the numbers of another
         if last != text:
             self._last = text, (found := self._found(text))
@@ -105,9 +105,9 @@ def substitutions(name: str) -> RuleTable:
 
 
 def replaced(text: str, table: RuleTable) -> str:
-    """A text in which each rule in turn puts its words in place of its pattern.
+    """A text in which each rule in turn replaces its pattern by its words.
 
-    `sub` alone reads the words of a rule anew on every call, also where the pattern is not found.
+    A plain `sub` would parse the words of a rule on every call, even where the pattern does not match.
     """
     numbers = iter(table.possible(text))
     while (number := next(numbers, None)) is not None:
