@@ -66,7 +66,7 @@ _RETURNS, _OWN_PART = re.compile(rf"^{_any('returns')}"), re.compile(rf"^{_any('
 _SOMEBODY = rf"^(?:{_any('somebody')} )?"
 _SHARES, _PREPARES = re.compile(rf"{_SOMEBODY}{_any('shares')}$"), re.compile(rf"{_SOMEBODY}{_any('prepares')}\b")
 _TAKES, _IT = re.compile(rf"\b{_any('takes')}"), re.compile(rf"^{_any('it')}")
-_RESTS_AT = re.compile(rf"\b{_any('rests at')}\b")
+_RESTS_AT, _TO_AND_FRO = re.compile(rf"\b{_any('rests at')}\b"), re.compile(rf"^{_any('to and fro')}\b")
 _OTHER_HAND = re.compile(r"\bother (?:hand|arm|one)\b")
 _PLACE_FIRST = re.compile(
     r"^(?:directly |diagonally |straight )?(?:at|to|towards?|in|into|below|above|beside|from|(?:left|right|east|west)wards?) |"
@@ -167,7 +167,7 @@ def _is_one_gesture(first: str, second: str) -> bool:
     if goes_on(first, second):
         return True
     a, b = limbs_of(first), limbs_of(second)
-    if _PLACE_FIRST.match(second) or (a == SOME_ARM and _WAY_FIRST.match(second)):
+    if _PLACE_FIRST.match(second) or (a == SOME_ARM and _WAY_FIRST.match(second)) or _TO_AND_FRO.match(second):
         return True
     if not (a | b <= ARMS | SOME_ARM and SOME_ARM in (a, b)):
         return False

@@ -100,7 +100,7 @@ NO_COMMAND = _pattern(
     + _any(
         "I", "that", "this", "which", "me", "us", "him", "her", "them", "all", "a (?:moment|second|while|pause|beat)", "another",
         "the other", "each", "anything", "everything", "midnight", "noon", "you (?:go|start|begin|leave|do|answer|speak)",
-        rf"{_NUMBER} seconds?", "more", "once", "twice", "again",
+        rf"{_NUMBER} seconds?", "more", "once", "twice", "again", r"(?:show|start|begin|try|perform|mime|pretend|demonstrate|practi[sc]e)(?=\W*$)",
     )
     + r"\b"
 )  # fmt: skip

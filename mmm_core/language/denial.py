@@ -70,9 +70,13 @@ _GO_ON = re.compile(
     r"^(\W*(?:skip|forget|leave out|never mind|instead of|rather than) [^,]+?),? and (?:go (?:straight|right|directly) (?:to|on to|for)|just|do|give me|instead) "
 )
 _STOP_AND = re.compile(
-    r"^(\W*(?:please )?(?:stop|quit) \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
+    r"^(\W*(?:please )?(?:stop|quit) \w+ing\b[^,]*?),? and (?!\w+ing\b|(?:left|right|up|down|back|forth|forwards?|out|round)\b|(?:your |the |both |left |right )*(?:hands?|arms?|head|fingers?|fists?|shoulders?)$)(?=\w+ \w)"
 )
 """'Stop waving and clap your hands' asks for the second; 'stop waving and clapping' for neither."""
+_SAYS_NOT_TO = re.compile(
+    rf"^\W*(?:{_any('before')} )*(?:please )?(?:(?:do not|never) (?!(?:mind|rush|hurry|forget|stop|hesitate|worry)\b)\w|(?:stop|no|quit|avoid) \w+ing\b)"
+)
+"""A clause that asks for nothing, whatever it names: "do not warble on the recorder"."""
 _HAS_SIDE = re.compile(r"\b(?:left|right|both)\b")
 
 
@@ -91,7 +95,7 @@ class Denial:
     anything: bool = False
 
 
-def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each form of denial
+def without_denial(text: str) -> Denial:  # noqa: PLR0912, PLR0915  one branch for each form of denial
     """The text, in lower case and plain spelling, without what it denies.
 
     >>> without_denial("clap, but do not bow")
@@ -118,7 +122,8 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
                 text = re.sub(r"\b(left|right) one\b", rf"\1 {limb[0]}", text)
     rest: list[str] = []
     anything = False
-    for part in _BETWEEN.split(text):
+    parts = _BETWEEN.split(text)
+    for part in parts:
         clause = part.strip(" ,")
         if not clause:
             continue
@@ -133,6 +138,9 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
             if _is_act(what) or _IN_PLACE_OF.match(clause):
                 anything |= bool(re.search(r"\b(?:anything|everything|whatever)\b", clause))
                 denied.append(re.sub(r"\s+(?:is|are) (?:fine|ok|okay|good).*$", "", what))
+                continue
+            if _SAYS_NOT_TO.match(clause) and any(_is_act(p) and not _DENIES.match(p) for p in parts if p != part):
+                denied.append(what)
                 continue
         inline = None if _NO_DENIAL.match(clause) else _INLINE.search(clause)
         if inline and inline.start() > 0:

@@ -55,6 +55,8 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
     >>> completed("right", "turn your head left"), completed("with the other hand", "wave with your right hand")
     ('turn your head right', 'wave with your left hand')
     """
+    if forms.ONE_MORE.match(clause.strip(" ,.!")) and forms.SAID_TIMES.search(before):
+        return forms.SAID_TIMES.sub("once", before)
     if forms.AGAIN.match(clause.strip(" ,.!")):
         return before
     if (found := forms.ONLY_TIMES.match(clause.strip(" ,.!"))) and not re.match(r"(?:some|many|other)", clause):

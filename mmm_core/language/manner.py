@@ -21,7 +21,7 @@ _GESTURES = (
     "glances?|looks?|rolls?|presses|press|push(?:es)?|pulls?|raises?|lifts?)"
 )
 """Nouns of gestures that an adjective of size may precede."""
-_VERY = r"(?:(?:ever so|oh so|very|really|real|dead|proper|bloody|insanely|crazy|ridiculously|painfully|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|way) )*"
+_VERY = r"(?:(?:ever so|oh so|very|really|real|dead|proper|bloody|insanely|crazy|ridiculously|painfully|super|extremely|so|incredibly|ultra|extra|terribly|awfully|quite|pretty|rather|a bit|a little|as|nice and|oh so|much|(?<!the )(?<!your )(?<!this )(?<!that )way) )*"
 _STRONG = re.compile(
     r"\b(?:ever so|very|really|dead|insanely|ridiculously|painfully|super|extremely|incredibly|ultra|extra|terribly|awfully|much|way|oh so)\b"
 )
@@ -30,7 +30,7 @@ _NUMBER = (
     r"(a couple of|a few|several|half a|a|\d+(?:\.\d+)?|" + "|".join(word for word in NUMBERS if word.isalpha()) + ")"
 )
 _HOLD = re.compile(
-    r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping|stays?|staying|remains?|freezes?|waits?|rests?|leaves?|pauses?)"
+    r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping|stays?|staying|remains?|freezes?|waits?|waiting|rests?|leaves?|pauses?)"
     r"(?: (?:it|them|that|this|there|still|so|like (?:that|this)|the (?:pose|position)|your (?:pose|position)|that (?:pose|position)|up|down|in place|"
     r"(?:your|the) (?:left |right )?(?:hand|arm|head)s?))*\s+)?"
     rf"(?:(?:for|about|exactly|at least|around|all of|a full|another) )*(?<!\bin )(?<!\bwithin )(?<!\bafter )(?<!\bevery ){_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
@@ -49,11 +49,11 @@ _BEFORE_MARK = re.compile(r"\s+([,.])")
 _AT_ENDS = re.compile(r"^(?:and|but)\s+|[\s,.]+(?:and|but)?[\s,.]*$|^[\s,.]+")
 _TWICE_AND = re.compile(r"\s+(?:and|but)(?=,? (?:and|but)\b)")
 _AFTER_ARTICLE = re.compile(r"\b(an?|the|one|your), +(?=\w)")
-_A_VOWEL = re.compile(r"\ba (?=[aeiou])(?!u\w*[aeiou])")
-_A_CONSONANT = re.compile(r"\ban (?=[b-df-gj-np-tv-z])")
+_A_VOWEL = re.compile(r"\ba (?=[aeiou])(?!u\w*[aeiou]|(?:u|eu\w+|ones?|once)\b)")
+_A_CONSONANT = re.compile(r"\ban (?=[b-df-gj-np-tv-z])(?![flmnrsx]\b)")
 _READS, _HIGH = re.compile(r"[a-z]{2,}"), re.compile(r"\b(?:up|high|in the air|overhead)\b")
 _WAVE_NEXT, _NEXT_WORD = re.compile(r"\s*waves?\b"), re.compile(r"\s+(\w+)")
-_ADJECTIVES = frozenset("fast quick slow gentle rapid brisk swift faster slower quicker".split())
+_ADJECTIVES = frozenset("fast quick slow gentle rapid brisk swift hasty hurried faster slower quicker".split())
 _AFTER_ADJECTIVE = re.compile(
     _GESTURES
     + "|(?:clapp|wav|nodd|bow|shak|shrugg|punch|drumm|danc|point|salut|box|tapp|knock|flapp|sway)ing"

@@ -17,6 +17,11 @@ _ACT = (
     r"play|act|show|strike|flex|lower|put|hold|shade|celebrate|throw|welcome|thank|say|tell|hush|call|flex|pretend|move|bring|let us see you|sway|duck|facepalm|signal|hammer|paint|brush|drum|box|drink|eat|pour|kiss|listen|yawn|climb|swim|steer|type|juggle|flip|rotate|rock|slump|relax|drop|place|"
     r"extend|straighten|uncross|roll|bob|wag|tip|incline|motion|gesture|indicate|demonstrate|perform|imitate|mime|box|jab|row|saw|sow|stand)\b"
 )
+_MANNER = (
+    "(?:slow|quick|fast|gentle|rapid|brisk|swift|hasty|small|little|tiny|slight|big|large|huge|wide|deep|short|brief|single|left|right|"
+    "good|nice|proper|long|strong|\\w+est)"
+)
+"""Adjectives that stay what they are before a verb: "a slow shake of the head", but not "an incredulous" one."""
 _STORY = (
     (
         r"(?!(?:please |now |and |then |ok(?:ay)?,? |robot,? |first,? |@ACT)*(?:@ACT|hands?\b|arms?\b|head\b|(?:your|both|left|right|the (?:left|right))\b|"
@@ -181,7 +186,7 @@ def _everyday() -> RuleTable:
 @cache
 def _sentences() -> RuleTable:
     return RuleTable(
-        Rule(re.compile(pattern.replace("@ACT", _ACT).replace("@WAY", f"({WAY})")), words)
+        Rule(re.compile(pattern.replace("@ACT", _ACT).replace("@WAY", f"({WAY})").replace("@MANNER", _MANNER)), words)
         for pattern, words in pairs("sentences")
     )
 

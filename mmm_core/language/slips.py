@@ -165,7 +165,7 @@ def _is_right(word: str) -> bool:
     ending = _ENDINGS.search(word)
     stem = word[: ending.start()] if ending else ""
     if ending is not None and ending[0] in ("s", "es") and stem[-1:] == "s":
-        return False
+        return ending[0] == "es" and f"{stem}e" in _right()  # "looses"
     if (
         ending is not None
         and ending[0] == "es"

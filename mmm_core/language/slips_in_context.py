@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable
 from functools import cache, lru_cache
 
+from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.word_tables import REMEMBERED, lines, pairs
 
 KEY_WORDS = 540
@@ -22,7 +23,7 @@ _ARTICLES = frozenset("a an the my your this that these his her our their some a
 _BEFORE_VERBS = frozenset(
     (
         "^ and then please to you robot now but or not just also next while can could would will first kindly i we they he she "
-        "person man woman someone somebody"
+        "person man woman someone somebody character human figure humanoid lady boy girl child"
     ).split()
 )
 _STAYS = frozenset(
@@ -59,7 +60,7 @@ def mended_in_context(
             continue
         if not is_right(word):
             words[i] = _expected(near(word), before, after, 1) or word
-        elif before not in _ARTICLES and word not in _key_words() and word not in _STAYS:
+        elif before not in _ARTICLES and word not in _key_words() and word not in _STAYS and not is_gesture_verb(word):
             meant = _expected(near(word) if is_rare(word) else _key_words_near(word), before, after, 2)
             if meant and (before not in _BEFORE_VERBS or (meant in _WAYS and before != "^")):
                 words[i] = meant

@@ -15,7 +15,7 @@ from mmm_core.language.reading import read
         ("no need to wave, a nod is plenty", "a nod"),
         ("let them know you can't hear", "cup your right ear"),
         ("let him know you saw him", "nod your head"),
-        ("knock on the door twice, wait, and once more", "knock on the door twice > knock on the door twice"),
+        ("knock on the door twice, wait, and once more", "knock on the door twice > knock on the door once"),
         ("I don't know if you can do this but try leaning to your right", "lean to the right"),
         ("bring your right hand to your mouth, cough, and lower it",
          "bring your right hand to your mouth > cough with your right hand > lower your right hand"),
