@@ -146,7 +146,7 @@ LEANS = _pattern(
     )
     + r"\b)|\b(?:stays?\s+still|rests)\b"
 )  # fmt: skip
-"""Beginnings of clauses that mean nothing without the command before them."""
+"""Beginnings of clauses that depend on the command before them."""
 SUBJECT = _pattern(r"^(?:it|he|she|they)\s+(?=\w+s\b)")
 AT_ONCE = _pattern(
     r"\b"

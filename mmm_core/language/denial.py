@@ -1,8 +1,7 @@
-"""What a text says not to do: "clap, but do not bow" -> "clap", denied "bow".
+"""Denials in a text: "clap, but do not bow" -> "clap", denied "bow".
 
-A clause is a denial when it begins with words of denial and goes on with an act, a side or a direction; "no idea", "do not
-worry" and "do not stop waving" are none. A denied side names the other one: "wave without your left hand" is done with the
-right.
+A clause is a denial if it begins with words of denial and continues with an act, a side or a direction; "no idea", "do not worry" and
+"do not stop waving" are no denials. A denied side selects the other one: "wave without your left hand" means the right hand.
 """
 
 from __future__ import annotations
@@ -85,9 +84,9 @@ class Denial:
     """A text without its denials.
 
     Attributes:
-        rest: what is to be done; empty where nothing is left.
-        denied: what is not to be done, as it is said.
-        anything: whether anything else may be done: "anything but a bow".
+        rest: requested part of the text; empty where nothing remains.
+        denied: denied acts, in the words of the text.
+        anything: whether the text requests any other act: "anything but a bow".
     """
 
     rest: str
@@ -171,7 +170,7 @@ def _as_it_was(text: str, rest: list[str]) -> str:
 
 
 def _is_said_again(clause: str, before: list[str]) -> bool:
-    """Whether a clause says nothing that one before does not: "hammer" after "hammer with the left hand"."""
+    """Whether an earlier clause contains this clause: "hammer" after "hammer with the left hand"."""
     return any(set(clause.split()) <= set(earlier.split()) for earlier in before)
 
 
@@ -186,6 +185,6 @@ def _is_act(what: str) -> bool:
 
 
 def _with_side(clause: str, side: str) -> str:
-    """A clause that names no side with the hand of a side."""
+    """A clause without a side, completed with the hand of `side`."""
     named, n = re.subn(r"\b(your|the|a|an|one) (hand|arm|fist)\b", rf"your {side} \2", clause, count=1)
     return named if n else f"{clause} with your {side} hand"

@@ -1,4 +1,4 @@
-"""Patterns of what a clause leaves out, for `mmm_core.language.ellipsis`.
+"""Patterns of clauses with omitted words, for `mmm_core.language.ellipsis`.
 
 Clauses are in lower case and have no words of order around them.
 """

@@ -15,7 +15,7 @@ _DOUBLED = re.compile(r"^[^aeiou]*(?:qu)?[aeiou][bdgklmnprtv]$")
 _SPELLINGS = (("forward", "forwards"), ("backward", "backwards"), ("upwards", "upward"), ("downwards", "downward"), ("towards", "toward"), ("favourite", "favorite"), ("colour", "color"), ("practise", "practice"), ("rhythm", "rythm"))  # fmt: skip
 """British and American (and one common slip); the first is what the patterns say."""
 _NEVER_MISSPELT = ("instead", "without", "leave", "keep", "rests", "rather", "stop", "said")
-"""Words on which the sense of a contrast hangs."""
+"""Words that decide the sense of a contrast."""
 
 
 @cache

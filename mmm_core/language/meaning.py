@@ -30,7 +30,7 @@ class Meanings:
     """Known commands with the side, direction and number that each names.
 
     Args:
-        commands: N of them.
+        commands: N known commands.
     """
 
     def __init__(self, commands: Sequence[str]) -> None:

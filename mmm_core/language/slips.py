@@ -1,8 +1,7 @@
-"""Slips of the finger and of the pen: a word that is not spelt right, or stands where it hardly can, and the word that was meant.
+"""Corrects misspelled words, and words that are unlikely in their place, to the intended words.
 
-A word that is spelt right stays: every word of the corpus, and the 40,000 commonest of English. A slip is mended to the
-nearest corpus word by optimal string alignment, a Damerau-Levenshtein distance (rapidfuzz, MIT); of equally near words to the
-one that the corpus says most.
+Correctly spelled words stay: every word of the corpus, and the 40,000 commonest of English. A misspelling becomes the nearest corpus
+word by optimal string alignment, a Damerau-Levenshtein distance (rapidfuzz, MIT); among equally near words the most frequent one.
 """
 
 from __future__ import annotations
@@ -18,11 +17,11 @@ from mmm_core.language.slips_in_context import mended_in_context
 from mmm_core.language.word_tables import REMEMBERED, lines
 
 SURE_ENOUGH = 1.2
-"""Greatest weighted distance where no word at all is spelt right, as in texts of other languages."""
+"""Largest weighted distance of a correction in a text without any correctly spelled word, as in texts of other languages."""
 ONE_SLIP = 1.5
-"""Greatest weighted distance between two words that are both spelt right, of which one is a slip of the other."""
+"""Largest weighted distance between two correctly spelled words of which one may be a misspelling of the other."""
 NEAR_ENOUGH = 1.7
-"""Greatest weighted distance of a slip to its word."""
+"""Largest weighted distance from a misspelling to its correction."""
 _WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
 _ENDINGS = re.compile(r"(?:ing|ed|er|es|s|ly)$")
 _DOUBLED = re.compile(r"[aeiou]([bdgklmnprt])\1$")
@@ -31,11 +30,11 @@ _GLUES = frozenset(
         "your the both with left right forward back over out me hand hands arm arms head and then to me up down please twice times slowly fast"
     ).split()
 )
-"""Words that are typed together with the next or the one before."""
+"""Words that are often typed without the blank before or after them."""
 COMMONEST = 6000
-"""Words of English that stay in the place of a limb or a verb, "conduct your band"."""
+"""Number of commonest English words that stay in the place of a limb or a verb: "conduct your band"."""
 NOT_RARE, _SELDOM = 20_000, 0.95
-"""Words of English that are not very rare, and how rare a word of the corpus is that may be taken for a slip all the same."""
+"""Number of English words that count as not very rare, and the rarity from which a corpus word may still be a misspelling."""
 _LIMB_PLACE = re.compile(r"(\b(?:your|both) (?:left |right |both )?|\b(?:left|right) (?=\w+$))([a-z]{3,})\b")
 _LIMBS = ("hands", "hand", "arms", "arm", "head", "shoulders", "eyes", "ears", "hips", "chest", "heart", "fist", "face")
 _VERBS = tuple(
@@ -46,11 +45,11 @@ _VERBS = tuple(
 )
 _SHORT = frozenset("a i an the to of in on at by it is as or and up my me we us so no do go he be if am".split())
 _COMMON = 0.72
-"""How rare the words may be of a command in which every word is a slip: among the commonest 540 of the corpus."""
+"""Largest rarity of the words in a command whose words are all misspelled: the commonest 540 words of the corpus."""
 
 
 def without_slips(said: str) -> str:
-    """A text in lower case with its slips mended.
+    """A text in lower case with its misspellings corrected.
 
     >>> without_slips("shurg yourleft shoulder"), without_slips("move it for ward")
     ('shrug your left shoulder', 'move it forward')
@@ -75,7 +74,7 @@ def _in_their_place(said: str) -> str:
 
 @lru_cache(maxsize=REMEMBERED)
 def _one_slip_from(word: str, meant: tuple[str, ...]) -> str:
-    """The only one of some words that a rare word is one slip from; the word itself where it is common or none is near.
+    """The only candidate in `meant` one slip from a rare word; the word itself where it is common or no candidate is near.
 
     >>> _one_slip_from("lein", ("lean", "lower")), _one_slip_from("leap", ("lean", "lower"))
     ('lean', 'leap')
@@ -104,7 +103,7 @@ def _stays() -> frozenset[str]:
 
 @lru_cache(maxsize=REMEMBERED)
 def _is_rare(word: str) -> bool:
-    """Whether a word that is spelt right is very rare, in English and in the corpus."""
+    """Whether a correctly spelled word is very rare, in English and in the corpus."""
     return word in _very_rare() and rarity().get(word, 1.0) > _SELDOM
 
 
@@ -181,7 +180,7 @@ def _is_right(word: str) -> bool:
 
 @lru_cache(maxsize=REMEMBERED)
 def mended_word(word: str) -> str:
-    """The word, or the corpus word that it is a slip of.
+    """The word, or the corpus word that it is a misspelling of.
 
     >>> mended_word("shurg"), mended_word("hnads"), mended_word("Grandma"), mended_word("tango")
     ('shrug', 'hands', 'Grandma', 'tango')

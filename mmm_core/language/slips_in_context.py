@@ -17,7 +17,7 @@ from mmm_core.language.word_tables import REMEMBERED, lines, pairs
 KEY_WORDS = 540
 """Commonest words of the corpus, for which other words of English are taken to be slips."""
 EXPECTED = 0.35
-"""By how much a word is nearer for each of its neighbours that expects it."""
+"""Weighted distance that a candidate gains for each neighbour that expects it."""
 _TOKEN = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
 _ARTICLES = frozenset("a an the my your this that these his her our their some any at".split())
 _BEFORE_VERBS = frozenset(
@@ -33,7 +33,7 @@ _STAYS = frozenset(
         "one two three four five six seven eight nine ten eleven twelve"
     ).split()
 )
-"""Words by which the sense of a sentence hangs; they are never taken for slips."""
+"""Words that decide the sense of a sentence; they never count as misspellings."""
 _WAYS = frozenset("left right up down back forward then".split())
 """Words that are taken to be meant even where a verb may stand, which can be any."""
 
@@ -44,13 +44,13 @@ def mended_in_context(
     is_rare: Callable[[str], bool],
     near: Callable[[str], list[tuple[float, str]]],
 ) -> str:
-    """A text in lower case whose unlikely words are replaced by those that were meant.
+    """A text in lower case with its unlikely words replaced by the intended words.
 
     Args:
         said: the text.
-        is_right: whether a word is spelt right.
-        is_rare: whether it is so rare that any word of the corpus may be meant, where both neighbours expect it.
-        near: words that may have been meant by a word, each with its weighted distance.
+        is_right: whether a word is spelled correctly.
+        is_rare: whether a word is so rare that any corpus word that both neighbours expect may replace it.
+        near: candidates for a word, each with its weighted distance.
     """
     found = list(_TOKEN.finditer(said))
     words = ["^", *(m[0] for m in found), "$"]
