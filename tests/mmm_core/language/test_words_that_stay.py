@@ -58,6 +58,12 @@ def words(sentence: str) -> list[str]:
         ("left uppercut, right uppercut", ["left uppercut", "right uppercut"]),
         ("nod three times, then once more", ["nod three times", "nod once"]),
         ("nod, then once more", ["nod", "nod"]),
+        ("clap twice, then with your left hand wave", ["clap twice", "wave with your left hand"]),
+        ("wave, then with the other hand", ["wave", "wave with your left hand"]),
+        ("the crowd can't see you so raise both arms", ["raise both arms"]),
+        ("do not lean so far", []),
+        ("give him a little wave", ["wave your right hand"]),
+        ("lean a little to the left", ["lean to the left"]),
         ("one arm up, then the other", ["raise your right hand", "raise your left hand"]),
     ],
 )
