@@ -94,7 +94,7 @@ class Denial:
     anything: bool = False
 
 
-def without_denial(text: str) -> Denial:  # noqa: PLR0912, PLR0915  one branch for each form of denial
+def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each form of denial
     """The text, in lower case and plain spelling, without what it denies.
 
     >>> without_denial("clap, but do not bow")
@@ -112,13 +112,7 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912, PLR0915  one branch f
     leaves = len(denied)
     side = "" if not leaves else "left" if "left" in denied[-1] else "right"
     text = _KEEP_STILL.sub(" ", text).strip(" ,")
-    for pattern in (_ONE_HAND_FOR_THE_OTHER, _GERUND_CLAUSE, _GERUND_FIRST, _NOT_A_BUT_B):
-        found = pattern.match(text)
-        if found and (_IN_PLACE_OF.match(found[0]) or _is_act(found["what"])):
-            denied.append(found["what"].strip())
-            text = found["rest"] if "rest" in pattern.groupindex else text[found.end() :]
-            if limb := re.search(r"\b(hand|arm|fist|leg)\b", found["what"]):
-                text = re.sub(r"\b(left|right) one\b", rf"\1 {limb[0]}", text)
+    text = _without_opening_denials(text, denied)
     rest: list[str] = []
     anything = False
     parts = _BETWEEN.split(text)
@@ -161,6 +155,18 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912, PLR0915  one branch f
     if side and joined and not _HAS_SIDE.search(joined):
         joined = _with_side(joined, OTHER[side])
     return Denial(joined, tuple(denied), anything)
+
+
+def _without_opening_denials(text: str, denied: list[str]) -> str:
+    """The text without a denial that it begins with: "instead of waving, bow". The denied words are added to `denied`."""
+    for pattern in (_ONE_HAND_FOR_THE_OTHER, _GERUND_CLAUSE, _GERUND_FIRST, _NOT_A_BUT_B):
+        found = pattern.match(text)
+        if found and (_IN_PLACE_OF.match(found[0]) or _is_act(found["what"])):
+            denied.append(found["what"].strip())
+            text = found["rest"] if "rest" in pattern.groupindex else text[found.end() :]
+            if limb := re.search(r"\b(hand|arm|fist|leg)\b", found["what"]):
+                text = re.sub(r"\b(left|right) one\b", rf"\1 {limb[0]}", text)
+    return text
 
 
 def _as_it_was(text: str, rest: list[str]) -> str:
