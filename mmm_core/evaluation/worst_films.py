@@ -44,7 +44,7 @@ def read_ranking(path: Path) -> Ranking:
 
 
 def make_worst(engine: Engine, ranking: Ranking, out: Path) -> list[Path]:
-    """Write films of the families to `out`, each of the first held-out case that fits into a clip, and their page; returns the files."""
+    """Write to `out` a film of each family's first held-out case that fits into a clip, and their page; returns the files."""
     written: list[Path] = []
     lines: list[str] = []
     for name, share in ranking.worst:
