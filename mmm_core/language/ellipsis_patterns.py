@@ -33,7 +33,7 @@ AGAIN = re.compile(
 )
 ANOTHER = re.compile(r"^(?:and |then |now )*(?:again|once more|another(?: one)?|one more(?: time)?|the same again)$")
 ONE_MORE = re.compile(r"^(?:and |then |now )*(?:once more|(?:one|another) more(?: time)?|another(?: one)?)$")
-"""What after "three times" is one time: "nod three times, wait, and once more"."""
+"""A clause that asks for one more stroke of a command that names a number: "nod three times, wait, and once more"."""
 ONLY_MANNER = re.compile(
     r"^(?:but |and |only )*(?:(?:a (?:bit|little|lot)|much|very|really|even|more|again) )*(?:slow(?:ly|er)?|fast(?:er)?|quick(?:ly|er)?|gently|softly|big(?:ger)?|small(?:er)?|large(?:r)?|wide(?:r|ly)?|deep(?:er|ly)?)$"
 )

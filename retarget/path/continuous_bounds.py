@@ -42,7 +42,7 @@ class Known:
         return Known(self.centre, self.turn, self.distance[:, pairs], self.apart[:, pairs])
 
     def and_also(self, more: Known) -> Known:
-        """These poses, followed by the poses of `more`."""
+        """The distances of these poses, then those of the poses in `more`."""
         return Known(*(np.concatenate([getattr(self, f.name), getattr(more, f.name)]) for f in fields(self)))
 
 

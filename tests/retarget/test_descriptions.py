@@ -34,8 +34,6 @@ def test_a_mesh_that_is_there_keeps_its_shape(tmp_path: Path) -> None:
 
 
 MIMIC = '<equality><joint joint1="left_elbow" joint2="left_roll" polycoef="0 1 0 0 0"/></equality>'
-
-
 LOOP = '<equality><connect body1="left_fore" body2="right_fore" anchor="0 0 0"/></equality>'
 
 
@@ -47,7 +45,7 @@ def test_two_listed_joints_of_which_one_follows_are_refused(tmp_path: Path) -> N
 
 
 def test_a_follower_in_the_arm_that_is_not_listed_is_refused(tmp_path: Path) -> None:
-    """Its leader alone would leave the forearm where it is in the zero pose: a wrong angle."""
+    """If only the leading joint were listed, the forearm would keep its angle of the zero pose, which is wrong."""
     robot_file = proposed(tmp_path, two_arms())
     text = robot_file.read_text()
     start = text.index('[[joint]]\nname = "left_elbow"')

@@ -10,8 +10,6 @@ import pytest
 from sim.faults import Fault
 from tests.support.servo_bench import TICK_RAD, Bench
 
-# Motion.
-
 
 @pytest.mark.parametrize("name", ["XM430-W350", "XL330-M288", "XL430-W250", "XM540-W270"])
 def test_without_profile_it_reaches_the_manuals_no_load_speed_and_no_more(name: str) -> None:

@@ -134,7 +134,7 @@ def read_topic(path: Path, topic: str, schema_name: str) -> list[tuple[int, dict
 
 
 def assert_fits(schema: dict, value: object) -> None:
-    """What JSON schema says of objects, arrays, numbers and strings."""
+    """Assert that a value fits a JSON schema of objects, arrays, numbers and strings."""
     kinds = {"object": dict, "array": list, "string": str, "integer": int, "number": (int, float)}
     assert isinstance(value, kinds[schema["type"]]), (schema, value)
     if schema["type"] == "object":

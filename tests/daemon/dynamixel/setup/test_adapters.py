@@ -25,11 +25,8 @@ from tests.support.factory_bus import ROBOT
 pytestmark = pytest.mark.realtime
 
 
-# Adapter.
-
-
 def sysfs(root: Path, tty: str, serial: str, latency: str = "16") -> None:
-    """What Linux shows of an FTDI adapter."""
+    """Write the files below `root` by which Linux describes an FTDI adapter."""
     usb = root / "devices" / f"usb-{tty}-{serial}"
     port = usb / "1.0" / tty
     port.mkdir(parents=True, exist_ok=True)

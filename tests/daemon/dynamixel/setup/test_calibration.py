@@ -16,9 +16,6 @@ from tests.support.factory_bus import ROBOT, wired
 pytestmark = pytest.mark.realtime
 
 
-# Calibration.
-
-
 def test_positions_are_unwrapped_over_the_turn() -> None:
     ranges = Ranges(np.array([4000, 100, 500], np.int32), np.array([4096, 4096, 1 << 30], np.int32))
     ok = np.ones(3, bool)
