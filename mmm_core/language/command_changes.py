@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from mmm_core.errors import MmmError
 from mmm_core.language.at_once import is_pose
 from mmm_core.language.commands import PlainCommand, Reading, Steps
-from mmm_core.language.count_words import ADVERBS, NUMBERS
+from mmm_core.language.count_words import NUMBERS, SAID_TIMES
 from mmm_core.language.ellipsis import OTHER
 from mmm_core.language.inflection import singular
 from mmm_core.language.limbs import ARMS, SOME_ARM, limbs_of
@@ -29,9 +29,6 @@ _OTHER_WAY = OTHER | {"backward": "forward", "backwards": "forward", "upwards": 
     "upward": "downward", "downward": "upward"}  # fmt: skip
 _ONE_ARM = re.compile(
     r"\b(?:(?:your|the|a|one) )?(?:(?:left|right) )?(?P<limb>hand|arm|fist|palm)\b(?! ?shake)", re.IGNORECASE
-)
-_SAID_TIMES = re.compile(
-    rf"\b(?:(?:{'|'.join(NUMBERS)})(?: times|x)|{'|'.join(ADVERBS)}|(?:one|a single) time)\b(?: in a row)?"
 )
 _COUNTED_NOUN = re.compile(rf"\b(?:{'|'.join(NUMBERS)}) (?=(?:\w+ )?\w+s\b)")
 
@@ -151,7 +148,7 @@ def with_times(steps: Steps, times: int) -> tuple[Steps, int]:
     if sum(map(len, steps)) > 1 or is_pose(only.text):
         return steps, times
     number = {1: "once", 2: "twice"}.get(times, f"{_word(times)} times")
-    words, n = _SAID_TIMES.subn(number, only.text, count=1)
+    words, n = SAID_TIMES.subn(number, only.text, count=1)
     if not n and (nouns := _COUNTED_NOUN.search(only.text)):  # "give me two nods"
         words, n = f"{only.text[: nouns.start()]}{{N}} {only.text[nouns.end() :]}", 1
         words = singular(words) if times == 1 else words.replace("{N}", _word(times))

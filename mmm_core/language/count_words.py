@@ -14,6 +14,10 @@ NUMBERS = {word: i for i, word in enumerate(_WORDS, 1)} | {str(i): i for i in ra
 """Number by the word or the digits for it."""
 ADVERBS = {"once": 1, "twice": 2, "thrice": 3}
 """Adverbs that name a number of times by themselves."""
+SAID_TIMES = re.compile(
+    rf"\b(?:(?:{'|'.join(NUMBERS)})(?: times?|x)|a single time|{'|'.join(ADVERBS)})\b(?: in a row)?"
+)
+"""A number of times in a command in lower case: "three times in a row", "2x", "once"."""
 _NUMBER = rf"({'|'.join(NUMBERS)})"
 _NOT_STROKES = (
     "arms?|hands?|fists?|palms?|fingers?|thumbs?|eyes?|ears?|elbows?|shoulders?|wrists?|knees?|legs?|feet|foot|heads?|sides?|"

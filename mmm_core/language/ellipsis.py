@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 
 from mmm_core.language import ellipsis_patterns as forms
+from mmm_core.language.count_words import SAID_TIMES
 from mmm_core.language.manner import manner_of
 
 OTHER = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "back", "back": "forward",
@@ -55,13 +56,13 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
     >>> completed("right", "turn your head left"), completed("with the other hand", "wave with your right hand")
     ('turn your head right', 'wave with your left hand')
     """
-    if forms.ONE_MORE.match(clause.strip(" ,.!")) and forms.SAID_TIMES.search(before):
-        return forms.SAID_TIMES.sub("once", before)
+    if forms.ONE_MORE.match(clause.strip(" ,.!")) and SAID_TIMES.search(before):
+        return SAID_TIMES.sub("once", before)
     if forms.AGAIN.match(clause.strip(" ,.!")):
         return before
     if (found := forms.ONLY_TIMES.match(clause.strip(" ,.!"))) and not re.match(r"(?:some|many|other)", clause):
         times = found["times"] or f"{found['number']} times"
-        said, n = forms.SAID_TIMES.subn(times, before, count=1)
+        said, n = SAID_TIMES.subn(times, before, count=1)
         return said if n else None
     if forms.ANOTHER.match(clause.strip(" ,.!")):
         return before
@@ -74,11 +75,11 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         return None
     clause = forms.CEILING.sub("up", forms.FLOOR.sub("down", clause))
     if (counted := forms.COUNTED.match(clause)) and (
-        whole := completed(counted["rest"], forms.SAID_TIMES.sub("", before).strip())
+        whole := completed(counted["rest"], SAID_TIMES.sub("", before).strip())
     ):
         return f"{whole} {counted['times']}"
     if (counted := forms.COUNTED_LAST.match(clause)) and (
-        whole := completed(counted["rest"], forms.SAID_TIMES.sub("", before).strip())
+        whole := completed(counted["rest"], SAID_TIMES.sub("", before).strip())
     ):
         return f"{whole} {counted['times']}"
     if (again := forms.AGAIN_BUT.match(clause)) and forms.ONLY_MANNER.match(again["how"]):

@@ -72,7 +72,6 @@ WAY_WITH = re.compile(
 LOOKS = re.compile(r"^(?:look|point|glance|gaze)\b(?! at\b)")
 LOOKS_AT = re.compile(r"^(look|point|glance|gaze) at\b")
 POINTS = re.compile(r"^(?:point|punch|reach|wave|swing|push|stretch|lean|look)\b")
-SAID_TIMES = re.compile(r"\b(?:once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?)\b")
 _A_PLACE = (
     r"(?:(?:on|to|over|above|behind|in front of|under|at|towards) (?:your |the )?(?:heart|hips?|waist|head|chest|belly|stomach|mouth|eyes|ears?|back|forehead|shoulders?|chin|neck|sides?|knees|face)"
     r"|(?:straight |wide |high |out )*(?:up|down|out|wide|forward|ahead|apart|crossed|folded|open)(?: (?:in the air|to the sides?|in front|wide|high))?)"
