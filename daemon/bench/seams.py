@@ -13,11 +13,12 @@ from daemon.bench.motions import recordings_folder
 from daemon.bench.report import context
 from daemon.bench.texts import draw_texts
 from daemon.errors import CommandError
-from daemon.playback.chunk_maker import FADE_FRAMES
+from daemon.playback.chunk_maker import FADE_FRAMES, blended_from
+from daemon.playback.sources.preview_source import without_stillness
 from daemon.playback.sources.source_factory import PREFIX_FRAMES
 from daemon.poses.cycles import closed, find_loop
 from daemon.poses.idle import IdleSource
-from daemon.poses.pose_sequence import PoseSequence, distance_deg, faded_in, joined, posture_of, standing
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, joined, posture_of, standing
 from mmm_core.corpus.cmu import read_clips
 from mmm_core.motion.features import recover
 from mmm_core.motion.motion import FPS, Motion
@@ -95,7 +96,7 @@ def _prompt_seams(
     limit = retargeter.robot.velocity_limit_rad_s
     for a, b in zip(clips[::2], clips[1::2], strict=False):
         k = int(rng.integers(WINDOW // 2, len(a) - WINDOW // 2))
-        after = faded_in(b, a.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
+        after = blended_from(a.at(k + np.arange(FADE_FRAMES)), without_stillness(b))
         jerk.append(peak_jerk(joined([a[:k], after]), k))
         first = retargeter.retarget(a)
         q = first.at_rate(rate_hz)
@@ -120,7 +121,7 @@ def _prefix_seams(engine: Engine, motions: list[Motion], rng: np.random.Generato
         shown = whole.at(np.arange(k - PREFIX_FRAMES, k)).motion()
         before = replace(shown, features=features_of(shown).numpy())
         after = posture_of(continue_motion(engine, before, PREFIX_S, b.text, seed=b.seed).motion)
-        after = faded_in(after, whole.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
+        after = blended_from(whole.at(k + np.arange(FADE_FRAMES)), after)
         jerk.append(peak_jerk(joined([whole[:k], after]), k))
     return jerk
 
@@ -134,7 +135,7 @@ def _draft_seams(engine: Engine, motions: list[Motion], rng: np.random.Generator
             continue
         draft, whole = posture_of(made.motion), posture_of(motion)
         k = int(rng.integers(1, LATEST_GO_OVER))
-        after = faded_in(whole[k:], draft.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
+        after = blended_from(draft.at(k + np.arange(FADE_FRAMES)), whole[k:])
         jerk.append(peak_jerk(joined([draft[:k], after]), k))
     return jerk
 
@@ -144,7 +145,7 @@ def _idle_seam(p: PoseSequence, rng: np.random.Generator) -> float:
     score = IdleSource("lively", int(rng.integers(1000)))
     idle = joined([score.next()[0] for _ in range(4)])
     k = int(rng.integers(WINDOW, len(idle) - FADE_FRAMES))
-    after = faded_in(p, idle.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
+    after = blended_from(idle.at(k + np.arange(FADE_FRAMES)), without_stillness(p))
     return peak_jerk(joined([idle[:k], after]), k)
 
 

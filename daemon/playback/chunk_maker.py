@@ -19,7 +19,10 @@ from retarget.robot.robot import RobotModel
 from retarget.robot_to_human import joints_of_path
 
 FADE_FRAMES = 8
-"""Number of pose frames (0.4 s) over which a motion is blended out of the poses before it."""
+"""Largest number of pose frames (0.4 s) over which a motion is blended out of the poses before it."""
+_LEAST_FADE_FRAMES, _FADE_DEG_PER_FRAME = 3, 4.0
+"""Frames of the shortest blend, and degrees between the poses for each further frame: where the two are near, as after idle
+movements, a long blend would only delay the motion's visible beginning."""
 _LEAST_BLOCK, _MOST_BLOCK = 12, 36
 """Frames of a block: with fewer, limits would be kept with less of the motion in view, with more the first takes longer."""
 _WHOLE = 1e-9
@@ -34,6 +37,16 @@ def block_frames(fps: float, rate_hz: float) -> int | None:
         if abs(frames - round(frames)) < _WHOLE:
             return n
     return None
+
+
+def blended_from(before: PoseSequence, posture: PoseSequence, *, easy: bool = False) -> PoseSequence:
+    """`posture` with its first frames blended from the poses that would have followed, `before`; more slowly when `easy`."""
+    far_deg = float(distance_deg(before, posture.at(np.zeros(len(before), np.intp))).max())
+    if easy:
+        n = max(FADE_FRAMES, math.ceil(far_deg / _EASY_DEG_S * posture.fps))
+    else:
+        n = min(FADE_FRAMES, _LEAST_FADE_FRAMES + math.ceil(far_deg / _FADE_DEG_PER_FRAME))
+    return faded_in(posture, before, n)
 
 
 class ChunkMaker:
@@ -71,12 +84,8 @@ class ChunkMaker:
             MotionError: the motion cannot be retargeted.
         """
         posture = self._layers.over(raw)
-        if before is not None:
-            n = FADE_FRAMES
-            if easy:
-                far_deg = float(distance_deg(before[-1:], posture[:1])[0])
-                n = max(n, math.ceil(far_deg / _EASY_DEG_S * posture.fps))
-            posture = faded_in(posture, before, n)
+        if before is not None and len(posture):
+            posture = blended_from(before, posture, easy=easy)
         first, n = 0, block_frames(posture.fps, self._rate_hz)
         if n is None:
             paths = iter([(self._retargeter.retarget(posture, start, settle=complete), len(posture))])

@@ -20,9 +20,9 @@ import numpy as np
 
 from daemon.bench.motions import recordings_folder
 from daemon.bench.seams import WINDOW, peak_jerk, real_jerk
-from daemon.playback.chunk_maker import FADE_FRAMES
+from daemon.playback.chunk_maker import FADE_FRAMES, blended_from
 from daemon.playback.sources.source_factory import PREFIX_FRAMES
-from daemon.poses.pose_sequence import PoseSequence, distance_deg, faded_in, joined, posture_of
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, joined, posture_of
 from mmm_core.corpus.heldout import PROBES
 from mmm_core.evaluation.probes import evaluate
 from mmm_core.generate.continuation import continue_motion
@@ -64,7 +64,7 @@ class Takeovers:
             return made
         clip = posture_of(made)
         self.apart_deg.append(float(distance_deg(clip[:1], running.at(np.array([k - 1])))[0]))
-        after = faded_in(clip, running.at(k + np.arange(FADE_FRAMES)), FADE_FRAMES)
+        after = blended_from(running.at(k + np.arange(FADE_FRAMES)), clip)
         self.jerks_m_s3.append(peak_jerk(joined([running[:k], after]), k))
         return after.motion()
 

@@ -110,6 +110,21 @@ def test_a_text_moves_the_arm_on_the_page(page: Page) -> None:
     browser.wait(lambda: browser.text("#servos").count("°C") == 16, "every servo's temperature", SOON_S)
 
 
+def test_a_robot_at_rest_is_not_drawn_again(page: Page) -> None:
+    """Drawing took a whole core of a computer without a GPU, also where nothing moved, and made every first motion later."""
+    browser, states = page.browser, "mmmd.history.rows.length"
+    with page.daemon.armed():
+        pass
+    page.until("idle", "holding")
+    browser.js(f"{states} = 0")
+    browser.wait(lambda: browser.js(states) > 20, "a second at rest", SOON_S)
+    before = browser.js("mmmd.frames")
+    browser.wait(lambda: browser.js(states) > 40, "another second", SOON_S)
+    assert browser.js("mmmd.frames") == before
+    page.say("wave with your left hand")
+    browser.wait(lambda: browser.js("mmmd.frames") > before + 5, "the motion", SOON_S)
+
+
 def test_the_page_places_bodies_as_mujoco_does(page: Page) -> None:
     robot = load_robot("reference")
     low, high = robot.position_min_rad, robot.position_max_rad

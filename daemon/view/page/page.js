@@ -17,7 +17,8 @@ const REMEDY = {
   quarantined: "silent for long: cable, power, id; mmmd scan",
 };
 const LOST_S = 1.5;
-const view = { state: null, robot: null, seenS: 0, history: new History(), joint: 0, run: null, frames: 0, passed: [] };
+const SEEN = 0.004; // radians or metres of change that can be seen
+const view = { state: null, robot: null, seenS: 0, history: new History(), joint: 0, run: null, frames: 0, passed: [], drawn: null };
 globalThis.mmmd = view; // for tests and for the curious
 
 let scene = null;
@@ -137,8 +138,13 @@ function heardState(s) {
   if (again) cmd.send({ type: "capabilities", id: newId() });
   view.history.add(s.t_mono, { goal: s.goal_rad, present: s.present_rad, effort: s.effort });
   if (!$("lost").hidden) { lost(""); if (!view.capable) cmd.send({ type: "capabilities", id: newId() }); }
-  if (scene) { scene.dirty = true; scene.arrived++; }
+  if (scene && changed(s)) { scene.dirty = true; scene.arrived++; }
   head(s); queue(s);
+}
+// Whether a drawing of this state would look different from the one on the screen: a robot at rest is not drawn again.
+function changed(s) {
+  const d = view.drawn, other = (key) => s[key]?.length !== d[key]?.length || s[key]?.some((v, k) => Math.abs(v - d[key][k]) > SEEN);
+  return !d || ["present_rad", "goal_rad", "person_m", "person_faces"].some(other);
 }
 function head(s) {
   const sim = s.bus.startsWith("sim:");
@@ -203,7 +209,9 @@ function shown() {
 }
 function paint() {
   const now = shown();
-  if (scene?.dirty && now && view.robot && !document.hidden) { scene.draw(now.q, now.goal, now.person, now.faces); view.frames++; }
+  if (!scene?.dirty || !now || !view.robot || document.hidden) return;
+  scene.draw(now.q, now.goal, now.person, now.faces);
+  view.drawn = view.state; view.frames++;
 }
 function plots() {
   if (document.hidden || !view.robot) return;

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from daemon.playback.chunk_maker import ChunkMaker, block_frames
+from daemon.playback.chunk_maker import FADE_FRAMES, ChunkMaker, blended_from, block_frames
 from daemon.poses.layers import Layers
-from daemon.poses.pose_sequence import posture_of
+from daemon.poses.pose_sequence import PoseSequence, distance_deg, posture_of
 from retarget.path.limits import JointLimits
 from retarget.path.paths import JointState
 from retarget.pipeline import BLOCK_FRAMES
@@ -43,3 +43,19 @@ def test_a_bus_of_an_odd_rate_gets_its_first_chunk_as_soon() -> None:
     limits = JointLimits.of(robot)
     assert (np.abs(np.diff(goals, axis=0)) <= limits.velocity_rad_s / 33 * (1 + 1e-6)).all()
     assert (np.abs(np.diff(goals, 2, axis=0)) <= limits.acceleration_rad_s2 / 33**2 * (1 + 1e-6) + 1e-9).all()
+
+
+def blended_frames(before: PoseSequence, after: PoseSequence, *, easy: bool = False) -> int:
+    """Number of frames that a blend changes."""
+    changed = distance_deg(blended_from(before, after, easy=easy), after) > 1e-3
+    return int(np.flatnonzero(changed)[-1]) + 2  # the last frame of a blend has the full weight of `after`
+
+
+def test_poses_that_are_near_are_blended_in_less_time():
+    """After idle movements, a few degrees from a motion's first pose, a long blend would hide the motion's beginning."""
+    moving = posture_of(raised_arm("right", 4.0, 1.2, "right"))
+    apart_deg = distance_deg(moving, moving.at(np.zeros(len(moving), np.intp)))
+    near, far = (int(np.argmax(apart_deg > deg)) for deg in (5.0, 30.0))
+    frames = [blended_frames(moving.at(np.full(FADE_FRAMES, at)), moving[:20]) for at in (near, far)]
+    assert 3 <= frames[0] < FADE_FRAMES and frames[1] == FADE_FRAMES
+    assert blended_frames(moving.at(np.full(FADE_FRAMES, far)), moving[:20], easy=True) > FADE_FRAMES
