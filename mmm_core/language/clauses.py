@@ -16,6 +16,7 @@ from mmm_core.language import clause_patterns as words
 from mmm_core.language.at_once import are_at_once, goes_on
 from mmm_core.language.count_words import NUMBERS
 from mmm_core.language.ellipsis import OTHER, completed, is_manner
+from mmm_core.language.ellipsis_patterns import THING
 from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.requests import everyday
 
@@ -32,6 +33,8 @@ _ALL_WITH = re.compile(
 _THE_SAME = re.compile(
     r"(?:(?:do )?(?:the same|likewise|it|so|that)|one|another|another one|one more)\b(?: (?:with|using|for|on)\b|$)"
 )
+_ONCE_MORE = re.compile(r"once (?:more|again)|(?:one|another) more time|another time")
+"""What "and" may join to a command without a verb: "wave and once more"."""
 _NOUN = re.compile(
     rf"(?:an?|another|{'|'.join(NUMBERS)}) (?:\w+ )?(?:nod|bow|wave|clap|shrug|salute|punch|jab|hook|uppercut|yawn|stretch|twist|head ?shake|cheer|hug)(?:e?s)?\b"
 )
@@ -134,7 +137,9 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
     verbs: list[object] = []
     for i, part in enumerate(parts):
         after_comma = i and "," in text[spans[i - 1].end : spans[i].start]
-        filled = completed(part, wholes[-1]) if after_comma and not is_manner(part) else None
+        leaves_out = after_comma or (i and _ONCE_MORE.fullmatch(part))
+        is_other = is_manner(part) or THING.match(part)  # "wave to the man, the tall one"
+        filled = completed(part, wholes[-1]) if leaves_out and not is_other else None
         verbs.append(
             words.BEGINS_WITH_A_VERB.match(part)
             or _is_of_the_same_limb(parts, i)

@@ -14,9 +14,9 @@ NUMBERS = {word: i for i, word in enumerate(_WORDS, 1)} | {str(i): i for i in ra
 """Number by the word or the digits for it."""
 ADVERBS = {"once": 1, "twice": 2, "thrice": 3}
 """Adverbs that name a number of times by themselves."""
-SAID_TIMES = re.compile(
-    rf"\b(?:(?:{'|'.join(NUMBERS)})(?: times?|x)|a single time|{'|'.join(ADVERBS)})\b(?: in a row)?"
-)
+TIMES = rf"(?:(?:{'|'.join(NUMBERS)})(?: times?|x)|a single time|{'|'.join(ADVERBS)})\b(?: in a row)?"
+"""Pattern of a number of times, for tables."""
+SAID_TIMES = re.compile(rf"\b{TIMES}")
 """A number of times in a command in lower case: "three times in a row", "2x", "once"."""
 _NUMBER = rf"({'|'.join(NUMBERS)})"
 _NOT_STROKES = (

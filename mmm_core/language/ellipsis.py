@@ -27,7 +27,7 @@ def with_sides(text: str) -> str:
     if found["between"].split() in (["after"], ["after", "the"]):
         return text  # "one fist after the other" is one command, for both arms by turns
     what = found["what"]
-    if what in ("arm", "hand", "fist", "one"):
+    if what not in ("way", "side", "direction"):
         first, second = f"right {what}", f"left {what}"
         before = text[: found.start()]
         if re.search(r"\bleft\b", before):  # "point left with one hand and right with the other"
@@ -134,6 +134,8 @@ def completed(clause: str, before: str) -> str | None:  # noqa: PLR0912  one bra
         return f"{limb['limb']} {clause}"
     if clause.startswith("at ") and forms.TARGET.match(clause) and (verb := forms.LOOKS.match(before)):
         return f"{verb[0]} {clause}"
+    if forms.THING.match(clause) and (verb := forms.GOES_TO_THING.match(before)):
+        return f"{verb[0]} {clause}"
     if forms.TARGET.match(clause) and forms.AT_TARGET.search(before):
         return forms.AT_TARGET.sub(clause if clause.startswith("at ") else f"at {clause}", before)
     if moved := _other_object(clause, before):
@@ -180,6 +182,8 @@ def _other_object(clause: str, before: str) -> str | None:
 
 def _with_pronoun(clause: str, before: str) -> str | None:
     """A clause with its pronoun resolved: "wave it" after "raise your right arm" -> "wave your right arm"; None without one."""
+    if (rubbed := forms.RUBS.match(before)) and (again := forms.RUBS_IT.match(clause)):
+        return f"{again['verb']}{rubbed[0].removeprefix(rubbed['verb'])}{clause[again.end() :]}"
     limbs = forms.NAMED_LIMB.findall(before)
     if forms.KEEPS_ON.match(clause):
         return None

@@ -61,10 +61,10 @@ ONLY_TIMES = re.compile(
     r"^(?:again )?(?P<times>once|twice|thrice|\w+ times)(?: more| again)?$|^(?P<number>\w+) (?:more|further)(?: times?)?$"
 )
 COUNTED = re.compile(
-    r"^(?P<times>once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?) (?P<rest>(?:with|using|on|to) .+)$"
+    r"^(?P<times>once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?) (?P<rest>(?:with|using|on|to) .+|left|right|up|down|forwards?|back(?:wards?)?)$"
 )
 COUNTED_LAST = re.compile(
-    r"^(?P<rest>(?:with|using|on|to) .+?) (?P<times>once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?)$"
+    r"^(?P<rest>(?:with|using|on|to) .+?|left|right|up|down|forwards?|back(?:wards?)?) (?P<times>once|twice|thrice|(?:one|two|three|four|five|six|seven|eight|\d) times?)$"
 )
 WAY_WITH = re.compile(
     r"^(?:to the )?(?:left|right|up|down|forward|ahead|straight ahead|back) (?:with|using) (?:your |the )?(?:left|right|other)\b.*$"
@@ -79,6 +79,14 @@ _A_PLACE = (
 PLACE, AT_PLACE = re.compile(rf"^{_A_PLACE}$"), re.compile(rf"\b{_A_PLACE}$")
 TARGET = re.compile(r"^(?:at )?(?:me|yourself|you|us|the \w+)$")
 AT_TARGET = re.compile(r"\bat (?:me|yourself|you|us|the \w+)$")
+THING = re.compile(
+    r"^(?:the|that|this|my) (?!(?:left|right|other|same|first|second|last|next|one)\b)(?:(?!one\b)[a-z]+ ?){1,2}"
+    r"(?: (?:on|to|at|in|behind|above|over) (?:your|the|my) \w+)?$"
+)
+GOES_TO_THING = re.compile(
+    r"^(?:point|look|wave|bow|nod|glance|gaze|stare|reach|turn|lean|salute|beckon|knock|aim|gesture)\b.*? (?:to|at|towards)(?= (?:the|that|this|my) (?!left|right))"
+)
+"""'Point to the door on your right', and 'the window on your left' to which a command without a verb points."""
 NAMED_LIMB = re.compile(
     r"\b(?:(?:your|the|both|one|a) )?(?:both )?(?:(?:left|right) )?(?:hands?|arms?|fists?|palms?|fingers?|head|shoulders)\b"
 )
@@ -97,8 +105,9 @@ LIMB_SUBJECT = re.compile(
     r"^(?P<limb>(?:your |the )?(?:both |left |right )?(?:arms?|hands?|head|eyes|gaze|chin|shoulders)) "
 )
 _VERB = re.compile(r"^(?:\w+) ")
+_PAIRED = "shoulder|ear|eye|cheek|temple|elbow|wrist|knee|thigh"
 ONE_OTHER = re.compile(
-    r"\bone (?P<what>way|side|direction|arm|hand|fist|one)\b(?P<between>.*?)\b(?:the |your )?other(?: (?:way|side|direction|arm|hand|fist|one))?\b"
+    rf"\bone (?P<what>way|side|direction|arm|hand|fist|one|{_PAIRED})\b(?P<between>.*?)\b(?:the |your )?other(?: (?:way|side|direction|arm|hand|fist|one|{_PAIRED}))?\b"
 )
 THAT_WAY = re.compile(r"(?<=\w )(?:(?:in )?(?:that|the same) (?:way|direction)|over there)$")
 OTHER_PART = re.compile(
@@ -106,9 +115,9 @@ OTHER_PART = re.compile(
 )
 _PART = "head|hair|forehead|ears?|eyes|nose|mouth|chin|cheeks?|face|neck|shoulders?|chest|heart|belly|stomach|tummy|hips?|back|knees?|thighs?|arms?"
 ONLY_PART = re.compile(rf"^(?:your|the) (?P<part>(?:(?:left|right) )?(?:{_PART}))$")
-RUBS = re.compile(
-    rf"^(?P<verb>(?:rub|scratch|pat|touch|tap|cover|wipe|hold|brush|stroke)) (?:your|the) (?:(?:left|right) )?(?:{_PART})\b"
-)
+_RUB = "rub|scratch|pat|touch|tap|cover|wipe|hold|brush|stroke"
+RUBS_IT = re.compile(rf"^(?P<verb>{_RUB}) (?:it|them)\b")
+RUBS = re.compile(rf"^(?P<verb>(?:{_RUB})) (?:your|the) (?:(?:left|right) )?(?:{_PART})\b")
 """'Rub your belly', and what else may be rubbed: "then your head"."""
 TURNED = re.compile(
     r"\b(?:your|the) (?:trunk|torso|upper body|body|waist|head|neck|shoulders|(?:left |right )?(?:arms?|hands?))\b"

@@ -33,11 +33,12 @@ _HOLD = re.compile(
     r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping|stays?|staying|remains?|freezes?|waits?|waiting|rests?|leaves?|pauses?)"
     r"(?: (?:it|them|that|this|there|still|so|like (?:that|this)|the (?:pose|position)|your (?:pose|position)|that (?:pose|position)|up|down|in place|"
     r"(?:your|the) (?:left |right )?(?:hand|arm|head)s?))*\s+)?"
-    rf"(?:(?:for|about|exactly|at least|around|all of|a full|another) )*(?<!\bin )(?<!\bwithin )(?<!\bafter )(?<!\bevery ){_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
+    rf"(?:(?:for|about|exactly|at least|around|nearly|almost|all of|(?:a|the) (?:full|good|whole|solid)|another) )*(?<!\bin )(?<!\bwithin )(?<!\bafter )(?<!\bevery ){_NUMBER}(?: full| whole| more)? (?:seconds?|secs?|s)\b(?: long| straight)?"
 )
 _COUNT_OF = re.compile(
     r",?\s*(?:\b(?:and |then )?(?:holds?|holding|keeps?|keeping)(?: (?:it|them|that|this|there))*\s+)?"
-    rf"for (?:a |the )?count of {_NUMBER}\b|,?\s*\bfor {_NUMBER} (?:counts|beats)\b"
+    rf"for (?:a |the )?count of {_NUMBER}\b|,?\s*\bfor {_NUMBER} (?:counts|beats)\b|"
+    rf",?\s*\b(?:till|until|while) i (?:have |will )?count(?:ed)?(?: up)? to {_NUMBER}\b"
 )
 """Pattern of a hold with a counted number of seconds."""
 _ONLY_SECONDS = re.compile(

@@ -8,6 +8,7 @@ from itertools import cycle
 
 from mmm_core.language.at_once import base_of
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
+from mmm_core.language.count_words import TIMES
 from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.word_tables import LIMB, REMEMBERED, WAY, Rule, RuleTable, lines, pairs, replaced, substitutions
 
@@ -185,10 +186,13 @@ def _everyday() -> RuleTable:
 
 @cache
 def _sentences() -> RuleTable:
-    return RuleTable(
-        Rule(re.compile(pattern.replace("@ACT", _ACT).replace("@WAY", f"({WAY})").replace("@MANNER", _MANNER)), words)
-        for pattern, words in pairs("sentences")
-    )
+    return RuleTable(Rule(re.compile(_spelt_out(pattern)), words) for pattern, words in pairs("sentences"))
+
+
+def _spelt_out(pattern: str) -> str:
+    for name, words in (("@ACT", _ACT), ("@WAY", f"({WAY})"), ("@MANNER", _MANNER), ("@TIMES", TIMES)):
+        pattern = pattern.replace(name, words)
+    return pattern
 
 
 def restated(said: str) -> str:

@@ -7,6 +7,7 @@ stands before a verb that begins one, or before a limb of its own ("left arm up 
 from __future__ import annotations
 
 import re
+from itertools import groupby
 
 from mmm_core.language.word_tables import LIMB, any_of
 
@@ -18,6 +19,13 @@ _LIMB_NEXT = re.compile(rf"\b(?P<end>{any_of('run_on', 'limb ends')}) (?={_LIMB}
 _BARE_LIMB = re.compile(
     rf"(?:^|.*(?:[,.;:]|\b(?:then|and)) )(?:(?:with|using|use|your|the|both|left|right|other) )*(?:{LIMB}|head|shoulders)$"
 )
+_WAY = r"(?:left|right|up|down|forward|back)"
+_WAYS = re.compile(
+    rf"(?P<act>\b{any_of('run_on', 'to a way')})(?:e?s)?[,:]? (?P<ways>{_WAY}(?: {_WAY}){{2,}})"
+    r"(?:(?P<and>,? and)(?= \w)|(?=$|[,.;]| (?:then|with|slowly|quickly|fast)\b))"
+)
+"""Directions in turn without any mark: "punch left left right"."""
+_TIMES = {1: "once", 2: "twice", 3: "three times", 4: "four times"}
 _NO_VERB = re.compile(rf"\b{any_of('run_on', 'noun follows')} (?:\w+ )?$")
 _COMMAND = re.compile(
     rf"(?:^|[,.;:]\s*|\b(?:then|and|please|robot|now|ok|first) )(?:{_BEGINS}|{_LIMB}|{any_of('run_on', 'after')})\b"
@@ -29,9 +37,12 @@ def with_marks(said: str) -> str:
 
     >>> with_marks("wave bow clap"), with_marks("look left look right"), with_marks("give me a head shake")
     ('wave, bow, clap', 'look left, look right', 'give me a head shake')
+    >>> with_marks("punch left left right"), with_marks("punch left")
+    ('punch left twice, then right once', 'punch left')
     >>> with_marks("left arm up right arm up"), with_marks("hold up your left hand to say stop")
     ('left arm up, right arm up', 'hold up your left hand to say stop')
     """
+    said = _WAYS.sub(lambda m: f"{m['act']} {_listed(m['ways'].split())}{', then' if m['and'] else ''}", said)
     if not _COMMAND.match(said):
         return said
     for pattern in (_BETWEEN, _LIMB_NEXT):
@@ -44,3 +55,11 @@ def with_marks(said: str) -> str:
                 at = found.end("end")
         said = marked + said[at:]
     return said
+
+
+def _listed(ways: list[str]) -> str:
+    """Directions in turn, each with the number of times it is said in a row."""
+    found = [(way, len(list(same))) for way, same in groupby(ways)]
+    if len(found) == len(ways):
+        return ", then ".join(ways)
+    return ", then ".join(f"{way} {_TIMES.get(n, f'{n} times')}" for way, n in found)
