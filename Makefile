@@ -8,16 +8,17 @@ TORCH ?= cpu
 export OMP_NUM_THREADS ?= 1
 export OMP_WAIT_POLICY ?= passive
 
-.PHONY: help setup demo test check docs format soak clean
+.PHONY: help setup demo test test-long check docs format soak clean
 
 help:
-	@echo "make demo    set up, start the simulated robot and the daemon, send three commands, show what happened"
-	@echo "make test    set up and pass the tests"
-	@echo "make check   formatting, lint, types, import rules"
-	@echo "make docs    the pages of docs/ as a site, in out/site; a warning or a link that leads nowhere is an error"
-	@echo "make format  let ruff format the code"
-	@echo "make soak    hours of simulated faults, properties on three times the examples (not part of make test)"
-	@echo "make clean   remove the virtual environment and what runs wrote"
+	@echo "make demo       set up, start the simulated robot and the daemon, send three commands, show what happened"
+	@echo "make test       set up and pass the tests: of every promise one cheap case, and more where they cost little"
+	@echo "make test-long  the tests that repeat a promise at length or in further variants: robots, examples, trainings, the wheel"
+	@echo "make check      formatting, lint, types, import rules"
+	@echo "make docs       the pages of docs/ as a site, in out/site; a warning or a link that leads nowhere is an error"
+	@echo "make format     let ruff format the code"
+	@echo "make soak       hours of simulated faults, properties on three times the examples (part of neither suite)"
+	@echo "make clean      remove the virtual environment and what runs wrote"
 
 setup: $(VENV)/.ready
 
@@ -39,10 +40,12 @@ demo: setup
 # Their processes may starve on a slow machine, so what failed runs once more by itself, in a still moment, and has to pass then,
 # unless the machine itself stood still meanwhile (tests/host_watch.py). Compiled modules are kept whatever the environment says:
 # a daemon whose four processes compile theirs at every start takes half as much processor time again.
-test soak: export PYTHONDONTWRITEBYTECODE =
-test: setup
-	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder || \
-	$(BIN)/python -m pytest --last-failed --last-failed-no-failures none --void-when-held-up -rs
+# `make test` tries one cheap case of every promise, `make test-long` the others; .ci/run runs both (tests/support/sizes.py).
+test test-long soak: export PYTHONDONTWRITEBYTECODE =
+test-long: WHICH := -m 'long and not soak and not hardware'
+test test-long: setup
+	$(BIN)/python -m pytest $(WHICH) -n 4 --dist loadfile --no-loadscope-reorder || \
+	$(BIN)/python -m pytest $(WHICH) --last-failed --last-failed-no-failures none --void-when-held-up -rs
 
 check: setup
 	$(BIN)/ruff format --check .
@@ -57,7 +60,7 @@ format: setup
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
-# Hours: tests marked `soak`, and every property on three times the examples of `make test`, drawn anew (tests/support/sizes.py).
+# Hours: tests marked `soak`, and every property on three times the examples of the other suites, drawn anew (tests/support/sizes.py).
 soak: setup
 	$(BIN)/python -m pytest -m 'soak or hypothesis' --hypothesis-profile soak --timeout 0 -s
 

@@ -15,6 +15,7 @@ from daemon.front.subscriptions import BURST, COST_OF_OTHERS, MOST_TOPIC_BYTES, 
 from daemon.wire import codec as wire
 from tests.attacks.zmtp import RawPeer, connected, frame
 from tests.support.harness import RunningDaemon
+from tests.support.sizes import few_and_long
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 STANDS = ("idle", "holding")
@@ -22,7 +23,7 @@ STANDS = ("idle", "holding")
 MOST_GROWTH_BYTES = 500 << 20
 
 
-@pytest.fixture(scope="module", params=["tcp", "ipc"])
+@pytest.fixture(scope="module", params=few_and_long(["tcp"], ["ipc"]))
 def running(request):
     daemon = RunningDaemon(tcp=request.param == "tcp")
     try:
@@ -57,8 +58,10 @@ def crowd(endpoint: str, n: int):
 
 @pytest.mark.parametrize(
     ("running", "name", "n"),
-    [("tcp", "cmd", 1500), ("ipc", "ctl", 1500)]
-    + [("tcp", "ctl", 700), ("tcp", "pub", 700), ("tcp", "stream", 700), ("ipc", "cmd", 700)]
+    few_and_long(
+        [("tcp", "cmd", 1500), ("ipc", "ctl", 1500)],
+        [("tcp", "ctl", 700), ("tcp", "pub", 700), ("tcp", "stream", 700), ("ipc", "cmd", 700)],
+    )
     + [
         pytest.param(transport, name, 1500, marks=pytest.mark.soak)
         for transport, name in (("tcp", "ctl"), ("tcp", "pub"), ("tcp", "stream"), ("ipc", "cmd"))
@@ -120,7 +123,9 @@ def test_peers_that_have_shaken_hands_with_ctl_keep_no_newcomer_out(running):
 
 @pytest.mark.parametrize(
     ("running", "name", "kind"),
-    [("tcp", "cmd", "DEALER"), ("tcp", "pub", "SUB"), ("tcp", "stream", "PUB"), ("ipc", "cmd", "DEALER")],
+    few_and_long(
+        [("tcp", "cmd", "DEALER"), ("ipc", "cmd", "DEALER")], [("tcp", "pub", "SUB"), ("tcp", "stream", "PUB")]
+    ),
     indirect=["running"],
 )
 def test_a_message_of_endlessly_many_parts_takes_no_memory(running, name, kind):
@@ -139,7 +144,7 @@ def test_a_message_of_endlessly_many_parts_takes_no_memory(running, name, kind):
 
 @pytest.mark.parametrize(
     ("running", "topic_bytes", "n_topics"),
-    [("tcp", 1000, 200), ("tcp", 60, 200), ("tcp", 1, 1), ("ipc", 1000, 200)],
+    few_and_long([("tcp", 1000, 200)], [("tcp", 60, 200), ("tcp", 1, 1), ("ipc", 1000, 200)]),
     indirect=["running"],
 )
 def test_a_flood_of_subscriptions_is_cut_off_and_others_are_served(running, topic_bytes, n_topics):

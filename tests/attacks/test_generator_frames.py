@@ -105,6 +105,7 @@ def wait_until_gone(pid: int) -> None:
         time.sleep(0.05)
 
 
+@pytest.mark.long
 def test_a_killed_shared_generator_restarts_and_ends_with_its_keeper(tmp_path):
     """`mmmd generator` was one process: whatever ended it left every robot without texts."""
     endpoint = f"ipc://{tmp_path}/generator"

@@ -22,6 +22,7 @@ pytestmark = [
 ]
 
 
+@pytest.mark.long
 def test_several_robots_share_a_generator() -> None:
     """Two robots of different joints show one text; both park at the end."""
     names = (slowed("reference"), slowed("op3"))
@@ -34,6 +35,7 @@ def test_several_robots_share_a_generator() -> None:
     assert done.stderr.count("PARKING -> LIMP") == len(names)
 
 
+@pytest.mark.long
 def test_a_robot_of_ones_own_from_its_urdf(tmp_path: Path) -> None:
     """The steps of docs/robots.md as a script: found, filled in, checked, drawn, and audited on simulated servos."""
     folder = tmp_path / "own"

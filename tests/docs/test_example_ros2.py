@@ -50,6 +50,7 @@ def test_the_manifest_is_valid(package: Path) -> None:
     assert with_debian("catkin_pkg", code, str(package)) == f"{package.name} {build_type} []\n"
 
 
+@pytest.mark.long
 def test_the_bridge_builds_and_installs_what_ros_looks_for(tmp_path: Path) -> None:
     if shutil.which("colcon") is None:
         pytest.skip("no colcon here")
@@ -137,6 +138,7 @@ def bridge(daemon: RunningDaemon, monkeypatch: pytest.MonkeyPatch):
             thread.join(10)
 
 
+@pytest.mark.long
 def test_the_bridge_says_cancels_stops_and_publishes(bridge: ModuleType, daemon: RunningDaemon) -> None:
     with daemon.armed() as robot:
         node = bridge.Bridge()

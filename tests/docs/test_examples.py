@@ -22,6 +22,7 @@ from mcap.reader import make_reader
 from mmm_core.model.tokens import pack_ids
 from tests.support.harness import RunningDaemon
 from tests.support.shipped import shipped_engine
+from tests.support.sizes import few_and_long
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 TIMEOUT_S = 60.0
@@ -70,6 +71,7 @@ def test_hello_in_python(daemon: RunningDaemon) -> None:
     assert said[-1] == "stopped, the robot was moving"
 
 
+@pytest.mark.long
 def test_hello_by_websocket(port: str) -> None:
     """One text interrupts another, and a stop ends the third: each text hears its own end."""
     lines = run(sys.executable, str(EXAMPLES / "hello_websocket.py"), f"ws://127.0.0.1:{port}").splitlines()
@@ -77,24 +79,28 @@ def test_hello_by_websocket(port: str) -> None:
     assert lines[-2:] == ["halt ack ", "again cancelled stop"]
 
 
+@pytest.mark.long
 def test_hello_in_node(port: str) -> None:
     lines = run("node", str(EXAMPLES / "hello.mjs"), f"http://127.0.0.1:{port}").splitlines()
     assert lines[0].startswith("accepted") and lines[-1] == "ack stop"
     assert any(line.startswith("done") for line in lines)
 
 
+@pytest.mark.long
 def test_hello_in_c(port: str, tmp_path: Path) -> None:
     run("cc", "-Wall", "-Wextra", "-Werror", "-o", str(tmp_path / "hello"), str(EXAMPLES / "hello.c"))
     accepted, stopped = run(str(tmp_path / "hello"), port).splitlines()
     assert '"type":"accepted"' in accepted and '"verb":"stop"' in stopped
 
 
+@pytest.mark.long
 def test_hello_in_rust(port: str, tmp_path: Path) -> None:
     run("rustc", "--deny", "warnings", "-o", str(tmp_path / "hello"), str(EXAMPLES / "hello.rs"))
     accepted, stopped = run(str(tmp_path / "hello"), f"127.0.0.1:{port}").splitlines()
     assert '"type":"accepted"' in accepted and '"verb":"stop"' in stopped
 
 
+@pytest.mark.long
 def test_an_assistant_is_interrupted_and_stopped_by_voice(daemon: RunningDaemon) -> None:
     """Four sentences of a recording: the second interrupts the first as soon as somebody speaks, the third is a stop."""
     with daemon.armed():
@@ -110,6 +116,7 @@ def test_an_assistant_is_interrupted_and_stopped_by_voice(daemon: RunningDaemon)
     assert "cancelled" not in told["nod twice"]
 
 
+@pytest.mark.long
 def test_a_story_says_what_became_of_each_scene(daemon: RunningDaemon) -> None:
     with daemon.armed():
         lines = run(sys.executable, str(EXAMPLES / "story.py"), *daemon.at).splitlines()
@@ -118,6 +125,7 @@ def test_a_story_says_what_became_of_each_scene(daemon: RunningDaemon) -> None:
     assert lines[-1].startswith("the end")
 
 
+@pytest.mark.long
 def test_a_language_model_moves_the_robot_and_a_person_stops_it(daemon: RunningDaemon) -> None:
     """By the official SDK's client: tools, a result to repeat, a refusal with its reason, a stop that ends a motion under way."""
     if importlib.util.find_spec("mcp") is None:
@@ -133,13 +141,14 @@ def test_a_language_model_moves_the_robot_and_a_person_stops_it(daemon: RunningD
     assert lines.index("person: Stop!") < next(i for i, line in enumerate(lines) if line.startswith("story "))
 
 
+@pytest.mark.long
 def test_poses_that_nobody_taught_are_named(daemon: RunningDaemon) -> None:
     command = [sys.executable, str(EXAMPLES / "inbetween_taught.py"), "arm_out", "arm_up", *daemon.at]
     done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
     assert done.returncode == 1 and "arm_out" in done.stdout and "your own gestures: none" in done.stdout
 
 
-@pytest.mark.parametrize("recording", [False, True])
+@pytest.mark.parametrize("recording", few_and_long([True], [False]))
 def test_tokens_of_a_motion(recording: bool, tmp_path: Path) -> None:
     """Tokens of a generated motion are its own; a recording of joints alone is encoded."""
     motion = shipped_engine().generate("clap three times", seed=7).motion

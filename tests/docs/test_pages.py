@@ -116,6 +116,7 @@ def test_every_block_that_is_not_run_says_why() -> None:
         assert any(example.startswith(prefix) for _, example in EXAMPLES), prefix
 
 
+@pytest.mark.long
 def test_the_first_page_begins_as_it_says(tmp_path: Path) -> None:
     """README, By hand: the daemon on a simulated robot, and what is typed in the other terminal."""
     with prepared(tmp_path) as typed:

@@ -67,6 +67,7 @@ def leads_nowhere(site: Path, page: Path) -> list[str]:
     return missing
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("page", PAGES)
 def test_a_page_is_in_the_site_and_its_links_lead_somewhere(page, site):
     built = html(site, page)
@@ -74,6 +75,7 @@ def test_a_page_is_in_the_site_and_its_links_lead_somewhere(page, site):
     assert leads_nowhere(site, built) == []
 
 
+@pytest.mark.long
 def test_the_first_page_leads_to_every_part_of_the_site(site):
     index = Links(site / "index.html").to
     reached = {
@@ -82,6 +84,7 @@ def test_the_first_page_leads_to_every_part_of_the_site(site):
     assert {str(html(site, page).relative_to(site)) for page in PAGES} - {"index.html"} <= reached
 
 
+@pytest.mark.long
 def test_every_command_is_in_the_site_with_its_options(site):
     page = Links(site / "commands.html")
     assert {f"mmmd-{name}" for name in COMMANDS} <= page.places

@@ -1,6 +1,7 @@
 """The bus process killed and frozen, the bus unplugged, in states of the robot, as listed in docs/safety.md.
 
-Each ends in a named safe state in time, every limit kept: some states each here, all eight in the soak run.
+Each ends in a named safe state in time, every limit kept: some states each in `make test`, more in `make test-long`, all eight in
+the soak run.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from tests.support.robot_states import (
     lead_to,
     within,
 )
+from tests.support.sizes import few_and_long
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
@@ -47,6 +49,7 @@ def unplug_and_plug_in(client, servos, state: str) -> None:
     servos.assert_kept()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "state", [pytest.param(s, marks=() if s == "moving" else pytest.mark.soak) for s in ALL_STATES]
 )
@@ -93,13 +96,14 @@ def test_the_bus_process_in_any_state_ends_in_a_fault_that_can_be_reset(shared: 
         assert_works(client)
 
 
-@pytest.mark.parametrize("state", ["limp", "moving", "parking"])
+@pytest.mark.parametrize("state", few_and_long(["moving"], ["limp", "parking"]))
 def test_a_bus_unplugged_is_a_named_fault_and_comes_back(shared: SharedDaemon, state):
     with shared.client() as client:
         lead_to(client, shared.servos, state)
         unplug_and_plug_in(client, shared.servos, state)
 
 
+@pytest.mark.long
 def test_a_second_daemon_is_told_which_process_has_the_port(shared: SharedDaemon, tmp_path):
     """And which port; it ends with a status that systemd tries again."""
     ends = [f"--{name}=ipc://{tmp_path}/{name}" for name in ("cmd", "ctl", "pub")]

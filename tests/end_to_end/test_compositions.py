@@ -94,6 +94,7 @@ def test_a_story_outlives_its_generator(run):
         assert heard[-1].frames == pytest.approx((5 * 2.0 + 4 * 0.4) * RATE_HZ, abs=30)
 
 
+@pytest.mark.long
 def test_a_frozen_generator_is_started_again_and_the_motion_goes_on(run):
     """The soak run freezes and kills it in every state (tests/end_to_end/test_recorder_and_generator_lost.py)."""
     with run.client() as robot:
@@ -106,6 +107,7 @@ def test_a_frozen_generator_is_started_again_and_the_motion_goes_on(run):
         assert robot.say("nod twice").done
 
 
+@pytest.mark.long
 def test_a_text_goes_on_from_what_is_played(run):
     """It takes over in the middle of a motion, within all limits; that it is the motion of that prefix is tested with the
     generator's process (tests/daemon/generator/test_generator.py).
@@ -162,6 +164,7 @@ def test_an_edit_of_one_arm_moves_that_arm_and_a_bad_one_says_why(run):
         assert caught.value.code == "out_of_scope"
 
 
+@pytest.mark.long
 def test_what_was_played_is_played_again_and_so_is_a_file(run):
     with run.client() as robot:
         first = robot.say("nod twice", seconds=2.0)
@@ -178,6 +181,7 @@ def test_what_was_played_is_played_again_and_so_is_a_file(run):
             assert caught.value.code == "bad_file"
 
 
+@pytest.mark.long
 def test_the_commands_of_the_shell(run, tmp_path):
     story = run.mmmd("story", "nod", "bow", "--tempo", "2")
     assert story.returncode == 0 and "scene 2: bow" in story.stdout and "done" in story.stdout
@@ -190,6 +194,7 @@ def test_the_commands_of_the_shell(run, tmp_path):
     assert "line 2" in run.mmmd("story", "--scenes", str(scenes)).stderr
 
 
+@pytest.mark.long
 def test_a_story_that_is_replaced_from_asyncio(run):
     import asyncio
 

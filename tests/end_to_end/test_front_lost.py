@@ -1,6 +1,6 @@
 """The front frozen and killed in states of the robot, as listed in docs/safety.md: a safe state in time, every limit kept.
 
-Some of the states here, all eight in the soak run.
+One or two of the states in `make test`, four in `make test-long`, all eight in the soak run.
 """
 
 from __future__ import annotations
@@ -23,7 +23,6 @@ from tests.support.robot_states import (
     lead_to,
     within,
 )
-from tests.support.sizes import some_and_all
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
@@ -61,7 +60,14 @@ def test_a_front_killed_in_each_state_leaves_a_limp_robot_no_process(tmp_path, s
             servos.close()
 
 
-@pytest.mark.parametrize("states", some_and_all(("arming", "moving", "parking", "estop"), ALL_STATES))
+@pytest.mark.parametrize(
+    "states",
+    [
+        pytest.param(("moving",), id="moving"),
+        pytest.param(("arming", "parking", "estop"), id="some", marks=pytest.mark.long),
+        pytest.param(ALL_STATES, id="all", marks=pytest.mark.soak),
+    ],
+)
 def test_the_front_frozen_in_each_state_leaves_a_robot_that_stands(shared: SharedDaemon, states):
     """After 0.5 s the bus process brings to rest what moves; what is being parked is parked."""
     daemon, servos = shared.daemon, shared.servos

@@ -67,6 +67,7 @@ def test_three_texts_one_of_them_during_a_motion(run):
         assert isinstance(last, Cancelled) and last.by == f"say {second.id}"
 
 
+@pytest.mark.long
 def test_talking_on_is_done_by_the_client_who_has_talked(run):
     with run.client() as anna, run.client() as bert:
         assert "right" in anna.say("wave with your right hand").events[0].understood

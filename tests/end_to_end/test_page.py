@@ -16,6 +16,7 @@ from retarget.robot.description import load_description, mujoco
 from retarget.robot.loading import load_robot
 from tests.support.browser import Browser
 from tests.support.harness import MMMD, RunningDaemon, free_ports
+from tests.support.sizes import few_and_long
 
 pytestmark = pytest.mark.realtime
 
@@ -138,7 +139,7 @@ def test_the_page_places_bodies_as_mujoco_does(page: Page) -> None:
     np.testing.assert_allclose(places[:, :3, :3].swapaxes(1, 2), data.xmat.reshape(-1, 3, 3), atol=1e-5)
 
 
-@pytest.mark.parametrize("way", ["button", "space", "escape while typing"])
+@pytest.mark.parametrize("way", few_and_long(["button"], ["space", "escape while typing"]))
 def test_stop_brakes(page: Page, way: str) -> None:
     page.moving()
     if way == "button":
@@ -152,6 +153,7 @@ def test_stop_brakes(page: Page, way: str) -> None:
     page.browser.wait(lambda: page.browser.js("mmmd.halt.done"), "that the stop was carried out", SOON_S)
 
 
+@pytest.mark.long
 def test_space_in_the_text_box_is_a_space(page: Page) -> None:
     page.moving()
     page.browser.js("document.querySelector('#text').focus()")
@@ -184,6 +186,7 @@ def test_estop_and_reset_on_a_phone(page: Page) -> None:
         browser.size(1280, 800)
 
 
+@pytest.mark.long
 def test_gestures_are_buttons(page: Page) -> None:
     with page.daemon.armed():
         page.browser.js("document.querySelector('#loop').checked = true")  # so that it still plays when STOP is pressed
@@ -195,6 +198,7 @@ def test_gestures_are_buttons(page: Page) -> None:
         page.until("holding")
 
 
+@pytest.mark.long
 def test_a_frozen_and_a_dead_daemon_are_told_apart_from_a_live_one(page: Page) -> None:
     browser, front = page.browser, page.daemon.process
     os.kill(front.pid, signal.SIGSTOP)
@@ -216,6 +220,7 @@ def test_a_frozen_and_a_dead_daemon_are_told_apart_from_a_live_one(page: Page) -
     browser.wait(lambda: browser.js("!document.querySelector('#lost').hidden"), "loss", SOON_S)
 
 
+@pytest.mark.long
 def test_a_recorded_run_is_scrubbed_through(page: Page) -> None:
     """The run of the tests before, whose daemon was killed: a cut-off log is shown as far as it goes."""
     (port,) = free_ports(1)

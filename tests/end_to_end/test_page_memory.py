@@ -42,6 +42,7 @@ globalThis.hour = (from, seconds, rate, state, health) => {
 };"""
 
 
+@pytest.mark.long
 def test_an_hour_leaves_the_page_as_large_as_some_minutes_do():
     robot = load_robot("reference")
     names = robot.joint_names

@@ -1,7 +1,7 @@
 """The recorder and the generator killed and frozen in states of the robot, as listed in docs/safety.md.
 
 The recorder is lost in some of the states here and in all of them in the soak run; the generator in all in the soak run, and in
-two states in test_compositions.py.
+test_compositions.py it is killed in a story and frozen in a motion.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def test_the_recorder_killed_and_frozen_changes_nothing_for_the_robot(tmp_path, 
         daemon.close()
 
 
-@pytest.mark.soak  # the default suite kills and freezes it once each, in a story and in a motion: test_compositions.py
+@pytest.mark.soak  # test_compositions.py kills it in a story and, in `make test-long`, freezes it in a motion
 def test_the_generator_killed_and_frozen_in_each_state_is_started_again():
     """Frozen for good in the first state, killed in the others.
 

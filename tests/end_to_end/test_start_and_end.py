@@ -16,6 +16,7 @@ from daemon.bench.tty_servos import go_first, go_last
 from daemon.cli import main
 from daemon.supervisor.start_checks import log_file, log_path_error
 from tests.support.harness import MMMD, RunningDaemon, mmmd
+from tests.support.sizes import few_and_long
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 
@@ -124,6 +125,7 @@ def test_a_tty_without_permission(tty):
     assert "usermod" in refused("--robot", "op3", "--bus", tty.url(baud_of("op3")))
 
 
+@pytest.mark.long
 def test_a_wrong_baud_and_other_servos_show_a_table(tty, tmp_path):
     wrong_baud = refused("--robot", "op3", "--bus", tty.url(57_600))
     assert "expected" in wrong_baud and "found" in wrong_baud and "baud" in wrong_baud
@@ -147,7 +149,7 @@ def test_a_text_moves_over_a_tty_and_sigterm_parks(tty):
     assert tty.audit.exists()
 
 
-@pytest.mark.parametrize("ends", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("ends", few_and_long([signal.SIGINT], [signal.SIGTERM]))
 def test_a_signal_during_a_motion_parks_and_cancels_the_command(ends):
     daemon = RunningDaemon()
     try:

@@ -122,6 +122,7 @@ def test_a_bus_process_frozen_in_its_start_keeps_no_estop_undone(shared: SharedD
         person.close()
 
 
+@pytest.mark.long
 def test_a_flood_of_subscriptions_keeps_no_estop_from_the_robot(shared: SharedDaemon):
     """One such subscriber kept an e-stop from the robot for 12 s and more."""
     person = Person(shared.daemon)
@@ -144,7 +145,10 @@ def test_no_thread_of_ctl_waits_for_a_core_while_it_has_the_interpreter(shared: 
     assert {os.sched_getparam(int(thread)).sched_priority for thread in threads} == {CONTROL_PRIORITY}
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(signal.SIGKILL, id="killed"), pytest.param(signal.SIGSTOP, id="frozen", marks=pytest.mark.long)],
+)
 @pytest.mark.parametrize("states", some_and_all(("moving",), ("moving", "limp")))
 def test_the_loss_of_the_ctl_process_is_an_estop_and_it_is_restarted(shared: SharedDaemon, number, states):
     with shared.client() as client:

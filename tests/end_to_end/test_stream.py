@@ -26,6 +26,7 @@ from daemon.wire.codec import decode_event, encode
 from daemon.wire.requests import Release, Say
 from tests.support.harness import MMMD, MOST_CLIPPED_IN_AN_UNDERRUN, RunningDaemon
 from tests.support.robot_states import within
+from tests.support.sizes import few_and_long
 
 pytestmark = pytest.mark.realtime
 
@@ -162,6 +163,7 @@ def test_silence_brakes_and_holds_then_parks_then_limp(robot):
     assert "silent" in stages(stream)
 
 
+@pytest.mark.long
 def test_a_command_waiting_for_a_silent_lease_is_played_before_parking(robot, running):
     with pytest.raises(RefusedError) as caught, robot.stream("in the way") as stream, running.client() as other:
         stream.send(robot.status().goal_rad)
@@ -203,6 +205,7 @@ def test_a_text_takes_over_and_the_stream_says_no_more(robot):
     robot.wait_for("idle", timeout_s=15)
 
 
+@pytest.mark.long
 def test_a_lease_takes_over_from_a_text_without_a_jolt(robot, running):
     with running.client() as other:
         events = other.events_of(Say(id="barged", text="slow wave"))
@@ -217,7 +220,7 @@ def test_a_lease_takes_over_from_a_text_without_a_jolt(robot, running):
     assert end.gate_clipped_frames <= 2 + MOST_CLIPPED_IN_AN_UNDERRUN * end.underruns
 
 
-@pytest.mark.parametrize("verb", ["stop", "cancel", "park", "estop"])
+@pytest.mark.parametrize("verb", few_and_long(["stop", "estop"], ["cancel", "park"]))
 def test_what_ends_a_motion_ends_a_lease(robot, verb):
     with pytest.raises(CancelledByError, match=verb), robot.stream("ended") as stream:
         wave(robot, stream, 0.4)
@@ -318,6 +321,7 @@ def test_bad_messages_are_no_sign_of_life(robot):
         assert robot.status().stream.lease.state == "silent"
 
 
+@pytest.mark.long
 def test_random_jumping_streams_stay_off_the_body(robot):
     """The audit at the end of the module is the judge; here it only has to be told when it held."""
     draw = np.random.default_rng(7)
@@ -377,6 +381,7 @@ def test_a_client_that_is_killed_leaves_no_arm_moving(robot, running):
     assert robot.status().stream.lease is None
 
 
+@pytest.mark.long
 def test_the_example_runs(robot, running):
     ends = running.endpoints
     ran = subprocess.run(
@@ -405,6 +410,7 @@ def test_status_tells_where_the_socket_is_and_who_holds_it(robot, running):
     assert f"stream: {running.endpoints.stream}" in running.mmmd("capabilities").stdout
 
 
+@pytest.mark.long
 def test_look_holds_for_a_stream_too(robot):
     names = robot.status().joint_names
     yaw = next((k for k, name in enumerate(names) if "yaw" in name and ("head" in name or "neck" in name)), None)

@@ -170,6 +170,7 @@ def test_ctrl_c_leaves_the_robot_limp_and_says_what_is_lost(taught, servos, gest
         assert client.status().state == "limp"
 
 
+@pytest.mark.long
 def test_ctrl_c_before_and_after_the_recording_says_what_the_robot_does(taught, servos, gestures):
     """At the question, on the way to the park pose or to rest, in the motion: safe, and nothing that was taught is lost."""
     daemon, begun = taught
@@ -220,6 +221,7 @@ def test_an_estop_or_somebody_who_arms_ends_the_recording(taught, servos):
             assert status == 2 and "so the recording ended" in complaints and "NOT kept" in complaints
 
 
+@pytest.mark.long
 def test_a_pose_is_taught_and_gone_through(taught, servos, gestures):
     daemon, _ = taught
     lead(daemon, servos, [raised(1.0)])
@@ -239,6 +241,7 @@ def test_a_pose_is_taught_and_gone_through(taught, servos, gestures):
             assert np.abs(there - raised(1.0))[[RIGHT_ROLL, RIGHT_ELBOW]].max() < np.deg2rad(5)
 
 
+@pytest.mark.long
 def test_the_example_goes_from_one_taught_pose_to_another(taught, servos):
     """docs/examples/inbetween_taught.py: at its end the robot is in the first pose again, and it has been in the second."""
     daemon, _ = taught

@@ -99,6 +99,7 @@ def test_a_cpu_build_of_the_configured_index_is_taken(python, tmp_path):
     assert version == "2.13.0+cpu" and "from the configured index" in done.stdout
 
 
+@pytest.mark.long
 def test_the_constraint_keeps_out_a_newer_build(python, tmp_path):
     constraint = tmp_path / "constraints.txt"
     constraint.write_text("torch==2.13.0\n")
@@ -107,12 +108,14 @@ def test_the_constraint_keeps_out_a_newer_build(python, tmp_path):
     assert (done.returncode, version) == (0, "2.13.0+cpu"), done.stderr
 
 
+@pytest.mark.long
 def test_a_plain_build_that_requires_nothing_for_gpus_is_a_cpu_build(python, tmp_path):
     configured = make_index(tmp_path / "public", ("2.13.0", ('nvidia-cublas; platform_system == "Windows"',)))
     done, version = set_up(python, configured, "file:///nowhere")
     assert (done.returncode, version) == (0, "2.13.0"), done.stderr
 
 
+@pytest.mark.long
 def test_pytorchs_own_index_comes_next(python, tmp_path):
     """A plain `torch` of the public index brought 15 GPU packages, 5.9 GB, where the README promised 2 GB."""
     configured = make_index(tmp_path / "public", ("2.13.0", GPU), ("2.15.0", GPU))
@@ -121,7 +124,7 @@ def test_pytorchs_own_index_comes_next(python, tmp_path):
     assert version == "2.13.0+cpu" and "/cpu" in done.stdout
 
 
-@pytest.mark.parametrize("cpu_index_has", [(), (("2.13.0", GPU),)])
+@pytest.mark.parametrize("cpu_index_has", [(), pytest.param((("2.13.0", GPU),), marks=pytest.mark.long)])
 def test_without_a_cpu_build_it_stops_and_says_what_would_come(cpu_index_has, python, tmp_path):
     configured = make_index(tmp_path / "public", ("2.13.0", GPU))
     done, version = set_up(python, configured, make_index(tmp_path / "cpu", *cpu_index_has))
@@ -139,12 +142,14 @@ def test_without_a_cpu_build_it_stops_and_says_what_would_come(cpu_index_has, py
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.long
 def test_the_gpu_build_comes_when_it_is_asked_for(python, tmp_path):
     configured = make_index(tmp_path / "public", ("2.13.0", GPU[:1]))
     done, version = set_up(python, configured, "file:///nowhere", "--build", "gpu")
     assert (done.returncode, version) == (0, "2.13.0"), done.stderr
 
 
+@pytest.mark.long
 def test_a_machine_without_any_build_is_named(python, tmp_path):
     """A 32-bit Raspberry Pi OS: pip finds no version of torch at all."""
     done, version = set_up(python, make_index(tmp_path / "public"), make_index(tmp_path / "cpu"))
@@ -152,6 +157,7 @@ def test_a_machine_without_any_build_is_named(python, tmp_path):
     assert "none for Python" in done.stderr and "--generator tcp://HOST:5874" in done.stderr
 
 
+@pytest.mark.long
 def test_an_old_pip_is_named_and_the_index_is_not_blamed(python, old_pip, tmp_path):
     """Debian 12's pip was never asked for the index's build, and the refusal said that the index had none."""
     configured = make_index(tmp_path / "public", ("2.13.0+cpu", ()))
@@ -160,6 +166,7 @@ def test_an_old_pip_is_named_and_the_index_is_not_blamed(python, old_pip, tmp_pa
     assert f"was not asked: pip {old_pip}" in done.stderr and "pip install --upgrade pip" in done.stderr
 
 
+@pytest.mark.long
 def test_what_is_installed_is_kept(python, tmp_path):
     make_wheel(tmp_path, "2.7.0")
     wheel = tmp_path / "torch-2.7.0-py3-none-any.whl"

@@ -68,12 +68,14 @@ def names(wheel: Path) -> list[str]:
     return zipfile.ZipFile(wheel).namelist()
 
 
+@pytest.mark.long
 def test_it_builds_without_a_warning(wheel):
     """setuptools warned at length of `retarget.robots.*`: data folders that look like packages and were not listed."""
     lines = [line for line in (wheel.parent / "log").read_text().splitlines() if "warning" in line.lower()]
     assert lines == []
 
 
+@pytest.mark.long
 def test_training_and_its_corpus_stay_in_the_repository(wheel):
     found = names(wheel)
     for package in LEFT_OUT:
@@ -83,12 +85,14 @@ def test_training_and_its_corpus_stay_in_the_repository(wheel):
     assert "mmm_core/weights/mmm_compact.safetensors" in found and "retarget/robots/op3/robot.toml" in found
 
 
+@pytest.mark.long
 def test_the_schemas_of_the_wire_are_inside(wheel):
     with zipfile.ZipFile(wheel) as archive:
         for name, schema in schemas().items():
             assert json.loads(archive.read(f"daemon/wire/json_schemas/{name}")) == json.loads(json.dumps(schema))
 
 
+@pytest.mark.long
 def test_the_metadata_says_what_it_is(wheel):
     with zipfile.ZipFile(wheel) as archive:
         text = archive.read(next(n for n in names(wheel) if n.endswith("/METADATA"))).decode()
@@ -199,6 +203,7 @@ def whole(wheel, tmp_path_factory) -> Environment:
     return Environment(tmp_path_factory.mktemp("whole"), wheel, list({p.name: p for p in all_packages()}.values()))
 
 
+@pytest.mark.long
 def test_the_client_runs_on_pyzmq_and_msgspec_alone(client_only):
     done = client_only.run(
         "-c", "from daemon.client import Client, AsyncClient; print(Client.__name__, AsyncClient.__name__)"
@@ -210,12 +215,14 @@ def test_the_client_runs_on_pyzmq_and_msgspec_alone(client_only):
     assert not loaded & {"numpy", "mujoco", "torch", "rich", "tyro"}
 
 
+@pytest.mark.long
 def test_the_client_alone_says_how_to_get_the_commands(client_only):
     done = client_only.mmmd("say", "wave")
     assert done.returncode == 1 and "pip install 'mmmd[run]'" in done.stderr and "internal" not in done.stderr
     assert client_only.mmmd("--version").stdout.startswith("mmmd ")
 
 
+@pytest.mark.long
 def test_without_torch_what_needs_none_works_and_the_rest_says_so(without_torch):
     """`mmmd generate` ended in `internal error (ModuleNotFoundError: No module named 'torch')`."""
     generate = without_torch.mmmd("generate", "wave", "--out", "wave.npz")
@@ -227,6 +234,7 @@ def test_without_torch_what_needs_none_works_and_the_rest_says_so(without_torch)
     assert shown.returncode == 0 and "wave_right" in shown.stdout
 
 
+@pytest.mark.long
 def test_the_whole_wheel_generates_from_another_directory(whole):
     made = whole.mmmd("generate", "wave with your right hand", "--out", "wave.npz", "--bvh", "wave.bvh")
     assert made.returncode == 0, made.stderr
@@ -240,6 +248,7 @@ def test_the_whole_wheel_generates_from_another_directory(whole):
     assert str(ROOT) not in where
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("command", [["train", "tokenizer", "--run", "r"], ["eval", "probes"]])
 def test_what_needs_a_clone_says_so(command, whole):
     done = whole.mmmd(*command)

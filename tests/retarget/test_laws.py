@@ -20,7 +20,7 @@ from retarget.robot.loading import list_robots
 from retarget.robot_to_human import joints_of_path
 from tests.retarget.test_pipeline import at_rest, check_bounds
 from tests.support.robots import ByName, packaged
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 RETARGETERS = ByName(list_robots(), lambda name: Retargeter(packaged(name)))
 CHECKS = ByName(list_robots(), lambda name: ContactCheck(packaged(name)))
@@ -91,7 +91,7 @@ def held_before(motion: Motion, n: int) -> Motion:
 @pytest.mark.parametrize(
     ("name", "at_least"),
     [
-        *((name, 3) for name in ("reference", "op3")),
+        *few_and_long([("reference", 3)], [("op3", 3)]),
         *(pytest.param(name, 12, marks=pytest.mark.soak) for name in RETARGETERS),
     ],
 )

@@ -21,7 +21,7 @@ from retarget.pipeline import BLOCK_FRAMES, Retargeter
 from retarget.robot.kinematics import Kinematics
 from retarget.robot.loading import load_robot
 from tests.support.robots import ByName, packaged
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 RETARGETERS = ByName(("reference", "op3"), lambda name: Retargeter(packaged(name)))
 kinds = st.sampled_from(["noise", "teleport", "smooth"])
@@ -281,7 +281,7 @@ def test_a_bad_file_is_named_with_its_key(
 
 
 @pytest.mark.parametrize("settle", [True, False])
-@pytest.mark.parametrize("frames", [1, 20, 33, 75, 160])
+@pytest.mark.parametrize("frames", few_and_long([1, 33], [20, 75, 160]))
 def test_the_pieces_of_a_path_are_the_path(frames, settle):
     retargeter, whole = Retargeter(load_robot("reference")), random_motion(4, frames, "smooth")
     start = JointState(retargeter.robot.rest_rad, np.zeros(retargeter.robot.n_joints))

@@ -14,6 +14,7 @@ from retarget.pipeline import Retargeter
 from retarget.robot.loading import load_robot
 from retarget.robot.robot import RobotModel
 from tests.retarget.gestures import gesture
+from tests.support.sizes import few_and_long
 
 ROBOTS = ("reference", "op3", "toddlerbot")
 
@@ -27,7 +28,7 @@ def poses_within(robot: RobotModel, contact: SelfContact, n_poses: int) -> NDArr
     return q_rad[(room < 0) & (gate_room > 0)][:n_poses]
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", few_and_long(["reference"], ROBOTS))
 @pytest.mark.parametrize(("n_poses", "most_stay"), [(3, 0), pytest.param(8, 1, marks=pytest.mark.soak)])
 def test_a_motion_leaves_a_pose_within_the_margin(name: str, n_poses: int, most_stay: int) -> None:
     robot = load_robot(name)

@@ -46,6 +46,7 @@ def test_a_simulated_run_is_what_the_simulator_makes_of_its_log(run):
     assert all(abs(a - b) <= 6 and 10 < b < 120 for a, b in lags)
 
 
+@pytest.mark.long
 def test_a_robot_of_protocol_1_is_played_in_its_protocol():
     with rig("poppy_torso") as r:
         r.cycle(3)

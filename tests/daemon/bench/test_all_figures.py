@@ -292,6 +292,7 @@ def test_commands_of_the_table_exist_and_marks_have_a_source(measurement: Measur
         assert tyro.cli(read, args=words) == 0
 
 
+@pytest.mark.long
 @pytest.mark.timeout(240)
 @pytest.mark.parametrize(
     ("name", "key"),

@@ -31,6 +31,7 @@ def test_a_lost_estop_is_counted_and_its_time_is_none_of_the_figures():
     assert figures["from_back"] == {"p50_ms": 3.0, "p99_ms": 3.98, "worst_ms": 4.0}
 
 
+@pytest.mark.long
 @pytest.mark.timeout(240)
 @pytest.mark.realtime
 @pytest.mark.parametrize("names", some_and_all(("bus_killed",), ("flood_pub", "front_killed", "bus_killed")))

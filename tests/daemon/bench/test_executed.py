@@ -47,6 +47,7 @@ def test_a_wave_is_seen_in_what_the_servos_measured(motion):
     assert len(measured.joints_m) >= len(motion.joints_m)
 
 
+@pytest.mark.long
 def test_servos_that_do_not_turn_show_in_the_verdict(motion):
     """The verdict is about measured positions: with the right arm stuck the path waves and the robot does not."""
     op3 = load_robot("op3")

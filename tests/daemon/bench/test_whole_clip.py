@@ -12,6 +12,7 @@ from retarget.human.poser import Poses
 from retarget.pipeline import Retargeter
 from retarget.robot.loading import load_robot
 from tests.retarget.gestures import gesture
+from tests.support.sizes import few_and_long
 
 
 def _clip(robot_name, name, frames, seed=3):
@@ -32,7 +33,7 @@ def test_the_figures_say_how_near_the_path_is_to_the_best():
     )
 
 
-@pytest.mark.parametrize("robot_name", ["reference", "toddlerbot", "op3"])
+@pytest.mark.parametrize("robot_name", few_and_long(["reference"], ["toddlerbot", "op3"]))
 def test_the_best_keeps_every_bound_and_margin(robot_name):
     retargeter, poses, path = _clip(robot_name, "jumping_jack", 60)
     found = best_of_clip(retargeter, poses, path)
@@ -51,6 +52,7 @@ def test_the_best_keeps_every_bound_and_margin(robot_name):
     assert _missed(retargeter, poses, ((free[1:-1] + free[2:]) / 2)[:60]) < missed * 1.01
 
 
+@pytest.mark.long
 def test_of_two_ends_the_one_that_costs_less_is_the_best():
     """On arms of few joints the end of fewer degrees can be the worse one: a hand then weighs more than both bones.
 
@@ -70,6 +72,7 @@ def _missed(retargeter: Retargeter, poses: Poses, q_rad: np.ndarray) -> float:
     return float((retargeter.missed(poses, q_rad) ** 2).sum())
 
 
+@pytest.mark.long
 def test_another_solver_finds_nothing_better():
     """Twelve frames of a punch by SciPy's SLSQP, from our solution and from the poses: it comes to the same error."""
     retargeter, poses, path = _clip("reference", "punch", 12)

@@ -60,6 +60,7 @@ def test_what_is_not_reached_ends_with_status_1(wave: Path, tmp_path: Path, caps
     assert len(load_npz(out).joints_m) == 60
 
 
+@pytest.mark.long
 def test_the_generator_says_what_is_not_reached() -> None:
     """`rejected` with `not_reached`: the robot does not move."""
     maker = EngineService(shipped_engine())

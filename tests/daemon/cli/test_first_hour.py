@@ -79,6 +79,7 @@ def test_a_port_in_use_is_status_1_so_that_a_service_tries_again(running):
     assert again.returncode == 1 and running.endpoints.cmd in again.stderr and "already in use" in again.stderr
 
 
+@pytest.mark.long
 @pytest.mark.realtime
 @pytest.mark.parametrize(
     "bus",

@@ -80,6 +80,7 @@ def test_another_robot_needs_another_folder(folder: Path, tmp_path: Path, capsys
     assert "choose another folder" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_several_processes_write_the_same_bits(folder: Path, tmp_path: Path) -> None:
     assert run(folder, tmp_path / "one") == 0
     assert main(["retarget", str(folder), "--robot", "op3", "--out", str(tmp_path / "two"), "--jobs", "2"]) == 0
@@ -88,6 +89,7 @@ def test_several_processes_write_the_same_bits(folder: Path, tmp_path: Path) -> 
             assert all(np.array_equal(a[k], b[k]) for k in a.files)
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_a_dask_cluster_writes_the_same(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     distributed = pytest.importorskip("distributed", reason="the extra `dask` is not installed")

@@ -13,6 +13,7 @@ from matplotlib.image import imread
 from daemon.cli import main
 from retarget.robot.loading import ROBOTS_DIR, list_robots, load_robot
 from tests.support.rig import rig
+from tests.support.sizes import few_and_long
 
 
 def description(tmp_path: Path) -> Path:
@@ -92,7 +93,7 @@ def test_check_says_what_touches(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert re.search(r"missing: park pose: \S+ touches \S+; change park_deg", capsys.readouterr().out)
 
 
-@pytest.mark.parametrize("name", ["op2", "ffw_bg2"])
+@pytest.mark.parametrize("name", few_and_long(["op2"], ["ffw_bg2"]))
 def test_show_draws_rest_arms_out_and_a_gesture(name: str, tmp_path: Path) -> None:
     out = tmp_path / "robot.png"
     assert main(["robot", "show", name, "--out", str(out), "--text", "raise your left arm"]) == 0

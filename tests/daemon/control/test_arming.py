@@ -8,11 +8,12 @@ from daemon.control.starting import start
 from daemon.shared_memory.bus_link import BusLink, BusRequest, BusState, Readiness
 from sim.faults import Fault
 from tests.support.rig import rig, swing
+from tests.support.sizes import few_and_long
 
 A, P, S, E = BusRequest.ARM, BusRequest.PARK, BusRequest.STOP, BusRequest.ESTOP
 
 
-@pytest.mark.parametrize("halt", [P, S, E])
+@pytest.mark.parametrize("halt", few_and_long([E], [P, S]))
 def test_a_halt_between_any_two_steps_of_arming_leaves_the_robot_limp(halt):
     """At every cycle of arming: before torque is on it never comes on; after that it is brought to rest, parked or cut."""
     steps = 0
@@ -125,7 +126,7 @@ def test_servos_that_have_torque_at_the_start_are_a_fault_and_not_limp():
             link.close()
 
 
-@pytest.mark.parametrize("servo_id", [1, 13])
+@pytest.mark.parametrize("servo_id", few_and_long([13], [1]))
 def test_one_servo_that_stops_by_its_watchdog_is_a_named_fault(servo_id):
     """It heard nothing for a while and the others did: it answers as ever afterwards, and stands wherever it stopped."""
     with rig("op3" if servo_id == 1 else "reference", Fault("deaf", 6.0, 6.6, servo_id=servo_id)) as r:
@@ -148,8 +149,8 @@ def test_one_servo_that_stops_by_its_watchdog_is_a_named_fault(servo_id):
 
 
 @pytest.mark.parametrize(("robot", "servo_id", "before"), [
-    ("reference", None, None), pytest.param("ffw_bg2", None, None, marks=pytest.mark.soak),
-    ("reference", 13, BusRequest.ESTOP_HOLD), ("op3", 1, BusRequest.STOP),
+    *few_and_long([("reference", None, None)], [("reference", 13, BusRequest.ESTOP_HOLD), ("op3", 1, BusRequest.STOP)]),
+    pytest.param("ffw_bg2", None, None, marks=pytest.mark.soak),
 ])  # fmt: skip
 def test_a_servo_stopped_by_its_watchdog_in_a_fault_gets_no_goals(robot, servo_id, before):
     """All of them silent is a fault before the watchdogs run out: found by a soak, after 2.7 hours."""

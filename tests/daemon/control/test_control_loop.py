@@ -10,7 +10,7 @@ from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.path.collision import SelfContact
 from retarget.robot.loading import list_robots, load_robot
 from tests.support.rig import assert_brakes_within_limits, rig, swing, with_known_turns
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 ROBOTS = [
     name
@@ -31,7 +31,7 @@ def test_nothing_moves_because_a_process_started():
         assert r.records[-1]["valid"].all(), "but it is measured"
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", few_and_long(["reference", "toddlerbot"], ROBOTS))
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (1, 2))])
 def test_arming_pins_then_goes_slowly_to_rest(name, seed):
     """From any pose in which it is not in itself; those are in `test_park.py`."""

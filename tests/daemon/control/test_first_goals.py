@@ -23,7 +23,7 @@ from retarget.robot.ticks import JointServoMap
 from sim.bus import SimBus
 from sim.port import SimPort
 from tests.support.rig import Rig, rig, swing
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 PAIR = (
     'servo = { id = 8, model = "XM430-W350", direction = 1 }',
@@ -94,7 +94,7 @@ def first_goal(r: Rig, servo_id: int) -> tuple[int, int]:
     return int(record["goal_tick"][row]), int(record["present_tick"][row])
 
 
-@pytest.mark.parametrize("beyond_deg", [5, 15, 40])
+@pytest.mark.parametrize("beyond_deg", few_and_long([40], [5, 15]))
 @pytest.mark.parametrize("end", [-1, 1])
 def test_a_servo_beyond_its_linkages_table_is_led_back_slowly(beyond_deg: int, end: int) -> None:
     """ToddlerBot's neck pitch: it was taken for one at the table's end, and its first goal was a jump to there."""

@@ -10,6 +10,7 @@ from daemon.shared_memory.bus_link import BusRequest, BusState
 from retarget.robot.loading import load_robot
 from sim.faults import Fault
 from tests.support.rig import rig, swing
+from tests.support.sizes import few_and_long
 
 
 def test_a_silent_front_holds_then_parks(monkeypatch):
@@ -41,7 +42,7 @@ def test_a_silent_front_holds_then_parks(monkeypatch):
         r.assert_limits_kept()
 
 
-@pytest.mark.parametrize("playing", [False, True])
+@pytest.mark.parametrize("playing", few_and_long([True], [False]))
 def test_a_servo_that_trips_is_a_named_fault_and_nothing_rearms(playing):
     with rig("reference", Fault("trip", start_s=4.0, servo_id=13)) as r:
         r.arm()
@@ -107,7 +108,7 @@ def test_half_of_the_servos_silent_is_a_fault():
         assert 4.0 < r.clock.now_s() < 5.0
 
 
-@pytest.mark.parametrize("kind", ["drop", "corrupt"])
+@pytest.mark.parametrize("kind", few_and_long(["corrupt"], ["drop"]))
 def test_lost_replies_do_not_stop_the_robot(kind):
     """One reply in fifty lost or spoilt: the values go stale for a cycle and say so, the motion goes on."""
     with rig("reference", Fault(kind, start_s=3.0, probability=0.02)) as r:

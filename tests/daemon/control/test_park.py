@@ -18,7 +18,7 @@ from retarget.pipeline import Retargeter
 from tests.retarget.gestures import gesture
 from tests.support.rig import Rig, rig, with_known_turns
 from tests.support.robots import ByName, packaged
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 ROBOTS = ("op2", "reference", "toddlerbot")
 BODIES = ByName(ROBOTS, lambda name: SelfContact(packaged(name), margin_m=0.0))
@@ -91,7 +91,7 @@ def test_whatever_it_is_sent_it_is_led_to_park_off_itself(name, seed, actions):
         assert_parks(r)
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", few_and_long(["toddlerbot"], ROBOTS))
 def test_a_plan_into_the_body_is_held_before_it_and_parked_from_there(name):
     with rig(name) as r:
         r.arm()
@@ -106,7 +106,7 @@ def test_a_plan_into_the_body_is_held_before_it_and_parked_from_there(name):
         assert_never_in_itself(r)
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", few_and_long(["reference"], ROBOTS))
 def test_after_a_plan_into_the_body_the_next_motion_is_played(name):
     """It stands nearer to itself than paths keep, and is led away all the same; the plan before does not wait for ever."""
     with rig(name) as r:
@@ -137,7 +137,7 @@ def blocked(name: str) -> np.ndarray:
     raise AssertionError("no such pose")
 
 
-@pytest.mark.parametrize("name", ["reference", "toddlerbot"])
+@pytest.mark.parametrize("name", few_and_long(["reference"], ["toddlerbot"]))
 def test_a_way_to_park_goes_round_the_robot_instead_of_through_it(name):
     start = blocked(name)
     with rig(name, start_rad=start) as r:

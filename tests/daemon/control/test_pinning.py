@@ -8,6 +8,7 @@ from daemon.shared_memory.bus_link import BusRequest, BusState
 from sim.faults import Fault
 from sim.servos.servo_power import OVERLOAD_BIT
 from tests.support.rig import Rig, rig, swing
+from tests.support.sizes import few_and_long
 
 ID = 13
 
@@ -103,8 +104,8 @@ def test_a_joint_that_sinks_during_pinning_is_pinned_where_it_hangs(probability)
         assert first == pytest.approx(hangs_at, abs=3)
 
 
-@pytest.mark.parametrize("name", ["reachy_2021", "poppy_torso"])
-@pytest.mark.parametrize("outage_s", [0.05, 1.0])
+@pytest.mark.parametrize("name", few_and_long(["reachy_2021"], ["poppy_torso"]))
+@pytest.mark.parametrize("outage_s", few_and_long([1.0], [0.05]))
 def test_servos_that_a_goal_wakes_get_none_after_their_power_failed(name, outage_s):
     """AX and MX switch torque on with a goal: after a brown-out the held goal took limp arms up with a jerk, wherever they hung."""
     with rig(name, Fault("brown_out", 6.0, 6.0 + outage_s)) as r:

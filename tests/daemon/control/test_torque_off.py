@@ -8,6 +8,7 @@ from daemon.control.torque_switch import TORQUE_OFF_REPEATS
 from daemon.shared_memory.bus_link import BusRequest, BusState
 from sim.faults import Fault
 from tests.support.rig import assert_brakes_within_limits, lead_to, rig, swing
+from tests.support.sizes import few_and_long
 
 
 def test_a_reset_and_an_arm_that_came_before_an_e_stop_do_not_undo_it():
@@ -161,7 +162,7 @@ def test_an_e_stop_while_unplugged_is_carried_out_when_the_bus_is_back():
         assert r.state is BusState.ESTOP
 
 
-@pytest.mark.parametrize("request_", [BusRequest.ESTOP, BusRequest.PARK])
+@pytest.mark.parametrize("request_", few_and_long([BusRequest.ESTOP], [BusRequest.PARK]))
 def test_a_servo_that_heard_no_torque_off_is_told_again_when_it_hears(request_):
     """A loose cable while the robot goes limp: the five packets that nobody answers were all lost on one servo."""
     deaf = Fault("deaf", start_s=4.0, end_s=12.0, servo_id=5)

@@ -15,6 +15,7 @@ from daemon.dynamixel.health import QUARANTINE_AFTER
 from daemon.dynamixel.servo_bus import ServoBus
 from sim.clock import VirtualClock
 from tests.support.servo_emulator import FakePort, fake
+from tests.support.sizes import few_and_long
 
 N, PART_BYTES = 20, 14
 GOALS = np.full(N, 2048, np.int32)
@@ -48,7 +49,7 @@ def rate_and_valid(bus: ServoBus, clock: VirtualClock, cycles: int = 4000) -> tu
     return cycles / (clock.now_s() - start_s), valid / cycles / N
 
 
-@pytest.mark.parametrize(("share", "rate", "valid"), [(0.001, 0.97, 0.98), (0.01, 0.75, 0.9)])
+@pytest.mark.parametrize(("share", "rate", "valid"), few_and_long([(0.001, 0.97, 0.98)], [(0.01, 0.75, 0.9)]))
 def test_lost_parts_of_fast_answers_cost_their_cycle_only(share: float, rate: float, valid: float) -> None:
     """One in a thousand lost 12 % of the rate: after each, 25 cycles went by the slower read."""
     bus, far, clock = group()
@@ -86,6 +87,7 @@ def test_spoilt_parts_are_counted_by_servo_and_leave_the_others_alone() -> None:
     assert all(w[-30:].count(Instruction.FAST_SYNC_READ) for w in far.writes[-5:])
 
 
+@pytest.mark.long
 def test_fast_reads_that_always_break_off_are_tried_more_and_more_rarely() -> None:
     """A firmware that answers fast reads when it is asked at start, and not under load."""
     bus, far, clock = group()

@@ -12,9 +12,9 @@ import zmq
 from daemon.client import CancelledByError
 from daemon.wire.requests import Gesture
 from tests.support.harness import RunningDaemon
+from tests.support.sizes import few_and_long
 
 pytestmark = [pytest.mark.timeout(120), pytest.mark.realtime]
-MESSAGES = 13_000
 CLIENTS = 4
 """So that each stays below the burst that one client may send, and every message is served."""
 FRAMES = (b'{"type": "status"}', b'{"type": "capabilities"}', b"{", b'{"type": "cancel", "command": "nobody"}')
@@ -28,7 +28,7 @@ class Flood:
         over: set once all have been.
     """
 
-    def __init__(self, endpoint: str, messages: int = MESSAGES) -> None:
+    def __init__(self, endpoint: str, messages: int) -> None:
         self.begun, self.over = threading.Event(), threading.Event()
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._run, args=(endpoint, messages))
@@ -62,7 +62,8 @@ class Flood:
         self._thread.join(30)
 
 
-def test_a_flood_of_messages_costs_no_frame_of_a_motion_and_hides_no_stop():
+@pytest.mark.parametrize("messages", few_and_long([5_000], [13_000]))
+def test_a_flood_of_messages_costs_no_frame_of_a_motion_and_hides_no_stop(messages):
     """The front served all of them before anything else: the robot ran dry, was held as if the front were gone, parked."""
     daemon = RunningDaemon(robot="reference")
     floods: list[Flood] = []
@@ -73,7 +74,7 @@ def test_a_flood_of_messages_costs_no_frame_of_a_motion_and_hides_no_stop():
             client.play(playing, wait=False)
             before = client.wait_for("moving", timeout_s=5)
 
-            floods.append(Flood(daemon.endpoints.cmd))
+            floods.append(Flood(daemon.endpoints.cmd, messages))
             assert floods[0].over.wait(60), "not every message was answered"
             seen = client.status().bus_info["cycles"]
             while (after := client.status()).bus_info[
@@ -84,7 +85,7 @@ def test_a_flood_of_messages_costs_no_frame_of_a_motion_and_hides_no_stop():
             assert after.bus_info["underruns"] == before.bus_info["underruns"]
             assert after.bus_info["requests_dropped"] == 0 and "front silent" not in daemon.said
 
-            floods.append(Flood(daemon.endpoints.cmd, MESSAGES // 4))
+            floods.append(Flood(daemon.endpoints.cmd, messages // 4))
             assert floods[1].begun.wait(60)
             client.stop()
             with pytest.raises(CancelledByError, match="stop"):

@@ -17,6 +17,7 @@ from daemon.wire import events as ev
 from daemon.wire import requests
 from tests.support.harness import RATE_HZ, RunningDaemon, plays_well
 from tests.support.kinematic import LET_GO
+from tests.support.sizes import few_and_long
 
 pytestmark = pytest.mark.realtime
 
@@ -136,7 +137,7 @@ def test_a_draft_whose_motion_never_comes_is_played_to_its_end(robot):
     assert 1.4 < said.done.duration_s < 2.5
 
 
-@pytest.mark.parametrize(("mirror", "up"), [(False, "right"), (True, "left")])
+@pytest.mark.parametrize(("mirror", "up"), few_and_long([(True, "left")], [(False, "right")]))
 def test_a_text_with_a_prefix_continues_from_the_frames_before_it(robot, running, mirror, up):
     """The generator is shown the last 1.6 s; of a motion that is to be mirrored, their mirror image."""
     with running.client() as other:

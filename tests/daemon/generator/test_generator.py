@@ -299,6 +299,7 @@ def test_answers_reach_the_right_asker_in_any_order(endpoint):
         peer.close()
 
 
+@pytest.mark.long
 def test_the_process_refuses_a_checkpoint_that_is_none(endpoint, tmp_path):
     """One message, no traceback."""
     broken = tmp_path / "model.safetensors"

@@ -258,6 +258,7 @@ def test_a_key_may_be_given_in_hexadecimal_or_in_z85():
             checked_key(bad)
 
 
+@pytest.mark.long
 def test_a_daemon_without_torch_uses_a_remote_generator_over_curve(tmp_path):
     """As on a small board: torch cannot be imported; the generator is another process, behind keys."""
     without = tmp_path / "without_torch"

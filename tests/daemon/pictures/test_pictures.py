@@ -121,6 +121,7 @@ def test_opengl_that_is_missing_is_named_with_its_remedy(monkeypatch: pytest.Mon
         Scene(None, SIZE)
 
 
+@pytest.mark.long
 def test_a_sheet_shows_the_side_only_where_depth_matters(robot: RobotModel, wave: Motion) -> None:
     shown = cut(of_motion(wave, robot, "wave"), 0, 20)
     assert shown.person_m is not None

@@ -23,7 +23,7 @@ from retarget.path.collision import SelfContact
 from retarget.path.safety_filter import SafetyFilter
 from tests.support.rig import Rig, rig
 from tests.support.robots import ByName, packaged
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 BODIES = ByName(("reference", "toddlerbot"), lambda name: SelfContact(packaged(name), margin_m=0.0))
 
@@ -222,7 +222,7 @@ def test_it_holds_before_the_body_and_says_so():
         s.assert_clean()
 
 
-@pytest.mark.parametrize("hz", [15, 40, 100, 300])
+@pytest.mark.parametrize("hz", few_and_long([15, 300], [40, 100]))
 def test_a_smooth_stream_is_followed_smoothly_at_any_rate(hz):
     """Between messages the robot moves on: no joint stops and starts again with each of them."""
     with streaming() as s:

@@ -102,6 +102,7 @@ def test_amplitude_scales_the_movement(robot):
     assert small.peak_speed_share < 0.6 * full.peak_speed_share
 
 
+@pytest.mark.long
 def test_a_loop_goes_on_until_it_is_cancelled(robot, talk):
     talk.send(Say(id="round", text="wave", seconds=1.0, loop=True))
     talk.until("round", ev.Progress)
@@ -226,6 +227,7 @@ def test_record_keeps_the_newest_motion_as_a_gesture(robot):
         robot.record("other", "never said")
 
 
+@pytest.mark.long
 def test_a_recorded_gesture_is_not_overwritten_and_keeps_its_text(robot):
     """One's own gesture was replaced without a word, and recording what was played from a gesture kept its name for a text."""
     robot.say("wave with your right hand", seconds=1.0)
@@ -261,6 +263,7 @@ def test_look_turns_the_head_while_the_arm_moves_and_lets_go(robot):
     assert head_is(0.0) and robot.status().gaze_deg is None
 
 
+@pytest.mark.long
 def test_idle_movements_begin_yield_at_once_and_end(robot):
     robot.say("wave", seconds=0.8)
     robot.wait_for("idle", timeout_s=3)
@@ -307,6 +310,7 @@ def test_capabilities_name_everything_that_can_be_asked(robot, running):
             assert next(watched)[0] == topic
 
 
+@pytest.mark.long
 def test_commands_of_the_shell(running, robot, tmp_path):
     said = running.mmmd("say", "wave", "--tempo", "2", "--repeat", "2")
     assert said.returncode == 0 and "done" in said.stdout

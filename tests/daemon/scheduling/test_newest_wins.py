@@ -16,6 +16,7 @@ from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire.requests import Command, Gesture, Say, tag_of
 from tests.support.harness import RunningDaemon
+from tests.support.sizes import few_and_long
 
 pytestmark = [pytest.mark.timeout(180), pytest.mark.realtime]
 IDS = itertools.count()
@@ -84,7 +85,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("refused", REFUSED)
+@pytest.mark.parametrize("refused", few_and_long(["out of scope", "unknown"], REFUSED))
 def test_a_refused_command_leaves_what_waits(talk, refused):
     talk.send(Say(text="wave", seconds=1.5))
     waits = talk.send(Say(text="left wave", seconds=0.6, when="after"))
@@ -94,7 +95,7 @@ def test_a_refused_command_leaves_what_waits(talk, refused):
     assert (talk.end(no), talk.end(waits)) == ("rejected", "done")
 
 
-@pytest.mark.parametrize("refused", REFUSED)
+@pytest.mark.parametrize("refused", few_and_long(["slowly out of scope", "too late"], REFUSED))
 def test_a_refused_command_leaves_what_is_being_made(talk, refused):
     being_made = talk.send(Say(text="slow left wave", seconds=0.6))
     no = talk.send(REFUSED[refused]())
@@ -150,6 +151,7 @@ COMMANDS = st.lists(
 )
 
 
+@pytest.mark.long
 @settings(max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(COMMANDS)
 def test_each_ends_once_and_only_by_what_was_accepted_and_is_newer(talk, wanted):

@@ -110,6 +110,7 @@ def test_rounds_are_made_when_their_step_comes_and_read_again(tmp_path: Path) ->
     assert not n_seen.any()
 
 
+@pytest.mark.long
 def test_a_transformer_learns_from_fresh_clips_in_bf16_and_goes_on(tmp_path: Path) -> None:
     """Captions of a round are read inside a step; they were once read in the step's reduced precision, which failed."""
     model, encoder = load_model(), load_text_encoder()

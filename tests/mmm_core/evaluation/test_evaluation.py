@@ -88,6 +88,7 @@ def test_standing_still_shows_nothing() -> None:
         assert checks.limb(shown(clip.features)) == ""
 
 
+@pytest.mark.long
 def test_no_probe_is_a_sentence_of_the_grammar_and_some_words_are_new() -> None:
     """Thousands of drawn captions and every plain phrase: the probes' words stay out of training."""
 
@@ -260,6 +261,7 @@ def test_slow_and_fast_are_told_apart(name: str) -> None:
             assert not judge(Probe("", name, limb, side, tempo=other), shown(clip.features))["tempo"]
 
 
+@pytest.mark.long
 def test_what_the_corpus_performs_passes_the_whole_suite() -> None:
     met: dict[str, list[bool]] = {}
     for i, probe in enumerate(PROBES):

@@ -99,6 +99,7 @@ def small_model(path: Path) -> Path:
 class TestCommand:
     """On a folder of four motions: too few for R-precision, enough to see every table."""
 
+    @pytest.mark.long
     def test_paper_prints_every_table(
         self, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
     ) -> None:
@@ -127,6 +128,7 @@ class TestCommand:
         assert lines["real motion"]["FID"][0] == pytest.approx(0.0, abs=1e-3)
         assert figures["n"] == 4
 
+    @pytest.mark.long
     def test_the_published_evaluator_with_its_words(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         """A user's files: finest.tar, GloVe, statistics, a HumanML3D folder and a model with its rest directions."""
         folder = make_folder(tmp_path / "data")
@@ -150,6 +152,7 @@ class TestCommand:
         assert main([*command, "--evaluator-std", str(tmp_path / "std.npy")]) == 1
         assert "std.npy" in capsys.readouterr().err
 
+    @pytest.mark.long
     def test_kits_comparison_is_table_two(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         folder = make_folder(tmp_path / "data", "kit")
         humanml3d_model(tmp_path / "m.safetensors", 251)

@@ -31,6 +31,7 @@ def begins_deg(motion: Motion, before: Motion) -> float:
     return float(distance_deg(posture_of(before)[-1:], posture_of(motion)[:1])[0])
 
 
+@pytest.mark.long
 def test_it_begins_nearer_to_where_the_other_ends(engine: Engine, raised: Motion) -> None:
     """The shipped model begins every clip at rest and hardly goes on from elsewhere: docs/daemon.md has how near it comes."""
     texts = ("wave with your right hand", "clap your hands", "cross your arms")

@@ -21,7 +21,7 @@ from mmm_core.model.vqvae import VqVae, VqVaeConfig
 from mmm_core.motion.features import Root, joints_from_positions, recover, root_after
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.posture_features import part, posture_features
-from tests.support.sizes import examples
+from tests.support.sizes import examples, few_and_long
 
 
 def ids(engine: Engine, motion: object) -> torch.Tensor:
@@ -80,7 +80,7 @@ class TestEdit:
 class TestWhatAnEditShows:
     """`mmmd edit` left the arm down and reported success: kept ids were tested, what the text asks was not."""
 
-    @pytest.mark.parametrize("kind", KINDS)
+    @pytest.mark.parametrize("kind", few_and_long(["part", "beginning"], KINDS))
     def test_most_edits_show_their_text_and_keep_the_rest(self, engine: Engine, kind: str) -> None:
         """Three of five, of a few cases: the figure for all is `mmmd eval edits`."""
         cases = [case for case in read_cases("development") if case.kind == kind][:5]
@@ -94,6 +94,7 @@ class TestWhatAnEditShows:
             assert len(cases) == 50
             assert {case.kind for case in cases} == set(KINDS)
 
+    @pytest.mark.long
     def test_the_check_tells_the_old_motion_from_an_edited_one(self, engine: Engine) -> None:
         """A motion that was not edited shows none of the texts."""
         for case in read_cases("test"):

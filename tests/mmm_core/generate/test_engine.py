@@ -97,6 +97,7 @@ def test_the_understood_side_is_the_side_of_the_words(engine: Engine) -> None:
     assert "left" in engine.generate("wave with your left hand").understood
 
 
+@pytest.mark.long
 def test_to_load_and_ask_it_brings_in_no_compiler() -> None:
     """A generator that is started again is waited for; PyTorch's compiler alone takes longer to import than the model to load."""
     asks = "import sys; from mmm_core.generate.engine import Engine; Engine.load().generate('nod'); print(*sys.modules)"

@@ -23,7 +23,7 @@ from mmm_core.model.text import TextStates
 from mmm_core.model.transformer import MotionTransformer
 from tests.mmm_core.imports.test_official import SAMPLES, recorded_noise, text_of
 from tests.support.golden import GOLDEN, golden, needs_golden
-from tests.support.sizes import some_and_all
+from tests.support.sizes import few_and_long, some_and_all
 
 TABLE = Path(__file__).parent / "released_counts.txt"
 LENGTHS = range(1, 50)
@@ -118,7 +118,7 @@ class TestIds:
         )  # fmt: skip
         assert torch.equal(ids[:, 0], io[f"smp.{name}.out.ids"][0, :n])
 
-    @pytest.mark.parametrize(("max_steps", "temperature"), [(10, 0.0), (10, 1.0), (20, 1.0)])
+    @pytest.mark.parametrize(("max_steps", "temperature"), few_and_long([(10, 1.0)], [(10, 0.0), (20, 1.0)]))
     @by_lengths
     def test_texts_of_all_lengths(
         self, model: MotionTransformer, text: TextStates, max_steps: int, temperature: float, lengths: tuple[int, ...]
@@ -157,6 +157,7 @@ class TestIds:
             known = row != model.ids.mask
             assert torch.equal(ids[known], row[known])
 
+    @pytest.mark.long
     @by_lengths
     def test_upper_bodies_of_all_lengths(
         self, upper: MotionTransformer, text: TextStates, lengths: tuple[int, ...]

@@ -68,6 +68,7 @@ class TestPrompts:
         assert len(SCOPE_TEST.in_scope) >= 200 and len(out_of(SCOPE_TEST.out_of_scope)) >= 200
         assert len(DEVELOPMENT) >= 400
 
+    @pytest.mark.long
     def test_none_is_said_by_the_grammar_or_stands_outside_in_training(self) -> None:
         inside, outside = scope_sentences(ScopeRecipe())
         trained = {plain(text) for text in (*known_commands(10_000), *inside, *outside)} - {""}
@@ -217,6 +218,7 @@ def test_training_texts_are_the_same_every_time() -> None:
     assert outside_texts(300, np.random.default_rng(1)) != outside_texts(300, np.random.default_rng(2))
 
 
+@pytest.mark.long
 def test_own_captions_are_in_scope_only_where_the_recipe_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A model trained on recordings of a gesture that the grammar lacks refused the very captions that it was trained on."""
     known = sorted(known_commands(1))[::60]  # reading all of them takes longer than the rest

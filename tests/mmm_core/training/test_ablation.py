@@ -60,6 +60,7 @@ def some_recordings(tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.mark.long
 @needs_data
 @pytest.mark.usefixtures("few")
 def test_variants_are_trained_and_measured_and_kept(

@@ -55,6 +55,7 @@ def test_texts_find_their_motions_and_others_move_away(tmp_path: Path) -> None:
     assert np.median(gap[others]) > 0.3 * MARGIN
 
 
+@pytest.mark.long
 def test_captions_that_several_motions_share_are_not_pushed_apart(tmp_path: Path) -> None:
     """Salsa has many recordings and one sentence: all of them lie near it, none is a wrong answer to it."""
     texts, motions = vectors(*trained(4, 80, tmp_path), 4)

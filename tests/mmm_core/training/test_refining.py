@@ -58,11 +58,13 @@ def test_codes_without_latents_go_where_the_error_is() -> None:
     assert codes.abs().max() < 6
 
 
+@pytest.mark.long
 def test_finer_codes_give_a_motion_back_better(models: tuple[Model, Model], clips: list[Clip]) -> None:
     before, after = (np.mean([float(through(m, c)[1].abs().mean()) for c in clips]) for m in models)
     assert after < before
 
 
+@pytest.mark.long
 def test_the_transformer_begins_with_what_it_knew(models: tuple[Model, Model], clips: list[Clip]) -> None:
     """It has to learn which of the split codes it is, no more: a head of no knowledge is twice as far from the old loss."""
     before, refined_model = (m.transformer for m in models)
@@ -82,6 +84,7 @@ def test_the_transformer_begins_with_what_it_knew(models: tuple[Model, Model], c
     assert losses[1] - losses[0] < 0.5 * (losses[2] - losses[0]), losses
 
 
+@pytest.mark.long
 def test_refining_leaves_the_model_it_begins_with(clips: list[Clip], tmp_path: Path) -> None:
     model = load_model()
     held = {name: t.clone() for name, t in model.tokenizer.state_dict().items()}

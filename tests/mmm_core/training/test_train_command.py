@@ -33,6 +33,7 @@ from mmm_core.training.run import Run, Schedule
 from mmm_core.training.run import train as run_stage
 from mmm_core.training.stages import Stages
 from tests.support.motion_folders import make_folder
+from tests.support.sizes import few_and_long
 
 SCHEDULE = "steps = {steps}\nlearning_rate = 1e-3\nwarmup_steps = 2\nsave_every = 3\n"
 SMALL = """
@@ -141,7 +142,7 @@ def losses(path: Path) -> np.ndarray:
     return np.array([[float(v) for v in row[2:]] for row in rows if row[0] != "step"])
 
 
-@pytest.mark.parametrize("layout", ["parts", "whole", "halves"])
+@pytest.mark.parametrize("layout", few_and_long(["parts"], ["whole", "halves"]))
 def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path, layout: str) -> None:
     config, run, out = small(tmp_path / "small.toml", layout), tmp_path / "run", tmp_path / "model.safetensors"
     command = ["train", "--config", str(config), "--run", str(run), "--out", str(out), "--sample-every", "8"]
@@ -156,6 +157,7 @@ def test_every_stage_of_every_layout_gives_a_model_that_generates(tmp_path: Path
         assert engine.generate("wave with your right hand", seed=1, seconds=1).motion.joints_m.shape == (20, 22, 3)
 
 
+@pytest.mark.long
 def test_a_recipe_makes_clips_while_it_trains(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Rounds are made when their first step comes; lengths and, where asked for, the decoder of a start learn from the newest."""
     config, run = small(tmp_path / "fresh.toml"), tmp_path / "run"
@@ -179,6 +181,7 @@ def test_a_recipe_makes_clips_while_it_trains(tmp_path: Path, capsys: pytest.Cap
     assert "text.tuned_layers" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_a_recipe_with_more_codes_refines_those_of_its_start(tmp_path: Path, finished: Finished) -> None:
     """The refined model is made once; a run that is started again goes on from it as it is."""
     more, run = small(tmp_path / "more.toml"), tmp_path / "more"
@@ -192,6 +195,7 @@ def test_a_recipe_with_more_codes_refines_those_of_its_start(tmp_path: Path, fin
         assert made.tokenizer.config.n_codes == made.transformer.config.n_codes == 24
 
 
+@pytest.mark.long
 def test_a_recipe_goes_on_from_a_finished_model(
     tmp_path: Path, finished: Finished, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -229,6 +233,7 @@ def test_a_recipe_goes_on_from_a_finished_model(
     assert "whose tokenizer stays" in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_the_mean_of_models_that_went_on_from_one_start(
     tmp_path: Path, finished: Finished, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -276,6 +281,7 @@ def test_the_mean_of_models_that_went_on_from_one_start(
     assert not (tmp_path / "no").exists()
 
 
+@pytest.mark.long
 def test_the_last_layers_of_the_text_encoder_become_the_models_own(
     tmp_path: Path, finished: Finished, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -360,7 +366,7 @@ def test_an_evaluator_is_trained_and_written(tmp_path: Path) -> None:
     assert provenance["clips"] == 12
 
 
-@pytest.mark.parametrize("kind", ["humanml3d", "kit"])
+@pytest.mark.parametrize("kind", few_and_long(["kit"], ["humanml3d"]))
 def test_a_users_own_folder_trains(tmp_path: Path, kind: str) -> None:
     folder = make_folder(tmp_path / "data", kind)
     config = small(tmp_path / "small.toml", "whole", synthesised=0)
@@ -373,6 +379,7 @@ def test_a_users_own_folder_trains(tmp_path: Path, kind: str) -> None:
     np.testing.assert_array_equal(model.tokenizer.mean.numpy(), np.load(folder / "Mean.npy").astype(np.float32))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("times", [1, pytest.param(6, marks=pytest.mark.soak)])
 def test_a_killed_run_goes_on_with_the_same_weights(tmp_path: Path, times: int) -> None:
     """SIGKILL at a random moment, in the soak run again and again; then against a run that nobody cut."""
@@ -416,6 +423,7 @@ def test_two_processes_have_the_loss_of_one_with_the_whole_batch(tmp_path: Path)
     np.testing.assert_allclose(two[0], one[0], rtol=1e-4, atol=1e-4)
 
 
+@pytest.mark.long
 def test_bf16_trains_too(tmp_path: Path) -> None:
     config = small(tmp_path / "small.toml")
     options = ["train", "transformer", "--config", str(config), "--run", str(tmp_path / "run"), "--precision", "bf16"]
