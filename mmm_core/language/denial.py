@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 from functools import partial
 
+from mmm_core.language.alternatives import opposite
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.ellipsis import OTHER
 from mmm_core.language.limbs import is_gesture_verb
@@ -28,7 +29,7 @@ _GERUND_FIRST = re.compile(
 )
 _IN_PLACE_OF = re.compile(r"^\W*(?:instead of|rather than|as opposed to|in place of)\b|^not .+, but\b")
 """Words of contrast, after which even what is no act is not to be done: "wave instead of just standing there"."""
-_ALWAYS_DENIES = re.compile(rf"{_IN_PLACE_OF.pattern}|without (?:moving|using)$")
+_ALWAYS_DENIES = re.compile(rf"{_IN_PLACE_OF.pattern}|without (?:moving|using)$|except(?: for)?(?: with)?$")
 _GERUND_CLAUSE = re.compile(r"^\W*(?:instead of|rather than|without|no) (?P<what>\w+ing\b[^,;:.]*), (?P<rest>\w.+)$")
 _ONE_HAND_FOR_THE_OTHER = re.compile(
     r"^\W*(?:instead of|rather than|in place of) (?P<what>(?:using )?(?:the|your) (?:left|right)(?: hand| arm)?),? (?P<rest>(?:use|with|take|using)\b.+)$"
@@ -51,7 +52,8 @@ _RESTS = re.compile(
 """'The left hand rests, wave with the right.'"""
 _KEEP_STILL = re.compile(
     r"(?:,?\s*(?:and|but|while)\s+)?\b(?:keep|keeping|leave|leaving|hold|holding)\s+(?:your |the )?"
-    rf"{_any('kept')}\s+{_any('kept still')},?\s*(?:and\s+)?"
+    rf"{_any('kept')}\s+(?:{_any('how still')} )?{_any('kept still')},?\s*(?:and\s+)?"
+    rf"|(?:,?\s*(?:and|but|while)\s+|,\s*)(?:your |the )?(?:{_any('kept')}|(?:left |right )?(?:arm|hand))\s+(?:(?:do|does|should|must|shall|will|may) not|never) (?:to )?(?:move|stir|budge|take part|join in)\b(?: at all)?,?"
 )
 _DIRECTION_ONLY = re.compile(
     r"^(?:to |at |on )?(?:the |your )?(?:up|down|left|right|forward|forwards|back|backward|backwards)(?: side)?$"
@@ -103,6 +105,8 @@ def without_denial(text: str) -> Denial:  # noqa: PLR0912  one branch for each f
     kept = _KEEP_DOING.match(text)
     if kept:
         return Denial(kept["rest"] or kept["other"])
+    if (turned := opposite(text))[0]:
+        return Denial(turned[0], (turned[1],))
     if other := _NOT_USING.match(text):
         return Denial(_with_side(other["rest"], OTHER[other["side"]]), (f"use the {other['side']} hand",))
     denied: list[str] = []

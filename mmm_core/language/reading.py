@@ -10,12 +10,13 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
+from mmm_core.language.alternatives import anything_but, otherwise
 from mmm_core.language.at_once import base_of, divided, same_limbs
 from mmm_core.language.clause_patterns import SPEAKS_OF_AN_ACT
 from mmm_core.language.clauses import MOST_WORDS, commands_in_turn
 from mmm_core.language.commands import MOST_AT_ONCE, PlainCommand, Reading, read_exactly
 from mmm_core.language.corrections import corrected
-from mmm_core.language.denial import without_denial
+from mmm_core.language.denial import Denial, without_denial
 from mmm_core.language.ellipsis import with_sides
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
@@ -39,8 +40,6 @@ _OWN_PART = re.compile(
 )
 _ACT_ON_IT = re.compile(r"((?!do\b)\w+) (?:it|them)\b")
 """A part of the robot that a sentence names before a pronoun stands for it: "there is a fly on your nose, scratch it"."""
-_ANYTHING = ("wave your right hand", "clap your hands")
-"""Commands for a request of anything except a denied command."""
 
 
 def read(text: str, *, by_rules_alone: bool = False) -> Reading:
@@ -69,8 +68,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     if denial.denied and not denial.rest and not denial.anything:
         return Reading(text, (), _shown(denial.denied))
     if denial.anything and not denial.rest:
-        does = next(c for c in _ANYTHING if c.split()[0] not in " ".join(denial.denied))
-        return Reading(text, ((_command(does),),), _shown(denial.denied))
+        return Reading(text, ((_command(anything_but(denial.denied)),),), _shown(denial.denied))
     rest = rewritten(without_request(denial.rest)) if denial.denied else denial.rest
     steps: list[tuple[PlainCommand, ...]] = []
     notes: list[str] = []
@@ -80,7 +78,15 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
         steps += _steps(clause + hand if hand and limbs_of(clause) == SOME_ARM else clause, notes)
     if _is_plain(text, said, steps):
         return Reading(text, ((replace(steps[0][0], text=normalised(text)),),), plain=True)
+    if denial.denied:
+        steps = [tuple(_not_denied(c, denial) for c in step) for step in steps]
     return Reading(text, tuple(steps), _shown(denial.denied), tuple(notes))
+
+
+def _not_denied(command: PlainCommand, denial: Denial) -> PlainCommand:
+    """A command that shows the same without a denied act: a bow for "say hello without waving"."""
+    words = otherwise(command.text, denial.rest, denial.denied)
+    return command if words == command.text else replace(command, text=words, limbs=limbs_of(words))
 
 
 def _shown(denied: tuple[str, ...]) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ from mmm_core.language.reading import Reading, read
         ("look left once, right twice, left once", "look left once; look right twice; look left once"),
         # first and second, one after the other, one and the other
         ("wave first with the right and second with the left", "wave with your right hand; wave with your left hand"),
-        ("wave with both hands, one after the other", "wave with your right hand; wave with your left hand"),
+        ("wave with each hand, one after the other", "wave with your right hand; wave with your left hand"),
         ("knock with each hand, one after the other, twice", "knock with alternating hands twice"),
         ("rub one ear, then the other", "rub your right ear; rub your left ear"),
         ("wave at the door, then the window", "wave at the door; wave at the window"),
@@ -36,6 +36,7 @@ from mmm_core.language.reading import Reading, read
         ("salute until I count to five", "salute (held for 5 s)"),
         ("bow for a good two seconds before you straighten up", "bow (held for 2 s)"),
         # and what looks like these
+        ("wave with both hands one after the other", "wave with both hands one after the other"),
         ("raise your left left hand", "raise your left hand"), ("punch twice", "punch twice"),
         ("turn left right hand up", "turn left right hand up"), ("nod again and again", "nod again and again"),
         ("two rounds of applause", "two rounds of applause"),

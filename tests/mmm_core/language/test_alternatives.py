@@ -1,0 +1,46 @@
+"""What is done in place of what is denied: another greeting, the opposite, the other hand, the rest of the body."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmm_core.language.context import InContext, conversation
+from mmm_core.language.reading import read
+
+
+def said(text: str) -> str:
+    """The commands that are read and what is denied, as one line: "wave | not: bow"."""
+    reading = read(text)
+    return "; ".join(reading.sentences) + (f" | not: {', '.join(reading.denied)}" if reading.denied else "")
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        ("greet us, but no waving", "bow politely | not: waving"),
+        ("say goodbye without waving or bowing", "nod your head | not: waving or bowing"),
+        ("say yes without nodding", "give a thumbs up with your right hand | not: nodding"),
+        ("show me any greeting except a bow", "wave your right hand | not: a bow"),
+        ("do anything but wave", "clap your hands | not: wave"),
+        ("not left, the other way", "right | not: left"), ("lean, but not forward, the opposite", "lean back | not: forward"),
+        ("not a nod, the opposite", "shake your head | not: a nod"),
+        ("take your right hand instead of your left to point up", "point up with your right hand | not: the left"),
+        ("keep your arms completely still and nod", "nod"), ("turn your head left, but keep your hips facing forward",
+         "turn your head left"),
+        ("nod, your shoulders should not move", "nod"),
+        # and what looks like it
+        ("wave your right hand, but do not wave your left", "wave your right hand | not: wave your left hand"),
+        ("say hello without bowing", "wave your right hand | not: bowing"),
+        ("keep your right hand on your heart and nod", "put your right hand on your heart + nod"),
+        ("hold your left arm straight up and nod", "hold your left arm straight up + nod"),
+        ("move your hands, then wave", "move your hands; wave"), ("turn the other way", "turn the other way"),
+        ("use your left hand to wave", "wave with your left hand"),
+    ],
+)  # fmt: skip
+def test_what_is_read(text: str, read_as: str) -> None:
+    assert said(text) == read_as
+
+
+def test_the_opposite_turns_the_last_command() -> None:
+    meant = conversation(["give a thumbs up", "no, the opposite"])[-1]
+    assert isinstance(meant, InContext) and meant.reading.sentences == ("give a thumbs down",)
