@@ -37,7 +37,7 @@ NOT_RUN_IN_HELP = {
     "mmmd bench": "minutes to hours; tests/daemon/bench",
     "mmmd calibrate": "a person moves the joints and answers; tests/daemon/cli/test_calibrate_command.py",
     "mmmd eval": "minutes to hours, or data that does not ship; docs/evaluation.md's short ones are run",
-    "mmmd generator --bind tcp://0.0.0.0": "keys of two machines; tests/daemon/network/test_keys.py",
+    "mmmd generator --bind tcp://0.0.0.0": "keys of two machines; tests/daemon/network/test_remote_generator.py",
     "mmmd gesture teach": "a person leads the arms; tests/end_to_end/test_teach_command.py",
     "mmmd import-official": "the authors' weights do not ship; tests/mmm_core/imports",
     "mmmd install-torch": "it would change this environment; tests/packaging/test_cpu_torch.py",

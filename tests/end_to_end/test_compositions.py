@@ -110,7 +110,7 @@ def test_a_frozen_generator_is_started_again_and_the_motion_goes_on(run):
 @pytest.mark.long
 def test_a_text_goes_on_from_what_is_played(run):
     """It takes over in the middle of a motion, within all limits; that it is the motion of that prefix is tested with the
-    generator's process (tests/daemon/generator/test_generator.py).
+    generator's process (tests/daemon/generator/test_generator_process.py).
     """
     with run.client() as robot, run.client() as other:
         events = other.events_of(Say(id="up", text="raise both arms", seconds=9.0, seed=1))

@@ -21,8 +21,8 @@ from mmm_core.model.sampling import OFFICIAL_SAMPLING, empty_row, fill
 from mmm_core.model.schedule import official_counts
 from mmm_core.model.text import TextStates
 from mmm_core.model.transformer import MotionTransformer
-from tests.mmm_core.imports.test_official import SAMPLES, recorded_noise, text_of
 from tests.support.golden import GOLDEN, golden, needs_golden
+from tests.support.official import SAMPLES, recorded_noise, text_of
 from tests.support.sizes import few_and_long, some_and_all
 
 TABLE = Path(__file__).parent / "released_counts.txt"
