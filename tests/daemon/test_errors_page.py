@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.errors_page import ANSWERED, FRAMES, INSIDE, PAGE, TYPED, Frame, Typed, page, refused, typed
+from tests.support.errors_page import PAGE, page, refused, typed
+from tests.support.errors_table import ANSWERED, FRAMES, INSIDE, TYPED, Frame, Typed
 
 TESTS = Path(__file__).parents[1]
 DAEMON = TESTS.parent / "daemon"

@@ -24,7 +24,8 @@ from daemon.cli.program import COMMANDS
 from daemon.wire.codec import decode_cmd, decode_target
 from daemon.wire.events import EVENTS as EVENT_TYPES
 from sim.faults import FaultSchedule
-from tests.support.pages import ROOT, Block, Terminal, assert_prints, blocks, help_examples, terminal
+from tests.support.pages import ROOT, Block, assert_prints, blocks, help_examples
+from tests.support.terminal import Terminal, terminal
 
 PAGES = {
     page: found

@@ -18,7 +18,6 @@ from mmm_core.training import samples, scope_training
 from mmm_core.training.batches import CaptionStates
 
 SCHEDULE = "steps = {steps}\nlearning_rate = 1e-3\nwarmup_steps = 2\nsave_every = 3\n"
-
 SMALL = """
 seed = 3
 [data]
@@ -64,7 +63,6 @@ def index_commands() -> list[str]:
 
 _VECTORS: dict[str, torch.Tensor] = {}
 """Vectors of the scope's sentences: most are the same in every training here, and reading them takes longer than it."""
-
 _STATES: dict[tuple[int, tuple[str, ...]], CaptionStates] = {}
 """Caption states by the layers that the encoder leaves out: runs of one seed have the same captions."""
 
