@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from daemon.client import Client
+from tests.support.harness import RunningDaemon
 from tests.support.robot_states import Servos, SharedDaemon
+from tests.support.streaming import leasing_daemon
 
 
 @pytest.fixture
@@ -31,3 +34,17 @@ def shared(module_daemon: SharedDaemon) -> Iterator[SharedDaemon]:
     """The module's daemon with a limp robot; every limit is kept at the end."""
     yield module_daemon.ready()
     module_daemon.servos.assert_kept()
+
+
+@pytest.fixture(scope="module")
+def running() -> Iterator[RunningDaemon]:
+    """A daemon whose leases end soon; its servos are in the bus process."""
+    with leasing_daemon() as daemon:
+        yield daemon
+
+
+@pytest.fixture
+def robot(running: RunningDaemon) -> Iterator[Client]:
+    """A client of that daemon, its robot armed."""
+    with running.armed() as client:
+        yield client

@@ -177,7 +177,7 @@ ANSWERED = (
         "generator_timeout", "the generator did not answer in time", "say it once more", "daemon/generator/test_generator.py",
     ),
     Answered(
-        "gesture_exists", "a gesture has that name", "another name, or --replace", "daemon/scheduling/test_commands.py",
+        "gesture_exists", "a gesture has that name", "another name, or --replace", "daemon/scheduling/test_gesture_commands.py",
     ),
     Answered(
         "id_in_use", "the id stands for another command", "choose a new id", "daemon/scheduling/test_commands.py",
@@ -186,13 +186,13 @@ ANSWERED = (
         "lease_held", "another program streams", "end that program, or wait", "end_to_end/test_stream.py",
     ),
     Answered(
-        "lease_silent", "a streaming program fell silent for good", "keep sending, or release the lease", "end_to_end/test_stream.py",
+        "lease_silent", "a streaming program fell silent for good", "keep sending, or release the lease", "end_to_end/test_stream_losses.py",
     ),
     Answered(
-        "no_lease", "a target, or a release, without the lease that is held", "ask for a lease first", "end_to_end/test_stream.py",
+        "no_lease", "a target, or a release, without the lease that is held", "ask for a lease first", "end_to_end/test_stream_losses.py",
     ),
     Answered(
-        "not_finite", "a target that is no number, or far from any joint", "send radians", "end_to_end/test_stream.py",
+        "not_finite", "a target that is no number, or far from any joint", "send radians", "end_to_end/test_stream_losses.py",
     ),
     Answered(
         "not_running", "a command to cancel that does not run", "`mmmd status` says what runs", "daemon/scheduling/test_sequences.py",
@@ -215,16 +215,16 @@ ANSWERED = (
         "queue_full", "too many commands wait", "wait, or cancel some", "daemon/scheduling/test_commands.py",
     ),
     Answered(
-        "unknown_gesture", "no gesture of that name", "`mmmd gesture list`", "daemon/scheduling/test_commands.py",
+        "unknown_gesture", "no gesture of that name", "`mmmd gesture list`", "daemon/scheduling/test_gesture_commands.py",
     ),
     Answered(
-        "unknown_joint", "a target that names no joint of the robot", "`mmmd capabilities --json` lists them", "end_to_end/test_stream.py",
+        "unknown_joint", "a target that names no joint of the robot", "`mmmd capabilities --json` lists them", "end_to_end/test_stream_losses.py",
     ),
     Answered(
         "unknown_motion", "the motion of a command that is not known any more", "name a newer command, or a gesture", "end_to_end/test_compositions.py",
     ),
     Answered(
-        "wrong_number", "a target with another number of angles", "one for each joint, or angles by name", "end_to_end/test_stream.py",
+        "wrong_number", "a target with another number of angles", "one for each joint, or angles by name", "end_to_end/test_stream_losses.py",
     ),
     Answered(
         "wrong_secret", "a target without the secret of the lease", "send the secret that `accepted` gave", "daemon/front/test_target_parsing.py",

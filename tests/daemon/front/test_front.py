@@ -1,76 +1,24 @@
-"""The front over its sockets, with a real bus process, simulated servos and a generator whose answers are known."""
+"""Texts over the front's sockets, with a real bus process, simulated servos and a generator whose answers are known."""
 
 from __future__ import annotations
 
 import contextlib
 import json
-import threading
 import time
 
 import pytest
 import zmq
 
-from daemon.client import CancelledByError, Client, RefusedError
-from daemon.client.errors import stamp
+from daemon.client import RefusedError
 from daemon.wire import codec as wire
 from daemon.wire import events as ev
 from daemon.wire import requests
-from tests.support.harness import RATE_HZ, RunningDaemon, plays_well
+from tests.support.front_sockets import dealer, hear, kinds
+from tests.support.harness import RATE_HZ, plays_well
 from tests.support.kinematic import LET_GO
 from tests.support.sizes import few_and_long
 
 pytestmark = pytest.mark.realtime
-
-OPEN: list[zmq.Socket] = []
-"""Sockets of the running test: they must not be collected before their context closes them."""
-
-
-@pytest.fixture(scope="module")
-def running():
-    daemon = RunningDaemon()
-    try:
-        yield daemon.until_ready()
-    finally:
-        daemon.close()
-
-
-@pytest.fixture
-def robot(running):
-    with running.armed() as client:
-        yield client
-
-
-@pytest.fixture
-def context():
-    made = zmq.Context()
-    yield made
-    made.destroy(linger=0)
-    OPEN.clear()
-
-
-def dealer(context: zmq.Context, endpoint: str, kind: int = zmq.DEALER) -> zmq.Socket:
-    socket = context.socket(kind)
-    OPEN.append(socket)
-    socket.connect(endpoint)
-    socket.setsockopt(zmq.RCVTIMEO, 10_000)
-    return socket
-
-
-def stamped(request: requests.Request) -> bytes:
-    """As the clients send it: with the time, so that a stop just before does not count against it."""
-    stamp(request)
-    return wire.encode(request)
-
-
-def hear(socket: zmq.Socket, until: type) -> list:
-    events = []
-    while not events or not isinstance(events[-1], until):
-        events.append(wire.decode_event(socket.recv()))
-    return events
-
-
-def kinds(events) -> list[str]:
-    return [type(e).__struct_config__.tag for e in events]
 
 
 def test_say_is_accepted_moves_and_is_done(robot):
@@ -223,98 +171,6 @@ def test_several_frames_are_an_error(running, context):
         assert wire.decode_event(socket.recv()).code == "frames"
 
 
-def say_in_thread(robot: Client, running: RunningDaemon, text: str, seconds: float) -> tuple[threading.Thread, list]:
-    """Say it from another client; the list will hold what came of it."""
-    outcome: list = []
-
-    def run() -> None:
-        with running.client() as client:
-            try:
-                outcome.append(client.say(text, seconds=seconds))
-            except (CancelledByError, RefusedError) as error:
-                outcome.append(error)
-
-    thread = threading.Thread(target=run)
-    thread.start()
-    robot.wait_for("moving", timeout_s=5)
-    return thread, outcome
-
-
-def test_stop_holds_and_cancels(robot, running):
-    thread, outcome = say_in_thread(robot, running, "wave", 4.0)
-    robot.stop()
-    thread.join(5)
-    assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "stop"
-    assert robot.wait_for("holding", timeout_s=3).command is None
-    assert robot.say("wave").done  # no arming needed
-
-
-def test_a_stop_right_after_a_text_stops_it(robot, running, context):
-    """No lost stop: the text may still be on its way in another socket when the stop is served."""
-    socket = dealer(context, running.endpoints.cmd)
-    for _ in range(10):
-        socket.send(stamped(requests.Say(text="wave")))
-        robot.stop()
-        assert kinds(hear(socket, ev.Cancelled))[-1] == "cancelled"
-    assert robot.status().command is None
-
-
-def test_cancel_by_id(robot, running, context):
-    socket = dealer(context, running.endpoints.cmd)
-    socket.send(stamped(requests.Say(id="c1", text="wave", seconds=4)))
-    hear(socket, ev.Progress)
-    with running.client() as client:
-        with pytest.raises(RefusedError, match="c1"):
-            client.cancel("another")
-        client.cancel("c1")
-        assert hear(socket, ev.Cancelled)[-1].by == "cancel"
-        with pytest.raises(RefusedError, match="nothing is running"):
-            client.cancel()
-    robot.wait_for("holding", timeout_s=3)
-
-
-def test_estop_latches_until_reset_and_arm(robot, running):
-    thread, outcome = say_in_thread(robot, running, "wave", 4.0)
-    robot.estop()
-    thread.join(5)
-    assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "estop"
-    status = robot.wait_for("estop", timeout_s=3)
-    assert status.must_arm
-    for refused in (lambda: robot.say("wave"), robot.arm, robot.park):
-        with pytest.raises(RefusedError, match="mmmd reset"):
-            refused()
-    robot.reset()
-    with pytest.raises(RefusedError, match="mmmd arm"):
-        robot.say("wave")
-    assert robot.status().state == "limp"
-    robot.arm()
-    assert robot.say("wave").done
-
-
-def test_torque_off_goes_limp_and_waits_for_an_arm(robot, running):
-    thread, outcome = say_in_thread(robot, running, "wave", 4.0)
-    robot.torque_off()
-    thread.join(5)
-    assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "torque off"
-    status = robot.status()
-    assert status.state == "limp" and status.must_arm
-    with pytest.raises(RefusedError, match="mmmd arm"):
-        robot.say("wave")
-    robot.arm()
-    assert robot.say("wave").done
-
-
-def test_park_goes_limp_and_the_next_text_arms(robot, running):
-    thread, outcome = say_in_thread(robot, running, "wave", 4.0)
-    robot.park()
-    thread.join(5)
-    assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "park"
-    assert robot.status().state == "limp"
-    said = robot.say("wave")
-    assert kinds(said.events) == ["accepted", "progress", "progress", "done"]
-    assert said.events[1].stage == "arming"
-
-
 def test_late_subscribers_get_the_last_state_at_once_and_20_a_second(robot, running):
     began_s = time.monotonic()
     with running.client() as client, contextlib.closing(client.watch("v1/state")) as states:
@@ -360,36 +216,3 @@ def test_a_client_that_never_reads_slows_nobody(robot, running, context):
     robot.stop()
     assert time.monotonic() - began_s < 1.0
     assert robot.say("wave", timeout_s=30).done
-
-
-def test_the_word_stop_brakes_and_is_no_gesture(robot, running):
-    """As text it was taken for the gesture of a stop sign: the hand rose 0.7 m, and the voice assistant was told `done`."""
-    thread, outcome = say_in_thread(robot, running, "wave", 4.0)
-    with running.client() as other:
-        said = other.say("please stop waving")
-    thread.join(5)
-    assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "stop"
-    assert [type(e) for e in said.events] == [ev.Ack]
-    assert (
-        said.events[0].verb == "stop" and "means to stop" in said.events[0].note and "ended: 1" in said.events[0].note
-    )
-    assert robot.wait_for("holding", timeout_s=3).command is None
-
-
-@pytest.mark.parametrize(
-    "frame",
-    [
-        b"Stop!!!",
-        b'{"type": "say", "text": "don\'t move", "when": "after"}',
-        b'{"type": "story", "scenes": [{"text": "wave"}, {"text": "emergency stop"}]}',
-        b'{"type": "edit", "text": "halt", "gesture": "wave_left"}',
-    ],
-)
-def test_a_stop_in_any_frame_of_cmd_brakes(robot, running, context, frame):
-    thread, outcome = say_in_thread(robot, running, "wave", 4.0)
-    socket = dealer(context, running.endpoints.cmd)
-    socket.send(frame)
-    assert isinstance(wire.decode_event(socket.recv()), ev.Ack)
-    thread.join(5)
-    assert isinstance(outcome[0], CancelledByError) and outcome[0].by == "stop"
-    assert robot.wait_for("holding", timeout_s=3).command is None

@@ -1,0 +1,32 @@
+"""A running daemon, its client and a context of sockets, for the tests of a module."""
+
+from __future__ import annotations
+
+import pytest
+import zmq
+
+from tests.support.front_sockets import OPEN
+from tests.support.harness import RunningDaemon
+
+
+@pytest.fixture(scope="module")
+def running():
+    daemon = RunningDaemon()
+    try:
+        yield daemon.until_ready()
+    finally:
+        daemon.close()
+
+
+@pytest.fixture
+def robot(running):
+    with running.armed() as client:
+        yield client
+
+
+@pytest.fixture
+def context():
+    made = zmq.Context()
+    yield made
+    made.destroy(linger=0)
+    OPEN.clear()
