@@ -15,7 +15,7 @@ _ENDS = re.compile(rf"\b{_any('by itself')}\b")
 _VERB_FIRST = re.compile(rf"^(?:also )?(?!{_any('no verb')}\b)\w+")
 _WHILE = re.compile(rf"\s*,?\s*\b(?:and )?{_any('while')}\b,?\s+(?:{_any('while also')}\s+)*")
 _AS_YOU = re.compile(
-    rf"\s*,?\s*\bas (?:you(?! {_any('as you can')}\b)(?: are)?\s+|"
+    rf"\s*,?\s*(?<!fast )(?<!quickly )(?<!slowly )(?<!far )(?<!wide )(?<!high )(?<!hard )(?<!long )\bas (?:you(?! {_any('as you can')}\b)(?: are)?\s+|"
     rf"(?=(?:your|the|both) (?:left |right )?(?:{LIMB}|head|eyes|body|trunk)\b))"
 )
 _SAME_TIME = re.compile(rf"\s*,?\s*(?:\band )?(?:\bboth )?\b{_any('same time')}\b[,:]?\s*(?:and )?")

@@ -134,7 +134,7 @@ LEANS = _pattern(
         "(?:relax|lower|lowers|lowering|drop|drops|release)(?: (?:it|them|again|slowly)| (?:your|the|his|her|their|its) "
         rf"{_LIMB})?$",
         "(?:let|stop|stay|stays|staying|return|returns|freeze|repeat|repeats|again|go back|come back|back|down|up)",
-        "(?:bring|brings|take|takes|put|puts) .*(?:down|back)", "do(?:es)? (?:it|that|so|the same)",
+        r"(?:bring|brings|take|takes|put|puts) (?!the (?!left|right|other|hand|arm|fist|head)\w+ (?:down|back)\b).*(?:down|back)", "do(?:es)? (?:it|that|so|the same)",
         "(?:hold|keep)(?:s|ing)?"
         "(?: (?:it|them|that|this|there|on|still|for|the pose|the position|your (?:position|balance)|until)|$)",
         "(?:with|using|to the|the other|other|same)", rf"(?:the )?(?:left|right|same)(?: {_LIMB})?$",

@@ -16,7 +16,7 @@ from mmm_core.language import clause_patterns as words
 from mmm_core.language.at_once import are_at_once, goes_on
 from mmm_core.language.count_words import NUMBERS
 from mmm_core.language.ellipsis import OTHER, completed, is_manner
-from mmm_core.language.ellipsis_patterns import THING
+from mmm_core.language.ellipsis_patterns import KEEPS_ON, THING
 from mmm_core.language.limbs import is_gesture_verb
 from mmm_core.language.requests import everyday
 
@@ -149,7 +149,7 @@ def _listed(text: str, whole: _Span) -> list[_Span]:
             or everyday(part)
             or (len(parts) > 2 and is_gesture_verb(part))
         )
-        wholes.append(filled or part)
+        wholes.append(filled or (wholes[-1] if i and KEEPS_ON.match(part) else part))
     if _are_counted(parts) or (len(parts) > 2 and all(map(_NOUN.match, parts))):
         return spans
     if len(parts) > 2 and all(map(words.LIMB_ALONE.match, parts)):

@@ -195,6 +195,8 @@ def _with_pronoun(clause: str, before: str) -> str | None:
         r"\b(?:it|them|that (?:hand|arm|one)|the same (?:hand|arm|one)|this (?:hand|arm))\b", clause
     ):
         return None
+    if (same := forms.THAT_LIMB.search(clause)) and (side := re.search(r"\b(?:left|right)\b", limbs[-1])):
+        return f"{clause[: same.start()]}your {side[0]} {same['limb']}{clause[same.end() :]}"
     limb = limbs[-1] if limbs[-1].startswith(("your", "both")) else "your " + re.sub(r"^(?:the|one|a) ", "", limbs[-1])
     return re.sub(
         r"\b(?:it|them|that (?:hand|arm|one)|the same (?:hand|arm|one)|this (?:hand|arm))\b", limb, clause, count=1

@@ -88,8 +88,9 @@ GOES_TO_THING = re.compile(
 )
 """'Point to the door on your right', and 'the window on your left' to which a command without a verb points."""
 NAMED_LIMB = re.compile(
-    r"\b(?:(?:your|the|both|one|a) )?(?:both )?(?:(?:left|right) )?(?:hands?|arms?|fists?|palms?|fingers?|head|shoulders)\b"
+    r"\b(?:(?:your|the|both|one|a) )?(?:both )?(?:(?:left|right) )?(?:hands?|arms?|fists?|palms?|fingers?|fingertips|head|shoulders)\b"
 )
+THAT_LIMB = re.compile(r"\b(?:that|the same|this) (?P<limb>hand|arm)\b")
 KEEPS_ON = re.compile(
     r"(?:hold|keep|do|repeat|stop|continue|stay|leave)(?:s|es|ing)?\b"
     r"(?! (?:it|them) (?:out|forward|away|above|against|behind|in front|over your|to your|towards?)\b)"

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from mmm_core.language.limbs import SOME_ARM, limbs_of
 
-_NAMED = re.compile(r"\b(left|right) (?:hand|arm|fist|palm|elbow|wrist|forearm|fingers?|thumb)\b")
+_NAMED = re.compile(r"\b(left|right) (?:hand|arm|fist|palm|elbow|wrist|forearm|fingers?|fingertips|thumb)\b")
 _ANY_SIDE = re.compile(r"\b(?:left|right|both|other|one (?:hand|arm)|hands|arms)\b")
 _PART = re.compile(r"\b(?:the|your) (?=(?:elbow|wrist|palm|fist|forearm|fingers?|thumb|hand|arm)\b)")
 _MAKES_A_FIST = re.compile(r"(?:make|form|clench|ball|close|open)\b.*\bfist\b(?: tight(?:ly)?)?$")

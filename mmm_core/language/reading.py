@@ -22,6 +22,7 @@ from mmm_core.language.limbs import SOME_ARM, limbs_of
 from mmm_core.language.manner import Manner, manner_of
 from mmm_core.language.one_arm import of_one_arm
 from mmm_core.language.one_gesture import as_said, held_together
+from mmm_core.language.one_thing import of_one_thing
 from mmm_core.language.requests import everyday, greeting, restated, rewritten, without_request
 from mmm_core.language.run_on import with_marks
 from mmm_core.language.spelling import mended, normalised
@@ -74,7 +75,7 @@ def read(text: str, *, by_rules_alone: bool = False) -> Reading:
     notes: list[str] = []
     rest, hand = _for_all(rest)
     hand = hand or first_hand
-    for clause in of_one_arm(commands_in_turn(with_sides(rest))):
+    for clause in of_one_arm(commands_in_turn(of_one_thing(with_sides(rest)))):
         steps += _steps(clause + hand if hand and limbs_of(clause) == SOME_ARM else clause, notes)
     if _is_plain(text, said, steps):
         return Reading(text, ((replace(steps[0][0], text=normalised(text)),),), plain=True)
@@ -127,7 +128,7 @@ def _hand_first(said: str) -> tuple[str, str]:
             return ", ".join(f"{m[1]} {limb} {m[2]}" for m in sided if m), ""
         return ", then ".join(f"{listed['limb']} {part}" for part in parts if part), ""
     found = re.match(
-        r"(?:with|using|use) (?:your |the )?(left|right) (?:hand|arm)[:,]? (?:first |to )?"
+        r"(?:with|using|use) (?:your |the )?(left|right)(?: (?:hand|arm)[:,]?|(?: one)?[:,]) (?:first |to )?"
         r"(?!(?:stretched|raised|held|extended|crossed|folded|lifted|placed|bent|straight|out|up|on|over|behind|against|in|at|down)\b)(?P<rest>.+)$",
         said,
     )
@@ -166,7 +167,10 @@ def _steps(clause: str, notes: list[str]) -> list[tuple[PlainCommand, ...]]:
 def _command(clause: str) -> PlainCommand:
     rest, manner = manner_of(clause)
     bare = _PAST.sub(lambda m: base_of(m[0]), without_request(rest))
-    words = as_said(rewritten(everyday(bare) or bare))
+    words = rewritten(everyday(bare) or bare)
+    if manner.plain and words != bare:
+        words, manner = manner_of(words)
+    words = as_said(words)
     return PlainCommand(words, manner, limbs_of(words))
 
 
