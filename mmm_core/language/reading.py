@@ -39,7 +39,7 @@ _LIMB_OF_ALL = re.compile(
 _OWN_PART = re.compile(
     r"\byour (?:(?:left|right) )?(?:hand|arm|head|nose|ear|eye|chin|cheek|shoulder|elbow|belly|hair|back|chest|forehead|mouth|face|neck|brow)s?\b"
 )
-_ACT_ON_IT = re.compile(r"((?!do\b)\w+) (?:it|them)\b")
+_ACT_ON_IT = re.compile(r"((?!do\b)\w+) (?:it|them)\b(?: (?:away|off)\b)?")
 """A part of the robot that a sentence names before a pronoun stands for it: "there is a fly on your nose, scratch it"."""
 
 
@@ -100,7 +100,7 @@ def _referring(bare: str, said: str) -> str:
     side = re.search(r"\b(?:on|to|from|by) (?:your|the) (left|right)\b(?! (?:hand|arm))", before)
     if side and re.search(r"\b(?:that way|over there|in that direction)\b", bare):
         return re.sub(r"\b(?:that way|over there|in that direction)\b", f"to the {side[1]}", bare, count=1)
-    part = _OWN_PART.search(before) if said.endswith(bare) else None
+    part = _OWN_PART.search(said.rpartition(bare)[0]) if bare else None
     if part is not None and (pronoun := _ACT_ON_IT.match(bare)):
         return f"{pronoun[1]} {part[0]}{bare[pronoun.end() :]}"
     act = re.search(

@@ -33,7 +33,7 @@ _STORY = (
 )
 """Beginnings that a story before a request does not have: a command, an order of commands, a denial."""
 _ASKS = (
-    r"(?:(?:can|could|would|will|might) you|(?:might|may|could|can|must|should|would) (?:i|we) (?:please |just |kindly |also )*(?:trouble|ask|beg|request|invite|persuade|bother|get|have) you to|"
+    r"(?:(?:can|could|would|will|might) you|(?:might|may|could|can|must|should|would) (?:i|we) (?:please |just |kindly |also )*(?:trouble|ask|beg|request|invite|persuade|bother|get|have) you(?: please| kindly)? (?:to|that you)|"
     r"(?:i|we) (?:(?:would|do|really|just|only|simply|also|am|was|were) )*wonder(?:ing)?(?: if| whether) you (?:would|could|might|can|will)|"
     r"(?:i|we|they|he|she|everybody|everyone|the \w+|my \w+)(?: would| do| really| just| now| simply| only| all)* (?:like|love|want|need|wish|expect|ask|beg|prefer|ought|likes|loves|wants|needs)(?: to (?:see|have|watch))? you(?: to)?|"
     r"if you (?:could|would|might|were to)|(?:i|we) (?:am|was|are|were|have been) (?:just |only |really )*(?:hoping|thinking|wishing|counting on it)(?: that| if| whether)? you (?:could|might|would|can|will)|it would be (?:\w+ ){1,3}(?:if you (?:could|would)|to see you|to have you)|(?:perhaps|maybe) you (?:could|would|might|can|should)|(?:i|we|he|she|they|everyone|(?:the|my|our) \w+(?: \w+)?) (?:thinks?|believes?|guess|suggests?|proposes?|recommends?|insists?|says?|said|told (?:me|us))(?: that)? you (?:should|could|might|ought to|had better|must)?|"

@@ -1,0 +1,44 @@
+"""Restarts and homophones of speech, and long polite requests; and sentences that look like these and are none."""
+
+from __future__ import annotations
+
+import pytest
+
+from mmm_core.language.reading import read
+
+
+@pytest.mark.parametrize(
+    ("text", "read_as"),
+    [
+        # words begun again, put right, or heard for another
+        ("fold you know fold your arms", "fold your arms"), ("raise your left arm i mean hand", "raise your left hand"),
+        ("put your hand on your chest, sorry, head", "put your hand on your head"),
+        ("clap yeah and then bow", "clap; bow"), ("bow too the king", "bow to the king"),
+        ("wave too the ceiling", "wave to the ceiling"), ("not on the door", "knock on the door"),
+        ("make a fist and not not on the table", "make a fist; knock on the table"),
+        ("pretend your on the phone", "pretend you are on the phone"),
+        ("shake your head like you're saying know", "shake your head like you are saying no"),
+        # words around a request
+        ("sorry to disturb you, I know you are busy, but could you possibly nod", "nod"),
+        ("I wonder whether, when you are ready, you might clap", "clap"),
+        ("perhaps you would care to wave", "wave"), ("you might want to bow", "bow"), ("wave, perhaps", "wave"),
+        ("should anybody ask, kindly nod", "nod"), ("bow to the guests. Go on, do it now.", "bow to the guests"),
+        ("may I ask you please that you make the gesture of drinking a cup of tea", "drink a cup of tea"),
+        ("salute with whichever hand you like, if that's ok with you", "salute"),
+        ("there is a wasp on your nose; you might want to brush it away", "brush your nose"),
+        ("let the guests know that you see them, with a friendly wave", "a wave"),
+        ("turn your head so that you can see the lady on your left", "turn your head to the left"),
+        ("let your shoulders say that you have no clue", "shrug your shoulders"),
+        ("look around the room, first to one side and then to the other", "look to the left; look to the right"),
+        # and what looks like these
+        ("nod yes and clap", "nod yes + clap"), ("shout yes and pump your fist", "shout yes and pump your fist"),
+        ("put your hand on your head, not on the table", "put your hand on your head, not on the table"),
+        ("clap two times", "clap two times"), ("whether you know it or not, wave", "whether you know it or not, wave"),
+        ("say maybe", "say maybe"), ("maybe", "wobble your head"), ("greet me with a bow", "greet me with a bow"),
+        ("do you know how to bow", "bow"), ("point with your left hand so that I can see it", "point with your left hand"),
+        ("let your head hang", "let your head hang"), ("I am sorry", "put your right hand on your heart"),
+        ("do the wave", "do the wave"),
+    ],
+)  # fmt: skip
+def test_what_is_read(text: str, read_as: str) -> None:
+    assert "; ".join(read(text).sentences) == read_as
