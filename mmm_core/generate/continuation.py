@@ -61,7 +61,7 @@ def continue_motion(
         nothing = no_motion(text, seed, verdict)
         return GenerationResult(nothing, understood_as(verdict), verdict.reason, timer.laps_ms, read=read.reading)
     with torch.inference_mode():
-        steps = steps_of(engine, read, n_frames)
+        steps = steps_of(engine, read.steps, n_frames)
         prefix = ids_before[len(ids_before) - min(n_prefix, MAX_TOKENS - steps[0].n_tokens) :]
         made = [
             _step_ids(engine, ids_before[:0] if i else prefix, step, (seed + i * COMMAND_STRIDE) % 2**31)

@@ -110,7 +110,7 @@ class Engine(MotionModel):
             self.generate(text, seed=i, seconds=seconds)
 
     def generate(
-        self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int | None = None
+        self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int = 1
     ) -> GenerationResult:
         """The motion for `text`; the same text, seed, seconds and candidates give the same motion.
 
@@ -118,25 +118,21 @@ class Engine(MotionModel):
             text: a command in English.
             seed: any integer from 0 to 2^31 - 1.
             seconds: length of the motion, at most 9.8; None lets the model choose.
-            candidates: motions generated at once, of which the likeliest is kept. For a text that names more than eight
-                repetitions, two or more candidates also let the number be met (`mmm_core.generate.repetition_editing`).
-                None means two for such a text without `seconds`, else one.
+            candidates: motions generated at once, of which the likeliest is kept.
 
         Raises:
             GenerationError: seed, seconds or candidates out of range, or no seconds for a model without lengths.
         """
         return self.begin(text, seed=seed, seconds=seconds, candidates=candidates).result()
 
-    def begin(
-        self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int | None = None
-    ) -> MotionGeneration:
+    def begin(self, text: str, *, seed: int = 0, seconds: float | None = None, candidates: int = 1) -> MotionGeneration:
         """The generation that `generate` runs, not yet run; it can also give a preview before the motion.
 
         Raises:
             GenerationError: as `generate`.
         """
         check_seed(seed)
-        if candidates is not None and not 1 <= candidates <= MOST_CANDIDATES:
+        if not 1 <= candidates <= MOST_CANDIDATES:
             raise GenerationError(f"{candidates} candidates were asked for", f"1 to {MOST_CANDIDATES}")
         n_frames = None if seconds is None else frames_for_seconds(seconds, FPS)
         return MotionGeneration(self, text, seed, n_frames, candidates)

@@ -18,7 +18,7 @@ from torch import Tensor
 from mmm_core.generate.at_once import StepIds, arms_of, composed, features_of, mirrored_ids
 from mmm_core.generate.interpretation import ReadCommand, interpret
 from mmm_core.generate.motion_model import MotionModel
-from mmm_core.generate.repetition_editing import ids_of_count
+from mmm_core.generate.repeated_strokes import expected_tokens, repeated, with_few_strokes
 from mmm_core.generate.result import GenerationResult, StageTimer, no_motion, understood_as
 from mmm_core.generate.sequence import (
     COMMAND_STRIDE,
@@ -29,13 +29,11 @@ from mmm_core.generate.sequence import (
     stretches_of,
 )
 from mmm_core.generate.transitions import TRANSITION_TOKENS
-from mmm_core.language.count_words import count_asked
 from mmm_core.language.mirroring import mirror_words
 from mmm_core.model.sampling import FirstStep, SamplingSettings, empty_row, fill, pseudo_log_likelihood
 from mmm_core.model.text import TextStates
 from mmm_core.model.tokens import FRAMES_PER_TOKEN
 from mmm_core.motion.body_parts import BodyPart
-from mmm_core.motion.counting import with_counts
 from mmm_core.motion.motion import FPS
 from mmm_core.motion.performing import performed
 from mmm_core.recognition.seen import Scene
@@ -43,10 +41,6 @@ from mmm_core.recognition.seen import Scene
 OPENING_TOKENS = 2
 """Tokens that the preview and the motion share: 0.4 s, longer than generating and retargeting the motion usually takes.
 docs/model.md says what they cost in probes."""
-MOST_LEARNT_STROKES = 8
-"""Strokes of a gesture in the corpus at most. The model makes so few itself; for more, strokes of its motion are repeated."""
-CANDIDATES_TO_COUNT = 2
-"""Candidates for a text that names more strokes. A third takes longer and comes no nearer to the number (docs/model.md)."""
 CANDIDATE_STRIDE = 7_919_999
 """Distance between the seeds of candidates, so that neighbouring seeds share none."""
 
@@ -55,23 +49,25 @@ class MotionGeneration:
     """One motion to generate; `Engine.begin` makes it.
 
     Attributes:
-        n_frames: expected length of the motion; a motion whose strokes are counted may become longer or shorter.
+        n_frames: expected length of the motion; a motion whose strokes are repeated may become longer or shorter.
     """
 
-    def __init__(self, engine: MotionModel, text: str, seed: int, n_frames: int | None, candidates: int | None) -> None:
+    def __init__(self, engine: MotionModel, text: str, seed: int, n_frames: int | None, candidates: int) -> None:
         """Read the text; arguments as in `Engine.generate`, checked."""
         self._engine, self._seed, self._asked_frames = engine, seed, n_frames
         self._timer = StageTimer()
         with torch.inference_mode():
             self._read = interpret(engine, text)
             self._text = self._read.reading.text
-            self._steps = steps_of(engine, self._read, n_frames) if self._read.steps else []
+            steps, self._counts = list(self._read.steps), [None] * len(self._read.steps)
+            if n_frames is None and engine.model.is_ours:
+                steps, self._counts = with_few_strokes(engine, steps)
+            self._steps = steps_of(engine, steps, n_frames) if steps else []
         self._verdict, self._mirrored = self._read.verdict, self._read.is_mirrored
         self._first_steps = [FirstStep() for _ in self._steps[0].commands] if self._steps else []
-        self._candidates, self._counts = candidates or 1, [None] * len(self._steps)
-        if candidates != 1 and n_frames is None and engine.model.is_ours:
-            self._counts = [_count_to_make(s) for s in self._steps]
-        n_tokens = sum(s.n_tokens for s in self._steps) + TRANSITION_TOKENS * max(0, len(self._steps) - 1)
+        self._candidates = candidates
+        n_tokens = sum(expected_tokens(s.n_tokens, n) for s, n in zip(self._steps, self._counts, strict=False))
+        n_tokens += TRANSITION_TOKENS * max(0, len(self._steps) - 1)
         self.n_frames = n_tokens * FRAMES_PER_TOKEN if n_frames is None else n_frames
         if len(self._steps) == 1 and n_frames is None:
             self.n_frames = round(self.n_frames / self._steps[0].manner.tempo)
@@ -157,18 +153,17 @@ class MotionGeneration:
         return [mirrored_ids(self._engine, r) if c.is_mirrored else r for c, r in zip(commands, rows, strict=True)]
 
     def _command_row(self, i: int, k: int, command: ReadCommand, n_tokens: int) -> Tensor:
-        """(L, C) ids of a command: the candidate nearest to the count that its words name, else the likeliest one."""
-        count, settings = self._counts[i], self.settings
-        n = CANDIDATES_TO_COUNT if self._candidates == 1 and count is not None else self._candidates
+        """(L, C) ids of a command: the likeliest candidate, with as many strokes as its words name."""
+        n, settings = self._candidates, self.settings
         seeds = [self._seed_of(i, k) + c * CANDIDATE_STRIDE for c in range(n)]
         row = empty_row(self._engine.model.transformer, n_tokens)
         if n > 1 and i == 0 and self._opens:  # all candidates begin as the preview does
             row[: settings.opening] = self._drafts[k][: settings.opening]
         first = self._first_steps[k] if i == 0 and n == 1 else None
         candidates = self._fill(command.states, [row] * n, seeds, settings, first)
-        if count is not None:
-            return ids_of_count(self._engine, command.states, candidates, count, self._seed)
-        return candidates[0] if n == 1 else self._likeliest(command.states, candidates)
+        ids = candidates[0] if n == 1 else self._likeliest(command.states, candidates)
+        count = self._counts[i]
+        return ids if count is None else repeated(self._engine, command, ids, count, settings.opening)
 
     def _seed_of(self, i: int, k: int) -> int:
         """The seed of the k-th command of a step."""
@@ -189,12 +184,9 @@ class MotionGeneration:
         verdict, mirrored = self._verdict, self._mirrored
         stretches = stretches_of(self._steps, [len(step.ids) for step in made])
         ends = [stretch.end for stretch in stretches]
-        counts = self._counts if lap == "motion" else []
-        if any(counts) or any(not s.plain for s in stretches) or any(step.rows for step in made):
+        if any(not s.plain for s in stretches) or any(step.rows for step in made):
             begins = [end // FRAMES_PER_TOKEN - len(step.ids) for end, step in zip(ends, made, strict=True)]
             features = features_of(self._engine, ids, list(zip(begins, made, strict=True)))
-            if any(counts):
-                features, stretches = with_counts(features, stretches, counts, OPENING_TOKENS * FRAMES_PER_TOKEN)
             if any(not s.plain for s in stretches):
                 features, ends = performed(features, stretches)
             else:
@@ -218,9 +210,3 @@ class MotionGeneration:
             Scene(end / FPS, f"{step.words}\n{step.understood or self._verdict.nearest}")
             for end, step in zip(ends, self._steps, strict=True)
         )
-
-
-def _count_to_make(step: Step) -> int | None:
-    """The number of strokes that the words of a step name, if the model has not learnt to make so many, else None."""
-    count = count_asked(step.commands[0].text) if len(step.commands) == 1 else None
-    return count if count is not None and count > MOST_LEARNT_STROKES else None

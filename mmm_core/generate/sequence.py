@@ -12,7 +12,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor
 
-from mmm_core.generate.interpretation import Interpreted, ReadCommand
+from mmm_core.generate.interpretation import ReadCommand
 from mmm_core.generate.motion_model import MotionModel
 from mmm_core.generate.transitions import TRANSITION_TOKENS, transitions
 from mmm_core.language.manner import Manner
@@ -73,18 +73,17 @@ class Step:
         return self.commands[0].states
 
 
-def steps_of(engine: MotionModel, read: Interpreted, n_frames: int | None) -> list[Step]:
+def steps_of(engine: MotionModel, steps: Sequence[tuple[ReadCommand, ...]], n_frames: int | None) -> list[Step]:
     """The steps of a text with their lengths.
 
     Args:
         engine: predicts the lengths.
-        read: the text.
+        steps: commands of the text, those of a step done at the same time.
         n_frames: length of the whole motion, shared in proportion to the steps' own lengths; None lets the model choose.
 
     Raises:
         GenerationError: `n_frames` is None and the model has no length predictor.
     """
-    steps = read.steps
     if len(steps) == 1 and len(steps[0]) == 1:
         command = steps[0][0]
         own = engine.predicted_frames(command.states) if n_frames is None else _before_tempo(n_frames, command.manner)

@@ -194,7 +194,7 @@ def _segments(engine: Engine, scenes: list[tuple[int, Scene]], seed: int) -> lis
     seeds: list[int] = []
     for (number, scene), one in zip(scenes, read, strict=True):
         n_frames = None if scene.seconds is None else frames_for_seconds(scene.seconds, FPS)
-        asked.append(steps_of(engine, one, n_frames) if one.steps else [])
+        asked.append(steps_of(engine, one.steps, n_frames) if one.steps else [])
         begin = seed + SCENE_STRIDE * number
         seeds += [
             (begin + COMMAND_STRIDE * i + TOGETHER_STRIDE * k) % 2**31

@@ -48,3 +48,13 @@ def count_asked(text: str) -> int | None:
         n for m in _THINGS.finditer(text) if (n := NUMBERS[m[1].lower()]) > 1 and not _TIMES.match(text, m.start())
     }
     return found.pop() if len(found) == 1 else None
+
+
+def with_count(text: str, count: int) -> str | None:
+    """`text`, which names strokes by a number above one, with `count` (two or more) of them; None where that cannot be said."""
+    found = [*_TIMES.finditer(text), *_THINGS.finditer(text)]
+    spans = sorted({m.span(1) for m in found if NUMBERS[m[1].lower()] > 1}, reverse=True)
+    for start, end in spans:
+        word = str(count) if text[start:end].isdigit() else _WORDS[count - 1]
+        text = text[:start] + word + text[end:]
+    return text if spans and count_asked(text) == count else None

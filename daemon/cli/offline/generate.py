@@ -51,7 +51,7 @@ def generate(
     bvh_names: BvhNames = "mmmd",
     batch: Path | None = None,
     story: Path | None = None,
-    candidates: int | None = None,
+    candidates: int = 1,
     model: Path | None = None,
     threads: int = 1,
     precision: Precision | None = None,
@@ -78,9 +78,7 @@ def generate(
         bvh_names: its bones: mixamo or cmu as retargeting programs know them, in a T pose at rest; mmmd has our joints.
         batch: JSON lines of {"id", "text", "seed", "seconds"}: one .npz named by its id for each.
         story: JSON lines of {"text", "seconds"}: one motion with generated transitions, of any length.
-        candidates: motions made at once, of which the model's likeliest is kept; with two or more, a number of more than
-            eight strokes that the text names ("clap ten times") is made. When it is not given: two for such a text without
-            seconds, else one. A story has one of each.
+        candidates: motions made at once, of which the model's likeliest is kept. A story has one of each.
         model: checkpoint; the shipped one when it is not given.
         threads: CPU threads.
         precision: of matrix products; int8 for the shipped model where the processor multiplies such integers (VNNI), else
@@ -97,7 +95,7 @@ def generate(
     if batch is not None:
         return _generate_batch(_prompts(batch), out, _load(model, threads, precision), candidates, json)
     if story is not None:
-        if candidates is not None:
+        if candidates != 1:
             raise CommandError("generate: --candidates does not go with --story; leave it out")
         return _tell(story, out, bvh, bvh_names, seed, _load(model, threads, precision))
     prompt = Prompt("", text or "", seed, seconds)
@@ -126,7 +124,7 @@ def generate(
     return 0
 
 
-def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candidates: int | None, json: bool) -> int:
+def _generate_batch(prompts: list[Prompt], folder: Path, engine: Engine, candidates: int, json: bool) -> int:
     from rich.console import Console
     from rich.progress import track
 

@@ -1,0 +1,105 @@
+"""Makes as many strokes as a text names: the model performs two of them, and the tokens of one period are repeated.
+
+Parallel decoding keeps the sense of a repeated gesture and loses count of its strokes, the more of them the oftener, but two
+strokes are nearly always right (docs/model.md). All strokes of a gesture take the same whole number of tokens, so a text with one
+more stroke is longer by that number, and the length predictor tells it without seeing the motion. It errs now and then; of
+the periods that it names, that one is taken after which the motion returns nearest to where it was, as a share of its movement.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+import torch
+from torch import Tensor
+
+from mmm_core.generate.interpretation import ReadCommand
+from mmm_core.generate.motion_model import MotionModel
+from mmm_core.language.count_words import count_asked, with_count
+from mmm_core.language.mirroring import mirror_words
+from mmm_core.model.tokens import FRAMES_PER_TOKEN
+
+PERFORMED = 2
+"""Strokes that the model makes itself."""
+FROM_COUNT = 3
+"""Number of strokes from which on a period is repeated."""
+_COUNTS_COMPARED = range(PERFORMED, 7)
+"""Numbers of strokes whose predicted lengths tell the period; more would not fit into the longest motion that is learnt."""
+_MOST_STROKES_APART = 3
+_PERIODS = range(2, 15)
+"""Tokens that a stroke may take."""
+_IN_TURN = 1.5
+"""Factor on the distance over two periods, after which arms that take turns return; other motions return after one as well."""
+_SEAM_TOKENS = 2
+"""Tokens up to both ends of the repeated part whose frames are compared."""
+_STILL = 1e-9
+
+
+def with_few_strokes(
+    engine: MotionModel, steps: Sequence[tuple[ReadCommand, ...]]
+) -> tuple[list[tuple[ReadCommand, ...]], list[int | None]]:
+    """The steps with two strokes in place of many, as the model reads them, and the number of strokes of each step.
+
+    The number is None where a step stays as it is: several commands at once, no number in the words, or a number that the model
+    makes itself.
+    """
+    found: list[tuple[ReadCommand, ...]] = []
+    counts: list[int | None] = []
+    for step in steps:
+        words = _words_of(step[0], PERFORMED) if len(step) == 1 else None
+        count = None if words is None else count_asked(step[0].text)
+        found.append(step if words is None else (replace(step[0], states=engine.read([words])),))
+        counts.append(count)
+    return found, counts
+
+
+def expected_tokens(n_tokens: int, count: int | None) -> int:
+    """Roughly the tokens of a motion whose two strokes take `n_tokens`, before its period is known."""
+    return n_tokens if count is None else n_tokens + (count - PERFORMED) * (n_tokens // 4)
+
+
+def repeated(engine: MotionModel, command: ReadCommand, ids: Tensor, count: int, opening: int) -> Tensor:
+    """(L', C) ids with `count` strokes, from ids (L, C) with two; the same ids where no part of them returns to its beginning.
+
+    Args:
+        engine: predicts lengths, and decodes the motion that is compared with itself.
+        command: the command, whose words name `count`.
+        ids: its two strokes.
+        count: strokes wanted.
+        opening: tokens at the beginning that stay.
+    """
+    features = engine.model.tokenizer.decode(ids[None])[0].reshape(len(ids), -1)
+    best, found = float("inf"), ids
+    for period in periods(engine, command):
+        for strokes, dearness in ((1, 1.0), (2, _IN_TURN)):
+            n, times = strokes * period, (count - PERFORMED) // strokes
+            if (count - PERFORMED) % strokes:
+                continue
+            for start in range(max(opening, _SEAM_TOKENS - 1), len(ids) - n):
+                before, after = (features[k - _SEAM_TOKENS + 1 : k + 1] for k in (start, start + n))
+                movement = features[start : start + n].std(0, correction=0).mean()  # where it stands still all is alike
+                apart = dearness * float((before - after).abs().mean() / (movement + _STILL))
+                if apart < best:
+                    best = apart
+                    found = torch.cat([ids[: start + n], *[ids[start : start + n]] * times, ids[start + n :]])
+    return found
+
+
+def periods(engine: MotionModel, command: ReadCommand) -> list[int]:
+    """Tokens that one stroke of a command may take: differences of the lengths predicted for other numbers of strokes."""
+    words = {n: text for n in _COUNTS_COMPARED if (text := _words_of(command, n)) is not None}
+    states = engine.read(list(words.values()))
+    lengths = {n: engine.predicted_frames(states.row(i)) // FRAMES_PER_TOKEN for i, n in enumerate(words)}
+    several = {
+        Fraction(lengths[b] - lengths[a], b - a) for a in words for b in words if 0 < b - a <= _MOST_STROKES_APART
+    }
+    return sorted(int(p) for p in several if p.denominator == 1 and p in _PERIODS)
+
+
+def _words_of(command: ReadCommand, count: int) -> str | None:
+    """The words that the model reads for a command with `count` strokes; None where its words name none, or few."""
+    asked = count_asked(command.text)
+    words = None if asked is None or asked < FROM_COUNT else with_count(command.text, count)
+    return mirror_words(words) if words is not None and command.is_mirrored else words
