@@ -61,7 +61,7 @@ def opposite(said: str) -> tuple[str, str]:
     >>> opposite("not thumbs up, the opposite"), opposite("lean, but not forward, the other way")
     (('thumbs down', 'thumbs up'), ('lean back', 'forward'))
     """
-    found = _OPPOSITE.match(said)
+    found = _OPPOSITE.match(said) if "not " in said else None
     if found is None:
         return "", ""
     turned, n = _WAY.subn(lambda way: OTHER[way[0]], found["what"])
