@@ -88,7 +88,7 @@ FILMS = (
     Film("do the arms of jumping jacks", "a person does jumping jacks"),
     Film("stretch your right arm forward", "a person does arm stretch exercises with right arm."),
     Film("block with your left forearm", "someone steps, blocks and punches in a karate form"),
-    Film("sway your arms above your head", "someone dances with expressive arm and hand gestures"),
+    Film("sway your arms above your head", "a person dances with the arms held high"),
     Film("climb a rope", "a person plays on climbing equipment"),
     Film("wave with your left hand"),
     Film("clap your hands three times"),

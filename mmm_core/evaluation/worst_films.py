@@ -52,7 +52,11 @@ def make_worst(engine: Engine, ranking: Ranking, out: Path) -> list[Path]:
             (case, synthesise_spec(ClipSpec((case.gesture,)), np.random.default_rng(SEED), BEAT_S))
             for case in cases_of(name)
         )  # on the beat, a gesture may be longer than a clip
-        case, clip = next((case, clip) for case, clip in performed if clip is not None)
+        fitting = next(((case, clip) for case, clip in performed if clip is not None), None)
+        if fitting is None:
+            lines.append(f"| {name} | {share:.2f} | no case fits into a clip | |")
+            continue
+        case, clip = fitting
         shown, made = recover(clip.features), engine.generate(case.text, seed=SEED).motion
         motions = [PostureFeatures.of(m.joints_m, m.head_quat_wxyz) for m in (made, shown) if len(m.joints_m)]
         written.append(out / f"worst_{name}.gif")
